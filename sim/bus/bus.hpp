@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/time.hpp"
+
+namespace sim {
+
+using Bytes = std::vector<std::byte>;
+
+struct Message {
+  std::string channel;
+  Bytes payload;
+  bool from_outside = false;  ///< came over the network, not from this process
+};
+
+/// What one subscriber has not yet read.  Bounded: when full, the oldest message is dropped and counted.
+class Mailbox {
+ public:
+  virtual ~Mailbox() = default;
+  /// The oldest unread message.  Never waits.
+  virtual std::optional<Message> take() = 0;
+  virtual std::uint64_t dropped() const = 0;
+};
+
+struct BusCounts {
+  std::uint64_t published = 0;
+  std::uint64_t received = 0;
+  std::uint64_t dropped_outgoing = 0;
+  std::uint64_t dropped_incoming = 0;
+};
+
+/// Publish/subscribe of bytes on named channels.  A channel has 1 to 63 characters.
+class Bus {
+ public:
+  static constexpr std::size_t max_channel_length = 63;
+  static constexpr std::size_t default_mailbox_capacity = 1000;
+
+  virtual ~Bus() = default;
+  /// Never waits for the network.  `at`: simulated time, stamped on records.
+  virtual void publish(std::string_view channel, std::span<const std::byte> payload, Time at) = 0;
+  /// A mailbox of its own for every call.  It must not outlive the bus.  Throws std::invalid_argument on a channel
+  /// name that is empty or too long.
+  virtual std::unique_ptr<Mailbox> open_mailbox(const std::string& channel,
+                                                std::size_t capacity = default_mailbox_capacity) = 0;
+  /// Called once after the reports of each step, so that a bus may hand over a step's messages at once.
+  virtual void end_of_step() {}
+  virtual BusCounts counts() const = 0;
+};
+
+}  // namespace sim

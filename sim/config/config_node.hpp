@@ -1,0 +1,59 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "sim/config/diagnostics.hpp"
+
+namespace sim {
+
+/// A node of a YAML document that knows where it was written, also after files were merged.
+struct ConfigNode {
+  enum class Kind { null, scalar, list, map };
+  struct Entry;
+
+  Kind kind = Kind::null;
+  bool quoted = false;  ///< a scalar in quotes: always text, never a number
+  std::string scalar;
+  std::vector<ConfigNode> items;  ///< of a list
+  std::vector<Entry> entries;     ///< of a map, in file order, keys unique
+  SourcePlace place;
+
+  const ConfigNode* find(std::string_view key) const;
+  ConfigNode* find(std::string_view key);
+};
+
+struct ConfigNode::Entry {
+  std::string key;
+  SourcePlace place;  ///< of the key
+  ConfigNode value;
+};
+
+/// Parses one YAML document.  Syntax errors, duplicate keys, a second document, documents nested too deeply or
+/// with too many nodes (aliases expanded) go to `diagnostics`; the result is then a null node.
+ConfigNode parse_config_text(const std::string& text, const std::string& file_name, Diagnostics& diagnostics);
+
+/// Reads a file and the files its `include:` key names (a file name or a list of them, relative to the file).
+/// An included file is the base over which the including file is merged: maps key by key, lists of maps that
+/// have a `name` item by item by that name, anything else replaced.  Missing files, files over 64 MB, cyclic
+/// includes and an empty file are errors.
+ConfigNode load_config_file(const std::string& path, Diagnostics& diagnostics);
+
+/// Sets the value at a dotted path, such as `vehicles.rover1.devices.lidar.rate_hz`.  An item of a list is named
+/// by its `name` or its index; maps are created on the way where a key is missing.  `value` is YAML text.  Errors
+/// (a list item that does not exist, a path through a scalar) go to `diagnostics` at `place`.
+void set_config_path(ConfigNode& root, std::string_view path, const ConfigNode& value, const SourcePlace& place,
+                     Diagnostics& diagnostics);
+
+/// Replaces every `${name}` in the scalars below `node` by the scalar of that name in `parameters`.  A scalar that
+/// is nothing but `${name}` takes the parameter's node, so that numbers and lists stay what they are.  Unknown names
+/// are errors that list the known ones.
+void substitute_parameters(ConfigNode& node, const std::vector<std::pair<std::string, ConfigNode>>& parameters,
+                           const std::string& who, Diagnostics& diagnostics);
+
+/// YAML text of the tree, which parses to the same tree.
+std::string to_yaml(const ConfigNode& node);
+
+}  // namespace sim

@@ -1,0 +1,139 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/config/config_node.hpp"
+#include "sim/config/diagnostics.hpp"
+#include "sim/math.hpp"
+
+namespace sim {
+
+/// The range a number must lie in.
+struct Rule {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = false;   ///< low itself is not allowed
+  bool high_open = false;  ///< high itself is not allowed
+
+  bool allows(double value) const;
+  /// `>= 1`, `> 0`, `>= 0 and <= 360`; empty for any number.
+  std::string text() const;
+};
+
+Rule any_number();
+Rule at_least(double low);
+Rule above(double low);
+Rule at_most(double high);
+Rule between(double low, double high);       ///< both ends allowed
+Rule above_to(double low, double high);      ///< low excluded, high allowed
+
+/// What is known of one key: the source of error messages, `shoal describe`, docs and schemas.
+struct ParamInfo {
+  std::string key;
+  std::string type;     ///< bool, integer, number, text, [x, y, z], list of numbers, list of text, map, list of maps
+  std::string rule;     ///< as Rule::text(), or `one of: a, b`, or `name of a joint`
+  std::string initial;  ///< default as YAML text; empty when required
+  std::string meaning;
+  bool required = false;
+  std::vector<ParamInfo> children;  ///< keys of a map, or of each item of a list of maps
+};
+
+class ParamReader;
+
+template <typename T>
+concept ReadsParams = requires(T value, ParamReader& in) { value.read(in); };
+
+/// Hands the keys of one YAML map to a struct, or (describing) collects what the struct would read.  A struct names
+/// each key, its range and its meaning once, in its `read`.  Members hold the defaults.  Errors are collected, never
+/// thrown: after an error the member keeps its default.
+class ParamReader {
+ public:
+  /// Reads `node`.  `who` is the start of each message, such as `vehicle 'auv1': device 'lidar'`.
+  ParamReader(const ConfigNode& node, std::string who, Diagnostics& diagnostics);
+  /// Describes: every call appends to `table`; members are left alone.
+  explicit ParamReader(std::vector<ParamInfo>& table);
+  ParamReader(const ParamReader&) = delete;
+  ParamReader& operator=(const ParamReader&) = delete;
+
+  void read(const char* key, bool& value, const char* meaning);
+  void read(const char* key, int& value, const Rule& rule, const char* meaning);
+  void read(const char* key, std::int64_t& value, const Rule& rule, const char* meaning);
+  void read(const char* key, double& value, const Rule& rule, const char* meaning);
+  void read(const char* key, std::optional<double>& value, const Rule& rule, const char* meaning);
+  void read(const char* key, std::string& value, const char* meaning);
+  void read(const char* key, Vector3d& value, const Rule& rule, const char* meaning);
+  /// Any number of numbers, each inside `rule`.
+  void read(const char* key, std::vector<double>& value, const Rule& rule, const char* meaning);
+  void read(const char* key, std::vector<std::string>& value, const char* meaning);
+  /// A number in degrees in the file (key ends in `_deg`), in radians in the struct; `rule` is in degrees.
+  void read_deg(const char* key, double& value_rad, const Rule& rule, const char* meaning);
+  /// Three angles in degrees in the file, in radians in the struct.
+  void read_deg(const char* key, Vector3d& value_rad, const char* meaning);
+  /// One word out of `choices`.
+  void read_choice(const char* key, std::string& value, const std::vector<std::string>& choices, const char* meaning);
+  template <typename Enum>
+  void read_choice(const char* key, Enum& value, const std::vector<std::pair<std::string, Enum>>& choices,
+                   const char* meaning);
+  /// A name that must have been announced by `declare(kind, name)`.  Empty (the default) means none.
+  void read_reference(const char* key, std::string& value, const char* kind, const char* meaning);
+  void read_references(const char* key, std::vector<std::string>& value, const char* kind, const char* meaning);
+  /// The next read of `key` must find it: `missing key 'file'`.
+  void require(const char* key);
+  /// A subtree that is read elsewhere (overrides, a process's environment): kept as it is.
+  void read_raw(const char* key, ConfigNode& value, const char* meaning);
+
+  /// A nested map.
+  template <ReadsParams T>
+  void read(const char* key, T& value, const char* meaning);
+  template <ReadsParams T>
+  void read(const char* key, std::optional<T>& value, const char* meaning);
+  /// A list of maps.  Who of an item: `kind 'name'` when the item has a `name`, else `kind 3` (from 1).
+  template <ReadsParams T>
+  void read_list(const char* key, std::vector<T>& value, const char* kind, const char* meaning);
+
+  /// Makes a name known for read_reference in this reader and the readers nested in it.  The second time the same
+  /// name of a kind is declared in one reader it is an error: `duplicate joint 'left'`.
+  void declare(const char* kind, const std::string& name);
+  /// The names of a kind known here, sorted.
+  std::vector<std::string> declared(const char* kind) const;
+
+  /// An error at the value of `key` (or at the map when the key is absent).
+  void error(const char* key, const std::string& text);
+  /// An error at the map itself.
+  void error(const std::string& text);
+
+  bool describing() const { return table_ != nullptr; }
+  /// The map has this key; false when describing.
+  bool has(const char* key) const;
+  const ConfigNode* node() const { return node_; }
+  /// The node of a key that is present.  Marks the key as known.
+  const ConfigNode* child(const char* key);
+  const std::string& who() const { return who_; }
+  Diagnostics& diagnostics() { return *diagnostics_; }
+  /// Adds a row to the table when describing (for keys that are read by hand through child()).
+  void describe(ParamInfo info);
+
+  /// Reports unknown keys: `unknown key 'beam'; known keys: beams, fov_deg`.  Call once, after the last read.
+  void finish();
+
+ private:
+  // implementation: see param_reader.cpp
+  const ConfigNode* node_ = nullptr;
+  std::string who_;
+  Diagnostics* diagnostics_ = nullptr;
+  std::vector<ParamInfo>* table_ = nullptr;
+  const ParamReader* parent_ = nullptr;
+  std::vector<std::string> known_;
+  std::vector<std::pair<std::string, std::string>> declared_;
+  std::string required_;
+};
+
+}  // namespace sim
+
+#include "sim/config/param_reader_inl.hpp"

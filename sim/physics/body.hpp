@@ -1,0 +1,57 @@
+#pragma once
+
+#include <ode/ode.h>
+
+#include <memory>
+#include <string>
+
+#include "sim/math.hpp"
+
+namespace sim {
+
+struct BodyDeleter {
+  void operator()(dBodyID body) const { dBodyDestroy(body); }
+};
+using BodyHandle = std::unique_ptr<dxBody, BodyDeleter>;
+
+/// One ODE body, or a fixed one without.  ODE's frame sits at the centre of mass; this class speaks of the body
+/// frame B that the vehicle file defines.
+class Body {
+ public:
+  const std::string& name() const { return name_; }  ///< such as `rover1/chassis`
+  int number() const { return number_; }
+  int group() const { return group_; }
+  bool fixed() const { return ode_ == nullptr; }
+
+  double mass_kg() const { return mass_kg_; }
+  const Vector3d& p_BC() const { return p_BC_; }          ///< centre of mass in B
+  const Matrix3d& inertia_C_B() const { return inertia_C_B_; }  ///< about the centre of mass, axes of B, kg m^2
+
+  Pose X_WB() const;
+  Vector3d v_WB_W() const;  ///< velocity of the origin of B
+  Vector3d w_WB_W() const;
+  /// Velocity of a point of the body given in B.
+  Vector3d velocity_at_W(const Vector3d& p_B) const;
+
+  /// Forces last for the next step.  Not finite: PhysicsFault.
+  void add_force_W(const Vector3d& force_N, const Vector3d& at_W);
+  void add_torque_W(const Vector3d& torque_Nm);
+  /// Puts the body frame at a pose.
+  void set_pose(const Pose& X_WB);
+  void set_velocity_W(const Vector3d& v_WB_W, const Vector3d& w_WB_W);
+
+ private:
+  friend class PhysicsWorld;
+  Body() = default;
+
+  std::string name_;
+  int number_ = -1;
+  int group_ = -1;
+  BodyHandle ode_;
+  double mass_kg_ = 0;
+  Vector3d p_BC_ = Vector3d::Zero();
+  Matrix3d inertia_C_B_ = Matrix3d::Zero();
+  Pose fixed_X_WB_ = Pose::Identity();
+};
+
+}  // namespace sim

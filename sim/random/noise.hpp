@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sim/config/param_reader.hpp"
+#include "sim/random/random.hpp"
+#include "sim/state_hash.hpp"
+
+namespace sim {
+
+/// The error of one measured quantity, in the unit of that quantity.  The parts compose in this order:
+/// scale error, constant bias, random walk, Gauss-Markov, gaussian, uniform, outliers, quantisation, saturation.
+/// YAML: a map with any of these keys; all are off by default.
+struct NoiseParams {
+  double scale_error = 0;             ///< measured = truth * (1 + scale_error)
+  double bias = 0;                    ///< constant offset
+  double bias_std = 0;                ///< a constant offset drawn once per run
+  double random_walk_std = 0;         ///< of the drift after one second (grows with the square root of time)
+  double gauss_markov_std = 0;        ///< stationary standard deviation of a first order Gauss-Markov error
+  double gauss_markov_time_s = 100;   ///< its correlation time
+  double gaussian_std = 0;            ///< white
+  double uniform_half_width = 0;      ///< white, uniform in +- this
+  double outlier_probability = 0;
+  double outlier_std = 0;
+  double quantization = 0;            ///< step of the output; 0: none
+  std::optional<double> saturation;   ///< the output is cut to +- this
+
+  void read(ParamReader& in);
+  bool any() const;
+};
+
+/// The state of the error of a few values of one quantity (one for a range scanner's beams: only white parts differ
+/// by value; one per axis for a vector).  The slow parts (bias, random walk, Gauss-Markov) are one per value.
+class Noise {
+ public:
+  /// `values`: how many values have a slow state of their own.
+  Noise(const NoiseParams& params, int values, Random bias_source);
+
+  /// Disturbs `values` in place.  values.size() may be larger than the number of slow states: value i then uses
+  /// state i % states.  `dt_s`: time since the last call (exact discretisation of the slow parts); 0 at the first.
+  void apply(std::span<double> values, double dt_s, Random& random);
+  void apply(double& value, double dt_s, Random& random);
+
+  void hash_state(StateHash& hash) const;
+
+ private:
+  struct Slow {
+    double bias = 0;
+    double walk = 0;
+    double gauss_markov = 0;
+  };
+  NoiseParams params_;
+  std::vector<Slow> slow_;
+  bool started_ = false;
+};
+
+}  // namespace sim

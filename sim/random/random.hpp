@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace sim {
+
+/// 64-bit FNV-1a of a text: the same on every machine.
+std::uint64_t hash_text(std::string_view text);
+
+/// A counter-based random stream (Philox 4x32-10, Salmon et al., SC'11).  The key is (seed, name); the counter is
+/// (step, number of the draw), so what a device draws at a step depends on nothing else in the world: a new device
+/// changes no other's noise, and threads do not matter.
+class Random {
+ public:
+  /// `name`: such as "auv1/lidar".
+  Random(std::uint64_t seed, std::string_view name);
+
+  /// Starts the draws of a step.  Call before the first draw of each step.
+  void begin_step(std::int64_t step);
+  /// 64 random bits.
+  std::uint64_t bits();
+  /// Uniform in (0, 1), never 0 or 1.
+  double uniform();
+  /// Standard normal, by inversion of the normal distribution (Wichura 1988, algorithm AS 241, PPND16); the
+  /// standard library's sequence is not specified.
+  double gaussian();
+  /// Uniform integer in [0, n).  n > 0.
+  std::uint32_t integer_below(std::uint32_t n);
+
+ private:
+  void refill();
+
+  std::uint32_t key_[2];
+  std::uint32_t counter_[4];
+  std::uint64_t block_[2];
+  int used_ = 2;
+};
+
+/// The standard normal quantile for p in (0, 1); relative error about 1e-16 (AS 241).
+double normal_quantile(double p);
+
+}  // namespace sim
