@@ -1,11 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "sim/config/config_node.hpp"
@@ -78,6 +82,7 @@ class ParamReader {
   /// One word out of `choices`.
   void read_choice(const char* key, std::string& value, const std::vector<std::string>& choices, const char* meaning);
   template <typename Enum>
+    requires std::is_enum_v<Enum>
   void read_choice(const char* key, Enum& value, const std::vector<std::pair<std::string, Enum>>& choices,
                    const char* meaning);
   /// A name that must have been announced by `declare(kind, name)`.  Empty (the default) means none.
@@ -87,6 +92,8 @@ class ParamReader {
   void require(const char* key);
   /// A subtree that is read elsewhere (overrides, a process's environment): kept as it is.
   void read_raw(const char* key, ConfigNode& value, const char* meaning);
+
+  // A key without a value (`parts:` and nothing after it) is an empty map or list, or an unset optional.
 
   /// A nested map.
   template <ReadsParams T>
@@ -123,15 +130,50 @@ class ParamReader {
   void finish();
 
  private:
-  // implementation: see param_reader.cpp
+  /// A value of a list that has a name, for the place of `duplicate joint 'left'`.
+  struct NamedPlace {
+    std::string kind;  ///< empty: an item of a list of text
+    std::string name;
+    SourcePlace place;
+  };
+  using ReadInto = std::function<void(ParamReader&)>;
+
+  ParamReader(const ConfigNode& node, std::string who, Diagnostics& diagnostics, const ParamReader* parent);
+  ParamReader(std::vector<ParamInfo>& table, const ParamReader* parent, const void* type);
+
+  /// The value of `key`, which becomes known; null when absent.  Reports it when it is required and absent.
+  const ConfigNode* take(const char* key);
+  void describe_row(const char* key, const char* type, std::string rule, std::string initial, const char* meaning);
+  void error_at(const SourcePlace& place, const std::string& text);
+  bool take_number(const std::string& what, const ConfigNode& node, const Rule& rule, double& value);
+  bool take_integer(const std::string& what, const ConfigNode& node, const Rule& rule, std::int64_t& value);
+  bool take_text(const std::string& what, const ConfigNode& node, std::string& value);
+  bool take_vector(const char* key, const ConfigNode& node, const Rule& rule, Vector3d& value);
+  bool take_texts(const char* key, const ConfigNode& node, std::vector<std::string>& value);
+  void check_reference(const char* key, const char* kind, const std::string& name, const SourcePlace& place);
+  std::size_t take_choice(const char* key, const std::vector<std::string>& choices, const std::string& initial,
+                          const char* meaning);
+  std::string who_of_item(const ConfigNode& item, const char* kind, std::size_t index) const;
+
+  /// `type` tells types apart, so that describing one that contains itself ends.
+  std::vector<ParamInfo> describe_children(const void* type, const ReadInto& read_into) const;
+  void describe_nested(const char* key, const char* type_name, const std::string& initial, const void* type,
+                       const ReadInto& read_into, const char* meaning);
+  void read_nested(const char* key, const ConfigNode& node, const ReadInto& read_into);
+  /// Calls `read_into` for each item of the list.  False when the value is no list.
+  bool read_items(const char* key, const ConfigNode& node, const char* kind, const ReadInto& read_into);
+
   const ConfigNode* node_ = nullptr;
   std::string who_;
+  Diagnostics unused_;  ///< while describing
   Diagnostics* diagnostics_ = nullptr;
   std::vector<ParamInfo>* table_ = nullptr;
   const ParamReader* parent_ = nullptr;
+  const void* type_ = nullptr;  ///< while describing: see describe_children
   std::vector<std::string> known_;
-  std::vector<std::pair<std::string, std::string>> declared_;
-  std::string required_;
+  std::vector<std::string> required_;
+  std::map<std::string, std::map<std::string, std::size_t>> declared_;  ///< kind, name, how often
+  std::vector<NamedPlace> named_places_;
 };
 
 }  // namespace sim

@@ -4,10 +4,14 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "sim/math.hpp"
+#include "sim/state_hash.hpp"
 
 namespace sim {
+
+struct SceneMoves;
 
 struct BodyDeleter {
   void operator()(dBodyID body) const { dBodyDestroy(body); }
@@ -36,13 +40,26 @@ class Body {
   /// Forces last for the next step.  Not finite: PhysicsFault.
   void add_force_W(const Vector3d& force_N, const Vector3d& at_W);
   void add_torque_W(const Vector3d& torque_Nm);
-  /// Puts the body frame at a pose.
+  /// Puts the body frame at a pose.  A fixed body takes its parts along; what it touches sees no velocity.
   void set_pose(const Pose& X_WB);
   void set_velocity_W(const Vector3d& v_WB_W, const Vector3d& w_WB_W);
 
+  /// Off: the caller adds weight and the torque -w x I w itself (a model of added mass needs both off).
+  void set_gravity(bool on);
+  void set_gyroscopic(bool on) { gyroscopic_ = on; }
+
+  void hash_state(StateHash& hash) const;
+
  private:
   friend class PhysicsWorld;
+  struct FixedGeom {
+    dGeomID geom;
+    Pose X_BG;
+    bool plane;
+  };
   Body() = default;
+  void place_fixed_geoms();
+  void add_gyroscopic_torque(double step_s);
 
   std::string name_;
   int number_ = -1;
@@ -52,6 +69,14 @@ class Body {
   Vector3d p_BC_ = Vector3d::Zero();
   Matrix3d inertia_C_B_ = Matrix3d::Zero();
   Pose fixed_X_WB_ = Pose::Identity();
+  std::vector<FixedGeom> fixed_geoms_;
+  SceneMoves* moves_ = nullptr;  // of the world: the scene looks again when something was moved
+  // Into the ODE body, which does not move in memory.
+  const dReal* p_WC_ = nullptr;
+  const dReal* R_WB_ = nullptr;
+  const dReal* v_WC_W_ = nullptr;
+  const dReal* w_WB_W_ = nullptr;
+  bool gyroscopic_ = true;
 };
 
 }  // namespace sim

@@ -51,6 +51,9 @@ class Noise {
     double walk = 0;
     double gauss_markov = 0;
   };
+  /// Takes the slow parts over `dt_s`.
+  void advance(double dt_s, Random& random);
+
   NoiseParams params_;
   std::vector<Slow> slow_;
   bool started_ = false;

@@ -1,0 +1,253 @@
+#include "bridges/lcm/lcm_bus.hpp"
+
+#include <lcm/lcm.h>
+#include <spdlog/spdlog.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace bridges {
+namespace {
+
+constexpr std::chrono::seconds time_to_flush{1};
+
+class ChannelMailbox;
+
+/// The mailboxes of one channel.  They share one LCM subscription.
+struct Channel {
+  Channel(std::string channel_name, std::function<void()> on_arrival)
+      : name(std::move(channel_name)), arrived(std::move(on_arrival)) {}
+
+  void deliver(std::span<const std::byte> payload);
+
+  const std::string name;
+  const std::function<void()> arrived;
+  std::mutex mutex;  // also guards what is in the mailboxes
+  std::vector<ChannelMailbox*> mailboxes;
+  std::atomic<std::uint64_t> received = 0;
+  std::atomic<std::uint64_t> dropped = 0;
+};
+
+class ChannelMailbox final : public sim::Mailbox {
+ public:
+  ChannelMailbox(Channel& channel, std::size_t capacity)
+      : channel_(channel), capacity_(std::max<std::size_t>(capacity, 1)) {
+    const std::lock_guard lock(channel_.mutex);
+    channel_.mailboxes.push_back(this);
+  }
+
+  ~ChannelMailbox() override {
+    const std::lock_guard lock(channel_.mutex);
+    std::erase(channel_.mailboxes, this);
+  }
+
+  std::optional<sim::Message> take() override {
+    // Most mailboxes are empty in most steps; that is seen without the lock.
+    if (size_.load(std::memory_order_acquire) == 0) return std::nullopt;
+    const std::lock_guard lock(channel_.mutex);
+    sim::Message message = std::move(messages_.front());
+    messages_.pop_front();
+    size_.store(messages_.size(), std::memory_order_release);
+    return message;
+  }
+
+  std::uint64_t dropped() const override { return dropped_.load(std::memory_order_relaxed); }
+
+  /// With the channel's lock held.
+  void add(sim::Message message) {
+    if (messages_.size() == capacity_) {
+      messages_.pop_front();
+      dropped_.fetch_add(1, std::memory_order_relaxed);
+      channel_.dropped.fetch_add(1, std::memory_order_relaxed);
+    }
+    messages_.push_back(std::move(message));
+    size_.store(messages_.size(), std::memory_order_release);
+  }
+
+ private:
+  Channel& channel_;
+  const std::size_t capacity_;
+  std::deque<sim::Message> messages_;
+  std::atomic<std::size_t> size_ = 0;
+  std::atomic<std::uint64_t> dropped_ = 0;
+};
+
+void Channel::deliver(std::span<const std::byte> payload) {
+  sim::Message message{name, sim::Bytes(payload.begin(), payload.end()), true};
+  {
+    const std::lock_guard lock(mutex);
+    if (mailboxes.empty()) return;
+    received.fetch_add(1, std::memory_order_relaxed);
+    for (std::size_t i = 0; i + 1 < mailboxes.size(); ++i) mailboxes[i]->add(message);
+    mailboxes.back()->add(std::move(message));
+  }
+  arrived();
+}
+
+void on_message(const lcm_recv_buf_t* buffer, const char*, void* user) {
+  static_cast<Channel*>(user)->deliver({static_cast<const std::byte*>(buffer->data), buffer->data_size});
+}
+
+}  // namespace
+
+struct LcmBus::Threads {
+  Threads(const std::string& url, const LcmBusOptions& chosen)
+      : options(chosen), connection(url), outgoing(options.outgoing), stop_fd(eventfd(0, EFD_CLOEXEC)) {
+    if (stop_fd < 0) throw BusError("no file descriptor is left for the bus");
+    sender = std::thread([this] { send_all(); });
+    receiver = std::thread([this] { receive_all(); });
+  }
+
+  ~Threads() {
+    const auto deadline = std::chrono::steady_clock::now() + time_to_flush;
+    outgoing.close(deadline);
+    if (!outgoing.wait_until_sent(time_to_flush)) connection.shut_down();
+    sender.join();
+    stopping = true;
+    const std::uint64_t one = 1;
+    [[maybe_unused]] const auto written = write(stop_fd, &one, sizeof(one));
+    receiver.join();
+    close(stop_fd);
+  }
+
+  void send_all() {
+    std::unique_ptr<OutgoingQueue::Entry> entry;
+    while ((entry = outgoing.next(std::move(entry)))) {
+      bool sent = false;
+      if (connected) {
+        // tcpq writes subscriptions into the same stream.
+        const std::lock_guard lock(transmit_mutex);
+        sent = connection.publish(entry->channel.c_str(), entry->payload);
+      }
+      if (!sent) count_refused();
+    }
+  }
+
+  void count_refused() {
+    if (refused.fetch_add(1) == 0)
+      spdlog::warn("LCM did not send a message on {}; more are counted only", connection.url());
+  }
+
+  void receive_all() {
+    while (!stopping) {
+      if (!wait_readable(connection.fd(), stop_fd, std::chrono::milliseconds(-1)) || stopping) continue;
+      if (connection.handle()) continue;
+      connected = false;
+      spdlog::warn("the connection to {} is lost; messages are dropped from now on", connection.url());
+      return;
+    }
+  }
+
+  void arrived() {
+    arrivals.fetch_add(1);
+    if (waiters.load() == 0) return;
+    { const std::lock_guard lock(arrival_mutex); }  // the waiter is asleep, or will see the new count
+    arrival.notify_all();
+  }
+
+  LcmBusOptions options;
+  std::map<std::string, std::unique_ptr<Channel>, std::less<>>
+      channels;  // outlives the connection's handlers
+  LcmConnection connection;
+  OutgoingQueue outgoing;
+  std::mutex transmit_mutex;
+  mutable std::mutex channels_mutex;
+  int stop_fd = -1;
+  std::atomic<bool> stopping = false;
+  std::atomic<bool> connected = true;
+  std::atomic<bool> warned_of_size = false;
+  std::atomic<std::uint64_t> published = 0;
+  std::atomic<std::uint64_t> refused = 0;
+  std::atomic<std::uint64_t> arrivals = 0;
+  std::uint64_t seen_arrivals = 0;
+  std::atomic<int> waiters = 0;
+  std::mutex arrival_mutex;
+  std::condition_variable arrival;
+  std::thread sender;
+  std::thread receiver;
+};
+
+LcmBus::LcmBus(const std::string& url, const LcmBusOptions& options)
+    : threads_(std::make_unique<Threads>(url, options)) {}
+
+LcmBus::~LcmBus() = default;
+
+void LcmBus::publish(std::string_view channel, std::span<const std::byte> payload, sim::Time) {
+  if (channel.empty() || channel.size() > max_channel_length)
+    throw std::invalid_argument("a channel has 1 to 63 characters, got '" + std::string(channel) + "'");
+  threads_->published.fetch_add(1, std::memory_order_relaxed);
+  if (payload.size() > threads_->options.max_message_bytes) {
+    threads_->refused.fetch_add(1);
+    if (!threads_->warned_of_size.exchange(true))
+      spdlog::warn("channel {}: message of {} bytes is not sent; LCM carries at most {} bytes", channel,
+                   payload.size(), threads_->options.max_message_bytes);
+    return;
+  }
+  threads_->outgoing.push(channel, payload);
+}
+
+std::unique_ptr<sim::Mailbox> LcmBus::open_mailbox(const std::string& channel, std::size_t capacity) {
+  if (channel.empty() || channel.size() > max_channel_length)
+    throw std::invalid_argument("a channel has 1 to 63 characters, got '" + channel + "'");
+  const std::lock_guard lock(threads_->channels_mutex);
+  auto found = threads_->channels.find(channel);
+  if (found == threads_->channels.end()) {
+    auto added = std::make_unique<Channel>(channel, [threads = threads_.get()] { threads->arrived(); });
+    Channel& subscribed = *added;
+    found = threads_->channels.emplace(channel, std::move(added)).first;
+    const std::lock_guard transmit(threads_->transmit_mutex);
+    threads_->connection.subscribe(literal_channel_pattern(channel), on_message, &subscribed);
+  }
+  return std::make_unique<ChannelMailbox>(*found->second, capacity);
+}
+
+void LcmBus::end_of_step() {
+  threads_->outgoing.wake();
+}
+
+sim::BusCounts LcmBus::counts() const {
+  sim::BusCounts counts;
+  counts.published = threads_->published.load();
+  counts.dropped_outgoing = threads_->outgoing.dropped() + threads_->refused.load();
+  const std::lock_guard lock(threads_->channels_mutex);
+  for (const auto& [name, channel] : threads_->channels) {
+    counts.received += channel->received.load();
+    counts.dropped_incoming += channel->dropped.load();
+  }
+  return counts;
+}
+
+bool LcmBus::wait_for_message(std::chrono::milliseconds timeout) {
+  Threads& t = *threads_;
+  t.waiters.fetch_add(1);
+  std::unique_lock lock(t.arrival_mutex);
+  const bool arrived =
+      t.arrival.wait_for(lock, timeout, [&] { return t.arrivals.load() != t.seen_arrivals; });
+  t.waiters.fetch_sub(1);
+  t.seen_arrivals = t.arrivals.load();
+  return arrived;
+}
+
+bool LcmBus::flush(std::chrono::milliseconds timeout) {
+  return threads_->outgoing.wait_until_sent(timeout);
+}
+
+const std::string& LcmBus::url() const {
+  return threads_->connection.url();
+}
+
+bool LcmBus::connected() const {
+  return threads_->connected;
+}
+
+}  // namespace bridges

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace bridges {
+
+/// Messages on their way to the network, between the thread that simulates and the one that sends.  Bounded:
+/// the oldest are dropped and counted.  The lock is held only to move a message; bytes are copied outside of
+/// it.
+class OutgoingQueue {
+ public:
+  struct Entry {
+    std::string channel;
+    std::vector<std::byte> payload;
+  };
+  struct Limits {
+    std::size_t messages = 20'000;
+    std::size_t bytes = std::size_t{64} << 20;
+    std::size_t wake_at = 256;  ///< so many waiting messages wake the sender before the end of the step
+  };
+
+  explicit OutgoingQueue(const Limits& limits) : limits_(limits) {}
+
+  void push(std::string_view channel, std::span<const std::byte> payload);
+  /// Tells the sender to begin.
+  void wake();
+  /// The sender's side: the oldest message, waiting for one.  `used`: what was sent before, its memory is
+  /// reused. Empty when the queue is closed and either empty or past its deadline.
+  std::unique_ptr<Entry> next(std::unique_ptr<Entry> used);
+  /// No more messages come; what is here may be sent until the deadline.
+  void close(std::chrono::steady_clock::time_point deadline);
+  /// Until everything pushed so far is sent or dropped.  False on time-out.
+  bool wait_until_sent(std::chrono::milliseconds timeout);
+  std::uint64_t dropped() const;
+
+ private:
+  std::unique_ptr<Entry> free_entry();
+  void recycle(std::unique_ptr<Entry> entry);
+
+  const Limits limits_;
+  mutable std::mutex mutex_;
+  std::condition_variable sender_;
+  std::condition_variable sent_;
+  std::deque<std::unique_ptr<Entry>> waiting_;
+  std::size_t waiting_bytes_ = 0;
+  std::vector<std::unique_ptr<Entry>> free_;
+  std::size_t free_bytes_ = 0;
+  std::uint64_t dropped_ = 0;
+  bool sending_ = false;  // the sender holds a message
+  bool sender_waits_ = false;
+  bool awake_ = false;  // told to send all there is
+  bool closed_ = false;
+  std::chrono::steady_clock::time_point deadline_;
+};
+
+}  // namespace bridges

@@ -1,0 +1,158 @@
+#include "bridges/lcm/recording_bus.hpp"
+
+#include <fcntl.h>
+#include <lcm/eventlog.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <deque>
+#include <functional>
+#include <vector>
+
+namespace bridges {
+namespace {
+
+// liblcm writes field by field; with stdio's small buffer large images cost seven times as much.
+constexpr std::size_t file_buffer_bytes = std::size_t{1} << 20;
+constexpr std::size_t max_echoes = 4096;
+
+std::size_t hash_of(std::span<const std::byte> payload) {
+  return std::hash<std::string_view>()({reinterpret_cast<const char*>(payload.data()), payload.size()});
+}
+
+}  // namespace
+
+struct RecordingBus::Log {
+  Log(const std::string& path, Existing existing) {
+    // O_EXCL decides and creates in one go; a device such as /dev/full is never "made".
+    const int flags = O_WRONLY | O_CREAT | O_CLOEXEC | (existing == Existing::refuse ? O_EXCL : O_TRUNC);
+    const int fd = open(path.c_str(), flags, 0666);
+    if (fd < 0 && errno == EEXIST)
+      throw BusError(path + ": exists already; choose another name or pass --overwrite");
+    if (fd < 0) throw BusError(path + ": " + std::strerror(errno));
+    ::close(fd);
+    events = lcm_eventlog_create(path.c_str(), "w");
+    if (events == nullptr) throw BusError(path + ": " + std::strerror(errno));
+    std::setvbuf(events->f, buffer.data(), _IOFBF, buffer.size());  // glibc ignores a size without a buffer
+  }
+  ~Log() { lcm_eventlog_destroy(events); }
+  Log(const Log&) = delete;
+  Log& operator=(const Log&) = delete;
+
+  std::vector<char> buffer = std::vector<char>(file_buffer_bytes);
+  lcm_eventlog_t* events = nullptr;
+};
+
+/// What is known of a channel somebody here reads.
+struct RecordingBus::Channel {
+  std::string name;
+  std::vector<const RecordingMailbox*> mailboxes;  // the first one records
+  std::deque<std::size_t> echoes;                  // hashes of what we published and may hear again
+};
+
+class RecordingBus::RecordingMailbox final : public sim::Mailbox {
+ public:
+  RecordingMailbox(RecordingBus& bus, Channel& channel, std::unique_ptr<sim::Mailbox> inner)
+      : bus_(bus), channel_(channel), inner_(std::move(inner)) {
+    channel_.mailboxes.push_back(this);
+  }
+  ~RecordingMailbox() override { std::erase(channel_.mailboxes, this); }
+
+  std::optional<sim::Message> take() override {
+    auto message = inner_->take();
+    if (message && message->from_outside && channel_.mailboxes.front() == this)
+      bus_.record_incoming(channel_, *message);
+    return message;
+  }
+  std::uint64_t dropped() const override { return inner_->dropped(); }
+
+ private:
+  RecordingBus& bus_;
+  Channel& channel_;
+  std::unique_ptr<sim::Mailbox> inner_;
+};
+
+RecordingBus::RecordingBus(std::unique_ptr<sim::Bus> inner, const std::string& path, std::int64_t epoch_utime,
+                           Existing existing)
+    : RecordingBus(*inner, path, epoch_utime, existing) {
+  owned_ = std::move(inner);
+}
+
+RecordingBus::RecordingBus(sim::Bus& inner, const std::string& path, std::int64_t epoch_utime,
+                           Existing existing)
+    : inner_(inner),
+      path_(path),
+      epoch_utime_(epoch_utime),
+      utime_(epoch_utime),
+      log_(std::make_unique<Log>(path, existing)) {}
+
+RecordingBus::~RecordingBus() {
+  close();
+}
+
+void RecordingBus::publish(std::string_view channel, std::span<const std::byte> payload, sim::Time at) {
+  inner_.publish(channel, payload, at);
+  set_time(at);
+  record(channel, payload);
+  if (const auto found = channels_.find(channel); found != channels_.end()) {
+    auto& echoes = found->second->echoes;
+    if (echoes.size() == max_echoes) echoes.pop_front();
+    echoes.push_back(hash_of(payload));
+  }
+}
+
+std::unique_ptr<sim::Mailbox> RecordingBus::open_mailbox(const std::string& channel, std::size_t capacity) {
+  auto inner = inner_.open_mailbox(channel, capacity);
+  auto& known = channels_[channel];
+  if (!known) known = std::make_unique<Channel>(Channel{channel, {}, {}});
+  return std::make_unique<RecordingMailbox>(*this, *known, std::move(inner));
+}
+
+void RecordingBus::set_time(sim::Time at) {
+  utime_ = std::max(utime_, epoch_utime_ + at.count());
+}
+
+void RecordingBus::record_incoming(Channel& channel, const sim::Message& message) {
+  auto& echoes = channel.echoes;
+  // The network keeps the order, so those before the one that came back are lost.
+  if (const auto echo = std::find(echoes.begin(), echoes.end(), hash_of(message.payload));
+      echo != echoes.end()) {
+    echoes.erase(echoes.begin(), echo + 1);
+    return;
+  }
+  record(message.channel, message.payload);
+}
+
+void RecordingBus::record(std::string_view channel, std::span<const std::byte> payload) {
+  if (!log_ || error_) return;
+  lcm_eventlog_event_t event{};
+  event.timestamp = utime_;
+  event.channellen = static_cast<std::int32_t>(channel.size());
+  event.datalen = static_cast<std::int32_t>(payload.size());
+  event.channel = const_cast<char*>(channel.data());  // only read
+  event.data = const_cast<std::byte*>(payload.data());
+  errno = 0;
+  if (lcm_eventlog_write_event(log_->events, &event) != 0) return fail(errno);
+  ++recorded_;
+  // Once a simulated second: a killed run loses little, and `tail` sees it grow.
+  if (const std::int64_t second = (utime_ - epoch_utime_) / 1'000'000; second > flushed_s_) {
+    flushed_s_ = second;
+    if (std::fflush(log_->events->f) != 0) fail(errno);
+  }
+}
+
+void RecordingBus::fail(int error_number) {
+  error_ = path_ + ": cannot record: " + std::strerror(error_number != 0 ? error_number : EIO);
+}
+
+void RecordingBus::close() {
+  if (!log_) return;
+  errno = 0;
+  if (!error_ && (std::fflush(log_->events->f) != 0 || std::ferror(log_->events->f) != 0)) fail(errno);
+  log_.reset();
+}
+
+}  // namespace bridges

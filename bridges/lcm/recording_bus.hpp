@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "bridges/lcm/bus_error.hpp"
+#include "sim/bus/bus.hpp"
+
+namespace bridges {
+
+enum class Existing { refuse, overwrite };
+
+/// A bus that also writes all it carries into an LCM event log, stamped with epoch + simulated time:
+/// lcm-logplayer plays it back at the right speed, and two equal runs leave equal files.  For one thread.
+///
+/// Recorded are what is published here, and what mailboxes hand over from outside, once per channel: when the
+/// simulation takes it, as only that decides what it does.  A published message that comes back from the
+/// network is not written twice.
+class RecordingBus final : public sim::Bus {
+ public:
+  /// Throws BusError when the file exists and may not be overwritten, or cannot be made.
+  RecordingBus(std::unique_ptr<sim::Bus> inner, const std::string& path, std::int64_t epoch_utime,
+               Existing existing = Existing::refuse);
+  /// `inner` must outlive this.
+  RecordingBus(sim::Bus& inner, const std::string& path, std::int64_t epoch_utime,
+               Existing existing = Existing::refuse);
+  ~RecordingBus() override;
+
+  void publish(std::string_view channel, std::span<const std::byte> payload, sim::Time at) override;
+  std::unique_ptr<sim::Mailbox> open_mailbox(const std::string& channel,
+                                             std::size_t capacity = default_mailbox_capacity) override;
+  void end_of_step() override { inner_.end_of_step(); }
+  sim::BusCounts counts() const override { return inner_.counts(); }
+
+  /// The step that begins: the stamp of what mailboxes hand over from now on.
+  void set_time(sim::Time at);
+  /// The first error, with path and reason; nothing is written after it.  What was written stays readable.
+  std::optional<std::string> error() const { return error_; }
+  std::uint64_t recorded() const { return recorded_; }
+  /// Writes what is buffered.  The bus goes on without recording.
+  void close();
+  sim::Bus& inner() { return inner_; }
+
+ private:
+  class RecordingMailbox;
+  struct Log;
+  struct Channel;
+
+  void record(std::string_view channel, std::span<const std::byte> payload);
+  void record_incoming(Channel& channel, const sim::Message& message);
+  void fail(int error_number);
+
+  std::unique_ptr<sim::Bus> owned_;
+  sim::Bus& inner_;
+  std::string path_;
+  std::int64_t epoch_utime_ = 0;
+  std::int64_t utime_ = 0;      // of the last event; never goes back
+  std::int64_t flushed_s_ = 0;  // simulated second up to which the file is on disk
+  std::unique_ptr<Log> log_;
+  std::map<std::string, std::unique_ptr<Channel>, std::less<>> channels_;  // those with a mailbox
+  std::optional<std::string> error_;
+  std::uint64_t recorded_ = 0;
+};
+
+}  // namespace bridges

@@ -1,0 +1,229 @@
+#include "bridges/lcm/sim_service.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+
+#include "shoal/message_codec.hpp"
+#include "shoal/sim_ack_t.hpp"
+#include "shoal/sim_control_reply_t.hpp"
+#include "shoal/sim_info_t.hpp"
+#include "shoal/sim_state_t.hpp"
+#include "shoal/sim_tick_t.hpp"
+#include "shoal/utime_t.hpp"
+
+namespace bridges {
+
+namespace {
+
+constexpr double info_rate_hz = 0.1;
+/// Loss is rare on one machine; a tick or its answer that was lost is asked for again.
+constexpr std::chrono::milliseconds resend_after{250};
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
+  return text;
+}
+
+}  // namespace
+
+SimService::SimService(sim::Bus& bus, const sim::World& world, sim::RunControl& control,
+                       sim::Lockstep& lockstep, Info info)
+    : bus_(bus),
+      world_(world),
+      control_(control),
+      lockstep_(lockstep),
+      info_(std::move(info)),
+      requests_(bus.open_mailbox("sim.control")),
+      acknowledgements_(bus.open_mailbox("sim.ack")) {}
+
+template <typename Message>
+void SimService::publish(const std::string& channel, const Message& message) {
+  shoal::encode_into(message, buffer_);
+  bus_.publish(channel, buffer_, world_.now());
+}
+
+bool SimService::due(double rate_hz) const {
+  if (rate_hz <= 0) return false;
+  // True once in each period: at the first step at or after a multiple of it.
+  const double period_us = 1e6 / rate_hz;
+  const double now = static_cast<double>(world_.now().count());
+  const double before = now - static_cast<double>(world_.step_time().count());
+  return world_.step_number() == 0 ||
+         std::floor(now / period_us + 1e-9) > std::floor(before / period_us + 1e-9);
+}
+
+void SimService::publish_step() {
+  if (due(info_rate_hz)) publish_info();
+  if (!due(world_.config().state_rate_hz)) return;
+  shoal::utime_t clock;
+  clock.utime = world_.epoch_us() + world_.now().count();
+  publish("sim.clock", clock);
+  publish_state();
+}
+
+void SimService::publish_info() {
+  shoal::sim_info_t info;
+  info.utime = world_.epoch_us() + world_.now().count();
+  info.world = world_.config().name;
+  info.seed = world_.config().run.seed;
+  info.step_us = world_.step_time().count();
+  info.resolved_config = info_.resolved_config;
+  info.versions = info_.versions;
+  publish("sim.info", info);
+}
+
+void SimService::publish_state() {
+  static thread_local shoal::sim_state_t state;  // keeps its vectors from step to step
+  state.utime = world_.epoch_us() + world_.now().count();
+  state.step = world_.step_number();
+  const std::size_t count = world_.vehicles().size();
+  state.count = static_cast<std::int32_t>(count);
+  state.vehicle.resize(count);
+  for (auto* list : {&state.position_m, &state.velocity_mps, &state.angular_velocity_radps})
+    list->assign(count, std::vector<double>(3));
+  state.orientation.assign(count, std::vector<double>(4));
+  for (std::size_t i = 0; i < count; ++i) {
+    const sim::Vehicle& vehicle = *world_.vehicles()[i];
+    const sim::Pose X_WV = vehicle.X_WV();
+    const sim::Quaterniond q(X_WV.linear());
+    const sim::Vector3d w_W = vehicle.base().w_WB_W();
+    const sim::Vector3d r_W = X_WV.translation() - vehicle.base().X_WB().translation();
+    const sim::Vector3d v_W = vehicle.base().v_WB_W() + w_W.cross(r_W);
+    state.vehicle[i] = vehicle.name();
+    for (int k = 0; k < 3; ++k) {
+      state.position_m[i][static_cast<std::size_t>(k)] = X_WV.translation()[k];
+      state.velocity_mps[i][static_cast<std::size_t>(k)] = v_W[k];
+      state.angular_velocity_radps[i][static_cast<std::size_t>(k)] = w_W[k];
+    }
+    state.orientation[i] = {q.w(), q.x(), q.y(), q.z()};
+  }
+  publish("sim.state", state);
+}
+
+void SimService::publish_tick(const std::vector<std::string>& clients, bool last) {
+  shoal::sim_tick_t tick;
+  tick.utime = world_.epoch_us() + world_.now().count();
+  tick.step = world_.step_number();
+  tick.last = last;
+  tick.count = static_cast<std::int32_t>(clients.size());
+  tick.client = clients;
+  publish("sim.tick", tick);
+}
+
+void SimService::publish_end() {
+  publish_tick({}, true);
+  bus_.end_of_step();
+}
+
+void SimService::complain(const std::string& text) {
+  if (++bad_messages_ <= 100) spdlog::warn("{} (ignored)", text);
+}
+
+void SimService::handle_requests() {
+  while (const auto message = requests_->take()) {
+    shoal::sim_control_request_t request;
+    try {
+      request = shoal::decode<shoal::sim_control_request_t>(message->payload, shoal::Finite::required);
+    } catch (const std::runtime_error& error) {
+      complain(std::string("sim.control: ") + error.what());
+      continue;
+    }
+    const std::string error = obey(request);
+    if (!error.empty()) complain("sim.control: client '" + request.client + "': " + error);
+    shoal::sim_control_reply_t reply;
+    reply.utime = world_.epoch_us() + world_.now().count();
+    reply.id = request.id;
+    reply.client = request.client;
+    reply.ok = error.empty();
+    reply.text = error;
+    publish("sim.control.reply", reply);
+    bus_.end_of_step();
+  }
+}
+
+std::string SimService::obey(const shoal::sim_control_request_t& request) {
+  const std::string& command = request.command;
+  if (command == "pause" || command == "resume") {
+    control_.paused = command == "pause";
+    control_.single_steps = 0;
+    ++control_.changes;
+    return {};
+  }
+  if (command == "step") {
+    if (!(request.value >= 1 && request.value <= 1e9)) return "'step' needs a value from 1 to 1e9";
+    control_.paused = true;
+    control_.single_steps += static_cast<std::int64_t>(request.value);
+    return {};
+  }
+  if (command == "speed") return set_speed(request.value);
+  if (command == "quit") {
+    control_.quit = true;
+    return {};
+  }
+  if (command == "join") return join(request);
+  if (command == "leave")
+    return lockstep_.leave(request.client) ? "" : "no client of the name '" + request.client + "' has joined";
+  return "unknown command '" + command + "'; known commands: join, leave, pause, quit, resume, speed, step";
+}
+
+std::string SimService::set_speed(double speed) {
+  if (speed < 0) return "'speed' must be >= 0 (0: as fast as possible)";
+  control_.speed = speed;
+  ++control_.changes;
+  return {};
+}
+
+std::string SimService::join(const shoal::sim_control_request_t& request) {
+  if (request.client.empty() || request.client.size() > 60)
+    return "'join' needs a client name of 1 to 60 characters";
+  const double steps = request.value * 1e6 / static_cast<double>(world_.step_time().count());
+  if (!(steps > 0.5 && steps < 1e12)) return "'join' needs a period of at least one step, in seconds";
+  const auto period_steps = static_cast<std::int64_t>(std::llround(steps));
+  if (std::abs(steps - static_cast<double>(period_steps)) > 1e-6)
+    return "'join' needs a period that is a multiple of the step of " +
+           std::to_string(sim::to_seconds(world_.step_time())) + " s";
+  lockstep_.join(request.client, period_steps, world_.step_number());
+  return {};
+}
+
+void SimService::take_acknowledgements() {
+  while (const auto message = acknowledgements_->take()) {
+    try {
+      const auto ack = shoal::decode<shoal::sim_ack_t>(message->payload, shoal::Finite::any);
+      lockstep_.acknowledge(ack.client, ack.step);
+    } catch (const std::runtime_error& error) {
+      complain(std::string("sim.ack: ") + error.what());
+    }
+  }
+}
+
+void SimService::synchronize(double timeout_s, const Wait& wait, const std::function<bool()>& idle) {
+  using Clock = std::chrono::steady_clock;
+  const std::int64_t step = world_.step_number();
+  if (lockstep_.missing(step).empty()) return;
+  publish_tick(lockstep_.missing(step), false);
+  bus_.end_of_step();
+  const Clock::time_point begin = Clock::now();
+  Clock::time_point sent = begin;
+  while (true) {
+    take_acknowledgements();
+    const std::vector<std::string> missing = lockstep_.missing(step);
+    if (missing.empty()) return;
+    handle_requests();
+    if (control_.quit || !idle()) return;
+    const Clock::time_point now = Clock::now();
+    if (now - begin > std::chrono::duration<double>(timeout_s))
+      throw LockstepTimeout("lockstep: no acknowledgement from " + joined(missing) + " for step " +
+                            std::to_string(step) + " within " + std::to_string(timeout_s) + " s");
+    if (now - sent > resend_after) {
+      publish_tick(missing, false);
+      bus_.end_of_step();
+      sent = now;
+    }
+    wait(std::chrono::milliseconds(20));
+  }
+}
+
+}  // namespace bridges

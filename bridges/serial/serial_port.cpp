@@ -1,0 +1,187 @@
+#include "bridges/serial/serial_port.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <pty.h>
+#include <sys/stat.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <deque>
+#include <filesystem>
+#include <stdexcept>
+
+namespace bridges {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_waiting_bytes = 1 << 16;
+
+[[noreturn]] void fail(const std::string& what, const std::string& path) {
+  throw std::runtime_error("serial port '" + path + "': " + what + ": " + std::strerror(errno));
+}
+
+void make_parent(const std::string& path) {
+  const fs::path parent = fs::path(path).parent_path();
+  std::error_code error;
+  if (!parent.empty()) fs::create_directories(parent, error);
+  if (error)
+    throw std::runtime_error("serial port '" + path + "': cannot make its directory: " + error.message());
+}
+
+/// Bytes that wait to be written to a descriptor that never blocks.
+class Outbox {
+ public:
+  void add(std::span<const std::byte> bytes) {
+    waiting_.insert(waiting_.end(), bytes.begin(), bytes.end());
+    if (waiting_.size() <= most_waiting_bytes) return;
+    const std::size_t excess = waiting_.size() - most_waiting_bytes;
+    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(excess));
+    dropped_ += excess;
+  }
+  void flush(int descriptor) {
+    while (!waiting_.empty()) {
+      char chunk[512];
+      const std::size_t size = std::min(sizeof chunk, waiting_.size());
+      for (std::size_t i = 0; i < size; ++i) chunk[i] = static_cast<char>(waiting_[i]);
+      const ssize_t written = ::write(descriptor, chunk, size);
+      if (written <= 0) return;
+      waiting_.erase(waiting_.begin(), waiting_.begin() + written);
+    }
+  }
+  std::uint64_t dropped() const { return dropped_; }
+  bool empty() const { return waiting_.empty(); }
+
+ private:
+  std::deque<std::byte> waiting_;
+  std::uint64_t dropped_ = 0;
+};
+
+sim::Bytes read_all(int descriptor) {
+  sim::Bytes bytes;
+  char chunk[512];
+  // Bounded, so that a program that writes without end cannot hold up the step.
+  while (bytes.size() < most_waiting_bytes) {
+    const ssize_t size = ::read(descriptor, chunk, sizeof chunk);
+    if (size <= 0) break;
+    const auto* data = reinterpret_cast<const std::byte*>(chunk);
+    bytes.insert(bytes.end(), data, data + size);
+  }
+  return bytes;
+}
+
+class PtyPort final : public sim::BytePort {
+ public:
+  explicit PtyPort(const std::string& path) : path_(path) {
+    make_parent(path);
+    std::error_code error;
+    if (fs::is_symlink(path, error)) {
+      if (fs::exists(path, error)) {
+        errno = EEXIST;
+        fail("is in use", path);
+      }
+      fs::remove(path, error);
+    }
+    char name[128];
+    termios raw{};
+    cfmakeraw(&raw);
+    // The slave stays open here too: reading the master fails while nobody has it open.
+    if (openpty(&master_, &slave_, name, &raw, nullptr) != 0) fail("cannot open a pseudo-terminal", path);
+    fcntl(master_, F_SETFL, O_NONBLOCK);
+    fcntl(master_, F_SETFD, FD_CLOEXEC);
+    fcntl(slave_, F_SETFD, FD_CLOEXEC);
+    if (symlink(name, path.c_str()) != 0) {
+      const int reason = errno;
+      close_all();
+      errno = reason;
+      fail("cannot make the link", path);
+    }
+  }
+  ~PtyPort() override {
+    unlink(path_.c_str());
+    close_all();
+  }
+  sim::Bytes read() override {
+    if (!out_.empty()) out_.flush(master_);
+    return read_all(master_);
+  }
+  void write(std::span<const std::byte> bytes) override {
+    out_.add(bytes);
+    out_.flush(master_);
+  }
+  std::uint64_t dropped_bytes() const override { return out_.dropped(); }
+
+ private:
+  void close_all() {
+    ::close(master_);
+    ::close(slave_);
+  }
+  std::string path_;
+  int master_ = -1;
+  int slave_ = -1;
+  Outbox out_;
+};
+
+class FifoPort final : public sim::BytePort {
+ public:
+  explicit FifoPort(const std::string& path) : in_path_(path + ".in"), out_path_(path + ".out") {
+    make_parent(path);
+    make_fifo(in_path_);
+    try {
+      make_fifo(out_path_);
+    } catch (...) {
+      unlink(in_path_.c_str());
+      throw;
+    }
+    // Both ways on both: no end-of-file when a writer leaves, no error while nobody reads.
+    in_ = ::open(in_path_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    out_ = ::open(out_path_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    if (in_ < 0 || out_ < 0) {
+      const int reason = errno;
+      remove_all();
+      errno = reason;
+      fail("cannot open the FIFOs", path);
+    }
+  }
+  ~FifoPort() override { remove_all(); }
+  sim::Bytes read() override {
+    if (!outbox_.empty()) outbox_.flush(out_);
+    return read_all(in_);
+  }
+  void write(std::span<const std::byte> bytes) override {
+    outbox_.add(bytes);
+    outbox_.flush(out_);
+  }
+  std::uint64_t dropped_bytes() const override { return outbox_.dropped(); }
+
+ private:
+  static void make_fifo(const std::string& path) {
+    struct stat status {};
+    if (lstat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode)) unlink(path.c_str());
+    if (mkfifo(path.c_str(), 0600) != 0) fail("cannot make the FIFO", path);
+  }
+  void remove_all() {
+    if (in_ >= 0) ::close(in_);
+    if (out_ >= 0) ::close(out_);
+    unlink(in_path_.c_str());
+    unlink(out_path_.c_str());
+  }
+  std::string in_path_, out_path_;
+  int in_ = -1;
+  int out_ = -1;
+  Outbox outbox_;
+};
+
+}  // namespace
+
+std::unique_ptr<sim::BytePort> open_serial_port(const std::string& kind, const std::string& path) {
+  if (kind == "fifo") return std::make_unique<FifoPort>(path);
+  return std::make_unique<PtyPort>(path);
+}
+
+}  // namespace bridges

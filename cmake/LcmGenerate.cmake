@@ -1,0 +1,40 @@
+# Debian's LCM 1.3.1 ships no CMake package, so lcm-gen is called here.  Works with 1.5 too.
+find_program(LCM_GEN lcm-gen REQUIRED)
+
+# lcm_generate(<headers> FILES <lcm file>... CPP_DIR <dir>)
+# Rules that make one C++ header per type, <dir>/<package>/<type>.hpp; their list is left in <headers>.
+function(lcm_generate headers)
+  cmake_parse_arguments(ARG "" "CPP_DIR" "FILES" ${ARGN})
+  set(all_outputs)
+  foreach(lcm_file IN LISTS ARG_FILES)
+    # The names of the outputs come from the text, so a changed text configures again.
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${lcm_file})
+    file(STRINGS ${lcm_file} package REGEX "^[ \t]*package[ \t]")
+    string(REGEX REPLACE "^[ \t]*package[ \t]+([A-Za-z0-9_.]+).*" "\\1" package "${package}")
+    string(REPLACE "." "/" package_dir "${package}")
+    file(STRINGS ${lcm_file} declarations REGEX "^[ \t]*(struct|enum)[ \t]+[A-Za-z0-9_]+")
+    set(outputs)
+    foreach(declaration IN LISTS declarations)
+      string(REGEX REPLACE "^[ \t]*(struct|enum)[ \t]+([A-Za-z0-9_]+).*" "\\2" type "${declaration}")
+      list(APPEND outputs ${ARG_CPP_DIR}/${package_dir}/${type}.hpp)
+    endforeach()
+    # c++11: the default c++98 output does not compile when a type has a floating-point constant.
+    add_custom_command(OUTPUT ${outputs}
+      COMMAND ${LCM_GEN} --cpp --cpp-std=c++11 --cpp-hpath ${ARG_CPP_DIR} ${lcm_file}
+      DEPENDS ${lcm_file} COMMENT "lcm-gen ${package_dir}: C++" VERBATIM)
+    list(APPEND all_outputs ${outputs})
+  endforeach()
+  set(${headers} ${all_outputs} PARENT_SCOPE)
+endfunction()
+
+# lcm_generate_python(<target> FILES <lcm file>... DIR <dir>)
+# A target, not built by default, that writes the Python package into <dir>.
+function(lcm_generate_python target)
+  cmake_parse_arguments(ARG "" "DIR" "FILES" ${ARGN})
+  # lcm-gen appends to __init__.py, so it starts from an empty folder.
+  add_custom_target(${target}
+    COMMAND ${CMAKE_COMMAND} -E rm -rf ${ARG_DIR}
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${ARG_DIR}
+    COMMAND ${LCM_GEN} --python --ppath ${ARG_DIR} ${ARG_FILES}
+    COMMENT "lcm-gen: Python into ${ARG_DIR}" VERBATIM)
+endfunction()

@@ -1,0 +1,83 @@
+#include "devices/gps.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "shoal/gps_data_t.hpp"
+#include "shoal/message_codec.hpp"
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+void Gps::Params::read(sim::ParamReader& in) {
+  in.read("horizontal_noise", horizontal_noise, "error of east and of north, m");
+  in.read("vertical_noise", vertical_noise, "error of the height, m");
+  in.read("velocity_noise", velocity_noise, "error of each component of the velocity, m/s");
+  in.read("fix_quality", fix_quality, sim::between(1, 2), "1: autonomous, 2: differential");
+  in.read("satellites", satellites, sim::between(4, 40), "reported number of satellites");
+  in.read("min_height_m", min_height_m, sim::any_number(), "below this height the antenna has no fix");
+}
+
+Gps::Gps(const Params& params, const sim::DeviceContext& context)
+    : params_(params),
+      geodesy_(context.world.geodesy()),
+      horizontal_noise_(params.horizontal_noise, 2,
+                        sim::Random(context.world.seed(), context.full_name() + "#horizontal")),
+      vertical_noise_(params.vertical_noise, 1,
+                      sim::Random(context.world.seed(), context.full_name() + "#vertical")),
+      velocity_noise_(params.velocity_noise, 3,
+                      sim::Random(context.world.seed(), context.full_name() + "#velocity")) {}
+
+void Gps::measure(const sim::SenseContext& context) {
+  reading_.p_W = context.X_WS.translation();
+  reading_.v_W = context.v_WS_W;
+  reading_.fix_quality =
+      params_.min_height_m && reading_.p_W.z() < *params_.min_height_m ? 0 : params_.fix_quality;
+  reading_.position = geodesy_.to_geodetic(reading_.p_W);
+}
+
+void Gps::disturb(double dt_s, sim::Random& random) {
+  horizontal_noise_.apply(std::span<double>(reading_.p_W.data(), 2), dt_s, random);
+  vertical_noise_.apply(reading_.p_W.z(), dt_s, random);
+  velocity_noise_.apply(std::span<double>(reading_.v_W.data(), 3), dt_s, random);
+  reading_.position = geodesy_.to_geodetic(reading_.p_W);
+}
+
+void Gps::hash_state(sim::StateHash& hash) const {
+  hash.add(reading_.fix_quality);
+  hash.add(reading_.p_W);
+  hash.add(reading_.v_W);
+  horizontal_noise_.hash_state(hash);
+  vertical_noise_.hash_state(hash);
+  velocity_noise_.hash_state(hash);
+}
+
+double Gps::accuracy_m(const sim::NoiseParams& noise) {
+  return std::sqrt(noise.gaussian_std * noise.gaussian_std + noise.gauss_markov_std * noise.gauss_markov_std +
+                   noise.bias_std * noise.bias_std + noise.uniform_half_width * noise.uniform_half_width / 3);
+}
+
+void GpsReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
+  const Gps::Reading& reading = gps_.reading();
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  const bool fix = reading.fix_quality > 0;
+  shoal::gps_data_t message;
+  message.utime = out.utime(sampled_at);
+  message.gps_lock = reading.fix_quality;
+  message.longitude = fix ? reading.position.longitude_deg : nothing;
+  message.latitude = fix ? reading.position.latitude_deg : nothing;
+  message.elev = fix ? reading.position.height_m : nothing;
+  message.horizontal_accuracy = fix ? Gps::accuracy_m(gps_.params().horizontal_noise) : nothing;
+  message.vertical_accuracy = fix ? Gps::accuracy_m(gps_.params().vertical_noise) : nothing;
+  message.numSatellites = fix ? gps_.params().satellites : 0;
+  message.speed = fix ? std::hypot(reading.v_W.x(), reading.v_W.y()) : nothing;
+  message.heading = fix ? std::atan2(reading.v_W.x(), reading.v_W.y()) : nothing;
+  for (int i = 0; i < 3; ++i) message.xyz_pos[i] = fix ? reading.p_W[i] : nothing;
+  message.gps_time = static_cast<double>(message.utime) * 1e-6;
+  shoal::encode_into(message, out.buffer());
+  out.publish(out.buffer());
+}
+
+SHOAL_SENSOR("gps", Gps, GpsReporter);
+
+}  // namespace devices

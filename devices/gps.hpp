@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+
+#include "sim/device/device_registry.hpp"
+#include "sim/geodesy.hpp"
+#include "sim/random/noise.hpp"
+
+namespace devices {
+
+/// Satellite receiver: position on the WGS84 ellipsoid by the world's origin, and velocity over ground.
+class Gps final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Satellite positioning: WGS84 position, velocity over ground, fix quality.";
+  static constexpr double default_rate_hz = 1;
+  struct Params {
+    sim::NoiseParams horizontal_noise;  ///< of east and of north, m
+    sim::NoiseParams vertical_noise;    ///< of the height, m
+    sim::NoiseParams velocity_noise;    ///< of each component of the velocity, m/s
+    int fix_quality = 1;
+    int satellites = 9;
+    std::optional<double> min_height_m;  ///< below this height of the antenna there is no fix
+    void read(sim::ParamReader& in);
+  };
+  struct Reading {
+    int fix_quality = 0;  ///< 0: no fix, and the rest is NaN
+    sim::GeodeticPosition position;
+    sim::Vector3d p_W = sim::Vector3d::Zero();
+    sim::Vector3d v_W = sim::Vector3d::Zero();
+  };
+
+  Gps(const Params& params, const sim::DeviceContext& context);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  void hash_state(sim::StateHash& hash) const override;
+  const Reading& reading() const { return reading_; }
+  const Params& params() const { return params_; }
+  /// The standard deviation it claims, from its noise, m.
+  static double accuracy_m(const sim::NoiseParams& noise);
+
+ private:
+  Params params_;
+  const sim::Geodesy& geodesy_;
+  sim::Noise horizontal_noise_, vertical_noise_, velocity_noise_;
+  Reading reading_;
+};
+
+/// Publishes shoal.gps_data_t, equal on the wire to bot_core's.
+class GpsReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.gps_data_t";
+  explicit GpsReporter(const Gps& gps) : gps_(gps) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const Gps& gps_;
+};
+
+}  // namespace devices

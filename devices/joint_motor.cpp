@@ -1,0 +1,32 @@
+#include "devices/joint_motor.hpp"
+
+#include <algorithm>
+
+#include "shoal/joint_command_t.hpp"
+#include "shoal/message_codec.hpp"
+
+namespace devices {
+
+void JointMotor::Params::read(sim::ParamReader& in) {
+  in.require("joint");
+  in.read_reference("joint", joint, "joint", "hinge or slider that it drives");
+  in.read("max_velocity", max_velocity, sim::above(0), "commands are cut to this, rad/s or m/s");
+  in.read("max_force", max_force, sim::above(0), "the most it can give, N m or N");
+}
+
+JointMotor::JointMotor(const Params& params, const sim::DeviceContext& context)
+    : params_(params), joint_(context.joint(params.joint)) {}
+
+void JointMotor::act(sim::Time, double) { joint_.set_motor(velocity_, params_.max_force); }
+
+void JointMotor::set_velocity(double velocity) {
+  velocity_ = std::clamp(velocity, -params_.max_velocity, params_.max_velocity);
+}
+
+void JointMotorController::receive(sim::Time, std::span<const std::byte> payload) {
+  motor_.set_velocity(shoal::decode<shoal::joint_command_t>(payload, shoal::Finite::required).velocity);
+}
+
+SHOAL_ACTUATOR("joint_motor", JointMotor, JointMotorController);
+
+}  // namespace devices

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "sim/device/device_registry.hpp"
+#include "sim/physics/joint.hpp"
+
+namespace devices {
+
+/// Drives one joint of the vehicle at a commanded velocity, with limited velocity and force.
+class JointMotor final : public sim::Actuator {
+ public:
+  static constexpr const char* meaning = "Motor on one hinge or slider, commanded by velocity.";
+  struct Params {
+    std::string joint;
+    double max_velocity = 10;  ///< rad/s, or m/s of a slider
+    double max_force = 10;     ///< N m, or N of a slider
+    void read(sim::ParamReader& in);
+  };
+
+  JointMotor(const Params& params, const sim::DeviceContext& context);
+  void act(sim::Time now, double step_s) override;
+  void hash_state(sim::StateHash& hash) const override { hash.add(velocity_); }
+  /// Beyond the limit it is cut.
+  void set_velocity(double velocity);
+  double velocity() const { return velocity_; }
+
+ private:
+  Params params_;
+  sim::Joint& joint_;
+  double velocity_ = 0;
+};
+
+/// Takes shoal.joint_command_t.
+class JointMotorController final : public sim::Controller {
+ public:
+  static constexpr const char* command_messages = "shoal.joint_command_t";
+  explicit JointMotorController(JointMotor& motor) : motor_(motor) {}
+  void receive(sim::Time now, std::span<const std::byte> payload) override;
+
+ private:
+  JointMotor& motor_;
+};
+
+}  // namespace devices

@@ -1,0 +1,210 @@
+#include "devices/modem.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "shoal/message_codec.hpp"
+#include "shoal/modem_received_t.hpp"
+#include "shoal/modem_send_t.hpp"
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+/// All modems of a world, in device order, and the events between them.
+class Modem::Network {
+ public:
+  void join(Modem& modem, sim::World& world) {
+    members_.push_back(&modem);
+    world_ = &world;
+  }
+  const std::vector<Modem*>& members() const { return members_; }
+  sim::World& world() const { return *world_; }
+
+ private:
+  std::vector<Modem*> members_;
+  sim::World* world_ = nullptr;
+};
+
+void Modem::SerialParams::read(sim::ParamReader& in) {
+  in.read_choice("kind", kind, {"pty", "fifo"}, "pseudo-terminal, or a pair of FIFOs PATH.in and PATH.out");
+  in.require("path");
+  in.read("path", path, "where programs find it; {vehicle} is replaced");
+  in.read_choice("framing", framing, {"line", "raw"}, "line: a message is a line; raw: what came within a step");
+}
+
+void Modem::Params::read(sim::ParamReader& in) {
+  in.read("channel", channel, "modems hear each other only on the same channel");
+  in.read("range_m", range_m, sim::above(0), "how far it is heard");
+  in.read("data_rate_bps", data_rate_bps, sim::above(0), "bits per second");
+  in.read("propagation_mps", propagation_mps, sim::above(0), "speed of radio waves or of sound");
+  in.read("loss_probability", loss_probability, sim::between(0, 1), "of each message at each receiver");
+  in.read("queue_messages", queue_messages, sim::at_least(1), "messages waiting to be sent; the oldest is dropped");
+  in.read("max_message_bytes", max_message_bytes, sim::between(1, 1 << 20), "longer messages are refused");
+  in.read("serial", serial, "a pseudo-terminal or FIFO that any program can open");
+}
+
+Modem::Modem(const Params& params, const sim::DeviceContext& context)
+    : params_(params),
+      network_(context.world.shared<Network>()),
+      vehicle_(context.vehicle.name()),
+      full_name_(context.full_name()),
+      seed_(context.world.seed()),
+      device_(context.world.next_device_number()),
+      body_(context.body),
+      p_BS_(context.config.position_m) {
+  network_.join(*this, context.world);
+  if (params.serial) open_serial(context);
+}
+
+Modem::~Modem() = default;
+
+sim::Vector3d Modem::p_WS() const { return body_.X_WB() * p_BS_; }
+
+void Modem::send(sim::Time, std::string destination, sim::Bytes data) {
+  if (data.empty()) throw std::runtime_error("a message must have at least 1 byte");
+  if (data.size() > static_cast<std::size_t>(params_.max_message_bytes))
+    throw std::runtime_error("a message must have at most " + std::to_string(params_.max_message_bytes) +
+                             " bytes, got " + std::to_string(data.size()));
+  const auto& members = network_.members();
+  const bool known = destination.empty() || std::any_of(members.begin(), members.end(), [&](const Modem* other) {
+    return other != this && other->vehicle_ == destination && other->params_.channel == params_.channel;
+  });
+  if (!known)
+    throw std::runtime_error("'destination' names no vehicle with a modem on channel '" + params_.channel + "': '" +
+                             destination + "'");
+  if (queue_.size() >= static_cast<std::size_t>(params_.queue_messages)) {
+    queue_.pop_front();
+    ++dropped_;
+  }
+  queue_.push_back({std::move(destination), std::move(data)});
+}
+
+void Modem::act(sim::Time now, double) {
+  if (serial_) read_serial(now);
+  while (!queue_.empty() && busy_until_ <= now) {
+    const Outgoing message = std::move(queue_.front());
+    queue_.pop_front();
+    transmit(now, message);
+  }
+}
+
+void Modem::transmit(sim::Time now, const Outgoing& message) {
+  const double air_time_s = 8.0 * static_cast<double>(message.data.size()) / params_.data_rate_bps;
+  busy_until_ = now + sim::from_seconds(air_time_s);
+  ++sent_;
+  // The frame between modems is a modem_received_t; the receiver's copy is completed when it arrives.
+  shoal::modem_received_t frame;
+  frame.sent_utime = now.count();
+  frame.source = vehicle_;
+  frame.destination = message.destination;
+  frame.size = static_cast<std::int32_t>(message.data.size());
+  frame.data.assign(reinterpret_cast<const std::uint8_t*>(message.data.data()),
+                    reinterpret_cast<const std::uint8_t*>(message.data.data()) + message.data.size());
+  frame.utime = 0;
+  const sim::Bytes payload = shoal::encode(frame);
+  for (Modem* receiver : network_.members()) {
+    if (receiver == this || receiver->params_.channel != params_.channel) continue;
+    if (!message.destination.empty() && receiver->vehicle_ != message.destination) continue;
+    const double distance_m = (receiver->p_WS() - p_WS()).norm();
+    if (distance_m > params_.range_m || lost_on_the_way_to(*receiver)) continue;
+    const sim::Time due = now + sim::from_seconds(air_time_s + distance_m / params_.propagation_mps);
+    network_.world().schedule_arrival(receiver->device_, due, payload);
+  }
+}
+
+bool Modem::lost_on_the_way_to(const Modem& receiver) {
+  if (params_.loss_probability <= 0) return false;
+  // A stream for each pair, so that another modem in the world changes no other link.
+  sim::Random link(seed_, full_name_ + ">" + receiver.full_name_);
+  link.begin_step(sent_);
+  return link.uniform() < params_.loss_probability;
+}
+
+void Modem::arrive(sim::Time at, std::span<const std::byte> payload) {
+  const auto frame = shoal::decode<shoal::modem_received_t>(payload, shoal::Finite::any);
+  Packet packet{frame.source, frame.destination, sim::Time{frame.sent_utime}, at, {}};
+  const auto* data = reinterpret_cast<const std::byte*>(frame.data.data());
+  packet.data.assign(data, data + frame.data.size());
+  if (serial_) write_serial(packet);
+  arrived_.push_back(std::move(packet));
+}
+
+void Modem::measure(const sim::SenseContext&) {
+  received_.clear();
+  std::swap(received_, arrived_);
+}
+
+void Modem::hash_state(sim::StateHash& hash) const {
+  for (const Outgoing& message : queue_) {
+    hash.add(std::string_view(message.destination));
+    hash.add_bytes(message.data.data(), message.data.size());
+  }
+  for (const std::vector<Packet>* packets : {&arrived_, &received_})
+    for (const Packet& packet : *packets) {
+      hash.add(static_cast<std::int64_t>(packet.arrived.count()));
+      hash.add_bytes(packet.data.data(), packet.data.size());
+    }
+  hash.add(static_cast<std::int64_t>(busy_until_.count()));
+  hash.add(sent_);
+}
+
+void Modem::open_serial(const sim::DeviceContext& context) {
+  if (!context.world.open_port()) return;  // the program that builds this world offers no ports
+  serial_ = context.world.open_port()(params_.serial->kind,
+                                      sim::channel_name(params_.serial->path, vehicle_, context.config.name));
+}
+
+void Modem::read_serial(sim::Time now) {
+  const sim::Bytes bytes = serial_->read();
+  if (bytes.empty()) return;
+  const auto send_quietly = [&](sim::Bytes data) {
+    if (data.size() > static_cast<std::size_t>(params_.max_message_bytes)) {
+      ++dropped_;
+      return;
+    }
+    if (!data.empty()) send(now, "", std::move(data));
+  };
+  if (params_.serial->framing == "raw") {
+    send_quietly(bytes);
+    return;
+  }
+  for (const std::byte b : bytes) {
+    if (b == std::byte{'\n'}) {
+      send_quietly(std::move(line_));
+      line_.clear();
+    } else if (b != std::byte{'\r'} && line_.size() <= static_cast<std::size_t>(params_.max_message_bytes)) {
+      line_.push_back(b);  // one byte more than allowed is kept, so that the line is seen to be too long
+    }
+  }
+}
+
+void Modem::write_serial(const Packet& packet) {
+  sim::Bytes bytes = packet.data;
+  if (params_.serial->framing == "line") bytes.push_back(std::byte{'\n'});
+  serial_->write(bytes);
+}
+
+void ModemReporter::report(sim::Time, sim::Publisher& out) const {
+  for (const Modem::Packet& packet : modem_.received()) {
+    shoal::modem_received_t message;
+    message.utime = out.utime(packet.arrived);
+    message.sent_utime = out.utime(packet.sent);
+    message.source = packet.source;
+    message.destination = packet.destination;
+    message.size = static_cast<std::int32_t>(packet.data.size());
+    const auto* data = reinterpret_cast<const std::uint8_t*>(packet.data.data());
+    message.data.assign(data, data + packet.data.size());
+    shoal::encode_into(message, out.buffer());
+    out.publish(out.buffer());
+  }
+}
+
+void ModemController::receive(sim::Time now, std::span<const std::byte> payload) {
+  const auto command = shoal::decode<shoal::modem_send_t>(payload, shoal::Finite::required);
+  const auto* data = reinterpret_cast<const std::byte*>(command.data.data());
+  modem_.send(now, command.destination, sim::Bytes(data, data + command.data.size()));
+}
+
+SHOAL_TRANSCEIVER("modem", Modem, ModemReporter, ModemController);
+
+}  // namespace devices

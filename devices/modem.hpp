@@ -1,0 +1,114 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/bus/byte_port.hpp"
+#include "sim/device/device_registry.hpp"
+
+namespace devices {
+
+/// Radio or acoustic modem: carries messages of bytes between vehicles.  It sends one message at a time, which takes
+/// size / data rate; the message arrives distance / speed of propagation later at every modem on the same channel
+/// that was in range when the sending began.
+class Modem final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Radio or acoustic modem: messages of bytes between vehicles.";
+  /// A way for other programs to send and receive, beside the bus.
+  struct SerialParams {
+    std::string kind = "pty";
+    std::string path;
+    std::string framing = "line";
+    void read(sim::ParamReader& in);
+  };
+  struct Params {
+    std::string channel = "radio";
+    double range_m = 100;
+    double data_rate_bps = 9600;
+    double propagation_mps = 299792458.0;
+    double loss_probability = 0;
+    int queue_messages = 16;
+    int max_message_bytes = 1024;
+    std::optional<SerialParams> serial;
+    void read(sim::ParamReader& in);
+  };
+  struct Packet {
+    std::string source, destination;
+    sim::Time sent{0}, arrived{0};
+    sim::Bytes data;
+  };
+
+  Modem(const Params& params, const sim::DeviceContext& context);
+  ~Modem() override;
+
+  /// Queues a message; when the queue is full the oldest is dropped and counted.  Empty destination: everybody.
+  /// Throws std::runtime_error when the message is empty or too long, or the destination has no modem here.
+  void send(sim::Time now, std::string destination, sim::Bytes data);
+  /// Begins the next transmission when the last one has ended.
+  void act(sim::Time now, double step_s);
+
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double, sim::Random&) override {}
+  void arrive(sim::Time at, std::span<const std::byte> payload) override;
+  void hash_state(sim::StateHash& hash) const override;
+
+  /// What arrived since the last sample.
+  const std::vector<Packet>& received() const { return received_; }
+  std::uint64_t dropped_from_queue() const { return dropped_; }
+
+ private:
+  struct Outgoing {
+    std::string destination;
+    sim::Bytes data;
+  };
+  class Network;
+
+  void transmit(sim::Time now, const Outgoing& message);
+  bool lost_on_the_way_to(const Modem& receiver);
+  sim::Vector3d p_WS() const;
+  void open_serial(const sim::DeviceContext& context);
+  void read_serial(sim::Time now);
+  void write_serial(const Packet& packet);
+
+  Params params_;
+  Network& network_;
+  std::string vehicle_;
+  std::string full_name_;
+  std::uint64_t seed_;
+  int device_;
+  const sim::Body& body_;
+  sim::Vector3d p_BS_;
+  std::deque<Outgoing> queue_;
+  sim::Time busy_until_{0};
+  std::int64_t sent_ = 0;
+  std::uint64_t dropped_ = 0;
+  std::vector<Packet> arrived_, received_;
+  std::unique_ptr<sim::BytePort> serial_;
+  sim::Bytes line_;  ///< of the serial line, not yet ended
+};
+
+/// Publishes one shoal.modem_received_t for each message that arrived.
+class ModemReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.modem_received_t";
+  explicit ModemReporter(const Modem& modem) : modem_(modem) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const Modem& modem_;
+};
+
+/// Takes shoal.modem_send_t.
+class ModemController final : public sim::Controller {
+ public:
+  static constexpr const char* command_messages = "shoal.modem_send_t";
+  explicit ModemController(Modem& modem) : modem_(modem) {}
+  void receive(sim::Time now, std::span<const std::byte> payload) override;
+
+ private:
+  Modem& modem_;
+};
+
+}  // namespace devices

@@ -1,0 +1,82 @@
+#include "sim/bus/in_process_bus.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <stdexcept>
+#include <utility>
+
+namespace sim {
+
+namespace {
+
+void check_channel(std::string_view channel) {
+  if (channel.empty()) throw std::invalid_argument("a channel name must not be empty");
+  if (channel.size() > Bus::max_channel_length)
+    throw std::invalid_argument("channel '" + std::string(channel) + "' has " +
+                                std::to_string(channel.size()) + " characters; at most " +
+                                std::to_string(Bus::max_channel_length) + " are allowed");
+}
+
+}  // namespace
+
+struct InProcessBus::Queue {
+  std::deque<Message> messages;
+  std::size_t capacity = 0;
+  std::uint64_t dropped = 0;
+  bool closed = false;  ///< its mailbox is gone
+};
+
+class InProcessBus::QueueMailbox final : public Mailbox {
+ public:
+  explicit QueueMailbox(std::shared_ptr<Queue> queue) : queue_(std::move(queue)) {}
+  ~QueueMailbox() override {
+    queue_->closed = true;
+    queue_->messages.clear();
+  }
+  QueueMailbox(const QueueMailbox&) = delete;
+  QueueMailbox& operator=(const QueueMailbox&) = delete;
+
+  std::optional<Message> take() override {
+    if (queue_->messages.empty()) return std::nullopt;
+    std::optional<Message> oldest = std::move(queue_->messages.front());
+    queue_->messages.pop_front();
+    return oldest;
+  }
+  std::uint64_t dropped() const override { return queue_->dropped; }
+
+ private:
+  std::shared_ptr<Queue> queue_;
+};
+
+InProcessBus::InProcessBus() = default;
+InProcessBus::~InProcessBus() = default;
+
+void InProcessBus::publish(std::string_view channel, std::span<const std::byte> payload, Time) {
+  check_channel(channel);
+  ++counts_.published;
+  const auto found = queues_.find(channel);
+  if (found == queues_.end()) return;
+  std::erase_if(found->second, [](const auto& queue) { return queue->closed; });
+  for (const std::shared_ptr<Queue>& queue : found->second) {
+    queue->messages.push_back({found->first, Bytes(payload.begin(), payload.end()), false});
+    ++counts_.received;
+    if (queue->messages.size() <= queue->capacity) continue;
+    queue->messages.pop_front();
+    ++queue->dropped;
+    ++counts_.dropped_incoming;
+  }
+}
+
+std::unique_ptr<Mailbox> InProcessBus::open_mailbox(const std::string& channel, std::size_t capacity) {
+  check_channel(channel);
+  auto queue = std::make_shared<Queue>();
+  queue->capacity = capacity;
+  queues_[channel].push_back(queue);
+  return std::make_unique<QueueMailbox>(std::move(queue));
+}
+
+BusCounts InProcessBus::counts() const {
+  return counts_;
+}
+
+}  // namespace sim

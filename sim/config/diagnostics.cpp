@@ -1,0 +1,57 @@
+#include "sim/config/diagnostics.hpp"
+
+#include <algorithm>
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include "sim/config/message_text.hpp"
+
+namespace sim {
+
+namespace {
+
+// One mistake in a vehicle file repeats for every vehicle of a fleet; nobody reads more than this.
+constexpr std::size_t max_lines = 1000;
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += (text.empty() ? "" : "\n") + line;
+  return text;
+}
+
+}  // namespace
+
+std::string SourcePlace::text() const {
+  if (file == nullptr) return "";
+  if (line <= 0) return *file;
+  return *file + ":" + std::to_string(line) + ":" + std::to_string(column);
+}
+
+const std::string* intern_file_name(const std::string& file) {
+  static std::mutex mutex;
+  static std::set<std::string> names;  // a set never moves its elements
+  const std::lock_guard lock(mutex);
+  return &*names.insert(file).first;
+}
+
+ConfigError::ConfigError(std::vector<std::string> lines)
+    : std::runtime_error(joined(lines)), lines_(std::move(lines)) {}
+
+void Diagnostics::error(const SourcePlace& place, const std::string& who, const std::string& text) {
+  if (lines_.size() > max_lines) return;
+  std::string line = place.text();
+  for (const std::string& part : {who, text})
+    if (!part.empty()) line += (line.empty() ? "" : ": ") + part;
+  // Names come from files: a line feed or an escape sequence in one must not reach the terminal.
+  line = printable(line);
+  if (std::find(lines_.begin(), lines_.end(), line) != lines_.end()) return;
+  if (lines_.size() == max_lines) line = "more errors are not shown";
+  lines_.push_back(std::move(line));
+}
+
+void Diagnostics::throw_if_any() const {
+  if (!ok()) throw ConfigError(lines_);
+}
+
+}  // namespace sim

@@ -1,0 +1,189 @@
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <system_error>
+
+#include "sim/config/config_node.hpp"
+#include "sim/config/message_text.hpp"
+
+namespace sim {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Kind = ConfigNode::Kind;
+
+constexpr std::size_t max_bytes = 64'000'000;
+constexpr int max_files = 100;
+
+const std::string* name_of(const ConfigNode& item) {
+  const ConfigNode* name = item.kind == Kind::map ? item.find("name") : nullptr;
+  return name != nullptr && name->kind == Kind::scalar ? &name->scalar : nullptr;
+}
+
+bool is_list_of_named_maps(const ConfigNode& node) {
+  return node.kind == Kind::list && !node.items.empty() &&
+         std::all_of(node.items.begin(), node.items.end(),
+                     [](const ConfigNode& item) { return name_of(item) != nullptr; });
+}
+
+void merge(ConfigNode& base, ConfigNode&& over);
+
+void merge_maps(ConfigNode& base, ConfigNode&& over) {
+  std::map<std::string, std::size_t> index;
+  for (std::size_t i = 0; i < base.entries.size(); ++i) index.emplace(base.entries[i].key, i);
+  for (ConfigNode::Entry& entry : over.entries) {
+    const auto found = index.find(entry.key);
+    if (found == index.end()) {
+      base.entries.push_back(std::move(entry));
+      continue;
+    }
+    ConfigNode::Entry& target = base.entries[found->second];
+    target.place = entry.place;
+    merge(target.value, std::move(entry.value));
+  }
+  base.place = over.place;
+}
+
+void merge_lists_by_name(ConfigNode& base, ConfigNode&& over) {
+  std::map<std::string, std::size_t> index;
+  for (std::size_t i = 0; i < base.items.size(); ++i) index.emplace(*name_of(base.items[i]), i);
+  for (ConfigNode& item : over.items) {
+    const auto found = index.find(*name_of(item));
+    if (found == index.end()) {
+      base.items.push_back(std::move(item));
+      continue;
+    }
+    merge(base.items[found->second], std::move(item));
+    // A second item of this name is a duplicate the reader must still see, not one more layer.
+    index.erase(found);
+  }
+  base.place = over.place;
+}
+
+/// Lays `over` upon `base`.  Values keep the places they were written at.
+void merge(ConfigNode& base, ConfigNode&& over) {
+  if (base.kind == Kind::map && over.kind == Kind::map)
+    merge_maps(base, std::move(over));
+  else if (is_list_of_named_maps(base) && is_list_of_named_maps(over))
+    merge_lists_by_name(base, std::move(over));
+  else
+    base = std::move(over);
+}
+
+void forward(const Diagnostics& from, Diagnostics& to) {
+  for (const std::string& line : from.lines()) to.error({}, "", line);
+}
+
+/// Reads a file and what it includes.
+class Loader {
+ public:
+  explicit Loader(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
+
+  /// `asked_at`: where the file was asked for; a place without a line for the first file.
+  ConfigNode load(const fs::path& path, const SourcePlace& asked_at) {
+    const SourcePlace whole_file{intern_file_name(path.string()), 0, 0};
+    if (++files_ > max_files)
+      return fail(asked_at, "more than " + std::to_string(max_files) + " files included");
+    std::error_code error;
+    fs::path canonical = fs::weakly_canonical(path, error);
+    if (error) canonical = path;
+    if (std::find(open_.begin(), open_.end(), canonical) != open_.end())
+      return fail(asked_at, "'" + shortened(path.string()) + "' includes itself");
+    const std::optional<std::string> text = read_text(path, asked_at);
+    if (!text) return {};
+    Diagnostics own;  // a second copy of an error adds no line to diagnostics_, so its lines tell nothing
+    ConfigNode node = parse_config_text(*text, path.string(), own);
+    forward(own, diagnostics_);
+    if (!own.ok()) return {};
+    if (node.kind == Kind::null) return fail(whole_file, "the file is empty");
+    if (!open_.empty() && node.kind != Kind::map)
+      return fail(node.place, "an included file must be a map of keys, got " + shown(node));
+    open_.push_back(canonical);
+    node = with_includes(std::move(node), path);
+    open_.pop_back();
+    return node;
+  }
+
+ private:
+  ConfigNode fail(const SourcePlace& place, const std::string& text) {
+    diagnostics_.error(place, "", text);
+    return {};
+  }
+
+  std::optional<std::string> read_text(const fs::path& path, const SourcePlace& asked_at) {
+    const std::string subject = asked_at.line > 0 ? "'" + shortened(path.string()) + "'" : "the file";
+    std::error_code status_error;
+    if (fs::is_directory(path, status_error)) {
+      fail(asked_at, "cannot read " + subject + ": it is a directory");
+      return std::nullopt;
+    }
+    errno = 0;
+    std::ifstream stream(path, std::ios::binary);
+    std::string text;
+    char block[1 << 16];
+    while (stream && text.size() + total_bytes_ <= max_bytes) {
+      stream.read(block, sizeof block);
+      text.append(block, static_cast<std::size_t>(stream.gcount()));
+    }
+    if (!stream.is_open() || stream.bad()) {
+      fail(asked_at, "cannot read " + subject + ": " + std::generic_category().message(errno));
+      return std::nullopt;
+    }
+    total_bytes_ += text.size();
+    if (total_bytes_ > max_bytes) {
+      fail(asked_at, subject + (files_ > 1 ? " and the files before it are" : " is") + " larger than 64 MB");
+      return std::nullopt;
+    }
+    return text;
+  }
+
+  ConfigNode with_includes(ConfigNode node, const fs::path& path) {
+    const auto is_include = [](const ConfigNode::Entry& entry) { return entry.key == "include"; };
+    const auto found = std::find_if(node.entries.begin(), node.entries.end(), is_include);
+    if (found == node.entries.end()) return node;
+    const ConfigNode include = std::move(found->value);
+    node.entries.erase(found);
+    ConfigNode base;
+    for (const ConfigNode* name : included_names(include)) {
+      ConfigNode layer = load(path.parent_path() / name->scalar, name->place);
+      if (layer.kind == Kind::map) merge(base, std::move(layer));
+    }
+    merge(base, std::move(node));
+    return base;
+  }
+
+  std::vector<const ConfigNode*> included_names(const ConfigNode& include) {
+    std::vector<const ConfigNode*> names;
+    if (include.kind == Kind::scalar) names.push_back(&include);
+    for (const ConfigNode& item : include.items) names.push_back(&item);
+    const auto is_name = [](const ConfigNode* name) {
+      return name->kind == Kind::scalar && !name->scalar.empty();
+    };
+    if (include.kind == Kind::map || include.kind == Kind::null ||
+        !std::all_of(names.begin(), names.end(), is_name)) {
+      fail(include.place, "'include' must be a file name or a list of file names, got " + shown(include));
+      return {};
+    }
+    return names;
+  }
+
+  Diagnostics& diagnostics_;
+  std::vector<fs::path> open_;
+  std::size_t total_bytes_ = 0;
+  int files_ = 0;
+};
+
+}  // namespace
+
+ConfigNode load_config_file(const std::string& path, Diagnostics& diagnostics) {
+  Diagnostics own;
+  ConfigNode root = Loader(own).load(path, {intern_file_name(path), 0, 0});
+  forward(own, diagnostics);
+  return own.ok() ? root : ConfigNode{};
+}
+
+}  // namespace sim

@@ -1,0 +1,138 @@
+#include "sim/config/message_text.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include "sim/config/yaml_writer.hpp"
+
+namespace sim {
+
+namespace {
+
+constexpr std::size_t shown_length = 60;
+
+std::string escaped(unsigned char c) {
+  switch (c) {
+    case '\n':
+      return "\\n";
+    case '\r':
+      return "\\r";
+    case '\t':
+      return "\\t";
+    default:
+      break;
+  }
+  char text[8];
+  std::snprintf(text, sizeof text, "\\x%02x", c);
+  return text;
+}
+
+/// How many letters must be added, removed, changed or swapped with their neighbour.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+  std::iota(last.begin(), last.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+    before.swap(last);
+    last.swap(row);
+  }
+  return last[b.size()];
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  std::string result;
+  result.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    // C2 80 to C2 9F are the control characters U+0080 to U+009F; U+009B starts commands like ESC [ does.
+    const bool c1 = c == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) >= 0x80 &&
+                    static_cast<unsigned char>(text[i + 1]) < 0xa0;
+    if (c1)
+      result += escaped(static_cast<unsigned char>(text[++i]));
+    else if (c < 0x20 || c == 0x7f)
+      result += escaped(c);
+    else
+      result += text[i];
+  }
+  return result;
+}
+
+std::string shortened(std::string_view text, std::size_t limit) {
+  if (text.size() <= limit) return std::string(text);
+  std::size_t end = limit > 3 ? limit - 3 : 0;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
+  return std::string(text.substr(0, end)) + "...";
+}
+
+std::string shown(const ConfigNode& node) {
+  switch (node.kind) {
+    case ConfigNode::Kind::null:
+      return "nothing";
+    case ConfigNode::Kind::scalar:
+      return "'" +
+             shortened(printable(std::string_view(node.scalar).substr(0, 4 * shown_length)), shown_length) +
+             "'";
+    default:
+      return shortened(printable(to_flow_yaml(node, 2 * shown_length)), shown_length);
+  }
+}
+
+std::string number_text(double value) {
+  char text[40];
+  // Plain to_chars prefers 1e+05 to 100000, because it is shorter.
+  const bool whole = std::abs(value) < 1e15 && value == std::trunc(value);
+  const auto end = whole ? std::to_chars(text, text + sizeof text, static_cast<long long>(value))
+                         : std::to_chars(text, text + sizeof text, value);
+  return std::string(text, end.ptr);
+}
+
+std::string plural_of(std::string_view word) {
+  const std::string text(word);
+  const auto ends_with_consonant_y = [&] {
+    return text.size() > 1 && text.back() == 'y' &&
+           std::string("aeiou").find(text[text.size() - 2]) == std::string::npos;
+  };
+  if (ends_with_consonant_y()) return text.substr(0, text.size() - 1) + "ies";
+  if (word.ends_with("s") || word.ends_with("x") || word.ends_with("ch")) return text + "es";
+  return text + "s";
+}
+
+std::string with_article(std::string_view word) {
+  const bool vowel = !word.empty() && std::string_view("aeiou").find(word.front()) != std::string_view::npos;
+  return (vowel ? "an " : "a ") + std::string(word);
+}
+
+std::string list_text(const std::vector<std::string>& names, std::size_t most) {
+  if (names.empty()) return "none";
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < most; ++i)
+    text += (i == 0 ? "" : ", ") + shortened(names[i]);
+  if (names.size() > most) text += ", ... (" + std::to_string(names.size()) + " in all)";
+  return text;
+}
+
+std::string closest_name(std::string_view misspelt, const std::vector<std::string>& names) {
+  std::string closest;
+  std::size_t least = std::max<std::size_t>(1, std::min<std::size_t>(3, misspelt.size() / 3)) + 1;
+  for (const std::string& name : names) {
+    const std::size_t longer = std::max(name.size(), misspelt.size());
+    if (longer - std::min(name.size(), misspelt.size()) >= least) continue;
+    const std::size_t distance = edit_distance(misspelt, name);
+    if (distance >= least || distance >= name.size()) continue;  // 'x' is not a misspelt 'y'
+    least = distance;
+    closest = name;
+  }
+  return closest;
+}
+
+}  // namespace sim

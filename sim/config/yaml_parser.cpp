@@ -1,0 +1,330 @@
+#include <yaml-cpp/depthguard.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <unordered_map>
+
+#include "sim/config/config_node.hpp"
+#include "sim/config/message_text.hpp"
+
+namespace sim {
+
+namespace {
+
+using Kind = ConfigNode::Kind;
+
+constexpr int max_depth = 100;
+constexpr std::size_t max_nodes = 2'000'000;
+constexpr std::size_t max_text_bytes = 256'000'000;
+
+/// Ends the parsing.
+struct Stop {
+  SourcePlace place;
+  std::string text;
+};
+
+/// What a tree costs when an alias copies it.
+struct TreeSize {
+  std::size_t nodes = 0;
+  std::size_t text_bytes = 0;
+  int depth = 0;
+};
+
+TreeSize size_of(const ConfigNode& node) {
+  TreeSize size{1, node.scalar.size(), 0};
+  const auto add = [&size](const ConfigNode& child, std::size_t key_bytes) {
+    const TreeSize below = size_of(child);
+    size.nodes += below.nodes;
+    size.text_bytes += below.text_bytes + key_bytes;
+    size.depth = std::max(size.depth, below.depth + 1);
+  };
+  for (const ConfigNode& item : node.items) add(item, 0);
+  for (const ConfigNode::Entry& entry : node.entries) add(entry.value, entry.key.size());
+  return size;
+}
+
+/// Builds the tree from the parser's events.  A YAML::Node tree in between would lose duplicate keys and
+/// quotes.
+class TreeBuilder final : public YAML::EventHandler {
+ public:
+  TreeBuilder(const std::string* file, Diagnostics& diagnostics) : file_(file), diagnostics_(diagnostics) {}
+
+  ConfigNode take_root() { return std::move(root_); }
+  bool failed() const { return failed_; }
+
+  void error(const SourcePlace& place, const std::string& text) {
+    failed_ = true;
+    diagnostics_.error(place, "", text);
+  }
+
+  SourcePlace place_of(const YAML::Mark& mark) const {
+    return mark.is_null() ? SourcePlace{file_, 0, 0} : SourcePlace{file_, mark.line + 1, mark.column + 1};
+  }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (++documents_ > 1) throw Stop{place_of(mark), "a second YAML document; a file holds one"};
+  }
+  void OnDocumentEnd() override {}
+
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    if (expects_key()) stop_at_bad_key(mark, "nothing");
+    add(new_node(Kind::null, mark), anchor);
+  }
+
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    const bool quoted = check_tag(mark, tag) == Tag::text;
+    count({1, value.size(), 0}, place_of(mark));
+    if (expects_key()) {
+      if (anchor != YAML::NullAnchor) remember(anchor, scalar_node(mark, value, quoted));
+      set_key(mark, value, quoted);
+      return;
+    }
+    add(scalar_node(mark, value, quoted), anchor);
+  }
+
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    if (expects_key()) stop_at_bad_key(mark, "an alias");
+    const auto found = anchors_.find(anchor);
+    if (found == anchors_.end()) throw Stop{place_of(mark), "an alias inside the node it stands for"};
+    check_depth(static_cast<int>(open_.size()) + found->second.size.depth, place_of(mark));
+    count(found->second.size, place_of(mark));
+    add(found->second.node, YAML::NullAnchor);
+  }
+
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    if (expects_key()) stop_at_bad_key(mark, "a list");
+    check_tag(mark, tag);
+    start(Kind::list, mark, anchor);
+  }
+  void OnSequenceEnd() override { finish(); }
+
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    if (expects_key()) stop_at_bad_key(mark, "a map");
+    check_tag(mark, tag);
+    start(Kind::map, mark, anchor);
+  }
+  void OnMapEnd() override { finish(); }
+
+ private:
+  enum class Tag { none, text };
+
+  /// A list or map whose end has not come yet.
+  struct Open {
+    ConfigNode node;
+    YAML::anchor_t anchor = YAML::NullAnchor;
+    bool has_key = false;
+    std::string key;
+    SourcePlace key_place;
+    std::unordered_map<std::string, int> line_of_key;
+  };
+  struct Anchored {
+    ConfigNode node;
+    TreeSize size;
+  };
+
+  bool expects_key() const {
+    return !open_.empty() && open_.back().node.kind == Kind::map && !open_.back().has_key;
+  }
+
+  [[noreturn]] void stop_at_bad_key(const YAML::Mark& mark, const char* what) const {
+    throw Stop{place_of(mark), std::string("a key must be text, got ") + what};
+  }
+
+  ConfigNode new_node(Kind kind, const YAML::Mark& mark) {
+    count({1, 0, 0}, place_of(mark));
+    ConfigNode node;
+    node.kind = kind;
+    node.place = place_of(mark);
+    return node;
+  }
+
+  ConfigNode scalar_node(const YAML::Mark& mark, const std::string& value, bool quoted) const {
+    ConfigNode node;
+    node.kind = Kind::scalar;
+    node.quoted = quoted;
+    node.scalar = value;
+    node.place = place_of(mark);
+    return node;
+  }
+
+  /// `!` is yaml-cpp's tag of a scalar in quotes, `?` of anything else without a tag.
+  Tag check_tag(const YAML::Mark& mark, const std::string& tag) const {
+    static const std::string standard = "tag:yaml.org,2002:";
+    if (tag == "!" || tag == standard + "str") return Tag::text;
+    if (tag.empty() || tag == "?" || tag == standard + "map" || tag == standard + "seq") return Tag::none;
+    const std::string written = tag.starts_with(standard) ? "!!" + tag.substr(standard.size()) : tag;
+    throw Stop{place_of(mark), "the tag '" + shortened(written) + "' is not supported"};
+  }
+
+  void check_depth(int depth, const SourcePlace& place) const {
+    if (depth > max_depth) throw Stop{place, "nested more than " + std::to_string(max_depth) + " deep"};
+  }
+
+  void count(const TreeSize& size, const SourcePlace& place) {
+    nodes_ += size.nodes;
+    text_bytes_ += size.text_bytes;
+    if (nodes_ > max_nodes || text_bytes_ > max_text_bytes)
+      throw Stop{place, "more than " + std::to_string(max_nodes) + " values or " +
+                            std::to_string(max_text_bytes / 1'000'000) + " MB of text, aliases expanded"};
+  }
+
+  void set_key(const YAML::Mark& mark, const std::string& key, bool quoted) {
+    Open& map = open_.back();
+    map.has_key = true;
+    map.key = key;
+    map.key_place = place_of(mark);
+    if (key == "<<" && !quoted)
+      error(map.key_place, "merge keys ('<<') are not supported; use include, overrides or parameters");
+    const auto [first, is_new] = map.line_of_key.emplace(key, map.key_place.line);
+    if (!is_new)
+      error(map.key_place,
+            "duplicate key '" + shortened(key) + "', first at line " + std::to_string(first->second));
+  }
+
+  void start(Kind kind, const YAML::Mark& mark, YAML::anchor_t anchor) {
+    check_depth(static_cast<int>(open_.size()) + 1, place_of(mark));
+    Open open;
+    open.node = new_node(kind, mark);
+    open.anchor = anchor;
+    open_.push_back(std::move(open));
+  }
+
+  void finish() {
+    Open done = std::move(open_.back());
+    open_.pop_back();
+    add(std::move(done.node), done.anchor);
+  }
+
+  void remember(YAML::anchor_t anchor, const ConfigNode& node) {
+    const TreeSize size = size_of(node);
+    count(size, node.place);  // nested anchors copy what is inside them once for each level
+    anchors_[anchor] = {node, size};
+  }
+
+  void add(ConfigNode node, YAML::anchor_t anchor) {
+    if (anchor != YAML::NullAnchor) remember(anchor, node);
+    if (open_.empty()) {
+      root_ = std::move(node);
+      return;
+    }
+    Open& parent = open_.back();
+    if (parent.node.kind == Kind::list) {
+      parent.node.items.push_back(std::move(node));
+      return;
+    }
+    parent.node.entries.push_back({std::move(parent.key), parent.key_place, std::move(node)});
+    parent.has_key = false;
+  }
+
+  const std::string* file_;
+  Diagnostics& diagnostics_;
+  ConfigNode root_;
+  std::vector<Open> open_;
+  std::map<YAML::anchor_t, Anchored> anchors_;
+  bool failed_ = false;
+  int documents_ = 0;
+  std::size_t nodes_ = 0;
+  std::size_t text_bytes_ = 0;
+};
+
+struct BadByte {
+  std::size_t at;
+  std::string text;
+};
+
+/// The length of the UTF-8 character at `at`; 0 when it is none (RFC 3629: no overlong forms, no surrogates).
+std::size_t character_length(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t i) -> unsigned {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
+  };
+  const unsigned lead = byte(at);
+  const std::size_t length = lead < 0x80                   ? 1
+                             : lead >= 0xc2 && lead < 0xe0 ? 2
+                             : lead >= 0xe0 && lead < 0xf0 ? 3
+                             : lead >= 0xf0 && lead < 0xf5 ? 4
+                                                           : 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(at + i) & 0xc0) != 0x80) return 0;
+  const unsigned second = byte(at + 1);
+  if ((lead == 0xe0 && second < 0xa0) || (lead == 0xed && second >= 0xa0) ||
+      (lead == 0xf0 && second < 0x90) || (lead == 0xf4 && second >= 0x90))
+    return 0;
+  return length;
+}
+
+/// yaml-cpp takes broken UTF-8 as it comes, and the byte 4 as the end of the file.
+std::optional<BadByte> first_bad_byte(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    if ((c < 0x20 && c != '\n' && c != '\r' && c != '\t') || c == 0x7f) {
+      char name[40];
+      std::snprintf(name, sizeof name, "control character 0x%02x", c);
+      return BadByte{i, std::string(name) + "; is this a text file?"};
+    }
+    const std::size_t length = character_length(text, i);
+    if (length == 0) return BadByte{i, "not valid UTF-8; is this a text file?"};
+    i += length;
+  }
+  return std::nullopt;
+}
+
+/// yaml-cpp looks ahead over all of `[[[[...` before it reports the first one: 2 GB of memory for 10 MB.  The
+/// limit is far above max_depth, because brackets in comments and quotes are counted too.
+std::optional<BadByte> hopeless_nesting(std::string_view text) {
+  constexpr int limit = 10'000;
+  int depth = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '[' || text[i] == '{') ++depth;
+    if ((text[i] == ']' || text[i] == '}') && depth > 0) --depth;
+    if (depth > limit) return BadByte{i, "more than " + std::to_string(limit) + " brackets are never closed"};
+  }
+  return std::nullopt;
+}
+
+SourcePlace place_at(std::string_view text, std::size_t at, const std::string* file) {
+  SourcePlace place{file, 1, 1};
+  for (std::size_t i = 0; i < at; ++i) {
+    ++place.column;
+    if (text[i] == '\n') place = {file, place.line + 1, 1};
+  }
+  return place;
+}
+
+}  // namespace
+
+ConfigNode parse_config_text(const std::string& text, const std::string& file_name,
+                             Diagnostics& diagnostics) {
+  const std::string* file = intern_file_name(file_name);
+  auto bad = first_bad_byte(text);
+  if (!bad) bad = hopeless_nesting(text);
+  if (bad) {
+    diagnostics.error(place_at(text, bad->at, file), "", bad->text);
+    return {};
+  }
+  TreeBuilder builder(file, diagnostics);
+  try {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    while (parser.HandleNextDocument(builder)) {
+    }
+  } catch (const Stop& stop) {
+    builder.error(stop.place, stop.text);
+  } catch (const YAML::DeepRecursion& error) {
+    builder.error(builder.place_of(error.mark), "nested more than " + std::to_string(max_depth) + " deep");
+  } catch (const YAML::Exception& error) {
+    builder.error(builder.place_of(error.mark), "not valid YAML: " + error.msg);
+  }
+  if (builder.failed()) return {};
+  return builder.take_root();
+}
+
+}  // namespace sim

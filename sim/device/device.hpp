@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "sim/bus/bus.hpp"
+#include "sim/math.hpp"
+#include "sim/random/random.hpp"
+#include "sim/state_hash.hpp"
+#include "sim/time.hpp"
+
+namespace sim {
+
+class Body;
+class Vehicle;
+class World;
+
+/// Where and when a sensor samples.
+struct SenseContext {
+  const World& world;
+  const Vehicle& vehicle;
+  Time now;      ///< the time sampled
+  double dt_s;   ///< since this sensor's last sample; 0 at the first
+  Pose X_WS;     ///< the sensor frame, as mounted
+  Vector3d v_WS_W;  ///< velocity of its origin
+};
+
+/// The model of a sensor: reads physics, knows no message.
+class Sensor {
+ public:
+  virtual ~Sensor() = default;
+  /// Measures without error: the truth becomes the reading.  Called at every sample.
+  virtual void measure(const SenseContext& context) = 0;
+  /// Turns the truth into a measurement, in place: noise, quantisation.  Called once after every measure().
+  virtual void disturb(double dt_s, Random& random) = 0;
+  /// Something sent to this device at a simulated time arrives, see World::schedule_arrival.
+  virtual void arrive(Time /*at*/, std::span<const std::byte> /*payload*/) {}
+  /// The reading and everything that outlasts a sample.
+  virtual void hash_state(StateHash& hash) const = 0;
+};
+
+/// Takes the messages a reporter makes.  The channel is the framework's business.
+class Publisher {
+ public:
+  virtual ~Publisher() = default;
+  virtual void publish(std::span<const std::byte> payload) = 0;
+  /// The time stamp of messages: the run's epoch plus simulated time, in microseconds.
+  std::int64_t utime(Time at) const { return epoch_us_ + at.count(); }
+  /// Space to encode into, reused from message to message.
+  Bytes& buffer() { return buffer_; }
+
+ protected:
+  explicit Publisher(std::int64_t epoch_us) : epoch_us_(epoch_us) {}
+
+ private:
+  std::int64_t epoch_us_;
+  Bytes buffer_;
+};
+
+/// Turns a sensor's reading into messages.
+class Reporter {
+ public:
+  virtual ~Reporter() = default;
+  virtual void report(Time sampled_at, Publisher& out) const = 0;
+};
+
+/// The model of an actuator: acts on physics, knows no message.
+class Actuator {
+ public:
+  virtual ~Actuator() = default;
+  /// Called before each physics step of `step_s`.  `now`: the time at the start of the step.
+  virtual void act(Time now, double step_s) = 0;
+  virtual void hash_state(StateHash& hash) const = 0;
+};
+
+/// Takes messages and sets the actuator.
+class Controller {
+ public:
+  virtual ~Controller() = default;
+  /// `payload` is unchecked bytes.  A bad one throws std::runtime_error that says what is wrong, and changes nothing.
+  virtual void receive(Time now, std::span<const std::byte> payload) = 0;
+};
+
+}  // namespace sim

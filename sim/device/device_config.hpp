@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "sim/config/param_reader.hpp"
+#include "sim/math.hpp"
+
+namespace sim {
+
+struct DeviceType;
+
+/// The parameters of one device type, read from YAML.
+class DeviceParams {
+ public:
+  virtual ~DeviceParams() = default;
+  virtual void read(ParamReader& in) = 0;
+};
+
+/// One device of a vehicle as configured.  The keys here are understood by every device.
+struct DeviceConfig {
+  std::string name;
+  std::string type;
+  std::string body;                        ///< where it is mounted; empty: the vehicle's first body
+  Vector3d position_m = Vector3d::Zero();  ///< of the sensor frame S in the body frame B
+  Vector3d rpy_rad = Vector3d::Zero();
+  double rate_hz = 0;                      ///< samples per simulated second; 0: every step
+  std::optional<double> phase_s;           ///< time of the first sample; unset: spread over the period by name
+  double latency_s = 0;                    ///< sensor: sample to report; actuator: message to effect
+  double jitter_s = 0;                     ///< added to the latency, uniform in [0, jitter)
+  double dropout = 0;                      ///< probability that a report or a command is lost
+  bool truth = false;                      ///< publish the reading without errors beside the report
+  std::string channel;                     ///< of the reports; empty: by the world's template
+
+  const DeviceType* device_type = nullptr;
+  std::shared_ptr<const DeviceParams> params;
+
+  void read(ParamReader& in);
+  /// The keys common to all devices, for `shoal describe` and the docs.
+  void read_common(ParamReader& in);
+  Pose X_BS() const { return make_pose(position_m, rpy_rad); }
+};
+
+}  // namespace sim

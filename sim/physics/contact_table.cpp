@@ -1,0 +1,67 @@
+#include "sim/physics/contact_table.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace sim {
+namespace {
+
+Surface make_surface(const ContactConfig& config) {
+  Surface surface;
+  dSurfaceParameters& p = surface.parameters;
+  // Approx1: friction is a coefficient; without it mu would be a force in newtons.
+  p.mode = dContactApprox1;
+  p.mu = p.mu2 = config.friction;
+  surface.friction = config.friction > 0;
+  if (surface.friction) surface.rows += 2;
+  if (config.bounce > 0) {
+    p.mode |= dContactBounce;
+    p.bounce = config.bounce;
+    p.bounce_vel = config.bounce_velocity_mps;
+  }
+  if (config.soft_erp) {
+    p.mode |= dContactSoftERP;
+    p.soft_erp = *config.soft_erp;
+  }
+  if (config.soft_cfm) {
+    p.mode |= dContactSoftCFM;
+    p.soft_cfm = *config.soft_cfm;
+  }
+  if (config.rolling_friction_m > 0 || config.spinning_friction_m > 0) {
+    // With one value for all axes ODE would take rho for spinning too.
+    p.mode |= dContactRolling | dContactAxisDep;
+    p.rho = p.rho2 = config.rolling_friction_m;
+    p.rhoN = config.spinning_friction_m;
+    surface.rows += 3;
+  }
+  if (config.slip > 0) {
+    p.mode |= dContactSlip1 | dContactSlip2;
+    p.slip1 = p.slip2 = config.slip;
+  }
+  return surface;
+}
+
+bool names(const std::string& pattern, const std::string& material) { return pattern == "any" || pattern == material; }
+
+}  // namespace
+
+ContactTable::ContactTable(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts) {
+  names_.push_back("default");
+  for (const MaterialConfig& material : materials)
+    if (std::find(names_.begin(), names_.end(), material.name) == names_.end()) names_.push_back(material.name);
+  count_ = static_cast<int>(names_.size());
+  surfaces_.assign(names_.size() * names_.size(), make_surface(ContactConfig{}));
+  for (const ContactConfig& contact : contacts)
+    for (int i = 0; i < count_; ++i)
+      for (int j = 0; j < count_; ++j)
+        if (names(contact.between[0], names_[i]) && names(contact.between[1], names_[j]))
+          surfaces_[i * count_ + j] = surfaces_[j * count_ + i] = make_surface(contact);
+}
+
+int ContactTable::number_of(const std::string& material) const {
+  const auto at = std::find(names_.begin(), names_.end(), material);
+  if (at == names_.end()) throw std::out_of_range("unknown material '" + material + "'");
+  return static_cast<int>(at - names_.begin());
+}
+
+}  // namespace sim

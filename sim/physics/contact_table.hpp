@@ -1,0 +1,33 @@
+#pragma once
+
+#include <ode/ode.h>
+
+#include <string>
+#include <vector>
+
+#include "sim/physics/physics_config.hpp"
+
+namespace sim {
+
+/// What ODE needs to know of a contact of two materials.
+struct Surface {
+  dSurfaceParameters parameters = {};
+  int rows = 1;           ///< constraint rows of one contact
+  bool friction = false;
+};
+
+/// A surface for each pair of materials, worked out once.
+class ContactTable {
+ public:
+  ContactTable(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts);
+  const Surface& of(int first, int second) const { return surfaces_[first * count_ + second]; }
+  /// Number of a material; `default` is always there.  Throws std::out_of_range.
+  int number_of(const std::string& material) const;
+
+ private:
+  std::vector<std::string> names_;
+  int count_ = 0;
+  std::vector<Surface> surfaces_;
+};
+
+}  // namespace sim

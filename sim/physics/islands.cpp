@@ -1,0 +1,53 @@
+#include "sim/physics/islands.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace sim {
+
+void Islands::add_body() {
+  joint_parent_.push_back(static_cast<int>(joint_parent_.size()));
+  joint_rows_.push_back(0);
+}
+
+void Islands::add_joint(int first, int second, int rows) {
+  joint_largest_ = std::max(joint_largest_, join(joint_parent_, joint_rows_, first, second, rows));
+  // Point every body at its root, so that a step starts with paths of length one.
+  for (int body = 0; body < static_cast<int>(joint_parent_.size()); ++body) root(joint_parent_, body);
+}
+
+void Islands::begin_step() {
+  parent_ = joint_parent_;
+  rows_ = joint_rows_;
+  largest_ = joint_largest_;
+}
+
+void Islands::add_contact(int first, int second, int rows) {
+  largest_ = std::max(largest_, join(parent_, rows_, first, second, rows));
+}
+
+int Islands::root(std::vector<int>& parent, int body) {
+  while (parent[body] != body) {
+    parent[body] = parent[parent[body]];
+    body = parent[body];
+  }
+  return body;
+}
+
+int Islands::join(std::vector<int>& parent, std::vector<int>& rows, int first, int second, int added) {
+  // A fixed body does not connect: two stacks on one floor are two islands.
+  if (first < 0) std::swap(first, second);
+  if (first < 0) return 0;
+  int a = root(parent, first);
+  if (second >= 0) {
+    int b = root(parent, second);
+    if (a != b) {
+      if (b < a) std::swap(a, b);
+      parent[b] = a;
+      rows[a] += rows[b];
+    }
+  }
+  return rows[a] += added;
+}
+
+}  // namespace sim

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <ode/ode.h>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "sim/physics/mesh.hpp"
+#include "sim/physics/ode_library.hpp"
+#include "sim/physics/physics_config.hpp"
+
+namespace sim {
+
+/// A triangle mesh that ODE can collide.  ODE keeps pointers into `mesh`.
+struct CollisionMesh {
+  explicit CollisionMesh(Mesh loaded);
+  CollisionMesh(const CollisionMesh&) = delete;
+  CollisionMesh& operator=(const CollisionMesh&) = delete;
+
+  Mesh mesh;
+  bool closed = false;
+  MeshSolid solid;
+  TriMeshDataHandle data;
+};
+
+/// Each mesh file is loaded once, however many parts use it.
+class MeshCache {
+ public:
+  /// Throws ConfigError at the part.
+  const CollisionMesh& get(const PartConfig& part, const std::string& who);
+
+ private:
+  std::map<std::pair<std::string, double>, std::unique_ptr<CollisionMesh>> meshes_;
+};
+
+/// The part's geom, at the origin and in no space.  `mesh` is null unless the shape is a mesh.
+GeomHandle make_geom(const PartConfig& part, const CollisionMesh* mesh);
+
+/// Mass, centre of mass and inertia of the part, in the frame of the body (about its origin); mass 0 when the part
+/// has neither mass nor density.  Throws ConfigError at the part for a mesh that encloses no solid.
+dMass part_mass(const PartConfig& part, const CollisionMesh* mesh, const std::string& who);
+
+[[noreturn]] void throw_config_error(const SourcePlace& place, const std::string& who, const std::string& text);
+
+}  // namespace sim

@@ -1,0 +1,95 @@
+#include "sim/random/noise.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace sim {
+
+void NoiseParams::read(ParamReader& in) {
+  in.read("scale_error", scale_error, any_number(), "measured = truth * (1 + scale_error)");
+  in.read("bias", bias, any_number(), "constant offset");
+  in.read("bias_std", bias_std, at_least(0), "standard deviation of a constant offset drawn once per run");
+  in.read("random_walk_std", random_walk_std, at_least(0),
+          "standard deviation of the drift after 1 s; grows with the square root of time");
+  in.read("gauss_markov_std", gauss_markov_std, at_least(0), "standard deviation of a slowly changing error");
+  in.read("gauss_markov_time_s", gauss_markov_time_s, above(0),
+          "time in which that error forgets 63 % of itself");
+  in.read("gaussian_std", gaussian_std, at_least(0),
+          "standard deviation of an error drawn anew for each value");
+  in.read("uniform_half_width", uniform_half_width, at_least(0),
+          "error drawn anew, uniform between -this and this");
+  in.read("outlier_probability", outlier_probability, between(0, 1), "share of values that are outliers");
+  in.read("outlier_std", outlier_std, at_least(0), "standard deviation of the error of an outlier");
+  in.read("quantization", quantization, at_least(0), "step of the output; 0: none");
+  in.read("saturation", saturation, above(0), "the output is cut to -this and this; unset: not cut");
+}
+
+bool NoiseParams::any() const {
+  const bool offsets = scale_error != 0 || bias != 0 || bias_std > 0;
+  const bool slow = random_walk_std > 0 || gauss_markov_std > 0;
+  const bool white =
+      gaussian_std > 0 || uniform_half_width > 0 || (outlier_probability > 0 && outlier_std > 0);
+  return offsets || slow || white || quantization > 0 || saturation.has_value();
+}
+
+Noise::Noise(const NoiseParams& params, int values, Random bias_source)
+    : params_(params), slow_(static_cast<std::size_t>(std::max(values, 1))) {
+  assert(values >= 1);
+  for (Slow& slow : slow_) slow.bias = params_.bias + params_.bias_std * bias_source.gaussian();
+}
+
+void Noise::apply(std::span<double> values, double dt_s, Random& random) {
+  advance(dt_s, random);
+  const NoiseParams& p = params_;
+  std::size_t state = 0;
+  for (double& value : values) {
+    const Slow& slow = slow_[state];
+    if (++state == slow_.size()) state = 0;
+    value = value * (1 + p.scale_error) + slow.bias + slow.walk + slow.gauss_markov;
+  }
+  // One loop for each part: a scan of hundreds of beams asks for each part once, not once for each beam.
+  if (p.gaussian_std > 0)
+    for (double& value : values) value += p.gaussian_std * random.gaussian();
+  if (p.uniform_half_width > 0)
+    for (double& value : values) value += p.uniform_half_width * (2 * random.uniform() - 1);
+  if (p.outlier_probability > 0 && p.outlier_std > 0)
+    for (double& value : values)
+      if (random.uniform() < p.outlier_probability) value += p.outlier_std * random.gaussian();
+  if (p.quantization > 0)
+    for (double& value : values) value = p.quantization * std::round(value / p.quantization);
+  if (p.saturation)
+    for (double& value : values) value = std::clamp(value, -*p.saturation, *p.saturation);
+}
+
+void Noise::apply(double& value, double dt_s, Random& random) {
+  apply(std::span(&value, 1), dt_s, random);
+}
+
+void Noise::advance(double dt_s, Random& random) {
+  const NoiseParams& p = params_;
+  if (p.random_walk_std > 0 && started_) {
+    const double step_std = p.random_walk_std * std::sqrt(dt_s);
+    for (Slow& slow : slow_) slow.walk += step_std * random.gaussian();
+  }
+  if (p.gauss_markov_std > 0) {
+    // The exact solution over dt keeps the standard deviation for any dt.  The first value is drawn from the
+    // stationary distribution: an instrument has been on for a while when the run starts.
+    const double kept = started_ ? std::exp(-dt_s / p.gauss_markov_time_s) : 0;
+    const double fresh_std =
+        p.gauss_markov_std * (started_ ? std::sqrt(-std::expm1(-2 * dt_s / p.gauss_markov_time_s)) : 1);
+    for (Slow& slow : slow_) slow.gauss_markov = kept * slow.gauss_markov + fresh_std * random.gaussian();
+  }
+  started_ = true;
+}
+
+void Noise::hash_state(StateHash& hash) const {
+  hash.add(started_);
+  for (const Slow& slow : slow_) {
+    hash.add(slow.bias);
+    hash.add(slow.walk);
+    hash.add(slow.gauss_markov);
+  }
+}
+
+}  // namespace sim

@@ -1,0 +1,267 @@
+#include "sim/scene/ode_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "sim/physics/ode_math.hpp"
+
+namespace sim {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+AlignedBox box_of(dGeomID geom) {
+  dReal b[6];
+  dGeomGetAABB(geom, b);
+  return {{b[0], b[2], b[4]}, {b[1], b[3], b[5]}};
+}
+
+double distance(const AlignedBox& box, const Vector3d& from) {
+  return (box.low - from).cwiseMax(from - box.high).cwiseMax(0.0).norm();
+}
+
+/// How far along a ray its first point inside the box lies; infinity when it misses.
+double entry_range(const AlignedBox& box, const Vector3d& origin, const Vector3d& direction) {
+  double enter = 0, leave = infinity;
+  for (int i = 0; i < 3; ++i) {
+    if (direction[i] == 0) {
+      if (origin[i] < box.low[i] || origin[i] > box.high[i]) return infinity;
+      continue;
+    }
+    const double a = (box.low[i] - origin[i]) / direction[i], b = (box.high[i] - origin[i]) / direction[i];
+    enter = std::max(enter, std::min(a, b));
+    leave = std::min(leave, std::max(a, b));
+  }
+  return enter <= leave ? enter : infinity;
+}
+
+}  // namespace
+
+OdeScene::OdeScene(const SceneMoves& moves) : moves_(moves), ray_(dCreateRay(nullptr, 1)) {
+  dGeomRaySetClosestHit(ray_.get(), 1);
+}
+
+void OdeScene::add_group() { open_.emplace_back(); }
+
+void OdeScene::add_part(dGeomID geom, int group, std::uint32_t category, bool moving) {
+  const int number = static_cast<int>(parts_.size());
+  parts_.push_back({geom, group, category, dGeomGetClass(geom)});
+  if (moving)
+    open_[group].push_back(number);
+  else
+    open_fixed_.push_back(number);
+}
+
+void OdeScene::close_group(int group) {
+  Cluster cluster{std::move(open_[group]), group, 0};
+  open_[group].clear();
+  for (const int part : cluster.parts) cluster.categories |= parts_[part].category;
+  if (!cluster.parts.empty()) layers_[0].clusters.push_back(std::move(cluster));
+  layers_[0].seen = ~std::uint64_t{0};
+
+  std::erase_if(open_fixed_, [&](int part) {
+    if (parts_[part].group != group) return false;
+    if (parts_[part].kind == dPlaneClass)
+      planes_.push_back(part);
+    else
+      layers_[1].clusters.push_back({{part}, group, parts_[part].category});
+    return true;
+  });
+  layers_[1].seen = ~std::uint64_t{0};
+}
+
+void OdeScene::refresh() const {
+  refresh(layers_[0], moves_.moving);
+  refresh(layers_[1], moves_.fixed);
+}
+
+void OdeScene::refresh(Layer& layer, std::uint64_t moves) const {
+  if (layer.seen == moves) return;
+  layer.seen = moves;
+  boxes_.clear();
+  for (const Cluster& cluster : layer.clusters) {
+    AlignedBox box = box_of(parts_[cluster.parts.front()].geom);
+    for (std::size_t i = 1; i < cluster.parts.size(); ++i) {
+      const AlignedBox next = box_of(parts_[cluster.parts[i]].geom);
+      box.low = box.low.cwiseMin(next.low);
+      box.high = box.high.cwiseMax(next.high);
+    }
+    boxes_.push_back(box);
+  }
+  layer.grid.build(boxes_);
+}
+
+bool OdeScene::hit(int part, const Vector3d& origin_W, const Vector3d& direction_W, RayHit& nearest) const {
+  dGeomRaySetLength(ray_.get(), nearest.range_m);
+  dGeomRaySet(ray_.get(), origin_W.x(), origin_W.y(), origin_W.z(), direction_W.x(), direction_W.y(),
+              direction_W.z());
+  dContactGeom contact;
+  if (dCollide(ray_.get(), parts_[part].geom, 1, &contact, sizeof contact) == 0) return false;
+  // Of two parts that share a surface the one with the lower number is hit, whatever the order of looking.
+  if (contact.depth > nearest.range_m || (contact.depth == nearest.range_m && part >= nearest.part && nearest.part >= 0))
+    return false;
+  nearest = {contact.depth, to_eigen(contact.normal), part};
+  return true;
+}
+
+void OdeScene::find_candidates(const AlignedBox& around, const RayFilter& filter, const Vector3d& from_W,
+                               double range_max_m) const {
+  candidates_.clear();
+  for (int layer = 0; layer < 2; ++layer)
+    layers_[layer].grid.find(around, [&](int index) {
+      if (!passes(layers_[layer].clusters[index], filter)) return;
+      const double nearest = distance(layers_[layer].grid.box(index), from_W);
+      if (nearest <= range_max_m) candidates_.push_back({nearest, layer, index});
+    });
+  std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
+    if (a.nearest_m != b.nearest_m) return a.nearest_m < b.nearest_m;
+    return a.layer != b.layer ? a.layer < b.layer : a.cluster < b.cluster;
+  });
+}
+
+std::optional<RayHit> OdeScene::cast(const Vector3d& origin_W, const Vector3d& direction_W, double range_max_m,
+                                     const RayFilter& filter) const {
+  if (!(range_max_m > 0)) return std::nullopt;
+  refresh();
+  RayHit nearest{range_max_m, Vector3d::Zero(), -1};
+  const Vector3d end_W = origin_W + range_max_m * direction_W;
+  find_candidates({origin_W.cwiseMin(end_W), origin_W.cwiseMax(end_W)}, filter, origin_W, range_max_m);
+  for (const Candidate& candidate : candidates_) {
+    if (candidate.nearest_m > nearest.range_m) break;
+    const Layer& layer = layers_[candidate.layer];
+    if (entry_range(layer.grid.box(candidate.cluster), origin_W, direction_W) > nearest.range_m) continue;
+    for (const int part : layer.clusters[candidate.cluster].parts)
+      if ((parts_[part].category & filter.categories) != 0) hit(part, origin_W, direction_W, nearest);
+  }
+  for (const int plane : planes_)
+    if (parts_[plane].group != filter.exclude_group && (parts_[plane].category & filter.categories) != 0)
+      hit(plane, origin_W, direction_W, nearest);
+  if (nearest.part < 0) return std::nullopt;
+  return nearest;
+}
+
+const std::vector<Vector3d>& OdeScene::directions(const Fan& fan) const {
+  // A fleet has many sensors of one kind: the sines of the last fan often serve the next.
+  if (fan.first_angle_rad != directions_of_.first_angle_rad || fan.step_rad != directions_of_.step_rad ||
+      fan.count != directions_of_.count) {
+    directions_S_.clear();
+    for (int i = 0; i < fan.count; ++i) {
+      const double angle = fan.first_angle_rad + i * fan.step_rad;
+      directions_S_.emplace_back(std::cos(angle), std::sin(angle), 0);
+    }
+    directions_of_ = fan;
+  }
+  return directions_S_;
+}
+
+struct OdeScene::FanSearch {
+  const OdeScene& scene;
+  const Fan& fan;
+  const RayFilter& filter;
+  std::span<double> ranges_m;
+  const std::vector<Vector3d>& directions_S;
+  Matrix3d R_SW = fan.X_WS.linear().transpose();
+  Vector3d p_WS = fan.X_WS.translation();
+  double tilt = std::hypot(R_SW(0, 2), R_SW(1, 2));  // how much of the world's z the plane of the fan sees
+
+  AlignedBox around() const;
+  bool crosses(const AlignedBox& box) const;
+  template <typename Use>
+  void beams_towards(const AlignedBox& box, Use&& use) const;
+  bool any_beyond(const AlignedBox& box, double nearest_m) const;
+  void try_part(int part);
+  void try_plane(int part);
+};
+
+/// Around the disc that the beams can reach.
+AlignedBox OdeScene::FanSearch::around() const {
+  const Vector3d z_W = R_SW.row(2).transpose();
+  const Vector3d half = fan.range_max_m * (1 - z_W.array().square()).max(0).sqrt().matrix();
+  return {p_WS - half, p_WS + half};
+}
+
+/// The plane of the fan cuts the box.  The margin is for rounding.
+bool OdeScene::FanSearch::crosses(const AlignedBox& box) const {
+  const double height = R_SW.row(2).dot(box.center() - p_WS);
+  return std::abs(height) <= R_SW.row(2).cwiseAbs().dot(box.half_extents()) + 1e-9;
+}
+
+/// Calls use(first, last) for the beams that point at the circle around the box, seen along z of S.
+template <typename Use>
+void OdeScene::FanSearch::beams_towards(const AlignedBox& box, Use&& use) const {
+  const Vector3d half = box.half_extents();
+  const Vector3d to_center = box.center() - p_WS;
+  const double x = R_SW.row(0).dot(to_center), y = R_SW.row(1).dot(to_center);
+  const double radius = std::hypot(half.x(), half.y()) + half.z() * tilt;
+  const double away = std::hypot(x, y);
+  if (away <= radius * (1 + 1e-9) || !(fan.step_rad > 0) || fan.count == 1) return use(0, fan.count - 1);
+  // asin s <= s + 0.5708 s^3 on [0, 1], with equality at both ends.
+  const double s = radius / away;
+  const double half_width = s + 0.5708 * s * s * s + 1e-9;
+  const double center = std::atan2(y, x) - fan.first_angle_rad;
+  const double span = (fan.count - 1) * fan.step_rad;
+  constexpr double turn = 2 * std::numbers::pi;
+  for (double at = center + turn * std::ceil((-half_width - center) / turn); at - half_width <= span; at += turn) {
+    const int first = static_cast<int>(std::ceil(std::max(0.0, (at - half_width) / fan.step_rad)));
+    const int last = static_cast<int>(std::min<double>(fan.count - 1, std::floor((at + half_width) / fan.step_rad)));
+    if (first <= last) use(first, last);
+  }
+}
+
+bool OdeScene::FanSearch::any_beyond(const AlignedBox& box, double nearest_m) const {
+  bool any = false;
+  beams_towards(box, [&](int first, int last) {
+    for (int i = first; i <= last && !any; ++i) any = ranges_m[i] > nearest_m;
+  });
+  return any;
+}
+
+void OdeScene::FanSearch::try_part(int part) {
+  const AlignedBox box = box_of(scene.parts_[part].geom);
+  if (!crosses(box)) return;
+  const double nearest_m = distance(box, p_WS);
+  beams_towards(box, [&](int first, int last) {
+    for (int i = first; i <= last; ++i) {
+      if (ranges_m[i] <= nearest_m) continue;
+      RayHit hit{std::min(ranges_m[i], fan.range_max_m), Vector3d::Zero(), -1};
+      if (scene.hit(part, p_WS, fan.X_WS.linear() * directions_S[i], hit)) ranges_m[i] = hit.range_m;
+    }
+  });
+}
+
+void OdeScene::FanSearch::try_plane(int part) {
+  dVector4 plane;
+  dGeomPlaneGetParams(scene.parts_[part].geom, plane);
+  const Vector3d normal_S = R_SW * to_eigen(plane);
+  const double height = to_eigen(plane).dot(p_WS) - plane[3];
+  // A level fan over level ground: no beam comes down within range.
+  if (std::hypot(normal_S.x(), normal_S.y()) * fan.range_max_m < std::abs(height)) return;
+  for (int i = 0; i < fan.count; ++i) {
+    const double range = -height / normal_S.dot(directions_S[i]);
+    if (range >= 0 && range <= fan.range_max_m && range < ranges_m[i]) ranges_m[i] = range;
+  }
+}
+
+void OdeScene::cast_fan(const Fan& fan, const RayFilter& filter, std::span<double> ranges_m) const {
+  std::fill(ranges_m.begin(), ranges_m.end(), infinity);
+  if (fan.count <= 0 || !(fan.range_max_m > 0)) return;
+  refresh();
+  FanSearch search{*this, fan, filter, ranges_m, directions(fan)};
+  for (const int plane : planes_)
+    if (parts_[plane].group != filter.exclude_group && (parts_[plane].category & filter.categories) != 0)
+      search.try_plane(plane);
+  find_candidates(search.around(), filter, search.p_WS, fan.range_max_m);
+  for (const Candidate& candidate : candidates_) {
+    const Layer& layer = layers_[candidate.layer];
+    const Cluster& cluster = layer.clusters[candidate.cluster];
+    const AlignedBox& box = layer.grid.box(candidate.cluster);
+    if (!search.crosses(box)) continue;
+    if (cluster.parts.size() > 1 && !search.any_beyond(box, candidate.nearest_m)) continue;
+    for (const int part : cluster.parts)
+      if ((parts_[part].category & filter.categories) != 0) search.try_part(part);
+  }
+}
+
+}  // namespace sim

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/bus/bus.hpp"
+#include "sim/state_hash.hpp"
+#include "sim/time.hpp"
+
+namespace sim {
+
+/// What happens at a simulated time to one device: a delayed report, a delayed command, an arrival.  Plain data, so
+/// that the queue can be hashed and saved.
+struct Event {
+  Time due{0};
+  std::uint64_t sequence = 0;  ///< order of scheduling; breaks ties
+  int device = -1;             ///< number of the device in the world
+  int kind = 0;                ///< the receiver's own
+  Time stamp{0};               ///< the receiver's own
+  Bytes payload;
+};
+
+/// Events in the order of (due, sequence).
+class EventQueue {
+ public:
+  void schedule(Event event);
+  /// Takes the next event that is due at or before `now`; false when there is none.
+  bool take_due(Time now, Event& event);
+  std::size_t size() const { return heap_.size(); }
+  void hash_state(StateHash& hash) const;
+
+ private:
+  std::vector<Event> heap_;
+  std::uint64_t next_sequence_ = 0;
+};
+
+}  // namespace sim

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/world/world_config.hpp"
+
+namespace sim {
+
+struct LoadOptions {
+  std::vector<std::string> sets;     ///< `path=value`, as given with --set
+  std::optional<std::int64_t> seed;  ///< instead of the file's
+};
+
+struct LoadedWorld {
+  WorldConfig config;
+  /// The world as it runs, with includes, vehicle files and --set applied: a world file of its own.
+  ConfigNode resolved;
+};
+
+/// Reads and checks a world file and the vehicle files it names.  Throws ConfigError with every error found.
+LoadedWorld load_world(const std::string& path, const LoadOptions& options = {});
+/// The same from text.  `file_name` is used in messages, its directory to find vehicle files.
+LoadedWorld load_world_text(const std::string& text, const std::string& file_name, const LoadOptions& options = {});
+
+/// Reads and checks a vehicle file by itself, with its default parameters.
+VehicleConfig load_vehicle(const std::string& path);
+
+}  // namespace sim

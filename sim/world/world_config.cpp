@@ -1,0 +1,180 @@
+#include "sim/world/world_config.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <ctime>
+
+namespace sim {
+
+void OriginConfig::read(ParamReader& in) {
+  in.read("latitude_deg", position.latitude_deg, between(-90, 90), "WGS84 latitude of the world's origin");
+  in.read("longitude_deg", position.longitude_deg, between(-180, 180), "WGS84 longitude of the world's origin");
+  in.read("height_m", position.height_m, any_number(), "height of the world's origin over the ellipsoid");
+}
+
+void RunConfig::read(ParamReader& in) {
+  in.read("duration_s", duration_s, at_least(0), "simulated time of the run; 0: until told to quit");
+  in.read("speed", speed, at_least(0), "times real time; 0: as fast as possible");
+  in.read("seed", seed, at_least(0), "of every random stream");
+  in.read("track_rate_hz", track_rate_hz, above(0), "samples per second of the tracks in the results");
+}
+
+void ChannelConfig::read(ParamReader& in) {
+  in.read("report", report, "of a device's reports; {vehicle} {device} {VEHICLE} {DEVICE} are replaced");
+  in.read("command", command, "of a device's commands");
+  in.read("truth", truth, "of a device's readings without errors");
+}
+
+void ObjectConfig::read(ParamReader& in) {
+  in.require("name");
+  in.read("name", name, "name of the object, unique in the world");
+  in.read("position_m", position_m, any_number(), "place in the world");
+  in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
+  in.read("fixed", fixed, "it never moves");
+  in.read("count", count, between(1, 100000), "how many; named NAME1, NAME2, ...");
+  in.read("placement", placement, "where the instances stand when there is a count");
+  in.require("parts");
+  in.read_list("parts", parts, "part", "what it is made of");
+}
+
+void VehicleEntry::read(ParamReader& in) {
+  if (in.node() != nullptr) place = in.node()->place;
+  in.require("name");
+  in.read("name", name, "name of the vehicle, unique in the world; part of its channels");
+  in.read("file", file, "vehicle file, beside the world file or in ../vehicles");
+  in.read_raw("model", model, "the vehicle itself, as in a vehicle file, instead of a file");
+  in.read("position_m", position_m, any_number(), "place of the vehicle frame in the world");
+  in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
+  in.read("count", count, between(1, 100000), "how many; named NAME1, NAME2, ...");
+  in.read("placement", placement, "where the instances stand when there is a count");
+  in.read_raw("parameters", parameters, "values of the vehicle file's ${names}; ${index} counts from 1");
+  in.read_raw("overrides", overrides, "dotted path: value, such as devices.lidar.rate_hz: 5");
+  if (!in.describing() && in.has("file") == in.has("model"))
+    in.error("needs either 'file' or 'model'");
+}
+
+void ProcessConfig::read(ParamReader& in) {
+  in.require("name");
+  in.read("name", name, "name of the process in messages");
+  in.require("command");
+  in.read("command", command, "program and its arguments; {lcm_url} is replaced");
+  in.read("client", client, "the name it joins the lockstep with; the run then waits for it");
+  in.read_choice("on_exit", on_exit, {"continue", "end"}, "when it ends before the run does");
+  if (in.has("command") && command.empty()) in.error("command", "'command' must name a program");
+}
+
+void LockstepConfig::read(ParamReader& in) {
+  in.read("timeout_s", timeout_s, above(0), "wall time to wait for a client's acknowledgement");
+  in.read("join_timeout_s", join_timeout_s, above(0), "wall time to wait for launched clients to join");
+}
+
+void MetricConfig::read(ParamReader& in) {
+  in.require("name");
+  in.read("name", name, "name of the metric; gives NAME.rms_m, NAME.final_m, NAME.max_m, NAME.samples");
+  in.require("vehicle");
+  in.read_reference("vehicle", vehicle, "vehicle", "whose true position counts");
+  in.require("channel");
+  in.read("channel", channel, "of the estimate, shoal.pose_t");
+  in.read("from_s", from_s, at_least(0), "errors before this simulated time do not count");
+}
+
+void PassRule::read(ParamReader& in) {
+  in.require("metric");
+  in.read("metric", metric, "such as NAME.rms_m");
+  in.read("below", below, any_number(), "the metric must be below this");
+  in.read("below_metric", below_metric, "the metric must be below this other metric times factor");
+  in.read("factor", factor, above(0), "see below_metric");
+  if (!in.describing() && in.has("below") == in.has("below_metric"))
+    in.error("needs either 'below' or 'below_metric'");
+}
+
+namespace {
+
+/// Microseconds since 1970 of `2026-01-01T00:00:00Z`; false when the text is not of that form.
+bool parse_utc(const std::string& text, std::int64_t& utime) {
+  std::tm tm{};
+  char end = 0;
+  if (std::sscanf(text.c_str(), "%4d-%2d-%2dT%2d:%2d:%2d%c", &tm.tm_year, &tm.tm_mon, &tm.tm_mday, &tm.tm_hour,
+                  &tm.tm_min, &tm.tm_sec, &end) != 7 ||
+      end != 'Z' || text.size() != 20)
+    return false;
+  tm.tm_year -= 1900;
+  tm.tm_mon -= 1;
+  const std::tm wanted = tm;
+  const std::time_t seconds = timegm(&tm);
+  if (tm.tm_mday != wanted.tm_mday || tm.tm_mon != wanted.tm_mon || tm.tm_hour != wanted.tm_hour) return false;
+  utime = static_cast<std::int64_t>(seconds) * 1000000;
+  return true;
+}
+
+const std::vector<std::string> metric_figures = {"rms_m", "final_m", "max_m", "samples"};
+
+void check_metric_name(ParamReader& in, const std::vector<MetricConfig>& metrics, const std::string& name) {
+  std::string known;
+  for (const MetricConfig& metric : metrics)
+    for (const std::string& figure : metric_figures) {
+      if (name == metric.name + "." + figure) return;
+      known += (known.empty() ? "" : ", ") + metric.name + "." + figure;
+    }
+  in.error("pass", "names no metric '" + name + "'; known metrics: " + (known.empty() ? "none" : known));
+}
+
+}  // namespace
+
+void WorldConfig::read(ParamReader& in) {
+  in.require("shoal");
+  in.read("shoal", shoal, between(1, 1), "version of the file format");
+  in.read("name", name, "name of the world");
+  in.read("description", description, "one sentence for people");
+  in.read("origin", origin, "where the world lies on the earth");
+  in.read("epoch", epoch, "UTC of simulated time 0, as 2026-01-01T00:00:00Z");
+  if (!parse_utc(epoch, epoch_us))
+    in.error("epoch", "'epoch' must be a UTC time such as 2026-01-01T00:00:00Z, got '" + epoch + "'");
+  in.read("physics", physics, "how bodies move");
+  in.declare("material", "default");
+  in.declare("category", "solid");
+  in.read_list("materials", materials, "material", "materials of this world");
+  for (const MaterialConfig& material : materials) in.declare("material", material.name);
+  in.read_list("contacts", contacts, "contact", "what happens where two materials touch; the last match wins");
+  in.read("categories", categories, "categories of parts, beside `solid`; at most 30");
+  for (const std::string& category : categories) in.declare("category", category);
+  if (categories.size() > 30) in.error("categories", "'categories' must have at most 30 names");
+  in.read("channels", channels, "names of the channels");
+  in.read("run", run, "how a run goes when the command line says nothing else");
+  in.read("state_rate_hz", state_rate_hz, at_least(0), "of sim.state and sim.clock; 0: never");
+  in.read_list("objects", objects, "object", "things without devices");
+  for (const ObjectConfig& object : objects) in.declare("object", object.name);
+  in.read_list("vehicles", vehicle_entries, "vehicle", "vehicles, by file or model");
+  for (const VehicleEntry& entry : vehicle_entries) {
+    if (entry.count == 1) in.declare("vehicle", entry.name);
+    for (int i = 1; entry.count > 1 && i <= entry.count; ++i)
+      in.declare("vehicle", entry.name + std::to_string(i));
+  }
+  in.read_list("processes", processes, "process", "external programs, started only with --launch");
+  for (const ProcessConfig& process : processes) in.declare("process", process.name);
+  in.read("lockstep", lockstep, "waiting for clients");
+  in.read_list("metrics", metrics, "metric", "figures that score the run");
+  for (const MetricConfig& metric : metrics) in.declare("metric", metric.name);
+  in.read_list("pass", pass, "rule", "the run passes when every rule holds; else exit code 1");
+  for (const PassRule& rule : pass) {
+    check_metric_name(in, metrics, rule.metric);
+    if (!rule.below_metric.empty()) check_metric_name(in, metrics, rule.below_metric);
+  }
+}
+
+std::string channel_name(const std::string& pattern, const std::string& vehicle, const std::string& device) {
+  const auto upper = [](std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::toupper(c); });
+    return text;
+  };
+  std::string name = pattern;
+  const std::pair<std::string, std::string> parts[] = {
+      {"{vehicle}", vehicle}, {"{device}", device}, {"{VEHICLE}", upper(vehicle)}, {"{DEVICE}", upper(device)}};
+  for (const auto& [key, text] : parts)
+    for (std::size_t at = name.find(key); at != std::string::npos; at = name.find(key, at + text.size()))
+      name.replace(at, key.size(), text);
+  return name;
+}
+
+}  // namespace sim

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/config/param_reader.hpp"
+#include "sim/geodesy.hpp"
+#include "sim/physics/physics_config.hpp"
+#include "sim/world/placement.hpp"
+#include "sim/world/vehicle_config.hpp"
+
+namespace sim {
+
+/// Where the world lies on the earth.
+struct OriginConfig {
+  GeodeticPosition position{42.3584, -71.0876, 0};  // the Charles River at MIT
+  void read(ParamReader& in);
+};
+
+/// How a run goes when the command line says nothing else.
+struct RunConfig {
+  double duration_s = 60;  ///< 0: until told to quit
+  double speed = 0;        ///< times real time; 0: as fast as possible
+  std::int64_t seed = 1;
+  double track_rate_hz = 10;  ///< of the tracks in the results
+  void read(ParamReader& in);
+};
+
+/// Names of the channels.  {vehicle}, {device}, {VEHICLE} and {DEVICE} (upper case) are replaced.
+struct ChannelConfig {
+  std::string report = "{vehicle}.{device}";
+  std::string command = "{vehicle}.{device}.cmd";
+  std::string truth = "{vehicle}.{device}.truth";
+  void read(ParamReader& in);
+};
+
+/// A thing without devices.
+struct ObjectConfig {
+  std::string name;
+  Vector3d position_m = Vector3d::Zero();
+  Vector3d rpy_rad = Vector3d::Zero();
+  bool fixed = false;  ///< never moves
+  int count = 1;
+  PlacementConfig placement;
+  std::vector<PartConfig> parts;
+  void read(ParamReader& in);
+};
+
+/// An entry of `vehicles:`.
+struct VehicleEntry {
+  std::string name;
+  std::string file;
+  ConfigNode model;       ///< the vehicle itself instead of a file
+  Vector3d position_m = Vector3d::Zero();
+  Vector3d rpy_rad = Vector3d::Zero();
+  int count = 1;
+  PlacementConfig placement;
+  ConfigNode parameters;  ///< name: value
+  ConfigNode overrides;   ///< dotted path: value
+  SourcePlace place;
+  void read(ParamReader& in);
+};
+
+/// A vehicle as it will stand in the world.
+struct VehicleInstance {
+  std::string name;
+  Pose X_WV = Pose::Identity();
+  std::shared_ptr<const VehicleConfig> config;  ///< shared by instances that are alike
+};
+
+/// An external program of the experiment, started only with --launch.
+struct ProcessConfig {
+  std::string name;
+  std::vector<std::string> command;  ///< program and arguments; looked up beside the shoal program, then in PATH
+  std::string client;                ///< name it joins the lockstep with; empty: it does not
+  std::string on_exit = "continue";  ///< when it ends before the run: continue, end (exit code 1)
+  void read(ParamReader& in);
+};
+
+struct LockstepConfig {
+  double timeout_s = 10;       ///< wall time to wait for an acknowledgement
+  double join_timeout_s = 30;  ///< wall time to wait for the launched clients to join
+  void read(ParamReader& in);
+};
+
+/// A figure that scores the run: the distance between an estimate on a channel and the truth.
+struct MetricConfig {
+  std::string name;
+  std::string vehicle;   ///< whose position is estimated
+  std::string channel;   ///< of shoal.pose_t, position in the world frame
+  double from_s = 0;     ///< errors before this time do not count
+  void read(ParamReader& in);
+};
+
+/// The run passes when every rule holds.
+struct PassRule {
+  std::string metric;                  ///< such as `cooperative.rms_m`
+  std::optional<double> below;
+  std::string below_metric;            ///< another metric, times `factor`
+  double factor = 1;
+  void read(ParamReader& in);
+};
+
+/// Everything a world file says.
+struct WorldConfig {
+  int shoal = 1;
+  std::string name;
+  std::string description;
+  OriginConfig origin;
+  std::string epoch = "2026-01-01T00:00:00Z";  ///< UTC of simulated time 0
+  std::int64_t epoch_us = 0;                   ///< the same in microseconds since 1970
+  PhysicsConfig physics;
+  std::vector<MaterialConfig> materials;
+  std::vector<ContactConfig> contacts;
+  std::vector<std::string> categories;
+  ChannelConfig channels;
+  RunConfig run;
+  std::vector<ObjectConfig> objects;
+  std::vector<VehicleEntry> vehicle_entries;
+  std::vector<VehicleInstance> vehicles;  ///< filled by load_world
+  std::vector<ProcessConfig> processes;
+  LockstepConfig lockstep;
+  std::vector<MetricConfig> metrics;
+  std::vector<PassRule> pass;
+  double state_rate_hz = 10;  ///< of sim.state and sim.clock
+
+  void read(ParamReader& in);
+};
+
+/// The channel name a template gives.
+std::string channel_name(const std::string& pattern, const std::string& vehicle, const std::string& device);
+
+}  // namespace sim

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstddef>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "shoal/message_schema.hpp"
+#include "sim/bus/bus.hpp"
+
+namespace lcm_test {
+
+using namespace std::chrono_literals;
+
+/// A port of this process's own: LCM 1.3 keeps apart ports only, and tests run in parallel.
+inline std::string own_url(int offset = 0) {
+  const int port = 10'000 + (static_cast<int>(getpid()) * 4 + offset) % 20'000;
+  return "udpm://239.255.76.67:" + std::to_string(port) + "?ttl=0";
+}
+
+inline sim::Bytes bytes_of(std::string_view text) {
+  const auto* data = reinterpret_cast<const std::byte*>(text.data());
+  return {data, data + text.size()};
+}
+
+inline std::string text_of(const sim::Bytes& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+template <class Condition>
+bool await(const Condition& condition, std::chrono::milliseconds limit = 10s) {
+  const auto deadline = std::chrono::steady_clock::now() + limit;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(1ms);
+  }
+  return true;
+}
+
+/// A folder that goes away with the test.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "shoal-lcm-XXXXXX").string();
+    path_ = mkdtemp(name.data());
+  }
+  ~ScratchFolder() { std::filesystem::remove_all(path_); }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Makes a valid payload of any type, by its schema alone: arrays of 0 to 3 elements, strings of 0 to 5
+/// characters.
+class PayloadBuilder {
+ public:
+  explicit PayloadBuilder(unsigned seed) : random_(seed) {}
+
+  sim::Bytes build(const shoal::MessageSchema& schema) {
+    payload_.clear();
+    append(schema.fingerprint, 8);
+    add_members(schema, 0);
+    return payload_;
+  }
+
+ private:
+  void append(std::uint64_t value, int size) {
+    for (int shift = 8 * (size - 1); shift >= 0; shift -= 8)
+      payload_.push_back(static_cast<std::byte>(value >> shift));
+  }
+
+  void add_members(const shoal::MessageSchema& schema, int depth) {
+    std::vector<std::int64_t> lengths(static_cast<std::size_t>(schema.length_slots));
+    for (const shoal::Member& member : schema.members) {
+      std::int64_t count = 1;
+      for (const shoal::Dimension& dimension : member.dimensions)
+        count *= dimension.is_variable() ? lengths[static_cast<std::size_t>(dimension.length_slot)]
+                                         : dimension.constant;
+      for (std::int64_t i = 0; i < count; ++i) add_value(member, lengths, depth);
+    }
+  }
+
+  void add_value(const shoal::Member& member, std::vector<std::int64_t>& lengths, int depth) {
+    if (member.length_slot >= 0) {
+      const std::int64_t length = depth > 2 ? 0 : static_cast<std::int64_t>(random_() % 4);
+      lengths[static_cast<std::size_t>(member.length_slot)] = length;
+      append(static_cast<std::uint64_t>(length), static_cast<int>(shoal::wire_size(member.type)));
+      return;
+    }
+    switch (member.type) {
+      case shoal::WireType::compound:
+        return add_members(*member.compound, depth + 1);
+      case shoal::WireType::string: {
+        const auto length = random_() % 6;
+        append(length + 1, 4);
+        for (std::uint64_t i = 0; i < length; ++i) append('a' + random_() % 26, 1);
+        return append(0, 1);
+      }
+      case shoal::WireType::boolean:
+        return append(random_() % 2, 1);
+      case shoal::WireType::float32:
+        return append(0x3f800000 + random_() % 0x100000, 4);
+      case shoal::WireType::float64:
+        return append(0x3ff0000000000000 + random_() % 0x100000, 8);
+      default:
+        return append(random_(), static_cast<int>(shoal::wire_size(member.type)));
+    }
+  }
+
+  std::mt19937_64 random_;
+  sim::Bytes payload_;
+};
+
+}  // namespace lcm_test

@@ -1,0 +1,187 @@
+#include "bridges/lcm/lockstep_client.hpp"
+
+#include <gtest/gtest.h>
+
+#include "bridges/lcm/lcm_bus.hpp"
+#include "lcm_test_support.hpp"
+#include "shoal/message_codec.hpp"
+
+namespace bridges {
+namespace {
+
+using lcm_test::bytes_of;
+using lcm_test::own_url;
+using lcm_test::text_of;
+using namespace std::chrono_literals;
+
+/// The simulator's side of the protocol, as a thread of the test calls it.
+class FakeSimulator {
+ public:
+  FakeSimulator()
+      : bus_(own_url(1)),
+        requests_(bus_.open_mailbox("sim.control")),
+        acks_(bus_.open_mailbox("sim.ack")),
+        commands_(bus_.open_mailbox("auv1.cmd")) {}
+
+  LcmBus& bus() { return bus_; }
+  sim::Mailbox& commands() { return *commands_; }
+
+  template <class M>
+  void send(const std::string& channel, const M& message) {
+    bus_.publish(channel, shoal::encode(message), sim::Time(0));
+    bus_.end_of_step();
+  }
+
+  shoal::sim_control_request_t await_request() {
+    return await_message<shoal::sim_control_request_t>(*requests_);
+  }
+  shoal::sim_ack_t await_ack() { return await_message<shoal::sim_ack_t>(*acks_); }
+
+  void reply(const shoal::sim_control_request_t& request, bool ok, const std::string& text) {
+    shoal::sim_control_reply_t reply{};
+    reply.id = request.id;
+    reply.client = request.client;
+    reply.ok = ok ? 1 : 0;
+    reply.text = text;
+    send("sim.control.reply", reply);
+  }
+
+  void tick(std::int64_t step, const std::vector<std::string>& clients, bool last = false) {
+    shoal::sim_tick_t tick{};
+    tick.utime = 1000 + step * 10;
+    tick.step = step;
+    tick.last = last ? 1 : 0;
+    tick.count = static_cast<std::int32_t>(clients.size());
+    tick.client = clients;
+    send("sim.tick", tick);
+  }
+
+ private:
+  template <class M>
+  M await_message(sim::Mailbox& mailbox) {
+    std::optional<sim::Message> message;
+    EXPECT_TRUE(lcm_test::await([&] { return (message = mailbox.take()).has_value(); }));
+    return message ? shoal::decode<M>(message->payload, shoal::Finite::any) : M{};
+  }
+
+  LcmBus bus_;
+  std::unique_ptr<sim::Mailbox> requests_, acks_, commands_;
+};
+
+TEST(LockstepClient, RunsInStepWithTheSimulator) {
+  FakeSimulator simulator;
+  LockstepClient client(own_url(1), "pilot");
+  std::vector<std::string> seen;
+  client.subscribe("auv1.depth", [&](std::span<const std::byte> payload) {
+    seen.push_back(text_of({payload.begin(), payload.end()}));
+  });
+  std::thread thread([&] {
+    const auto request = simulator.await_request();
+    EXPECT_EQ(request.command, "join");
+    EXPECT_EQ(request.client, "pilot");
+    EXPECT_EQ(request.value, 0.1);
+    simulator.reply(request, true, "");
+    for (int step = 1; step <= 20; ++step) {
+      simulator.bus().publish("auv1.depth", bytes_of(std::to_string(step)), sim::Time(0));
+      simulator.tick(step, {"other", "pilot"}, step == 20);
+      EXPECT_EQ(simulator.await_ack().step, step);
+      // The command was sent before the acknowledgement, so it is here now.
+      if (step < 20) {
+        const auto command = simulator.commands().take();
+        ASSERT_TRUE(command) << step;
+        EXPECT_EQ(text_of(command->payload), "command " + std::to_string(step));
+      }
+    }
+  });
+  client.join(0.1, 10s);
+  shoal::sim_tick_t tick;
+  int ticks = 0;
+  while (client.next_tick(tick)) {
+    EXPECT_EQ(tick.step, ++ticks);
+    EXPECT_EQ(seen.size(), static_cast<std::size_t>(ticks));
+    client.publish("auv1.cmd", bytes_of("command " + std::to_string(tick.step)));
+    client.acknowledge(tick);
+  }
+  thread.join();
+  EXPECT_EQ(ticks, 19);
+  EXPECT_EQ(tick.step, 20);
+  EXPECT_EQ(client.end(), LockstepClient::End::last_tick);
+}
+
+TEST(LockstepClient, AsksAgainUntilItIsAnswered) {
+  FakeSimulator simulator;
+  LockstepClient client(own_url(1), "pilot");
+  std::thread thread([&] {
+    const auto first = simulator.await_request();
+    const auto second = simulator.await_request();
+    EXPECT_EQ(first.id, second.id);
+    simulator.reply(second, true, "");
+  });
+  EXPECT_NO_THROW(client.join(1, 10s));
+  thread.join();
+}
+
+TEST(LockstepClient, SaysWhyTheSimulatorRefuses) {
+  FakeSimulator simulator;
+  LockstepClient client(own_url(1), "pilot");
+  std::thread thread([&] { simulator.reply(simulator.await_request(), false, "the period must be > 0"); });
+  try {
+    client.join(-1, 10s);
+    ADD_FAILURE();
+  } catch (const BusError& error) {
+    EXPECT_STREQ(error.what(), "the simulator refuses 'pilot': the period must be > 0");
+  }
+  thread.join();
+}
+
+TEST(LockstepClient, SaysThatNoSimulatorAnswers) {
+  LockstepClient client(own_url(1), "pilot");
+  EXPECT_THROW(client.join(1, 50ms), BusError);
+}
+
+TEST(LockstepClient, AcknowledgesARepeatedTickAgain) {
+  FakeSimulator simulator;
+  LockstepClient client(own_url(1), "pilot");
+  simulator.tick(1, {"pilot"});
+  shoal::sim_tick_t tick;
+  ASSERT_TRUE(client.next_tick(tick));
+  client.acknowledge(tick);
+  EXPECT_EQ(simulator.await_ack().step, 1);
+  simulator.tick(1, {"pilot"});
+  simulator.tick(2, {"other"});
+  simulator.tick(3, {"pilot"});
+  ASSERT_TRUE(client.next_tick(tick));
+  EXPECT_EQ(tick.step, 3);
+  EXPECT_EQ(simulator.await_ack().step, 1);
+}
+
+TEST(LockstepClient, InvalidPayloadsAreIgnored) {
+  FakeSimulator simulator;
+  LockstepClient client(own_url(1), "pilot");
+  simulator.bus().publish("sim.tick", bytes_of(""), sim::Time(0));
+  simulator.bus().publish("sim.tick", bytes_of("garbage that is no tick"), sim::Time(0));
+  sim::Bytes cut = shoal::encode(shoal::sim_tick_t{});
+  cut.pop_back();
+  simulator.bus().publish("sim.tick", cut, sim::Time(0));
+  simulator.bus().publish("sim.control.reply", cut, sim::Time(0));
+  simulator.tick(5, {"pilot"});
+  shoal::sim_tick_t tick;
+  ASSERT_TRUE(client.next_tick(tick));
+  EXPECT_EQ(tick.step, 5);
+}
+
+TEST(LockstepClient, EndsWhenStoppedAndAfterSilence) {
+  LockstepClient client(own_url(1), "pilot");
+  shoal::sim_tick_t tick;
+  client.set_silence_limit(20ms);
+  EXPECT_FALSE(client.next_tick(tick));
+  EXPECT_EQ(client.end(), LockstepClient::End::silence);
+  client.set_silence_limit(0ms);
+  std::thread thread([&] { client.stop(); });
+  EXPECT_FALSE(client.next_tick(tick));
+  EXPECT_EQ(client.end(), LockstepClient::End::stopped);
+  thread.join();
+}
+
+}  // namespace
+}  // namespace bridges

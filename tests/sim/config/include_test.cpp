@@ -1,0 +1,196 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "sim/config/config_node.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using sim::ConfigNode;
+using sim::Diagnostics;
+using Kind = ConfigNode::Kind;
+using Lines = std::vector<std::string>;
+
+class IncludeTest : public testing::Test {
+ protected:
+  IncludeTest()
+      : home_(fs::current_path()),
+        directory_(fs::temp_directory_path() / ("shoal_include_" + std::to_string(getpid()))) {
+    fs::create_directories(directory_);
+    fs::current_path(directory_);  // so that messages hold short names
+  }
+  ~IncludeTest() override {
+    fs::current_path(home_);
+    fs::remove_all(directory_);
+  }
+
+  void write(const std::string& name, const std::string& text) {
+    if (const fs::path folder = fs::path(name).parent_path(); !folder.empty()) fs::create_directories(folder);
+    std::ofstream(name, std::ios::binary) << text;
+  }
+
+  ConfigNode load(const std::string& name) {
+    Diagnostics diagnostics;
+    ConfigNode node = sim::load_config_file(name, diagnostics);
+    EXPECT_EQ(diagnostics.lines(), Lines{});
+    return node;
+  }
+
+  Lines errors_of(const std::string& name) {
+    Diagnostics diagnostics;
+    EXPECT_EQ(sim::load_config_file(name, diagnostics).kind, Kind::null);
+    return diagnostics.lines();
+  }
+
+ private:
+  fs::path home_;
+  fs::path directory_;
+};
+
+TEST_F(IncludeTest, AFileWithoutIncludeIsItself) {
+  write("w.yaml", "a: 1\n");
+  EXPECT_EQ(sim::to_yaml(load("w.yaml")), "a: 1\n");
+}
+
+TEST_F(IncludeTest, TheIncludingFileLiesOverTheBase) {
+  write("base.yaml", "a: 1\nm: {x: 1, y: [1, 2]}\n");
+  write("w.yaml", "m: {y: [3], z: 4}\ninclude: base.yaml\nb: 2\n");
+  EXPECT_EQ(sim::to_yaml(load("w.yaml")), "a: 1\nm:\n  x: 1\n  y: [3]\n  z: 4\nb: 2\n");
+}
+
+TEST_F(IncludeTest, NamedItemsMergeByName) {
+  write("base.yaml", "v:\n  - {name: a, x: 1, y: 1}\n  - {name: b, x: 2}\n");
+  write("w.yaml", "include: base.yaml\nv:\n  - {name: c, x: 3}\n  - {name: a, x: 9}\n");
+  EXPECT_EQ(sim::to_yaml(load("w.yaml")),
+            "v:\n  - name: a\n    x: 9\n    y: 1\n  - name: b\n    x: 2\n  - name: c\n    x: 3\n");
+}
+
+TEST_F(IncludeTest, ANameWrittenTwiceStaysADuplicate) {
+  write("base.yaml", "v:\n  - {name: a, x: 1}\n");
+  write("w.yaml", "include: base.yaml\nv:\n  - {name: a, x: 2}\n  - {name: a, x: 3}\n");
+  EXPECT_EQ(load("w.yaml").find("v")->items.size(), 2u);
+}
+
+TEST_F(IncludeTest, ListsWithoutNamesAreReplaced) {
+  write("base.yaml", "p: [{x: 1}, {x: 2}]\nv: [{name: a}]\n");
+  write("w.yaml", "include: base.yaml\np: [{x: 3}]\nv: []\n");
+  EXPECT_EQ(sim::to_yaml(load("w.yaml")), "p:\n  - x: 3\nv: []\n");
+}
+
+TEST_F(IncludeTest, LaterFilesOfAListLieOverEarlierOnes) {
+  write("one.yaml", "a: 1\nb: 1\nc: 1\n");
+  write("two.yaml", "b: 2\nc: 2\n");
+  write("w.yaml", "include: [one.yaml, two.yaml]\nc: 3\n");
+  EXPECT_EQ(sim::to_yaml(load("w.yaml")), "a: 1\nb: 2\nc: 3\n");
+}
+
+TEST_F(IncludeTest, NamesAreRelativeToTheFileThatHoldsThem) {
+  write("worlds/common/deep.yaml", "a: 1\n");
+  write("worlds/common/base.yaml", "include: deep.yaml\nb: 2\n");
+  write("worlds/w.yaml", "include: common/base.yaml\nc: 3\n");
+  EXPECT_EQ(sim::to_yaml(load("worlds/w.yaml")), "a: 1\nb: 2\nc: 3\n");
+}
+
+TEST_F(IncludeTest, ValuesKeepTheFileTheyCameFrom) {
+  write("base.yaml", "a: 1\nm:\n  x: 1\n  y: 2\n");
+  write("w.yaml", "include: base.yaml\nm:\n  y: 3\n");
+  const ConfigNode root = load("w.yaml");
+  EXPECT_EQ(root.find("a")->place.text(), "base.yaml:1:4");
+  EXPECT_EQ(root.find("m")->find("x")->place.text(), "base.yaml:3:6");
+  EXPECT_EQ(root.find("m")->find("y")->place.text(), "w.yaml:3:6");
+}
+
+TEST_F(IncludeTest, OneFileMayBeIncludedOnTwoWays) {
+  write("base.yaml", "a: 1\n");
+  write("left.yaml", "include: base.yaml\nb: 1\n");
+  write("right.yaml", "include: base.yaml\nc: 1\n");
+  write("w.yaml", "include: [left.yaml, right.yaml]\n");
+  EXPECT_EQ(sim::to_yaml(load("w.yaml")), "a: 1\nb: 1\nc: 1\n");
+}
+
+TEST_F(IncludeTest, ReportsAMissingFileWhereItIsNamed) {
+  write("w.yaml", "a: 1\ninclude: common/nothing.yaml\n");
+  EXPECT_EQ(errors_of("w.yaml"),
+            Lines{"w.yaml:2:10: cannot read 'common/nothing.yaml': No such file or directory"});
+  EXPECT_EQ(errors_of("nothing.yaml"),
+            Lines{"nothing.yaml: cannot read the file: No such file or directory"});
+}
+
+TEST_F(IncludeTest, ReportsADirectory) {
+  fs::create_directory("folder");
+  EXPECT_EQ(errors_of("folder"), Lines{"folder: cannot read the file: it is a directory"});
+}
+
+TEST_F(IncludeTest, ReportsAnEmptyFile) {
+  write("empty.yaml", "# nothing\n");
+  EXPECT_EQ(errors_of("empty.yaml"), Lines{"empty.yaml: the file is empty"});
+  write("w.yaml", "include: empty.yaml\n");
+  EXPECT_EQ(errors_of("w.yaml"), Lines{"empty.yaml: the file is empty"});
+}
+
+TEST_F(IncludeTest, ReportsCycles) {
+  write("w.yaml", "include: w.yaml\n");
+  EXPECT_EQ(errors_of("w.yaml"), Lines{"w.yaml:1:10: 'w.yaml' includes itself"});
+  write("a.yaml", "include: b.yaml\n");
+  write("b.yaml", "include: ./a.yaml\n");
+  EXPECT_EQ(errors_of("a.yaml"), Lines{"b.yaml:1:10: './a.yaml' includes itself"});
+}
+
+TEST_F(IncludeTest, ReportsTooManyFiles) {
+  // Each includes the next one twice: 2^20 files to read.
+  for (int i = 0; i < 20; ++i) {
+    const std::string next = "f" + std::to_string(i + 1) + ".yaml";
+    write("f" + std::to_string(i) + ".yaml", "include: [" + next + ", " + next + "]\n");
+  }
+  write("f20.yaml", "a: 1\n");
+  const Lines errors = errors_of("f0.yaml");
+  ASSERT_FALSE(errors.empty());
+  EXPECT_NE(errors[0].find("more than 100 files included"), std::string::npos) << errors[0];
+}
+
+TEST_F(IncludeTest, ReportsAnIncludeThatIsNoName) {
+  for (const char* value : {"{a: b}", "[[x]]", "~", "''", "[~]"}) {
+    write("w.yaml", std::string("include: ") + value + "\n");
+    const Lines errors = errors_of("w.yaml");
+    ASSERT_EQ(errors.size(), 1u) << value;
+    EXPECT_EQ(
+        errors[0].substr(0, 76),
+        "w.yaml:1:10: 'include' must be a file name or a list of file names, got " + errors[0].substr(72, 4));
+  }
+}
+
+TEST_F(IncludeTest, ReportsAnIncludedFileThatIsNoMap) {
+  write("base.yaml", "[1, 2]\n");
+  write("w.yaml", "include: base.yaml\n");
+  EXPECT_EQ(errors_of("w.yaml"), Lines{"base.yaml:1:1: an included file must be a map of keys, got [1, 2]"});
+}
+
+TEST_F(IncludeTest, ReportsErrorsOfAllFilesAtTheirPlaces) {
+  write("base.yaml", "a: 1\na: 2\n");
+  write("other.yaml", "b: [1\n");
+  write("w.yaml", "include: [base.yaml, other.yaml]\n");
+  const Lines errors = errors_of("w.yaml");
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_EQ(errors[0], "base.yaml:2:1: duplicate key 'a', first at line 1");
+  EXPECT_EQ(errors[1].substr(0, 11), "other.yaml:");
+}
+
+TEST_F(IncludeTest, ReportsAFileThatIsTooLarge) {
+  write("w.yaml", "a: 1\n");
+  fs::resize_file("w.yaml", 64'000'001);  // a hole: takes no room on the disk
+  EXPECT_EQ(errors_of("w.yaml"), Lines{"w.yaml: the file is larger than 64 MB"});
+}
+
+TEST_F(IncludeTest, TheSameBrokenFileTwiceIsNotCalledEmpty) {
+  write("w.yaml", "a: 1\na: 2\n");
+  Diagnostics diagnostics;
+  sim::load_config_file("w.yaml", diagnostics);
+  sim::load_config_file("w.yaml", diagnostics);
+  EXPECT_EQ(diagnostics.lines(), Lines{"w.yaml:2:1: duplicate key 'a', first at line 1"});
+}
+
+}  // namespace

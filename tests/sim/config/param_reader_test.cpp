@@ -1,0 +1,626 @@
+#include "sim/config/param_reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <string>
+
+namespace {
+
+using sim::ConfigNode;
+using sim::Diagnostics;
+using sim::ParamInfo;
+using sim::ParamReader;
+using sim::Vector3d;
+using Lines = std::vector<std::string>;
+
+/// Reads `yaml` with `read` as device 'lidar' of vehicle 'auv1'; gives the errors without that start.
+Lines errors_of(const std::string& yaml, const std::function<void(ParamReader&)>& read) {
+  Diagnostics diagnostics;
+  const ConfigNode node = sim::parse_config_text(yaml, "w.yaml", diagnostics);
+  EXPECT_TRUE(diagnostics.ok()) << yaml;
+  ParamReader in(node, "device 'lidar'", diagnostics);
+  read(in);
+  in.finish();
+  Lines lines;
+  for (const std::string& line : diagnostics.lines()) {
+    const std::string start = ": device 'lidar': ";
+    const std::size_t at = line.find(start);
+    lines.push_back(at == std::string::npos ? line
+                                            : line.substr(7, at - 7) + " " + line.substr(at + start.size()));
+  }
+  return lines;
+}
+
+/// Reads `x: <yaml>` into `value`; gives the only error, or nothing.
+template <typename T, typename... Rest>
+std::string error_of(T& value, const std::string& yaml, const Rest&... rest) {
+  const Lines lines =
+      errors_of("x: " + yaml + "\n", [&](ParamReader& in) { in.read("x", value, rest..., "a test"); });
+  EXPECT_LE(lines.size(), 1u);
+  return lines.empty() ? "" : lines[0];
+}
+
+// Rules
+
+TEST(Rule, SaysWhatItAllows) {
+  EXPECT_EQ(sim::any_number().text(), "");
+  EXPECT_EQ(sim::at_least(1).text(), ">= 1");
+  EXPECT_EQ(sim::above(0).text(), "> 0");
+  EXPECT_EQ(sim::at_most(100000).text(), "<= 100000");
+  EXPECT_EQ(sim::between(0, 360).text(), ">= 0 and <= 360");
+  EXPECT_EQ(sim::above_to(0, 0.5).text(), "> 0 and <= 0.5");
+  EXPECT_EQ(sim::between(1, 1).text(), "1");
+}
+
+TEST(Rule, AllowsItsEndsUnlessTheyAreOpen) {
+  EXPECT_TRUE(sim::at_least(1).allows(1));
+  EXPECT_FALSE(sim::above(1).allows(1));
+  EXPECT_TRUE(sim::at_most(1).allows(1));
+  EXPECT_FALSE(sim::above_to(0, 1).allows(0));
+  EXPECT_TRUE(sim::above_to(0, 1).allows(1));
+  EXPECT_FALSE(sim::between(0, 1).allows(1.5));
+}
+
+// Single values
+
+TEST(ParamReader, ReadsNumbersAsYamlWritesThem) {
+  for (const auto& [text, expected] : std::vector<std::pair<std::string, double>>{{"1.5", 1.5},
+                                                                                  {"-2", -2},
+                                                                                  {"+3", 3},
+                                                                                  {".5", 0.5},
+                                                                                  {"5.", 5},
+                                                                                  {"1e3", 1000},
+                                                                                  {"1E-3", 0.001},
+                                                                                  {"010", 10},
+                                                                                  {"1e-999", 0}}) {
+    double value = -7;
+    EXPECT_EQ(error_of(value, text, sim::any_number()), "") << text;
+    EXPECT_EQ(value, expected) << text;
+  }
+}
+
+TEST(ParamReader, ReportsWhatIsNoNumber) {
+  double value = -7;
+  EXPECT_EQ(error_of(value, "heavy", sim::any_number()), "1:4 'x' must be a number, got 'heavy'");
+  EXPECT_EQ(error_of(value, "'5'", sim::any_number()), "1:4 'x' must be a number, got the text '5'");
+  EXPECT_EQ(error_of(value, "[1, 2]", sim::any_number()), "1:4 'x' must be a number, got [1, 2]");
+  EXPECT_EQ(error_of(value, "{a: 1}", sim::any_number()), "1:4 'x' must be a number, got {a: 1}");
+  EXPECT_EQ(error_of(value, "~", sim::any_number()), "1:4 'x' must be a number, got nothing");
+  for (const char* text : {"1_000", "0x10", "1,5", "1.5m", "--1", "+-1", "-", "+", ".", "1e", "e5", "١"})
+    EXPECT_EQ(error_of(value, text, sim::any_number()),
+              std::string("1:4 'x' must be a number, got '") + text + "'");
+  EXPECT_EQ(value, -7);
+}
+
+TEST(ParamReader, ReportsNumbersThatAreNotFinite) {
+  double value = -7;
+  for (const char* text :
+       {".nan", ".NaN", ".inf", "-.inf", "+.INF", "nan", "inf", "-infinity", "1e999", "-1e999"})
+    EXPECT_EQ(error_of(value, text, sim::any_number()),
+              std::string("1:4 'x' must be finite, got '") + text + "'");
+  int whole = -7;
+  EXPECT_EQ(error_of(whole, ".nan", sim::any_number()), "1:4 'x' must be finite, got '.nan'");
+  EXPECT_EQ(value, -7);
+}
+
+TEST(ParamReader, ReportsNumbersOutsideTheRule) {
+  double value = -7;
+  EXPECT_EQ(error_of(value, "0", sim::at_least(1)), "1:4 'x' must be >= 1, got 0");
+  EXPECT_EQ(error_of(value, "361", sim::between(0, 360)), "1:4 'x' must be >= 0 and <= 360, got 361");
+  EXPECT_EQ(value, -7);
+}
+
+TEST(ParamReader, ReadsWholeNumbers) {
+  for (const auto& [text, expected] :
+       std::vector<std::pair<std::string, int>>{{"5", 5}, {"-5", -5}, {"+5", 5}, {"1e3", 1000}, {"2.0", 2}}) {
+    int value = -7;
+    EXPECT_EQ(error_of(value, text, sim::any_number()), "") << text;
+    EXPECT_EQ(value, expected) << text;
+  }
+  std::int64_t large = 0;
+  EXPECT_EQ(error_of(large, "9223372036854775807", sim::at_least(0)), "");
+  EXPECT_EQ(large, 9223372036854775807);
+}
+
+TEST(ParamReader, ReportsWhatIsNoWholeNumber) {
+  int value = -7;
+  EXPECT_EQ(error_of(value, "1.5", sim::any_number()), "1:4 'x' must be a whole number, got '1.5'");
+  EXPECT_EQ(error_of(value, "many", sim::any_number()), "1:4 'x' must be a whole number, got 'many'");
+  EXPECT_EQ(error_of(value, "'5'", sim::any_number()), "1:4 'x' must be a whole number, got the text '5'");
+  EXPECT_EQ(error_of(value, "0", sim::at_least(1)), "1:4 'x' must be >= 1, got 0");
+  EXPECT_EQ(error_of(value, "2147483648", sim::any_number()),
+            "1:4 'x' must be <= 2147483647, got 2147483648");
+  EXPECT_EQ(error_of(value, "-2147483649", sim::any_number()),
+            "1:4 'x' must be >= -2147483648, got -2147483649");
+  std::int64_t large = -7;
+  EXPECT_EQ(error_of(large, "9223372036854775808", sim::any_number()),
+            "1:4 'x' must be a whole number of at most 63 bits, got '9223372036854775808'");
+  EXPECT_EQ(value, -7);
+  EXPECT_EQ(large, -7);
+}
+
+TEST(ParamReader, ReadsTrueAndFalseAndNothingElse) {
+  bool value = false;
+  EXPECT_EQ(error_of(value, "true"), "");
+  EXPECT_TRUE(value);
+  EXPECT_EQ(error_of(value, "False"), "");
+  EXPECT_FALSE(value);
+  EXPECT_EQ(error_of(value, "yes"), "1:4 'x' must be true or false, got 'yes'");
+  EXPECT_EQ(error_of(value, "'true'"), "1:4 'x' must be true or false, got the text 'true'");
+}
+
+TEST(ParamReader, TextMayLookLikeANumber) {
+  std::string value = "default";
+  EXPECT_EQ(error_of(value, "007"), "");
+  EXPECT_EQ(value, "007");
+  EXPECT_EQ(error_of(value, "''"), "");
+  EXPECT_EQ(value, "");
+  EXPECT_EQ(error_of(value, "[a]"), "1:4 'x' must be text, got [a]");
+  EXPECT_EQ(error_of(value, ""), "1:3 'x' must be text, got nothing");
+}
+
+TEST(ParamReader, AnOptionalIsUnsetByNothing) {
+  std::optional<double> value = 3;
+  EXPECT_EQ(error_of(value, "-1", sim::at_least(0)), "1:4 'x' must be >= 0, got -1");
+  EXPECT_EQ(value, 3);
+  EXPECT_EQ(error_of(value, "4", sim::at_least(0)), "");
+  EXPECT_EQ(value, 4);
+  EXPECT_EQ(error_of(value, "~", sim::at_least(0)), "");
+  EXPECT_EQ(value, std::nullopt);
+}
+
+TEST(ParamReader, AVectorIsAListOfThreeNumbers) {
+  Vector3d value(7, 7, 7);
+  EXPECT_EQ(error_of(value, "[1, 2.5, -3]", sim::any_number()), "");
+  EXPECT_EQ(value, Vector3d(1, 2.5, -3));
+  EXPECT_EQ(error_of(value, "[1, 2]", sim::any_number()), "1:4 'x' must be a list of 3 numbers, got [1, 2]");
+  EXPECT_EQ(error_of(value, "5", sim::any_number()), "1:4 'x' must be a list of 3 numbers, got '5'");
+  EXPECT_EQ(error_of(value, "[1, a, 3]", sim::any_number()), "1:8 item 2 of 'x' must be a number, got 'a'");
+  EXPECT_EQ(error_of(value, "[1, 2, 0]", sim::above(0)), "1:11 item 3 of 'x' must be > 0, got 0");
+  EXPECT_EQ(value, Vector3d(1, 2.5, -3));
+}
+
+TEST(ParamReader, ListsHoldNumbersOrText) {
+  std::vector<double> numbers = {7};
+  EXPECT_EQ(error_of(numbers, "[1, .inf]", sim::any_number()),
+            "1:8 item 2 of 'x' must be finite, got '.inf'");
+  EXPECT_EQ(error_of(numbers, "1", sim::any_number()), "1:4 'x' must be a list of numbers, got '1'");
+  EXPECT_EQ(numbers, std::vector<double>{7});
+  EXPECT_EQ(error_of(numbers, "[1, 2]", sim::any_number()), "");
+  EXPECT_EQ(numbers, (std::vector<double>{1, 2}));
+  Lines texts = {"a"};
+  EXPECT_EQ(error_of(texts, "[a, [b]]"), "1:8 item 2 of 'x' must be text, got [b]");
+  EXPECT_EQ(error_of(texts, "a"), "1:4 'x' must be a list of text, got 'a'");
+  EXPECT_EQ(texts, Lines{"a"});
+  EXPECT_EQ(error_of(texts, "[b, 5]"), "");
+  EXPECT_EQ(texts, (Lines{"b", "5"}));
+  EXPECT_EQ(error_of(texts, ""), "");
+  EXPECT_EQ(texts, Lines{});
+}
+
+TEST(ParamReader, DegreesBecomeRadians) {
+  double angle_rad = 0;
+  Vector3d rpy_rad = Vector3d::Zero();
+  const auto read = [&](ParamReader& in) {
+    in.read_deg("fov_deg", angle_rad, sim::between(0, 360), "");
+    in.read_deg("rpy_deg", rpy_rad, "");
+  };
+  EXPECT_EQ(errors_of("fov_deg: 180\nrpy_deg: [0, 90, -180]\n", read), Lines{});
+  EXPECT_EQ(angle_rad, std::numbers::pi);
+  EXPECT_EQ(rpy_rad, Vector3d(0, std::numbers::pi / 2, -std::numbers::pi));
+  EXPECT_EQ(errors_of("fov_deg: 361\n", read), Lines{"1:10 'fov_deg' must be >= 0 and <= 360, got 361"});
+}
+
+enum class Color { red, green };
+
+TEST(ParamReader, AChoiceIsOneOfItsWords) {
+  std::string word = "a";
+  Color color = Color::red;
+  const auto read = [&](ParamReader& in) {
+    in.read_choice("mode", word, {"a", "b"}, "");
+    in.read_choice("color", color, {{"red", Color::red}, {"green", Color::green}}, "");
+  };
+  EXPECT_EQ(errors_of("mode: b\ncolor: green\n", read), Lines{});
+  EXPECT_EQ(word, "b");
+  EXPECT_EQ(color, Color::green);
+  EXPECT_EQ(errors_of("mode: c\ncolor: [red]\n", read),
+            (Lines{"1:7 'mode' must be one of: a, b; got 'c'",
+                   "2:8 'color' must be one of: red, green; got [red]"}));
+  EXPECT_EQ(word, "b");
+  EXPECT_EQ(color, Color::green);
+}
+
+TEST(ParamReader, ALongValueIsCutInTheMessage) {
+  double value = 0;
+  const std::string error = error_of(value, std::string(1000, 'z'), sim::any_number());
+  EXPECT_EQ(error, "1:4 'x' must be a number, got '" + std::string(57, 'z') + "...'");
+  const std::string controls = error_of(value, "\"a\\nb\\e[1m\"", sim::any_number());
+  EXPECT_EQ(controls, "1:4 'x' must be a number, got the text 'a\\nb\\x1b[1m'");
+}
+
+TEST(ParamReader, RawTreesAreKept) {
+  ConfigNode value;
+  EXPECT_EQ(errors_of("x: {a.b: [1]}\n", [&](ParamReader& in) { in.read_raw("x", value, ""); }), Lines{});
+  EXPECT_EQ(value.entries.at(0).key, "a.b");
+}
+
+// Keys
+
+TEST(ParamReader, ReportsUnknownKeysAtTheKey) {
+  int beams = 0;
+  double fov_deg = 0;
+  const auto read = [&](ParamReader& in) {
+    in.read("fov_deg", fov_deg, sim::any_number(), "");
+    in.read("beams", beams, sim::any_number(), "");
+  };
+  EXPECT_EQ(errors_of("beams: 5\nbeam: 3\n", read),
+            Lines{"2:1 unknown key 'beam'; known keys: beams, fov_deg; did you mean 'beams'?"});
+  EXPECT_EQ(errors_of("colour: 3\n", read), Lines{"1:1 unknown key 'colour'; known keys: beams, fov_deg"});
+  EXPECT_EQ(errors_of("{a: 1, b: 2}\n", [](ParamReader&) {}),
+            (Lines{"1:2 unknown key 'a'; known keys: none", "1:8 unknown key 'b'; known keys: none"}));
+}
+
+TEST(ParamReader, ReportsAFewOfManyUnknownKeys) {
+  std::string yaml;
+  for (int i = 0; i < 1000; ++i) yaml += "k" + std::to_string(i) + ": 1\n";
+  const Lines errors = errors_of(yaml, [](ParamReader&) {});
+  ASSERT_EQ(errors.size(), 21u);
+  EXPECT_EQ(errors.back(), "21:1 more unknown keys are not shown");
+}
+
+TEST(ParamReader, ReportsAMissingKeyAtTheMap) {
+  std::string file = "default";
+  const auto read = [&](ParamReader& in) {
+    in.require("file");
+    in.read("name", file, "");  // another key in between
+    in.read("file", file, "");
+    in.read("file", file, "");  // required once
+  };
+  EXPECT_EQ(errors_of("\nname: 5\n", read), Lines{"2:1 missing key 'file'"});
+  EXPECT_EQ(errors_of("file: x\n", read), Lines{});
+}
+
+TEST(ParamReader, AnEmptyMapMayBeWrittenAsNothing) {
+  int beams = 3;
+  EXPECT_EQ(errors_of("", [&](ParamReader& in) { in.read("beams", beams, sim::any_number(), ""); }), Lines{});
+  EXPECT_EQ(beams, 3);
+}
+
+TEST(ParamReader, ReportsOnlyOnceThatItIsNoMap) {
+  std::string file;
+  const auto read = [&](ParamReader& in) {
+    in.require("file");
+    in.read("file", file, "");
+  };
+  EXPECT_EQ(errors_of("[1, 2]\n", read), Lines{"1:1 must be a map of keys and values, got [1, 2]"});
+}
+
+TEST(ParamReader, KnowsTheKeysItHas) {
+  EXPECT_EQ(errors_of("a: 5\n",
+                      [](ParamReader& in) {
+                        EXPECT_TRUE(in.has("a"));
+                        EXPECT_FALSE(in.has("b"));
+                        EXPECT_EQ(in.child("b"), nullptr);
+                        ASSERT_NE(in.child("a"), nullptr);  // and 'a' is known from here on
+                        EXPECT_EQ(in.child("a")->scalar, "5");
+                        EXPECT_FALSE(in.describing());
+                      }),
+            Lines{});
+}
+
+TEST(ParamReader, OwnErrorsStandAtTheValueOrTheMap) {
+  EXPECT_EQ(errors_of("\na: 5\n",
+                      [](ParamReader& in) {
+                        in.child("a");
+                        in.error("a", "is odd");
+                        in.error("b", "is not there");
+                        in.error("is wrong");
+                      }),
+            (Lines{"2:4 is odd", "2:1 is not there", "2:1 is wrong"}));
+}
+
+// Maps in maps
+
+struct Inner {
+  int count = 1;
+  std::string joint;
+  void read(ParamReader& in) {
+    in.read("count", count, sim::at_least(1), "how many");
+    in.read_reference("joint", joint, "joint", "what it turns");
+  }
+};
+
+struct Item {
+  std::string name;
+  double x = 0.5;
+  Inner inner;
+  std::optional<Inner> maybe;
+  void read(ParamReader& in) {
+    in.require("name");
+    in.read("name", name, "its name");
+    in.read("x", x, sim::any_number(), "a number");
+    in.read("inner", inner, "a map");
+    in.read("maybe", maybe, "a map or none");
+  }
+};
+
+struct Outer {
+  std::vector<Item> joints;
+  Inner inner;
+  Lines categories;
+  void read(ParamReader& in) {
+    in.read("categories", categories, "some names");
+    for (const std::string& category : categories) in.declare("category", category);
+    in.read_list("joints", joints, "joint", "some joints");
+    for (const Item& joint : joints) in.declare("joint", joint.name);
+    in.read("inner", inner, "a map");
+  }
+};
+
+Lines outer_errors(const std::string& yaml, Outer& outer) {
+  Diagnostics diagnostics;
+  const ConfigNode node = sim::parse_config_text(yaml, "w.yaml", diagnostics);
+  ParamReader in(node, "vehicle 'auv1'", diagnostics);
+  outer.read(in);
+  in.finish();
+  return diagnostics.lines();
+}
+
+TEST(ParamReader, ReadsNestedMapsAndLists) {
+  Outer outer;
+  EXPECT_EQ(outer_errors("joints:\n"
+                         "  - {name: left, x: 2}\n"
+                         "  - {name: right, maybe: {count: 4}}\n"
+                         "inner: {count: 3, joint: right}\n",
+                         outer),
+            Lines{});
+  ASSERT_EQ(outer.joints.size(), 2u);
+  EXPECT_EQ(outer.joints[0].x, 2);
+  EXPECT_FALSE(outer.joints[0].maybe.has_value());
+  EXPECT_EQ(outer.joints[1].maybe->count, 4);
+  EXPECT_EQ(outer.inner.count, 3);
+  EXPECT_EQ(outer.inner.joint, "right");
+}
+
+TEST(ParamReader, NestedErrorsSayWho) {
+  Outer outer;
+  EXPECT_EQ(outer_errors("joints:\n"
+                         "  - {name: left, x: a}\n"
+                         "  - {x: 1}\n"
+                         "  - {name: right, inner: {count: 0, cont: 1}, maybe: {count: 0}}\n"
+                         "inner: 5\n",
+                         outer),
+            (Lines{"w.yaml:2:21: vehicle 'auv1': joint 'left': 'x' must be a number, got 'a'",
+                   "w.yaml:3:5: vehicle 'auv1': joint 2: missing key 'name'",
+                   "w.yaml:4:33: vehicle 'auv1': joint 'right': inner: 'count' must be >= 1, got 0",
+                   "w.yaml:4:36: vehicle 'auv1': joint 'right': inner: unknown key 'cont'; known keys: "
+                   "count, joint; did "
+                   "you mean 'count'?",
+                   "w.yaml:4:62: vehicle 'auv1': joint 'right': maybe: 'count' must be >= 1, got 0",
+                   "w.yaml:5:8: vehicle 'auv1': 'inner' must be a map, got '5'"}));
+}
+
+TEST(ParamReader, ReportsAListThatIsNone) {
+  Outer outer;
+  EXPECT_EQ(outer_errors("joints: {name: x}\n", outer),
+            Lines{"w.yaml:1:9: vehicle 'auv1': 'joints' must be a list of maps, got {name: x}"});
+  EXPECT_EQ(outer_errors("joints: [5, ~]\n", outer),
+            (Lines{"w.yaml:1:10: vehicle 'auv1': item 1 of 'joints' must be a map, got '5'",
+                   "w.yaml:1:13: vehicle 'auv1': item 2 of 'joints' must be a map, got nothing"}));
+}
+
+TEST(ParamReader, AKeyWithoutAValueIsAnEmptyListOrMap) {
+  Outer outer;
+  outer.joints.resize(2);
+  EXPECT_EQ(outer_errors("joints:\ninner:\n", outer), Lines{});
+  EXPECT_TRUE(outer.joints.empty());
+  EXPECT_EQ(outer.inner.count, 1);
+}
+
+TEST(ParamReader, WithoutWhoAMessageStartsWithTheKey) {
+  Diagnostics diagnostics;
+  const ConfigNode node =
+      sim::parse_config_text("joints: [{name: a, x: b}]\ninner: {count: 0}\n", "w.yaml", diagnostics);
+  ParamReader in(node, "", diagnostics);
+  Outer outer;
+  outer.read(in);
+  EXPECT_EQ(diagnostics.lines(), (Lines{"w.yaml:1:23: joint 'a': 'x' must be a number, got 'b'",
+                                        "w.yaml:2:16: inner: 'count' must be >= 1, got 0"}));
+}
+
+// Names
+
+TEST(ParamReader, ReportsANameThatNobodyHas) {
+  Outer outer;
+  EXPECT_EQ(
+      outer_errors("joints: [{name: right}, {name: left}]\ninner: {joint: lft}\n", outer),
+      Lines{"w.yaml:2:16: vehicle 'auv1': inner: 'joint' names no joint 'lft'; known joints: left, right"});
+  EXPECT_EQ(outer_errors("inner: {joint: lft}\n", outer),
+            Lines{"w.yaml:1:16: vehicle 'auv1': inner: 'joint' names no joint 'lft'; known joints: none"});
+}
+
+TEST(ParamReader, AnEmptyReferenceNamesNothing) {
+  Outer outer;
+  EXPECT_EQ(outer_errors("inner: {joint: ''}\n", outer), Lines{});
+}
+
+TEST(ParamReader, ListsOfReferencesAreCheckedItemByItem) {
+  Lines bodies;
+  const auto read = [&](ParamReader& in) {
+    in.declare("body", "hull");
+    in.read_references("x", bodies, "body", "");
+  };
+  EXPECT_EQ(errors_of("x: [hull, hall]\n", read), Lines{"1:11 'x' names no body 'hall'; known bodies: hull"});
+  EXPECT_EQ(errors_of("x: [hull, hull]\n", read), Lines{});
+  EXPECT_EQ(errors_of("x: hull\n", read), Lines{"1:4 'x' must be a list of text, got 'hull'"});
+}
+
+TEST(ParamReader, ReportsADuplicateNameWhereItIsWritten) {
+  Outer outer;
+  EXPECT_EQ(outer_errors("joints:\n  - name: left\n  - name: right\n  - name: left\ncategories: [a, b, a]\n",
+                         outer),
+            (Lines{"w.yaml:5:20: vehicle 'auv1': duplicate category 'a'",
+                   "w.yaml:4:11: vehicle 'auv1': duplicate joint 'left'"}));
+}
+
+TEST(ParamReader, AnInnerNameMayRepeatAnOuterOne) {
+  EXPECT_EQ(errors_of("",
+                      [](ParamReader& in) {
+                        in.declare("joint", "b");
+                        in.declare("joint", "a");
+                        in.declare("joint", "");
+                        EXPECT_EQ(in.declared("joint"), (Lines{"a", "b"}));
+                        EXPECT_EQ(in.declared("body"), Lines{});
+                      }),
+            Lines{});
+}
+
+TEST(ParamReader, AHundredThousandNamesAreDeclaredSoon) {
+  const Lines errors = errors_of("x: none\n", [](ParamReader& in) {
+    for (int i = 0; i < 100000; ++i) in.declare("vehicle", "rover" + std::to_string(i));
+    std::string value;
+    in.read_reference("x", value, "vehicle", "");
+  });
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_LT(errors[0].size(), 1000u);
+  EXPECT_NE(errors[0].find(", ... (100000 in all)"), std::string::npos) << errors[0];
+}
+
+// Describing
+
+template <typename T>
+std::vector<ParamInfo> describe(T& value) {
+  std::vector<ParamInfo> table;
+  ParamReader in(table);
+  value.read(in);
+  in.finish();
+  return table;
+}
+
+struct AllKinds {
+  bool flag = true;
+  int whole = 3;
+  std::int64_t large = 4;
+  double number = 1e-9;
+  std::optional<double> maybe;
+  std::string text = "a: b";
+  Vector3d vector = Vector3d(1, 2, 0.5);
+  std::vector<double> numbers = {1, 2};
+  Lines texts = {"a", ""};
+  double angle_rad = std::numbers::pi / 4;
+  Vector3d rpy_rad = Vector3d(0, 0, std::numbers::pi / 3);
+  std::string word = "a";
+  Color color = Color::green;
+  std::string body;
+  Lines bodies;
+  std::string needed = "not shown";
+  ConfigNode raw;
+  Inner inner;
+  std::optional<Inner> maybe_inner;
+  std::vector<Inner> inners;
+
+  void read(ParamReader& in) {
+    in.read("flag", flag, "m");
+    in.read("whole", whole, sim::at_least(1), "m");
+    in.read("large", large, sim::any_number(), "m");
+    in.read("number", number, sim::above(0), "m");
+    in.read("maybe", maybe, sim::any_number(), "m");
+    in.read("text", text, "m");
+    in.read("vector", vector, sim::any_number(), "m");
+    in.read("numbers", numbers, sim::any_number(), "m");
+    in.read("texts", texts, "m");
+    in.read_deg("angle_deg", angle_rad, sim::between(0, 360), "m");
+    in.read_deg("rpy_deg", rpy_rad, "m");
+    in.read_choice("word", word, {"a", "b"}, "m");
+    in.read_choice("color", color, {{"red", Color::red}, {"green", Color::green}}, "m");
+    in.read_reference("body", body, "body", "m");
+    in.read_references("bodies", bodies, "body", "m");
+    in.require("needed");
+    in.read("needed", needed, "m");
+    in.read_raw("raw", raw, "m");
+    in.read("inner", inner, "m");
+    in.read("maybe_inner", maybe_inner, "m");
+    in.read_list("inners", inners, "inner", "m");
+    in.describe({"by_hand", "text", "", "", "m", true, {}});
+    EXPECT_EQ(in.child("flag"), nullptr);
+    EXPECT_FALSE(in.has("flag"));
+    EXPECT_EQ(in.node(), nullptr);
+    in.declare("body", "x");
+    in.declare("body", "x");
+    in.error("flag", "no one hears this");
+    in.error("nor this");
+    EXPECT_TRUE(in.diagnostics().ok());
+  }
+};
+
+TEST(ParamReader, DescribesEveryKindOfKey) {
+  AllKinds all;
+  Lines rows;
+  for (const ParamInfo& info : describe(all)) {
+    EXPECT_EQ(info.meaning, "m");
+    rows.push_back(info.key + " | " + info.type + " | " + info.rule + " | " + info.initial +
+                   (info.required ? " | required" : "") + " | " + std::to_string(info.children.size()));
+  }
+  EXPECT_EQ(rows, (Lines{"flag | bool |  | true | 0",
+                         "whole | integer | >= 1 | 3 | 0",
+                         "large | integer |  | 4 | 0",
+                         "number | number | > 0 | 1e-09 | 0",
+                         "maybe | number |  | ~ | 0",
+                         "text | text |  | \"a: b\" | 0",
+                         "vector | [x, y, z] |  | [1, 2, 0.5] | 0",
+                         "numbers | list of numbers |  | [1, 2] | 0",
+                         "texts | list of text |  | [a, \"\"] | 0",
+                         "angle_deg | number | >= 0 and <= 360 | 45 | 0",
+                         "rpy_deg | [x, y, z] |  | [0, 0, 60] | 0",
+                         "word | text | one of: a, b | a | 0",
+                         "color | text | one of: red, green | green | 0",
+                         "body | text | name of a body | \"\" | 0",
+                         "bodies | list of text | names of bodies | [] | 0",
+                         "needed | text |  |  | required | 0",
+                         "raw | map |  | {} | 0",
+                         "inner | map |  | {} | 2",
+                         "maybe_inner | map |  | ~ | 2",
+                         "inners | list of maps |  | [] | 2",
+                         "by_hand | text |  |  | required | 0"}));
+}
+
+TEST(ParamReader, DescribingLeavesTheMembersAlone) {
+  AllKinds all;
+  all.inner.count = 9;
+  const std::vector<ParamInfo> table = describe(all);
+  EXPECT_EQ(all.inner.count, 9);
+  EXPECT_FALSE(all.maybe_inner.has_value());
+  EXPECT_EQ(all.angle_rad, std::numbers::pi / 4);
+  EXPECT_TRUE(all.inners.empty());
+}
+
+struct Tree {
+  std::string name;
+  std::vector<Tree> branches;
+  void read(ParamReader& in) {
+    in.read("name", name, "its name");
+    in.read_list("branches", branches, "branch", "more of the same");
+  }
+};
+
+TEST(ParamReader, ATypeThatContainsItselfIsDescribedOnce) {
+  Tree tree;
+  const std::vector<ParamInfo> table = describe(tree);
+  ASSERT_EQ(table.size(), 2u);
+  ASSERT_EQ(table[1].children.size(), 2u);
+  EXPECT_TRUE(table[1].children[1].children.empty());
+}
+
+TEST(ParamReader, ATypeThatContainsItselfIsRead) {
+  Tree tree;
+  EXPECT_EQ(errors_of("{name: a, branches: [{name: b, branches: [{name: c, nme: d}]}]}\n",
+                      [&](ParamReader& in) { tree.read(in); }),
+            Lines{"1:53 branch 'b': branch 'c': unknown key 'nme'; known keys: branches, name; did you mean "
+                  "'name'?"});
+  EXPECT_EQ(tree.branches.at(0).branches.at(0).name, "c");
+}
+
+}  // namespace

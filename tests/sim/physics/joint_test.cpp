@@ -1,0 +1,310 @@
+#include "sim/physics/joint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/sim/physics/small_worlds.hpp"
+
+namespace {
+
+using namespace small_worlds;
+
+constexpr double g = 9.80665;
+constexpr double pi = std::numbers::pi;
+
+PhysicsConfig weightless(double step_s = 0.01) {
+  PhysicsConfig config;
+  config.step_s = step_s;
+  config.gravity_mps2 = 0;
+  return config;
+}
+
+/// A group whose body `base` is heavy and whose body `arm` is light, both cubes, the arm 1 m along x.
+struct Pair {
+  explicit Pair(const JointConfig& config, bool to_world = false, const PhysicsConfig& physics = weightless())
+      : world(make_world(physics)) {
+    const int group = world->add_group("rig");
+    base = &world->add_body(group, body("base", {box({0.2, 0.2, 0.2}, 1000)}), Pose::Identity(), to_world);
+    arm = &world->add_body(group, body("arm", {box({0.2, 0.2, 0.2}, 1)}, {1, 0, 0}), Pose::Identity());
+    joint = &world->add_joint(group, config, *base, arm, Pose::Identity());
+    world->close_group(group);
+  }
+  void run(int steps) {
+    for (int i = 0; i < steps; ++i) world->step(step++);
+  }
+  std::unique_ptr<PhysicsWorld> world;
+  sim::Body* base;
+  sim::Body* arm;
+  sim::Joint* joint;
+  int step = 0;
+};
+
+/// Time between two passages of the lowest point in the same direction.
+double pendulum_period(const std::string& type, double length_m, double amplitude_deg, double step_s) {
+  PhysicsConfig config;
+  config.step_s = step_s;
+  const auto world = make_world(config);
+  const int group = world->add_group("pendulum");
+  const double amplitude = sim::degrees_to_radians(amplitude_deg);
+  const Vector3d p = length_m * Vector3d(std::sin(amplitude), 0, -std::cos(amplitude));
+  // A small sphere is almost a point: its own inertia adds 2/5 (r/L)^2 = 4e-7.
+  sim::Body& bob = world->add_body(group, body("bob", {sphere(0.001 * length_m, 1)}, p), Pose::Identity());
+  world->add_joint(group, joint("pivot", type, {0, 0, 0}, Vector3d::UnitY()), bob, nullptr, Pose::Identity());
+  world->close_group(group);
+  double last_x = p.x(), first_crossing = -1;
+  for (int i = 0;; ++i) {
+    world->step(i);
+    const double x = bob.X_WB().translation().x();
+    if (last_x > 0 && x <= 0) {
+      const double crossing = (i + last_x / (last_x - x)) * step_s;
+      if (first_crossing >= 0) return crossing - first_crossing;
+      first_crossing = crossing;
+    }
+    last_x = x;
+  }
+}
+
+// closed_forms.csv pendulum_point_mass: 2 pi sqrt(L/g) / agm(1, cos(amplitude / 2)).
+TEST(Pendulum, SmallSwingHasTheClosedFormPeriod) {
+  EXPECT_NEAR(pendulum_period("hinge", 1, 5, 0.001), 2.007364689, 2e-4 * 2.007364689);
+  EXPECT_NEAR(pendulum_period("ball", 1, 5, 0.001), 2.007364689, 2e-4 * 2.007364689);
+}
+TEST(Pendulum, WideSwingTakesLonger) {
+  EXPECT_NEAR(pendulum_period("hinge", 1, 60, 0.001), 2.153242352, 1e-3 * 2.153242352);
+}
+TEST(Pendulum, LongPendulumHasTheClosedFormPeriod) {
+  EXPECT_NEAR(pendulum_period("hinge", 2.5, 20, 0.001), 3.196740948, 2e-4 * 3.196740948);
+}
+
+TEST(HingeJoint, MotorTurnsTheSecondBodyRightHandedAboutTheAxis) {
+  Pair rig(joint("elbow", "hinge", {1, 0, 0}, Vector3d::UnitY()));
+  EXPECT_EQ(rig.joint->axes(), 1);
+  rig.joint->set_motor(2, 1000);
+  rig.run(50);
+  EXPECT_NEAR(rig.joint->velocity(), 2, 1e-6);
+  EXPECT_NEAR(rig.joint->position(), 1, 1e-6);
+  EXPECT_GT(rig.arm->w_WB_W().y(), 1.9);
+}
+
+TEST(HingeJoint, ToAFixedBodyCountsTheSameWay) {
+  Pair rig(joint("elbow", "hinge", {1, 0, 0}, Vector3d::UnitY()), true);
+  rig.joint->set_motor(2, 1000);
+  rig.run(50);
+  EXPECT_NEAR(rig.joint->position(), 1, 1e-6);
+  EXPECT_NEAR(rig.arm->w_WB_W().y(), 2, 1e-6);
+}
+
+TEST(HingeJoint, ToTheWorldCountsTheMovingBody) {
+  const auto world = make_world(weightless());
+  const int group = world->add_group("rig");
+  sim::Body& fan = world->add_body(group, body("fan", {box({1, 1, 0.1}, 1)}), Pose::Identity());
+  sim::Joint& axle = world->add_joint(group, joint("axle", "hinge", {0, 0, 0}), fan, nullptr, Pose::Identity());
+  world->close_group(group);
+  axle.set_motor(3, 1000);
+  for (int i = 0; i < 100; ++i) world->step(i);
+  EXPECT_NEAR(axle.position(), 3, 1e-6);
+  EXPECT_NEAR(fan.w_WB_W().z(), 3, 1e-6);
+}
+
+TEST(HingeJoint, PositionGoesOnBeyondPi) {
+  Pair rig(joint("wheel", "hinge", {1, 0, 0}, Vector3d::UnitY()));
+  rig.joint->set_motor(10, 1000);
+  rig.run(1000);
+  // A motor without limit of force runs at its speed from the first step.  The finite rotation is exact.
+  EXPECT_NEAR(rig.joint->position(), 100, 1e-5);
+  rig.joint->set_motor(-10, 1000);
+  rig.run(2000);
+  EXPECT_NEAR(rig.joint->position(), -100, 1e-3);
+}
+
+TEST(HingeJoint, PositionFollowsAWheelThatTurnsMoreThanHalfATurnInAStep) {
+  Pair rig(joint("wheel", "hinge", {1, 0, 0}, Vector3d::UnitY()));
+  rig.joint->set_motor(500, 1e6);  // 5 rad in a step
+  rig.run(100);
+  EXPECT_NEAR(rig.joint->position(), 500, 1e-3);
+}
+
+TEST(HingeJoint, MotorIsLimitedByItsForce) {
+  Pair rig(joint("wheel", "hinge", {1, 0, 0}, Vector3d::UnitY()), true);
+  rig.joint->set_motor(1000, 0.1);
+  rig.run(10);
+  const double inertia = 0.2 * 0.2 / 6;
+  EXPECT_NEAR(rig.joint->velocity(), 0.1 / inertia * 0.1, 1e-6);  // torque / inertia * time
+}
+
+TEST(HingeJoint, StopsHold) {
+  JointConfig config = joint("elbow", "hinge", {1, 0, 0}, Vector3d::UnitY());
+  config.axis1.low_stop = -0.25;
+  config.axis1.high_stop = 0.5;
+  Pair rig(config);
+  rig.joint->set_motor(1, 10);
+  rig.run(500);
+  EXPECT_NEAR(rig.joint->position(), 0.5, 1e-3);
+  rig.joint->set_motor(-1, 10);
+  rig.run(500);
+  EXPECT_NEAR(rig.joint->position(), -0.25, 1e-3);
+}
+
+TEST(HingeJoint, EffortIsATorqueOnTheSecondBody) {
+  Pair rig(joint("wheel", "hinge", {1, 0, 0}, Vector3d::UnitY()), true);
+  rig.joint->add_effort(0.5);
+  rig.run(1);
+  EXPECT_NEAR(rig.joint->velocity(), 0.5 / (0.04 / 6) * 0.01, 1e-7);
+  rig.run(1);  // an effort lasts one step
+  EXPECT_NEAR(rig.joint->velocity(), 0.5 / (0.04 / 6) * 0.01, 1e-7);
+}
+
+TEST(SliderJoint, MotorMovesTheSecondBodyAlongTheAxis) {
+  for (const bool to_world : {false, true}) {
+    Pair rig(joint("rail", "slider", {0, 0, 0}, Vector3d::UnitX()), to_world);
+    rig.joint->set_motor(0.5, 1e4);
+    rig.run(100);
+    EXPECT_NEAR(rig.joint->position(), 0.5, 1e-5);
+    EXPECT_NEAR(rig.joint->velocity(), 0.5, 1e-6);
+    EXPECT_NEAR(rig.arm->X_WB().translation().x() - rig.base->X_WB().translation().x(), 1.5, 1e-5);
+  }
+}
+
+TEST(SliderJoint, StopsHold) {
+  JointConfig config = joint("rail", "slider", {0, 0, 0}, Vector3d::UnitX());
+  config.axis1.low_stop = -0.1;
+  config.axis1.high_stop = 0.2;
+  Pair rig(config);
+  rig.joint->set_motor(1, 10);
+  rig.run(300);
+  EXPECT_NEAR(rig.joint->position(), 0.2, 1e-3);
+  rig.joint->set_motor(-1, 10);
+  rig.run(300);
+  EXPECT_NEAR(rig.joint->position(), -0.1, 1e-3);
+}
+
+TEST(SliderJoint, EffortIsAForce) {
+  Pair rig(joint("rail", "slider", {0, 0, 0}, Vector3d::UnitX()), true);
+  rig.joint->add_effort(3);
+  rig.run(1);
+  EXPECT_NEAR(rig.joint->velocity(), 3.0 / 1 * 0.01, 1e-7);
+}
+
+TEST(FixedJoint, CarriesTheSecondBody) {
+  Pair rig(joint("weld", "fixed", {0, 0, 0}));
+  EXPECT_EQ(rig.joint->axes(), 0);
+  rig.base->set_velocity_W({0, 0, 1}, {0, 0, 0});
+  rig.arm->set_velocity_W({0, 0, 1}, {0, 0, 0});
+  rig.arm->add_force_W({0, 0, -100}, {1, 0, 0});
+  rig.run(100);
+  const Pose X_base_arm = rig.base->X_WB().inverse() * rig.arm->X_WB();
+  EXPECT_TRUE(X_base_arm.isApprox(translation(1, 0, 0), 1e-4)) << X_base_arm.matrix();
+}
+
+TEST(BallJoint, KeepsThePointTogetherAndLeavesTheRotationFree) {
+  Pair rig(joint("shoulder", "ball", {0.9, 0, 0}));
+  EXPECT_EQ(rig.joint->axes(), 0);
+  rig.arm->add_torque_W({0.1, 0.2, 0.3});
+  rig.run(200);
+  const Vector3d on_base = rig.base->X_WB() * Vector3d(0.9, 0, 0), on_arm = rig.arm->X_WB() * Vector3d(-0.1, 0, 0);
+  EXPECT_LT((on_base - on_arm).norm(), 1e-3);
+  EXPECT_GT(rig.arm->w_WB_W().norm(), 0.1);
+}
+
+TEST(UniversalJoint, EachAxisHasItsMotor) {
+  JointConfig config = joint("cardan", "universal", {1, 0, 0}, Vector3d::UnitY());
+  config.axis2.axis = Vector3d::UnitZ();
+  for (const int axis : {0, 1}) {
+    Pair rig(config);
+    EXPECT_EQ(rig.joint->axes(), 2);
+    rig.joint->set_motor(0.5, 1000, axis);
+    rig.joint->set_motor(0, 1000, 1 - axis);
+    rig.run(100);
+    EXPECT_NEAR(rig.joint->position(axis), 0.5, 1e-3) << axis;
+    EXPECT_NEAR(rig.joint->velocity(axis), 0.5, 1e-3) << axis;
+    EXPECT_NEAR(rig.joint->position(1 - axis), 0, 1e-3) << axis;
+    EXPECT_GT(rig.arm->w_WB_W()[axis + 1], 0.4) << axis;
+  }
+}
+
+TEST(Hinge2Joint, SteersAndRolls) {
+  JointConfig config = joint("front", "hinge2", {1, 0, 0}, Vector3d::UnitZ());
+  config.axis2.axis = Vector3d::UnitY();
+  config.axis1.low_stop = -0.6;
+  config.axis1.high_stop = 0.4;
+  Pair rig(config);
+  EXPECT_EQ(rig.joint->axes(), 2);
+  rig.joint->set_motor(0, 1000, 1);
+  rig.joint->set_motor(1, 1000, 0);
+  rig.run(100);
+  EXPECT_NEAR(rig.joint->position(0), 0.4, 0.01);
+  EXPECT_NEAR(sim::yaw_of(rig.arm->X_WB().linear()), 0.4, 0.01);
+  rig.joint->set_motor(-1, 1000, 0);
+  rig.run(300);
+  EXPECT_NEAR(rig.joint->position(0), -0.6, 0.01);
+
+  Pair straight(config);
+  straight.joint->set_motor(0, 1000, 0);
+  straight.joint->set_motor(5, 1000, 1);
+  straight.run(200);
+  EXPECT_NEAR(straight.joint->position(1), 10, 1e-2);
+  EXPECT_NEAR(straight.joint->velocity(1), 5, 1e-3);
+  EXPECT_GT(straight.arm->w_WB_W().y(), 4.9);
+}
+
+TEST(Joint, WheelWithPositiveSpeedRollsForward) {
+  const auto world = make_world({}, {slippery()});
+  add_ground(*world);
+  Rover rover = add_rover(*world, "rover", Pose::Identity());
+  for (sim::Joint* wheel : {rover.left, rover.right}) wheel->set_motor(5, 10);
+  for (int i = 0; i < 300; ++i) world->step(i);
+  // 3 s at 5 rad/s on wheels of 0.1 m; the start slips by less than 1 %.
+  EXPECT_NEAR(rover.chassis->X_WB().translation().x(), 1.5, 0.02);
+  EXPECT_NEAR(rover.chassis->X_WB().translation().y(), 0, 1e-6);
+  EXPECT_NEAR(rover.left->position(), 15, 0.1);
+}
+
+TEST(Joint, PartsOfJoinedBodiesDoNotCollide) {
+  // The arm is inside the base, and the group asks for self collision.
+  const auto world = make_world(weightless());
+  const int group = world->add_group("rig", true);
+  sim::Body& base = world->add_body(group, body("base", {box({1, 1, 1}, 1)}), Pose::Identity());
+  sim::Body& arm = world->add_body(group, body("arm", {box({1, 1, 1}, 1)}, {0.3, 0, 0}), Pose::Identity());
+  world->add_joint(group, joint("weld", "fixed", {0, 0, 0}), base, &arm, Pose::Identity());
+  world->close_group(group);
+  world->step(0);
+  EXPECT_EQ(world->last_step().contacts, 0);
+}
+
+TEST(Joint, BetweenFixedBodiesIsAConfigError) {
+  const auto world = make_world();
+  const int group = world->add_group("rig");
+  sim::Body& base = world->add_body(group, body("base", {box({1, 1, 1}, 1)}), Pose::Identity(), true);
+  EXPECT_THROW(world->add_joint(group, joint("weld", "hinge", {0, 0, 0}), base, nullptr, Pose::Identity()),
+               sim::ConfigError);
+}
+
+TEST(BoxPendulum, HasTheClosedFormPeriod) {
+  // closed_forms.csv box_pendulum_small: 2 pi sqrt(I / (m g d)), I = m (l^2 + w^2) / 12 + m d^2, d = l / 2.
+  const double l = 1.2, d = 0.6, w = 0.1, step_s = 0.001;
+  EXPECT_NEAR(2 * pi * std::sqrt(((l * l + w * w) / 12 + d * d) / (g * d)), 1.796144153, 1e-9);
+  PhysicsConfig config;
+  config.step_s = step_s;
+  const auto world = make_world(config);
+  const int group = world->add_group("pendulum");
+  const Pose X_WV = sim::make_pose({0, 0, 0}, {0, 0.01, 0});
+  sim::Body& beam = world->add_body(group, body("beam", {at(box({w, w, l}, 2), {0, 0, -d})}), X_WV);
+  sim::Joint& pivot = world->add_joint(group, joint("pivot", "hinge", {0, 0, 0}, Vector3d::UnitY()), beam, nullptr, X_WV);
+  world->close_group(group);
+  double last = pivot.position() + 0.01, first_crossing = -1, period = 0;
+  for (int i = 0; i < 5000 && period == 0; ++i) {
+    world->step(i);
+    const double angle = pivot.position() + 0.01;  // from hanging straight down
+    if (last > 0 && angle <= 0) {
+      const double crossing = (i + last / (last - angle)) * step_s;
+      if (first_crossing >= 0) period = crossing - first_crossing;
+      first_crossing = crossing;
+    }
+    last = angle;
+  }
+  EXPECT_NEAR(period, 1.796144153, 5e-4 * 1.796144153);
+}
+
+}  // namespace

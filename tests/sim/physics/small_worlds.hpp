@@ -1,0 +1,135 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/physics/physics_world.hpp"
+
+/// Worlds in a few lines, for the tests and benchmarks of physics and scene.
+namespace small_worlds {
+
+using sim::BodyConfig;
+using sim::ContactConfig;
+using sim::JointConfig;
+using sim::MaterialConfig;
+using sim::PartConfig;
+using sim::PhysicsConfig;
+using sim::PhysicsWorld;
+using sim::Pose;
+using sim::Vector3d;
+
+inline PartConfig box(const Vector3d& size_m, double mass_kg) {
+  PartConfig part;
+  part.shape = "box";
+  part.size_m = size_m;
+  if (mass_kg > 0) part.mass_kg = mass_kg;
+  return part;
+}
+
+inline PartConfig sphere(double radius_m, double mass_kg) {
+  PartConfig part;
+  part.shape = "sphere";
+  part.radius_m = radius_m;
+  if (mass_kg > 0) part.mass_kg = mass_kg;
+  return part;
+}
+
+/// Capsule or cylinder along z.
+inline PartConfig round(const std::string& shape, double radius_m, double length_m, double mass_kg) {
+  PartConfig part = sphere(radius_m, mass_kg);
+  part.shape = shape;
+  part.length_m = length_m;
+  return part;
+}
+
+inline PartConfig plane() {
+  PartConfig part;
+  part.shape = "plane";
+  return part;
+}
+
+inline PartConfig at(PartConfig part, const Vector3d& position_m, const Vector3d& rpy_rad = Vector3d::Zero()) {
+  part.position_m = position_m;
+  part.rpy_rad = rpy_rad;
+  return part;
+}
+
+inline BodyConfig body(const std::string& name, std::vector<PartConfig> parts,
+                       const Vector3d& position_m = Vector3d::Zero()) {
+  BodyConfig config;
+  config.name = name;
+  config.parts = std::move(parts);
+  config.position_m = position_m;
+  return config;
+}
+
+inline JointConfig joint(const std::string& name, const std::string& type, const Vector3d& anchor_m,
+                         const Vector3d& axis = Vector3d::UnitZ()) {
+  JointConfig config;
+  config.name = name;
+  config.type = type;
+  config.anchor_m = anchor_m;
+  config.axis1.axis = axis;
+  return config;
+}
+
+inline Pose translation(double x, double y, double z) { return sim::make_pose({x, y, z}, Vector3d::Zero()); }
+
+/// A group of one body.
+inline sim::Body& add(PhysicsWorld& world, const BodyConfig& config, const Pose& X_W, bool fixed = false) {
+  const int group = world.add_group(config.name);
+  sim::Body& added = world.add_body(group, config, X_W, fixed);
+  world.close_group(group);
+  return added;
+}
+
+inline sim::Body& add_ground(PhysicsWorld& world, const Pose& X_W = Pose::Identity()) {
+  return add(world, body("ground", {plane()}), X_W, true);
+}
+
+inline std::unique_ptr<PhysicsWorld> make_world(const PhysicsConfig& config = {},
+                                                const std::vector<ContactConfig>& contacts = {}) {
+  return std::make_unique<PhysicsWorld>(config, std::vector<MaterialConfig>{{"slippery"}}, contacts,
+                                        std::vector<std::string>{}, 1);
+}
+
+/// Contacts with `slippery` have no friction.
+inline ContactConfig slippery() {
+  ContactConfig contact;
+  contact.between = {"any", "slippery"};
+  contact.friction = 0;
+  return contact;
+}
+
+/// A robot with two driven wheels and a caster that slides; drives along +x.  Its wheels stand on z = 0, its weight is
+/// behind the axle, so that it stands on the caster.
+struct Rover {
+  static constexpr double wheel_radius_m = 0.1;
+  static constexpr double half_track_m = 0.2;
+
+  sim::Body* chassis;
+  sim::Joint* left;
+  sim::Joint* right;
+};
+
+inline Rover add_rover(PhysicsWorld& world, const std::string& name, const Pose& X_WV) {
+  const Vector3d axle = {0, Rover::half_track_m, Rover::wheel_radius_m};
+  const Vector3d mirrored = {axle.x(), -axle.y(), axle.z()};
+  PartConfig caster = at(sphere(0.05, 0), {-0.2, 0, -0.1});
+  caster.material = "slippery";
+  const int group = world.add_group(name);
+  sim::Body& chassis =
+      world.add_body(group, body("chassis", {at(box({0.5, 0.3, 0.1}, 5), {-0.05, 0, 0}), caster}, {0, 0, 0.15}), X_WV);
+  sim::Body& left_wheel = world.add_body(group, body("left_wheel", {sphere(Rover::wheel_radius_m, 0.5)}, axle), X_WV);
+  sim::Body& right_wheel =
+      world.add_body(group, body("right_wheel", {sphere(Rover::wheel_radius_m, 0.5)}, mirrored), X_WV);
+  Rover rover{&chassis, nullptr, nullptr};
+  rover.left = &world.add_joint(group, joint("left", "hinge", axle, Vector3d::UnitY()), chassis, &left_wheel, X_WV);
+  rover.right = &world.add_joint(group, joint("right", "hinge", mirrored, Vector3d::UnitY()), chassis, &right_wheel, X_WV);
+  world.close_group(group);
+  return rover;
+}
+
+}  // namespace small_worlds

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/autonomy/pose2.hpp"
+
+namespace autonomy {
+
+/// Waypoints as on the command line: `10,5;20,-3`, east and north in m.  Throws std::invalid_argument with the place
+/// that is wrong.
+std::vector<Vector2d> parse_waypoints(const std::string& text);
+
+/// A start pose: `x,y,yaw_deg`.
+Pose2 parse_start(const std::string& text);
+
+}  // namespace autonomy

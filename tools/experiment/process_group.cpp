@@ -1,0 +1,122 @@
+#include "tools/experiment/process_group.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+#include <thread>
+
+extern char** environ;
+
+namespace tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A program beside the running one is preferred, so that a build tree works without being installed.
+std::string find_program(const std::string& name) {
+  if (name.find('/') != std::string::npos) return name;
+  std::error_code error;
+  const fs::path own = fs::read_symlink("/proc/self/exe", error);
+  const fs::path beside = own.parent_path() / name;
+  return !error && fs::exists(beside, error) ? beside.string() : name;
+}
+
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+std::vector<std::string> environment_with(const std::string& lcm_url) {
+  std::vector<std::string> environment;
+  for (char** at = environ; *at != nullptr; ++at)
+    if (std::strncmp(*at, "LCM_DEFAULT_URL=", 16) != 0) environment.emplace_back(*at);
+  environment.push_back("LCM_DEFAULT_URL=" + lcm_url);
+  return environment;
+}
+
+std::string describe_status(int status) {
+  if (WIFEXITED(status)) return "exited with code " + std::to_string(WEXITSTATUS(status));
+  const int signal = WTERMSIG(status);
+  return "was killed by signal " + std::to_string(signal) + " (" + strsignal(signal) + ")";
+}
+
+}  // namespace
+
+ProcessGroup::~ProcessGroup() { stop(); }
+
+void ProcessGroup::start(const sim::ProcessConfig& config, const std::string& lcm_url,
+                         const std::string& log_directory) {
+  std::vector<std::string> arguments = config.command;
+  arguments[0] = find_program(arguments[0]);
+  for (std::string& argument : arguments)
+    for (std::size_t at = argument.find("{lcm_url}"); at != std::string::npos; at = argument.find("{lcm_url}"))
+      argument.replace(at, 9, lcm_url);
+  std::vector<std::string> environment = environment_with(lcm_url);
+
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  const std::string log = log_directory.empty() ? "" : log_directory + "/" + config.name + ".log";
+  if (!log.empty()) {
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+  }
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
+  pid_t pid = 0;
+  const int error = posix_spawnp(&pid, arguments[0].c_str(), &actions, &attributes, pointers_to(arguments).data(),
+                                 pointers_to(environment).data());
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0)
+    throw std::runtime_error("process '" + config.name + "': cannot start '" + arguments[0] +
+                             "': " + std::strerror(error));
+  running_.push_back({pid, config});
+}
+
+std::vector<ProcessGroup::Exit> ProcessGroup::reap() {
+  std::vector<Exit> exits;
+  std::erase_if(running_, [&](const Running& process) {
+    int status = 0;
+    if (waitpid(process.pid, &status, WNOHANG) != process.pid) return false;
+    const bool failed = !WIFEXITED(status) || WEXITSTATUS(status) != 0;
+    exits.push_back({process.config.name, describe_status(status), process.config.client,
+                     process.config.on_exit == "end", failed});
+    kill(-process.pid, SIGTERM);  // children it left behind
+    return true;
+  });
+  return exits;
+}
+
+void ProcessGroup::stop() {
+  using Clock = std::chrono::steady_clock;
+  for (const Running& process : running_) kill(-process.pid, SIGTERM);
+  const auto deadline = Clock::now() + std::chrono::seconds(2);
+  while (!running_.empty() && Clock::now() < deadline) {
+    reap();
+    if (!running_.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  for (const Running& process : running_) {
+    kill(-process.pid, SIGKILL);
+    waitpid(process.pid, nullptr, 0);
+  }
+  running_.clear();
+}
+
+}  // namespace tools

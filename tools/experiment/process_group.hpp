@@ -1,0 +1,47 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+#include "sim/world/world_config.hpp"
+
+namespace tools {
+
+/// The external programs of an experiment.  Each gets a process group of its own, so that its children end with it.
+class ProcessGroup {
+ public:
+  struct Exit {
+    std::string name;
+    std::string how;     ///< `exited with code 1`, `was killed by signal 9 (Killed)`
+    std::string client;  ///< its lockstep name
+    bool ends_run = false;
+    bool failed = false;
+  };
+
+  ProcessGroup() = default;
+  /// Ends what still runs: SIGTERM, and SIGKILL after 2 s.
+  ~ProcessGroup();
+  ProcessGroup(const ProcessGroup&) = delete;
+  ProcessGroup& operator=(const ProcessGroup&) = delete;
+
+  /// Starts a program; its output goes where ours goes, or to LOG_DIRECTORY/NAME.log when that is not empty.
+  /// `{lcm_url}` in the arguments is replaced, and LCM_DEFAULT_URL is set.  A program without a slash is looked up
+  /// beside the running program, then in PATH.  Throws std::runtime_error when it cannot be started.
+  void start(const sim::ProcessConfig& config, const std::string& lcm_url, const std::string& log_directory);
+  /// Programs that ended since the last call.
+  std::vector<Exit> reap();
+  /// Asks all to end, and waits.  Exit codes of programs that were asked do not matter.
+  void stop();
+  bool empty() const { return running_.empty(); }
+
+ private:
+  struct Running {
+    pid_t pid;
+    sim::ProcessConfig config;
+  };
+  std::vector<Running> running_;
+};
+
+}  // namespace tools

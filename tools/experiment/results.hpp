@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/config/config_node.hpp"
+#include "sim/world/world.hpp"
+#include "tools/experiment/scoring.hpp"
+
+namespace tools {
+
+/// What a run came to: the same keys for every world.
+struct Summary {
+  std::string world;
+  std::int64_t seed = 0;
+  std::int64_t steps = 0;
+  double sim_time_s = 0;
+  double wall_s = 0;
+  std::uint64_t state_hash = 0;
+  std::uint64_t messages = 0;
+  std::uint64_t dropped_messages = 0;
+  std::int64_t bad_messages = 0;
+  std::int64_t quick_steps = 0;
+  std::map<std::string, double> metrics;
+  std::vector<Scoring::Verdict> verdicts;
+  std::string ended = "duration";  ///< duration, quit, signal, fault, bus, timeout, process
+  std::string error;               ///< why it ended early, empty when it did not
+  int exit_code = 0;
+
+  double real_time_factor() const { return wall_s > 0 ? sim_time_s / wall_s : 0; }
+  bool passed() const;
+  std::string to_json() const;
+  /// The end summary on a terminal.
+  std::string to_text() const;
+};
+
+/// Writes the results directory: tracks while the run goes, the rest at its end.
+class Results {
+ public:
+  /// Makes the directory.  Throws std::runtime_error with path and reason.
+  Results(const std::string& directory, const sim::World& world);
+  ~Results();
+  const std::string& directory() const { return directory_; }
+  /// Adds a sample of every vehicle's true pose when one is due.
+  void after_step();
+  /// summary.json, metrics.csv, errors.csv, world.yaml, tracks.png, errors.png.  Throws std::runtime_error.
+  void finish(const Summary& summary, const Scoring& scoring, const sim::ConfigNode& resolved);
+
+ private:
+  void write_outlines() const;
+  void write_errors(const Scoring& scoring) const;
+  void plot(const Scoring& scoring) const;
+  void write(const std::string& file, const std::string& text) const;
+
+  std::string directory_;
+  const sim::World& world_;
+  std::FILE* tracks_ = nullptr;
+  std::int64_t every_steps_ = 1;
+};
+
+}  // namespace tools

@@ -1,0 +1,343 @@
+#include "tools/experiment/runner.hpp"
+
+#include <signal.h>
+#include <spdlog/spdlog.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "bridges/lcm/bus_error.hpp"
+#include "bridges/lcm/lcm_bus.hpp"
+#include "bridges/lcm/recording_bus.hpp"
+#include "bridges/lcm/sim_service.hpp"
+#include "bridges/serial/serial_port.hpp"
+#include "sim/bus/in_process_bus.hpp"
+#include "tools/experiment/process_group.hpp"
+#include "tools/experiment/progress.hpp"
+
+namespace tools {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::atomic<int> signal_caught{0};
+
+void on_signal(int signal) { signal_caught = signal; }
+
+/// An error that ends the run, with its exit code.
+struct RunError : std::runtime_error {
+  RunError(int code, std::string how_ended, const std::string& text)
+      : std::runtime_error(text), exit_code(code), ended(std::move(how_ended)) {}
+  int exit_code;
+  std::string ended;
+};
+
+/// The buses of a run, from the network inwards.
+struct Buses {
+  std::unique_ptr<sim::Bus> network;
+  bridges::LcmBus* lcm = nullptr;  ///< the same, when it is LCM
+  std::unique_ptr<bridges::RecordingBus> recorder;
+  sim::Bus& outer() { return recorder ? static_cast<sim::Bus&>(*recorder) : *network; }
+
+  void wait(std::chrono::milliseconds time) {
+    if (lcm != nullptr)
+      lcm->wait_for_message(time);
+    else
+      std::this_thread::sleep_for(time);
+  }
+};
+
+Buses open_buses(const sim::LoadedWorld& loaded, const RunOptions& options) {
+  Buses buses;
+  if (options.bus == "none") {
+    buses.network = std::make_unique<sim::InProcessBus>();
+  } else {
+    auto lcm = std::make_unique<bridges::LcmBus>(options.lcm_url);
+    buses.lcm = lcm.get();
+    buses.network = std::move(lcm);
+  }
+  if (!options.record.empty())
+    buses.recorder = std::make_unique<bridges::RecordingBus>(
+        *buses.network, options.record, loaded.config.epoch_us,
+        options.overwrite ? bridges::Existing::overwrite : bridges::Existing::refuse);
+  return buses;
+}
+
+/// Holds simulated time to a multiple of wall time.
+class Pacer {
+ public:
+  /// How long to wait before the step that ends at `next`.
+  std::chrono::microseconds until(sim::Time next, const sim::RunControl& control) {
+    if (control.speed <= 0) return std::chrono::microseconds{0};
+    const Clock::time_point now = Clock::now();
+    if (!started_ || changes_ != control.changes) start(next, now, control);
+    const auto ahead = std::chrono::duration_cast<Clock::duration>(
+        std::chrono::duration<double>(sim::to_seconds(next - sim_start_) / control.speed));
+    const auto wait = std::chrono::duration_cast<std::chrono::microseconds>(wall_start_ + ahead - now);
+    // Too slow a machine: go on from here rather than race to catch up.
+    if (wait < std::chrono::milliseconds(-500)) start(next, now, control);
+    return std::max(wait, std::chrono::microseconds{0});
+  }
+
+ private:
+  void start(sim::Time next, Clock::time_point now, const sim::RunControl& control) {
+    started_ = true;
+    changes_ = control.changes;
+    sim_start_ = next;
+    wall_start_ = now;
+  }
+
+  bool started_ = false;
+  std::int64_t changes_ = 0;
+  sim::Time sim_start_{0};
+  Clock::time_point wall_start_;
+};
+
+class Run {
+ public:
+  Run(const sim::LoadedWorld& loaded, const RunOptions& options)
+      : loaded_(loaded),
+        options_(options),
+        buses_(open_buses(loaded, options)),
+        world_(loaded.config, buses_.outer(), bridges::open_serial_port),
+        service_(buses_.outer(), world_, control_, lockstep_, {sim::to_yaml(loaded.resolved), version_text()}),
+        scoring_(world_, buses_.outer()),
+        duration_s_(options.duration_s.value_or(loaded.config.run.duration_s)),
+        progress_(duration_s_, options.quiet) {
+    control_.speed = options.speed.value_or(loaded.config.run.speed);
+    control_.paused = options.paused;
+    if (!options.results.empty()) results_ = std::make_unique<Results>(options.results, world_);
+  }
+
+  Summary go() {
+    Summary summary;
+    const Clock::time_point begin = Clock::now();
+    try {
+      start_clients();
+      loop();
+      summary.ended = how_ended();
+      if (signal_caught != 0) summary.exit_code = 128 + signal_caught;
+    } catch (const RunError& error) {
+      fail(summary, error.exit_code, error.ended, error.what());
+    } catch (const sim::PhysicsFault& error) {
+      fail(summary, 3, "fault", error.what());
+    } catch (const bridges::LockstepTimeout& error) {
+      fail(summary, 5, "timeout", error.what());
+    }
+    progress_.clear();
+    summary.wall_s = std::chrono::duration<double>(Clock::now() - begin).count();
+    finish(summary);
+    return summary;
+  }
+
+ private:
+  static void fail(Summary& summary, int exit_code, const std::string& ended, const std::string& error) {
+    summary.exit_code = exit_code;
+    summary.ended = ended;
+    summary.error = error;
+  }
+
+  std::string how_ended() const {
+    if (signal_caught != 0) return "signal";
+    return control_.quit ? "quit" : "duration";
+  }
+
+  bool wanted() const { return signal_caught == 0 && !control_.quit; }
+
+  void start_clients() {
+    std::vector<std::string> awaited = options_.await;
+    if (options_.launch) {
+      if (buses_.lcm == nullptr && !loaded_.config.processes.empty())
+        throw RunError(2, "configuration", "--launch needs the LCM bus: processes cannot attach to --bus none");
+      for (const sim::ProcessConfig& process : loaded_.config.processes) {
+        try {
+          processes_.start(process, buses_.lcm->url(), options_.results);
+        } catch (const std::runtime_error& error) {
+          throw RunError(4, "process", error.what());
+        }
+        if (!process.client.empty()) awaited.push_back(process.client);
+      }
+    } else if (!loaded_.config.processes.empty() && !options_.quiet) {
+      spdlog::info("the world names {} processes; --launch starts them", loaded_.config.processes.size());
+    }
+    await(awaited);
+  }
+
+  void await(const std::vector<std::string>& clients) {
+    const auto deadline =
+        Clock::now() + std::chrono::duration<double>(loaded_.config.lockstep.join_timeout_s);
+    for (const std::string& client : clients)
+      while (!lockstep_.has(client) && wanted()) {
+        service_.handle_requests();
+        check_processes();
+        if (gone_.count(client) > 0) break;
+        if (Clock::now() > deadline)
+          throw RunError(5, "timeout", "lockstep: client '" + client + "' has not joined within " +
+                                           std::to_string(loaded_.config.lockstep.join_timeout_s) + " s");
+        buses_.wait(std::chrono::milliseconds(20));
+      }
+  }
+
+  void loop() {
+    service_.publish_step();
+    buses_.outer().end_of_step();
+    synchronize();
+    const sim::Time end = duration_s_ > 0 ? sim::from_seconds(duration_s_) : sim::Time::max();
+    while (wanted() && world_.now() < end) {
+      service_.handle_requests();
+      if (!control_.may_step()) {
+        progress_.update(world_.now(), messages(), true);
+        check_processes();
+        buses_.wait(std::chrono::milliseconds(20));
+        continue;
+      }
+      pace();
+      if (!control_.may_step()) continue;
+      step();
+    }
+  }
+
+  void step() {
+    if (buses_.recorder) buses_.recorder->set_time(world_.now());
+    world_.step();
+    control_.step_taken();
+    service_.publish_step();
+    scoring_.after_step();
+    if (results_) results_->after_step();
+    buses_.outer().end_of_step();
+    synchronize();
+    if (buses_.recorder)
+      if (const auto error = buses_.recorder->error()) throw RunError(4, "bus", *error);
+    // Looking for dead children costs a system call; ten times a simulated second will do.
+    if (world_.step_number() % 10 == 0) check_processes();
+    progress_.update(world_.now(), messages(), false);
+  }
+
+  void synchronize() {
+    service_.synchronize(
+        loaded_.config.lockstep.timeout_s, [this](std::chrono::milliseconds time) { buses_.wait(time); },
+        [this] {
+          check_processes();
+          return signal_caught == 0;
+        });
+  }
+
+  /// Waits until the next step is due, answering requests meanwhile.
+  void pace() {
+    const sim::Time next = world_.now() + world_.step_time();
+    for (auto wait = pacer_.until(next, control_); wait.count() > 0 && wanted() && control_.may_step();
+         wait = pacer_.until(next, control_)) {
+      if (wait > std::chrono::milliseconds(2)) {
+        const auto nap = std::chrono::duration_cast<std::chrono::milliseconds>(wait) - std::chrono::milliseconds(1);
+        buses_.wait(std::min(nap, std::chrono::milliseconds(20)));
+      } else {
+        std::this_thread::sleep_for(wait);
+      }
+      service_.handle_requests();
+    }
+  }
+
+  void check_processes() {
+    if (processes_.empty()) return;
+    for (const ProcessGroup::Exit& exit : processes_.reap()) {
+      progress_.clear();
+      const std::string text = "process '" + exit.name + "' " + exit.how;
+      if (exit.ends_run) throw RunError(1, "process", text + "; the world says the run ends with it");
+      if (exit.failed)
+        spdlog::error("{}; the run goes on without it", text);
+      else
+        spdlog::info("{}", text);
+      gone_[exit.client] = true;
+      lockstep_.leave(exit.client);
+    }
+  }
+
+  std::uint64_t messages() const {
+    const sim::BusCounts counts = buses_.network->counts();
+    return counts.published + counts.received;
+  }
+
+  void finish(Summary& summary) {
+    service_.publish_end();
+    processes_.stop();
+    if (buses_.recorder) {
+      buses_.recorder->close();
+      if (const auto error = buses_.recorder->error(); error && summary.exit_code == 0)
+        fail(summary, 4, "bus", *error);
+    }
+    const sim::BusCounts counts = buses_.network->counts();
+    summary.world = loaded_.config.name;
+    summary.seed = loaded_.config.run.seed;
+    summary.steps = world_.step_number();
+    summary.sim_time_s = sim::to_seconds(world_.now());
+    summary.state_hash = world_.state_hash();
+    summary.messages = counts.published + counts.received;
+    summary.dropped_messages = counts.dropped_incoming + counts.dropped_outgoing;
+    summary.bad_messages = world_.counts().bad_messages + service_.bad_messages() + scoring_.bad_messages();
+    summary.quick_steps = world_.physics().quick_steps();
+    summary.metrics = scoring_.figures();
+    summary.verdicts = scoring_.verdicts();
+    // Without the programs that a world names there is nothing to judge.
+    const bool judged = loaded_.config.processes.empty() || options_.launch || !options_.await.empty();
+    if (!judged) summary.verdicts.clear();
+    if (summary.exit_code == 0 && !summary.passed()) summary.exit_code = 1;
+    if (results_) write_results(summary);
+  }
+
+  void write_results(Summary& summary) {
+    try {
+      results_->finish(summary, scoring_, loaded_.resolved);
+    } catch (const std::runtime_error& error) {
+      if (summary.exit_code == 0) fail(summary, 4, "bus", error.what());
+    }
+  }
+
+  const sim::LoadedWorld& loaded_;
+  const RunOptions& options_;
+  Buses buses_;
+  sim::RunControl control_;
+  sim::Lockstep lockstep_;
+  sim::World world_;
+  bridges::SimService service_;
+  Scoring scoring_;
+  double duration_s_;
+  Progress progress_;
+  Pacer pacer_;
+  ProcessGroup processes_;
+  std::map<std::string, bool> gone_;
+  std::unique_ptr<Results> results_;
+};
+
+}  // namespace
+
+Summary run_world(const sim::LoadedWorld& loaded, const RunOptions& options) {
+  Summary summary;
+  summary.world = loaded.config.name;
+  try {
+    return Run(loaded, options).go();
+  } catch (const sim::ConfigError&) {
+    throw;
+  } catch (const RunError& error) {
+    summary.exit_code = error.exit_code;
+    summary.error = error.what();
+  } catch (const std::runtime_error& error) {  // bus, record, serial port or results could not be opened
+    summary.exit_code = 4;
+    summary.error = error.what();
+  }
+  summary.ended = "bus";
+  return summary;
+}
+
+void catch_signals() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigemptyset(&action.sa_mask);
+  for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+  ::signal(SIGPIPE, SIG_IGN);
+}
+
+int caught_signal() { return signal_caught; }
+
+}  // namespace tools

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/world/load_world.hpp"
+#include "tools/experiment/results.hpp"
+
+namespace tools {
+
+/// What the command line asks of a run.
+struct RunOptions {
+  std::optional<double> duration_s;    ///< instead of the world's
+  std::optional<double> speed;         ///< instead of the world's; 0: as fast as possible
+  std::string bus = "lcm";             ///< lcm, none
+  std::string lcm_url;                 ///< empty: LCM_DEFAULT_URL, then the default
+  std::string record;                  ///< file for the LCM event log; empty: none
+  bool overwrite = false;              ///< of the record
+  std::string results;                 ///< directory; empty: none
+  bool paused = false;
+  bool launch = false;
+  std::vector<std::string> await;      ///< lockstep clients, started by hand, to wait for
+  bool quiet = false;
+};
+
+/// Runs a world to its end: builds it, opens the bus and the record, starts the processes, steps, paces, waits for
+/// lockstep clients, scores, writes the results.  Errors end up in the summary with their exit code; nothing is
+/// thrown but ConfigError.
+Summary run_world(const sim::LoadedWorld& loaded, const RunOptions& options);
+
+/// SIGINT and SIGTERM end the run at the next step, once this was called.
+void catch_signals();
+/// The signal that came, or 0.
+int caught_signal();
+
+/// Versions of shoal and of the libraries it runs with.
+std::string version_text();
+
+}  // namespace tools

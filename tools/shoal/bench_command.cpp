@@ -1,0 +1,49 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <iostream>
+#include <memory>
+
+#include "tools/experiment/scale_scene.hpp"
+#include "tools/shoal/commands.hpp"
+
+namespace tools {
+
+namespace {
+
+struct BenchArguments {
+  std::vector<int> robots{1, 10, 100, 1000};
+  double warm_up_s = 10;
+  double measure_s = 20;
+};
+
+void bench(const BenchArguments& arguments) {
+  std::cout << "scale scene: wandering rovers, 180 rays at 10 Hz each, step 0.01 s, one thread, in-process bus\n"
+            << fmt::format("{:>7} {:>9} {:>28} {:>18} {:>18}\n", "robots", "load s", "CPU ms per robot second",
+                           "real-time factor", "state hash");
+  for (const int robots : arguments.robots) {
+    const ScaleFigures figures = measure_scale(robots, arguments.warm_up_s, arguments.measure_s);
+    std::cout << fmt::format("{:>7} {:>9.3f} {:>28.3f} {:>18.2f}   {:016x}\n", robots, figures.load_s,
+                             figures.cpu_ms_per_robot_second, figures.real_time_factor, figures.state_hash)
+              << std::flush;
+  }
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("bench", "Measure the speed of this machine on the scale scene");
+  const auto arguments = std::make_shared<BenchArguments>();
+  command->add_option("--robots", arguments->robots, "how many; several runs one after the other")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--warm-up", arguments->warm_up_s, "simulated seconds before the measurement")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--measure", arguments->measure_s, "simulated seconds measured")->check(CLI::PositiveNumber);
+  command->footer("Examples:\n  shoal bench\n  shoal bench --robots 100 --measure 60");
+  command->callback([arguments, &exit_code] {
+    bench(*arguments);
+    exit_code = exit_ok;
+  });
+}
+
+}  // namespace tools

@@ -1,0 +1,53 @@
+#include <iostream>
+#include <memory>
+
+#include "sim/bus/in_process_bus.hpp"
+#include "sim/world/load_world.hpp"
+#include "sim/world/world.hpp"
+#include "tools/shoal/commands.hpp"
+
+namespace tools {
+
+namespace {
+
+bool is_vehicle_file(const std::string& path) {
+  sim::Diagnostics ignored;
+  const sim::ConfigNode node = sim::load_config_file(path, ignored);
+  return node.find("vehicle") != nullptr || (node.find("bodies") != nullptr && node.find("vehicles") == nullptr);
+}
+
+void check(const std::string& path, const sim::LoadOptions& options) {
+  if (is_vehicle_file(path)) {
+    const sim::VehicleConfig vehicle = sim::load_vehicle(path);
+    std::cout << path << ": vehicle '" << vehicle.vehicle << "': " << vehicle.bodies.size() << " bodies, "
+              << vehicle.joints.size() << " joints, " << vehicle.devices.size() << " devices\n";
+    return;
+  }
+  const sim::LoadedWorld loaded = sim::load_world(path, options);
+  // Building finds what reading cannot: mesh files, bodies without mass.
+  sim::InProcessBus bus;
+  const sim::World world(loaded.config, bus);
+  std::cout << path << ": world '" << loaded.config.name << "': " << world.vehicles().size() << " vehicles, "
+            << loaded.config.objects.size() << " objects, " << world.devices().size() << " devices, "
+            << world.physics().bodies().size() << " bodies\n";
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("check", "Check a world or vehicle file without running it");
+  const auto path = std::make_shared<std::string>();
+  const auto options = std::make_shared<sim::LoadOptions>();
+  command->add_option("FILE", *path, "world or vehicle file")->required();
+  command->add_option("--set", options->sets, "path=value: change a value of the world file")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command->footer("Example:\n  shoal check worlds/coop_land.yaml --set run.seed=3\nEvery error is printed as "
+                  "file:line:column: who: rule, value.");
+  command->callback([path, options, &exit_code] {
+    check(*path, *options);
+    exit_code = exit_ok;
+  });
+}
+
+}  // namespace tools

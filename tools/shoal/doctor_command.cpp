@@ -1,0 +1,43 @@
+#include <iostream>
+#include <memory>
+
+#include "bridges/lcm/network_check.hpp"
+#include "tools/shoal/commands.hpp"
+
+namespace tools {
+
+namespace {
+
+const char* word(bridges::Finding::Verdict verdict) {
+  switch (verdict) {
+    case bridges::Finding::Verdict::ok: return "ok      ";
+    case bridges::Finding::Verdict::warning: return "warning ";
+    default: return "BAD     ";
+  }
+}
+
+int examine(const std::string& url) {
+  bool usable = true;
+  std::vector<std::string> commands;
+  for (const bridges::Finding& finding : bridges::check_network(url)) {
+    std::cout << word(finding.verdict) << finding.name << ": " << finding.text << '\n';
+    usable = usable && finding.verdict != bridges::Finding::Verdict::bad;
+    commands.insert(commands.end(), finding.commands.begin(), finding.commands.end());
+  }
+  if (!commands.empty()) std::cout << "\nTo mend it, type as root:\n";
+  for (const std::string& command : commands) std::cout << "  " << command << '\n';
+  std::cout << (usable ? "\nLCM is usable here.\n" : "\nLCM is not usable here.\n");
+  return usable ? exit_ok : exit_bus;
+}
+
+}  // namespace
+
+void add_doctor_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("doctor", "Is LCM usable here, and what to type if not");
+  const auto url = std::make_shared<std::string>();
+  command->add_option("--lcm-url", *url, "instead of LCM_DEFAULT_URL and the default");
+  command->footer("Example:\n  shoal doctor\nExit code 0: usable, 4: not.");
+  command->callback([url, &exit_code] { exit_code = examine(*url); });
+}
+
+}  // namespace tools

@@ -1,0 +1,150 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <iostream>
+#include <map>
+#include <memory>
+#include <regex>
+
+#include "bridges/lcm/event_log.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/sim_info_t.hpp"
+#include "tools/shoal/commands.hpp"
+
+namespace tools {
+
+namespace {
+
+struct ChannelCount {
+  std::uint64_t events = 0;
+  std::uint64_t bytes = 0;
+  std::int64_t first_us = 0;
+  std::int64_t last_us = 0;
+  std::int64_t fingerprint = 0;
+};
+
+std::string type_name(const shoal::MessageTypes& types, std::int64_t fingerprint) {
+  const shoal::MessageSchema* schema = types.find(static_cast<std::uint64_t>(fingerprint));
+  return schema != nullptr ? schema->name : fmt::format("unknown {:016x}", static_cast<std::uint64_t>(fingerprint));
+}
+
+void print_run(const bridges::LogEvent& event) {
+  if (event.channel != "sim.info") return;
+  try {
+    const auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
+    fmt::print("world {}, seed {}, step {} us\n{}", info.world, info.seed, info.step_us, info.versions);
+  } catch (const shoal::MessageError&) {
+    // A log of something else that uses the name.
+  }
+}
+
+int show_problems(const bridges::EventLogReader& log) {
+  for (const std::string& problem : log.problems()) std::cerr << problem << '\n';
+  return log.problems().empty() ? exit_ok : exit_bus;
+}
+
+int info(const std::string& path, const shoal::MessageTypes& types) {
+  bridges::EventLogReader log(path);
+  std::map<std::string, ChannelCount> channels;
+  std::uint64_t events = 0;
+  std::int64_t first_us = 0;
+  std::int64_t last_us = 0;
+  bool run_shown = false;
+  while (const auto event = log.next()) {
+    if (events++ == 0) first_us = event->utime;
+    last_us = event->utime;
+    ChannelCount& count = channels[event->channel];
+    if (count.events++ == 0) count.first_us = event->utime;
+    count.last_us = event->utime;
+    count.bytes += event->payload.size();
+    count.fingerprint = shoal::fingerprint(event->payload);
+    if (!run_shown && event->channel == "sim.info") {
+      print_run(*event);
+      run_shown = true;
+    }
+  }
+  fmt::print("{}: {} events, {} bytes, {:.3f} s\n", path, events, log.file_bytes(),
+             static_cast<double>(last_us - first_us) * 1e-6);
+  fmt::print("{:>9} {:>9} {:>12}  {:<32} {}\n", "events", "Hz", "bytes", "channel", "type");
+  for (const auto& [channel, count] : channels) {
+    const double span_s = static_cast<double>(count.last_us - count.first_us) * 1e-6;
+    const double rate_hz = span_s > 0 ? static_cast<double>(count.events - 1) / span_s : 0;
+    fmt::print("{:>9} {:>9.2f} {:>12} {:>1}{:<32} {}\n", count.events, rate_hz, count.bytes, " ", channel,
+               type_name(types, count.fingerprint));
+  }
+  return show_problems(log);
+}
+
+std::string csv_value(const shoal::FieldValue& value) {
+  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "1" : "0";
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
+  if (const double* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+  if (const auto* bytes = std::get_if<std::span<const std::byte>>(&value)) {
+    std::string hex;
+    for (const std::byte b : *bytes) hex += fmt::format("{:02x}", static_cast<unsigned>(b));
+    return hex;
+  }
+  std::string quoted = "\"";
+  for (const char c : std::get<std::string_view>(value)) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+/// One table with a row for each event of one channel: the log's time, then every field.  Rows may differ in length
+/// when arrays do; the header is that of the first row.
+int csv(const std::string& path, const std::string& channel, const shoal::MessageTypes& types) {
+  bridges::EventLogReader log(path);
+  bool header = false;
+  std::uint64_t rows = 0;
+  std::uint64_t bad = 0;
+  while (const auto event = log.next()) {
+    if (event->channel != channel) continue;
+    const shoal::MessageSchema* schema = types.find(static_cast<std::uint64_t>(shoal::fingerprint(event->payload)));
+    std::string names = "log_utime";
+    std::string row = std::to_string(event->utime);
+    const auto error = schema == nullptr
+                           ? std::optional<std::string>("is of an unknown type; give its .lcm file with --types")
+                           : shoal::visit_fields(*schema, event->payload,
+                                                 [&](std::string_view name, const shoal::FieldValue& value) {
+                                                   if (!header) names += "," + std::string(name);
+                                                   row += "," + csv_value(value);
+                                                 });
+    if (error) {
+      if (bad++ == 0) std::cerr << path << ": byte " << event->offset << ": " << channel << ": " << *error << '\n';
+      continue;
+    }
+    if (!header) std::cout << names << '\n';
+    header = true;
+    std::cout << row << '\n';
+    ++rows;
+  }
+  if (bad > 1) std::cerr << bad << " events of " << channel << " could not be decoded\n";
+  if (rows == 0 && bad == 0) std::cerr << path << ": no event on channel '" << channel << "'; see shoal log info\n";
+  return rows == 0 || bad > 0 ? exit_bus : show_problems(log);
+}
+
+}  // namespace
+
+void add_log_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("log", "Look into LCM event logs");
+  command->require_subcommand(1);
+  struct Arguments {
+    std::string path, channel;
+    std::vector<std::string> lcm_files;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* info_command = command->add_subcommand("info", "Channels, rates, types, and the run that made it");
+  CLI::App* csv_command = command->add_subcommand("csv", "The messages of one channel as CSV on stdout");
+  for (CLI::App* each : {info_command, csv_command}) {
+    each->add_option("LOG", arguments->path, "LCM event log")->required();
+    each->add_option("--types", arguments->lcm_files, ".lcm files of types that are not Shoal's");
+  }
+  csv_command->add_option("CHANNEL", arguments->channel, "such as rover1.odometry")->required();
+  command->footer("Examples:\n  shoal log info run.lcm\n  shoal log csv run.lcm rover1.odometry > odometry.csv");
+  info_command->callback([arguments, &exit_code] {
+    exit_code = info(arguments->path, shoal::types_with(arguments->lcm_files));
+  });
+  csv_command->callback([arguments, &exit_code] {
+    exit_code = csv(arguments->path, arguments->channel, shoal::types_with(arguments->lcm_files));
+  });
+}
+
+}  // namespace tools

@@ -1,0 +1,62 @@
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <iostream>
+
+#include "bridges/lcm/bus_error.hpp"
+#include "sim/config/diagnostics.hpp"
+#include "tools/experiment/runner.hpp"
+#include "tools/shoal/commands.hpp"
+
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App app{"Shoal simulates many vehicles and their devices on LCM channels."};
+  app.set_version_flag("--version", tools::version_text);
+  app.require_subcommand(1);
+  app.footer(
+      "Examples:\n"
+      "  shoal run worlds/minimal.yaml --duration 10\n"
+      "  shoal run worlds/coop_land.yaml --launch --results results/coop_land\n"
+      "  shoal check worlds/coop_land.yaml\n"
+      "  shoal describe lidar\n"
+      "`shoal COMMAND --help` tells more.\n"
+      "Exit codes: 0 ok, 1 a pass rule of the world failed, 2 usage or configuration, 3 physics fault,\n"
+      "4 bus or file trouble, 5 time-out, 130 SIGINT, 143 SIGTERM.");
+  int exit_code = tools::exit_ok;
+  tools::add_run_command(app, exit_code);
+  tools::add_check_command(app, exit_code);
+  tools::add_describe_command(app, exit_code);
+  tools::add_list_command(app, exit_code);
+  tools::add_spy_command(app, exit_code);
+  tools::add_doctor_command(app, exit_code);
+  tools::add_log_command(app, exit_code);
+  tools::add_bench_command(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // CLI11 has exit codes of its own; all that is not help or version is wrong usage.
+    return app.exit(error) == 0 ? tools::exit_ok : tools::exit_usage;
+  } catch (const sim::ConfigError& error) {
+    for (const std::string& line : error.lines()) std::cerr << line << '\n';
+    return tools::exit_usage;
+  } catch (const bridges::BusError& error) {
+    std::cerr << "shoal: " << error.what() << '\n';
+    return tools::exit_bus;
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Data goes to stdout, words for people to stderr.
+  spdlog::set_default_logger(spdlog::stderr_color_mt("shoal"));
+  spdlog::set_pattern("%^%l%$: %v");
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "shoal: " << error.what() << '\n';
+    return tools::exit_bus;
+  }
+}

@@ -1,0 +1,149 @@
+#include "tools/shoal/reference_pages.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <stdexcept>
+
+#include "shoal/message_schema.hpp"
+#include "sim/config/param_table.hpp"
+#include "sim/device/device_registry.hpp"
+#include "sim/random/noise.hpp"
+#include "sim/world/world_config.hpp"
+
+namespace tools {
+
+namespace {
+
+template <typename Config>
+std::vector<sim::ParamInfo> params_of() {
+  std::vector<sim::ParamInfo> table;
+  sim::ParamReader in(table);
+  Config config;
+  config.read(in);
+  return table;
+}
+
+std::vector<sim::ParamInfo> common_params() {
+  std::vector<sim::ParamInfo> table;
+  sim::ParamReader in(table);
+  sim::DeviceConfig config;
+  config.read_common(in);
+  return table;
+}
+
+std::vector<sim::ParamInfo> params_of(const sim::DeviceType& type) {
+  std::vector<sim::ParamInfo> table;
+  sim::ParamReader in(table);
+  type.make_params()->read(in);
+  return table;
+}
+
+std::string rate_text(double rate_hz) {
+  return rate_hz > 0 ? fmt::format("{} Hz", rate_hz) : std::string("every step");
+}
+
+std::string traffic_of(const sim::DeviceType& type) {
+  std::string text;
+  if (!type.report_message.empty())
+    text += fmt::format("Reports `{}` on `VEHICLE.DEVICE`, by default {}. ", type.report_message,
+                        rate_text(type.default_rate_hz));
+  if (!type.command_messages.empty())
+    text += fmt::format("Takes `{}` on `VEHICLE.DEVICE.cmd`.", type.command_messages);
+  return text + "\n";
+}
+
+std::string message_text(const shoal::MessageSchema& schema) {
+  std::string text = fmt::format("{}  fingerprint {:016x}\n", schema.name, schema.fingerprint);
+  if (!schema.comment.empty()) text += schema.comment + "\n";
+  for (const shoal::Member& member : schema.members) {
+    std::string name = member.name;
+    for (const shoal::Dimension& dimension : member.dimensions) name += "[" + dimension.text + "]";
+    text += fmt::format("  {:<8} {:<32} {}\n", member.type_name, name, member.comment);
+  }
+  return text;
+}
+
+const char* const generated = "<!-- Generated: `shoal describe --page {}`. Do not edit. -->\n\n";
+
+std::string devices_page() {
+  std::string page = fmt::format(fmt::runtime(generated), "devices") +
+                     "# Devices\n\nEach device of a vehicle file has the keys of its type and the keys that all "
+                     "devices have. Angles ending in `_deg` are degrees; everything else is SI.\n\n"
+                     "## Keys of every device\n\n" +
+                     sim::markdown_table(common_params()) +
+                     "\n## Noise\n\nA key of type map that speaks of an error has these keys. They compose in this "
+                     "order: scale error, bias, random walk, Gauss-Markov, gaussian, uniform, outliers, quantisation, "
+                     "saturation.\n\n" +
+                     sim::markdown_table(params_of<sim::NoiseParams>());
+  for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all())
+    page += fmt::format("\n## {}\n\n{}\n\n{}\n{}", type->name, type->meaning, traffic_of(*type),
+                        sim::markdown_table(params_of(*type)));
+  return page;
+}
+
+std::string world_format_page() {
+  return fmt::format(fmt::runtime(generated), "world_format") +
+         "# World and vehicle files\n\n"
+         "YAML. Every error is reported as `file:line:column: who: rule, value`; an unknown key is an error. Lengths "
+         "are metres, masses kilograms, times seconds; keys ending in `_deg` are degrees. Frames: see "
+         "[conventions.md](conventions.md).\n\n"
+         "* `include: FILE` (or a list) at the top of a file: the included file is the base over which this one is "
+         "merged, maps key by key, lists of named items item by item, anything else replaced.\n"
+         "* `${name}` in a vehicle file stands for a parameter: the file's `parameters:` gives the default, the "
+         "world's `parameters:` of that vehicle another value. `${index}` is the number of the instance (from 1), "
+         "`${name}` its entry's name.\n"
+         "* `overrides:` of a vehicle, and `--set` on the command line, change one value each by its dotted path; an "
+         "item of a list is named by its `name`: `vehicles.rover1.devices.lidar.rate_hz`.\n"
+         "* A vehicle file is looked up beside the world file, then in `../vehicles`.\n"
+         "* Where two materials touch, the entry of `contacts` that names both wins over one that says `any`; among "
+         "equals the last one wins.\n\n"
+         "## World\n\n" +
+         sim::markdown_table(params_of<sim::WorldConfig>()) + "\n## Vehicle\n\n" +
+         sim::markdown_table(params_of<sim::VehicleConfig>()) +
+         "\nThe keys of `devices` depend on the type: see [devices.md](devices.md).\n";
+}
+
+std::string messages_page() {
+  std::string page = fmt::format(fmt::runtime(generated), "messages") +
+                     "# Messages\n\nPackage `shoal`, from `bridges/lcm/types/*.lcm`. `utime` is the run's epoch plus "
+                     "simulated time, in microseconds. Channels are `VEHICLE.DEVICE` for reports, "
+                     "`VEHICLE.DEVICE.cmd` for commands, `VEHICLE.DEVICE.truth` for readings without errors, and "
+                     "`sim.*` for the simulator itself.\n\n"
+                     "| channel | message | |\n|---|---|---|\n"
+                     "| `sim.clock` | `shoal.utime_t` | simulated time |\n"
+                     "| `sim.state` | `shoal.sim_state_t` | true poses of all vehicles |\n"
+                     "| `sim.info` | `shoal.sim_info_t` | world, seed, resolved configuration, versions |\n"
+                     "| `sim.control` | `shoal.sim_control_request_t` | requests to the simulator |\n"
+                     "| `sim.control.reply` | `shoal.sim_control_reply_t` | their answers |\n"
+                     "| `sim.tick` | `shoal.sim_tick_t` | lockstep: the world waits for the named clients |\n"
+                     "| `sim.ack` | `shoal.sim_ack_t` | lockstep: a client is done |\n\n"
+                     "Types that are equal on the wire to those of `bot_core` say so.\n";
+  for (const auto& [name, schema] : shoal::embedded_types().all())
+    page += fmt::format("\n## {}\n\n```\n{}```\n", name, message_text(schema));
+  return page;
+}
+
+}  // namespace
+
+std::string reference_page(const std::string& name) {
+  if (name == "devices") return devices_page();
+  if (name == "world_format") return world_format_page();
+  if (name == "messages") return messages_page();
+  throw std::out_of_range("no page '" + name + "'; pages: devices, messages, world_format");
+}
+
+std::string describe_text(const std::string& name) {
+  if (name == "device") return "Keys of every device.\n\n" + sim::text_table(common_params());
+  if (name == "noise") return "Error of a measured quantity.\n\n" + sim::text_table(params_of<sim::NoiseParams>());
+  if (name == "world") return "Keys of a world file.\n\n" + sim::text_table(params_of<sim::WorldConfig>());
+  if (name == "vehicle") return "Keys of a vehicle file.\n\n" + sim::text_table(params_of<sim::VehicleConfig>());
+  if (const sim::DeviceType* type = sim::DeviceRegistry::instance().find(name))
+    return type->name + ": " + type->meaning + "\n" + traffic_of(*type) + "\n" +
+           sim::text_table(params_of(*type)) + "\nBeside these, the keys of every device: shoal describe device\n";
+  const shoal::MessageTypes& types = shoal::embedded_types();
+  for (const std::string& full : {name, "shoal." + name})
+    if (const shoal::MessageSchema* schema = types.find(std::string_view(full))) return message_text(*schema);
+  return {};
+}
+
+}  // namespace tools
