@@ -71,7 +71,9 @@ std::unique_ptr<Mailbox> InProcessBus::open_mailbox(const std::string& channel, 
   check_channel(channel);
   auto queue = std::make_shared<Queue>();
   queue->capacity = capacity;
-  queues_[channel].push_back(queue);
+  auto& queues = queues_[channel];
+  std::erase_if(queues, [](const auto& other) { return other->closed; });
+  queues.push_back(queue);
   return std::make_unique<QueueMailbox>(std::move(queue));
 }
 

@@ -74,7 +74,11 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     if (expects_key()) stop_at_bad_key(mark, "nothing");
-    add(new_node(Kind::null, mark), anchor);
+    ConfigNode node = new_node(Kind::null, mark);
+    // The mark of nothing is that of whatever comes next; the key without a value is the better place.
+    const bool is_value = !open_.empty() && open_.back().node.kind == Kind::map;
+    if (is_value && node.place.line != open_.back().key_place.line) node.place = open_.back().key_place;
+    add(std::move(node), anchor);
   }
 
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,

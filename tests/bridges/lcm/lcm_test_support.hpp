@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
+#include <fstream>
 #include <random>
 #include <string>
 #include <string_view>
@@ -22,6 +23,13 @@ using namespace std::chrono_literals;
 inline std::string own_url(int offset = 0) {
   const int port = 10'000 + (static_cast<int>(getpid()) * 4 + offset) % 20'000;
   return "udpm://239.255.76.67:" + std::to_string(port) + "?ttl=0";
+}
+
+/// Whether the kernel grants the receive buffer that bursts and images need; stock Debian does not.
+inline bool has_large_receive_buffers() {
+  long bytes = 0;
+  std::ifstream("/proc/sys/net/core/rmem_max") >> bytes;
+  return bytes >= 4194304;
 }
 
 inline sim::Bytes bytes_of(std::string_view text) {

@@ -157,9 +157,8 @@ TEST_F(IncludeTest, ReportsAnIncludeThatIsNoName) {
     write("w.yaml", std::string("include: ") + value + "\n");
     const Lines errors = errors_of("w.yaml");
     ASSERT_EQ(errors.size(), 1u) << value;
-    EXPECT_EQ(
-        errors[0].substr(0, 76),
-        "w.yaml:1:10: 'include' must be a file name or a list of file names, got " + errors[0].substr(72, 4));
+    const std::string start = "w.yaml:1:10: 'include' must be a file name or a list of file names, got ";
+    EXPECT_EQ(errors[0].substr(0, start.size()), start);
   }
 }
 

@@ -232,11 +232,12 @@ TEST(Hinge2Joint, SteersAndRolls) {
   Pair rig(config);
   EXPECT_EQ(rig.joint->axes(), 2);
   rig.joint->set_motor(0, 1000, 1);
-  rig.joint->set_motor(1, 1000, 0);
+  // A weak motor: ODE lets a motor leave a stop with all its force for one step (see fudge_factor).
+  rig.joint->set_motor(1, 0.5, 0);
   rig.run(100);
   EXPECT_NEAR(rig.joint->position(0), 0.4, 0.01);
   EXPECT_NEAR(sim::yaw_of(rig.arm->X_WB().linear()), 0.4, 0.01);
-  rig.joint->set_motor(-1, 1000, 0);
+  rig.joint->set_motor(-1, 0.5, 0);
   rig.run(300);
   EXPECT_NEAR(rig.joint->position(0), -0.6, 0.01);
 

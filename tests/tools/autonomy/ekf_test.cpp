@@ -108,8 +108,9 @@ TEST(Ekf, SightingCorrectsThePosition) {
 TEST(Ekf, SightingCorrectsTheHeading) {
   // The heading is wrong by 0.1 rad; what stands 10 m ahead is seen 1 m to the right.
   Ekf ekf({{0, 0}, 0}, 1e-6, 0.2);
-  EXPECT_TRUE(ekf.update_relative(turned({10, 0}, -0.1), 1e-3, {10, 0}, 1e-3));
-  EXPECT_NEAR(ekf.pose().yaw_rad, std::sin(0.1), 1e-5);  // the filter takes the sine for the angle
+  EXPECT_TRUE(ekf.update_relative(turned({10, 0}, -0.1), 0.05, {10, 0}, 1e-6));
+  // The filter takes the sine for the angle; its gain is 2^2 / (2^2 + 0.05^2).
+  EXPECT_NEAR(ekf.pose().yaw_rad, std::sin(0.1) * 4 / 4.0025, 1e-6);
 }
 
 TEST(Ekf, GateRefusesAnOutlier) {

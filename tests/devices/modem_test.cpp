@@ -1,0 +1,156 @@
+#include "shoal/modem_received_t.hpp"
+#include "shoal/modem_send_t.hpp"
+#include "tests/devices/world_fixture.hpp"
+
+namespace {
+
+/// Three boxes on a line, 150 m apart, with a modem each.
+std::string modem_world(const std::string& keys, const std::string& third_channel = "radio") {
+  std::string text =
+      "shoal: 1\nphysics: {step_s: 0.001}\nobjects:\n  - {name: ground, fixed: true, parts: [{shape: plane}]}\nvehicles:\n";
+  const char* names[] = {"a", "b", "c"};
+  for (int i = 0; i < 3; ++i)
+    text += std::string("  - {name: ") + names[i] + ", position_m: [" + std::to_string(150 * i) +
+            ", 0, 0], model: {shoal: 1, vehicle: box" + std::to_string(i) +
+            ", bodies: [{name: b, position_m: [0, 0, 0.2], parts: [{shape: box, size_m: [0.4, 0.4, 0.4], "
+            "mass_kg: 5}]}], devices: [{name: modem, type: modem, channel: " +
+            (i == 2 ? third_channel : "radio") + ", " + keys + "}]}}\n";
+  return text;
+}
+
+shoal::modem_send_t message(const std::string& text, const std::string& destination = "") {
+  shoal::modem_send_t send{};
+  send.destination = destination;
+  send.size = static_cast<std::int32_t>(text.size());
+  send.data.assign(text.begin(), text.end());
+  return send;
+}
+
+std::string text_of(const shoal::modem_received_t& received) { return {received.data.begin(), received.data.end()}; }
+
+TEST(Modem, DeliversAfterAirTimeAndPropagation) {
+  // 10 bytes at 800 bit/s: 0.1 s; 150 m at 1500 m/s: 0.1 s.
+  test::TestWorld test(modem_world("range_m: 1000, data_rate_bps: 800, propagation_mps: 1500"));
+  test::Listener<shoal::modem_received_t> at_b(test, "b.modem");
+  test::Listener<shoal::modem_received_t> at_c(test, "c.modem");
+  test.run_for(0.05);
+  test.send("a.modem.cmd", message("0123456789"));
+  test.run_for(0.5);
+  const auto b = at_b.take_all();
+  const auto c = at_c.take_all();
+  ASSERT_EQ(b.size(), 1u);
+  ASSERT_EQ(c.size(), 1u);
+  EXPECT_EQ(text_of(b[0]), "0123456789");
+  EXPECT_EQ(b[0].source, "a");
+  EXPECT_EQ(b[0].sent_utime, test.world.epoch_us() + 50000);
+  EXPECT_EQ(b[0].utime - b[0].sent_utime, 200000);
+  EXPECT_EQ(c[0].utime - c[0].sent_utime, 300000);
+}
+
+TEST(Modem, IsNotHeardBeyondItsRangeOrOnAnotherChannel) {
+  test::TestWorld near(modem_world("range_m: 200"));
+  test::Listener<shoal::modem_received_t> b(near, "b.modem"), c(near, "c.modem");
+  near.send("a.modem.cmd", message("x"));
+  near.run_for(1);
+  EXPECT_EQ(b.take_all().size(), 1u);
+  EXPECT_EQ(c.take_all().size(), 0u);
+
+  test::TestWorld apart(modem_world("range_m: 2000", "other"));
+  test::Listener<shoal::modem_received_t> on_other(apart, "c.modem");
+  apart.send("a.modem.cmd", message("x"));
+  apart.run_for(1);
+  EXPECT_EQ(on_other.take_all().size(), 0u);
+}
+
+TEST(Modem, SendsToOneVehicleWhenADestinationIsGiven) {
+  test::TestWorld test(modem_world("range_m: 1000"));
+  test::Listener<shoal::modem_received_t> b(test, "b.modem"), c(test, "c.modem");
+  test.send("a.modem.cmd", message("x", "c"));
+  test.run_for(1);
+  EXPECT_EQ(b.take_all().size(), 0u);
+  EXPECT_EQ(c.take_all().size(), 1u);
+}
+
+TEST(Modem, SendsOneMessageAfterTheOther) {
+  test::TestWorld test(modem_world("range_m: 1000, data_rate_bps: 800, propagation_mps: 1e9"));
+  test::Listener<shoal::modem_received_t> b(test, "b.modem");
+  test.send("a.modem.cmd", message("0123456789"));
+  test.send("a.modem.cmd", message("abcdefghij"));
+  test.run_for(1);
+  const auto received = b.take_all();
+  ASSERT_EQ(received.size(), 2u);
+  EXPECT_EQ(text_of(received[1]), "abcdefghij");
+  EXPECT_EQ(received[1].sent_utime - received[0].sent_utime, 100000);
+}
+
+TEST(Modem, LosesTheShareOfMessagesAskedFor) {
+  test::TestWorld test(modem_world("range_m: 200, data_rate_bps: 1e6, loss_probability: 0.3"));
+  test::Listener<shoal::modem_received_t> b(test, "b.modem");
+  for (int i = 0; i < 2000; ++i) {
+    test.send("a.modem.cmd", message("x"));
+    test.world.step();
+  }
+  test.run_for(0.1);
+  // Binomial: 2000 * 0.7 = 1400, sigma = sqrt(2000 * 0.3 * 0.7) = 20.5.
+  EXPECT_NEAR(static_cast<double>(b.take_all().size()), 1400, 4 * 20.5);
+}
+
+TEST(Modem, DropsTheOldestWhenItsQueueIsFull) {
+  test::TestWorld test(modem_world("range_m: 1000, data_rate_bps: 80, queue_messages: 2"));
+  test::Listener<shoal::modem_received_t> b(test, "b.modem");
+  for (const char* text : {"1", "2", "3", "4"}) test.send("a.modem.cmd", message(text));
+  test.run_for(2);
+  const auto received = b.take_all();
+  ASSERT_EQ(received.size(), 2u);
+  EXPECT_EQ(text_of(received[0]), "3");
+  EXPECT_EQ(text_of(received[1]), "4");
+}
+
+TEST(Modem, RefusesWhatItCannotSend) {
+  test::TestWorld test(modem_world("range_m: 1000, max_message_bytes: 4"));
+  test.send("a.modem.cmd", message("12345"));
+  test.send("a.modem.cmd", message(""));
+  test.send("a.modem.cmd", message("x", "nobody"));
+  test.run_for(0.1);
+  EXPECT_EQ(test.world.counts().bad_messages, 3);
+}
+
+/// A port whose other end is the test.
+class FakePort final : public sim::BytePort {
+ public:
+  explicit FakePort(std::shared_ptr<std::pair<std::string, std::string>> ends) : ends_(std::move(ends)) {}
+  sim::Bytes read() override {
+    const auto* data = reinterpret_cast<const std::byte*>(ends_->first.data());
+    sim::Bytes bytes(data, data + ends_->first.size());
+    ends_->first.clear();
+    return bytes;
+  }
+  void write(std::span<const std::byte> bytes) override {
+    ends_->second.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  }
+  std::uint64_t dropped_bytes() const override { return 0; }
+
+ private:
+  std::shared_ptr<std::pair<std::string, std::string>> ends_;  ///< to the modem, from the modem
+};
+
+TEST(Modem, SpeaksLinesThroughItsSerialPort) {
+  const auto loaded = sim::load_world_text(modem_world("range_m: 1000, serial: {path: \"/nowhere/{vehicle}\"}"),
+                                           "worlds/test.yaml");
+  std::map<std::string, std::shared_ptr<std::pair<std::string, std::string>>> ends;
+  sim::InProcessBus bus;
+  sim::World world(loaded.config, bus, [&](const std::string& kind, const std::string& path) {
+    EXPECT_EQ(kind, "pty");
+    ends[path] = std::make_shared<std::pair<std::string, std::string>>();
+    return std::make_unique<FakePort>(ends[path]);
+  });
+  ends.at("/nowhere/a")->first = "hello\nworld\npart of a li";
+  for (int i = 0; i < 500; ++i) world.step();
+  EXPECT_EQ(ends.at("/nowhere/b")->second, "hello\nworld\n");
+  EXPECT_EQ(ends.at("/nowhere/c")->second, "hello\nworld\n");
+  ends.at("/nowhere/a")->first = "ne\n";
+  for (int i = 0; i < 500; ++i) world.step();
+  EXPECT_EQ(ends.at("/nowhere/b")->second, "hello\nworld\npart of a line\n");
+}
+
+}  // namespace

@@ -1,0 +1,128 @@
+#include <gtest/gtest.h>
+#include <ode/ode.h>
+
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+#include "tests/sim/physics/small_worlds.hpp"
+
+namespace {
+
+using namespace small_worlds;
+
+/// A pile of boxes and balls that falls together, beside a fleet that runs into walls and each other.
+std::unique_ptr<PhysicsWorld> pile_and_fleet(const std::string& space, const std::string& solver = "auto") {
+  PhysicsConfig config;
+  config.space = space;
+  config.solver = solver;
+  auto world = make_world(config, {slippery()});
+  add_ground(*world);
+  for (int i = 0; i < 4; ++i)
+    add(*world, body("wall" + std::to_string(i), {box({6, 0.2, 1}, 0)}), translation(2, 1.5 * i - 2, 0.5), true);
+  for (int i = 0; i < 24; ++i) {
+    const double x = -4 + 0.35 * (i % 3) + 0.01 * i, y = 0.35 * (i / 3 % 3) - 0.013 * i, z = 0.3 + 0.5 * (i / 9);
+    const PartConfig part = i % 4 == 3 ? sphere(0.2, 1) : box({0.4, 0.4, 0.4}, 1);
+    add(*world, body("crate" + std::to_string(i), {part}), sim::make_pose({x, y, z}, {0.1 * i, 0, 0.2 * i}));
+  }
+  for (int i = 0; i < 9; ++i) {
+    Rover rover = add_rover(*world, "rover" + std::to_string(i), translation(0.7 * (i % 3) - 2, 1.5 * (i / 3) - 1.3, 0));
+    rover.left->set_motor(5 + i % 2, 5);
+    rover.right->set_motor(6 - i % 3, 5);
+  }
+  return world;
+}
+
+/// The hash after each step.
+std::vector<std::uint64_t> hashes(PhysicsWorld& world, int steps) {
+  std::vector<std::uint64_t> out;
+  for (int i = 0; i < steps; ++i) {
+    world.step(i);
+    sim::StateHash hash;
+    world.hash_state(hash);
+    out.push_back(hash.value());
+  }
+  return out;
+}
+
+class EachSpace : public testing::TestWithParam<const char*> {};
+
+TEST_P(EachSpace, GivesTheSameBits) {
+  static const std::vector<std::uint64_t> expected = hashes(*pile_and_fleet("sap"), 300);
+  EXPECT_EQ(hashes(*pile_and_fleet(GetParam()), 300), expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(Spaces, EachSpace, testing::Values("sap", "quadtree", "hash", "simple"));
+
+TEST(Determinism, SecondRunInOneProcessGivesTheSameBits) {
+  for (const char* solver : {"step", "quick"})
+    EXPECT_EQ(hashes(*pile_and_fleet("sap", solver), 200), hashes(*pile_and_fleet("sap", solver), 200)) << solver;
+}
+
+TEST(Determinism, WorldsInFourThreadsGiveTheBitsOfOne) {
+  // Quick with 20 iterations shuffles rows by random numbers: needs the seed of its own of each thread.
+  const std::vector<std::uint64_t> expected = hashes(*pile_and_fleet("sap", "quick"), 200);
+  std::vector<std::vector<std::uint64_t>> found(4);
+  std::vector<std::thread> threads;
+  for (auto& result : found)
+    threads.emplace_back([&result] { result = hashes(*pile_and_fleet("sap", "quick"), 200); });
+  for (std::thread& thread : threads) thread.join();
+  for (const auto& result : found) EXPECT_EQ(result, expected);
+}
+
+TEST(Determinism, SeedOfTheWorldMattersOnlyToTheQuickSolver) {
+  PhysicsConfig config;
+  config.solver = "quick";
+  const auto run = [&](std::uint64_t seed) {
+    PhysicsWorld world(config, {}, {}, {}, seed);
+    add_ground(world);
+    for (int i = 0; i < 20; ++i)
+      add(world, body("crate" + std::to_string(i), {box({0.4, 0.4, 0.4}, 1)}),
+          sim::make_pose({0.01 * i, 0, 0.3 + 0.5 * i}, {0.1 * i, 0, 0}));
+    return hashes(world, 300).back();
+  };
+  EXPECT_NE(run(1), run(2));
+}
+
+TEST(Determinism, LibodeDrawsItsRandomNumbersFromOurs) {
+  dRandSetSeed(7);
+  const unsigned long before = dRandGetSeed();
+  dRandReal();  // inside libode, which calls dRand
+  EXPECT_EQ(dRandGetSeed(), (1664525UL * before + 1013904223UL) & 0xffffffffUL);
+  std::thread([] { dRandSetSeed(1); }).join();
+  EXPECT_EQ(dRandGetSeed(), (1664525UL * before + 1013904223UL) & 0xffffffffUL);
+}
+
+TEST(QuickFallback, IsTakenForLargeIslandsOnlyAndCounted) {
+  PhysicsConfig config;
+  config.quick_above_rows = 60;
+  const auto world = make_world(config);
+  add_ground(*world);
+  // Side by side and not touching: 8 boxes, islands of 4 contacts and 12 rows.
+  for (int i = 0; i < 8; ++i)
+    add(*world, body("box" + std::to_string(i), {box({0.5, 0.5, 0.5}, 1)}), translation(i, 0, 0.2495));
+  for (int i = 0; i < 10; ++i) world->step(i);
+  EXPECT_EQ(world->last_step().largest_island_rows, 12);
+  EXPECT_EQ(world->quick_steps(), 0);
+  // One stack of 8: at least 4 contacts, so 12 rows, under each.
+  for (int i = 0; i < 8; ++i)
+    add(*world, body("stacked" + std::to_string(i), {box({0.5, 0.5, 0.5}, 1)}), translation(0, 5, 0.2495 + 0.4995 * i));
+  for (int i = 10; i < 20; ++i) world->step(i);
+  EXPECT_GE(world->last_step().largest_island_rows, 96);
+  EXPECT_TRUE(world->last_step().quick);
+  EXPECT_EQ(world->quick_steps(), 10);
+}
+
+TEST(QuickFallback, NeverHappensWithSolverStep) {
+  PhysicsConfig config;
+  config.solver = "step";
+  config.quick_above_rows = 0;
+  const auto world = make_world(config);
+  add_ground(*world);
+  add(*world, body("box", {box({0.5, 0.5, 0.5}, 1)}), translation(0, 0, 0.2495));
+  world->step(0);
+  EXPECT_GT(world->last_step().largest_island_rows, 0);
+  EXPECT_FALSE(world->last_step().quick);
+}
+
+}  // namespace

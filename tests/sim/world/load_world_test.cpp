@@ -1,0 +1,169 @@
+#include "sim/world/load_world.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/devices/world_fixture.hpp"
+
+namespace {
+
+using testing::HasSubstr;
+
+std::string errors_of(const std::string& yaml, const sim::LoadOptions& options = {}) {
+  try {
+    sim::load_world_text(yaml, "worlds/test.yaml", options);
+  } catch (const sim::ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string lidar_world(const std::string& entry) {
+  return test::rover_world("        - {name: lidar, type: lidar}\n", "", entry);
+}
+
+TEST(LoadWorld, OverridesChangeOneValueOfTheVehicle) {
+  const auto loaded = sim::load_world_text(
+      lidar_world("    overrides: {devices.lidar.rate_hz: 5, bodies.chassis.parts.hull.mass_kg: 3}\n"), "test.yaml");
+  EXPECT_EQ(loaded.config.vehicles[0].config->devices[0].rate_hz, 5);
+  EXPECT_EQ(loaded.config.vehicles[0].config->bodies[0].parts[0].mass_kg, 3);
+}
+
+TEST(LoadWorld, SetChangesTheWorldFromTheCommandLine) {
+  const auto loaded = sim::load_world_text(lidar_world(""), "test.yaml",
+                                           {{"run.duration_s=7", "vehicles.r1.position_m=[1, 2, 3]"}, 42});
+  EXPECT_EQ(loaded.config.run.duration_s, 7);
+  EXPECT_EQ(loaded.config.run.seed, 42);
+  EXPECT_EQ(loaded.config.vehicles[0].X_WV.translation(), sim::Vector3d(1, 2, 3));
+}
+
+TEST(LoadWorld, SetNamesWhatItCannotSet) {
+  EXPECT_THAT(errors_of(lidar_world(""), {{"run.durration_s=7"}, {}}),
+              HasSubstr("--set run.durration_s=7: run: unknown key 'durration_s'"));
+  EXPECT_THAT(errors_of(lidar_world(""), {{"vehicles.r9.position_m=[1, 2, 3]"}, {}}), HasSubstr("r9"));
+  EXPECT_THAT(errors_of(lidar_world(""), {{"nonsense"}, {}}), HasSubstr("must be of the form path=value"));
+}
+
+TEST(LoadWorld, ParametersReplaceNamesInTheModel) {
+  const std::string world = R"(
+shoal: 1
+vehicles:
+  - name: a
+    count: 2
+    placement: {pattern: line, spacing_m: 4}
+    parameters: {mass: 7}
+    model:
+      shoal: 1
+      vehicle: box
+      parameters: {mass: 5, channel: "radio${index}"}
+      bodies: [{name: b, parts: [{shape: box, mass_kg: "${mass}"}]}]
+      devices: [{name: modem, type: modem, channel: "net${index}"}]
+)";
+  const auto loaded = sim::load_world_text(world, "test.yaml");
+  ASSERT_EQ(loaded.config.vehicles.size(), 2u);
+  EXPECT_EQ(loaded.config.vehicles[0].name, "a1");
+  EXPECT_EQ(loaded.config.vehicles[1].config->bodies[0].parts[0].mass_kg, 7);
+  EXPECT_EQ(loaded.config.vehicles[1].X_WV.translation(), sim::Vector3d(2, 0, 0));
+  EXPECT_NE(loaded.config.vehicles[0].config, loaded.config.vehicles[1].config);  // ${index} differs
+}
+
+TEST(LoadWorld, AlikeInstancesShareOneConfiguration) {
+  const auto loaded = sim::load_world_text(lidar_world("    count: 3\n"), "test.yaml");
+  EXPECT_EQ(loaded.config.vehicles[0].config, loaded.config.vehicles[2].config);
+}
+
+TEST(LoadWorld, NamesAnUnknownParameter) {
+  EXPECT_THAT(errors_of(lidar_world("    parameters: {speeed: 3}\n")),
+              HasSubstr("vehicle 'r1': the vehicle has no parameter 'speeed'"));
+}
+
+TEST(LoadWorld, NamesAMissingVehicleFile) {
+  EXPECT_THAT(errors_of("shoal: 1\nvehicles:\n  - {name: a, file: no_such.yaml}\n"),
+              HasSubstr("worlds/test.yaml:3:5: vehicle 'a': there is no vehicle file 'no_such.yaml'"));
+}
+
+TEST(LoadWorld, RefusesTwoVehiclesOfOneName) {
+  const std::string model = ", model: {shoal: 1, bodies: [{name: b, parts: [{shape: box, mass_kg: 1}]}]}}\n";
+  EXPECT_THAT(errors_of("shoal: 1\nvehicles:\n  - {name: a" + model + "  - {name: a" + model),
+              HasSubstr("duplicate vehicle 'a'"));
+}
+
+TEST(LoadWorld, RefusesTwoDevicesOnOneChannel) {
+  EXPECT_THAT(errors_of(test::rover_world("        - {name: l1, type: lidar, channel: scan}\n"
+                                          "        - {name: l2, type: lidar, channel: scan}\n")),
+              HasSubstr("device 'l2': channel 'scan' is used twice"));
+}
+
+TEST(LoadWorld, RefusesNamesThatDoNotFitAChannel) {
+  EXPECT_THAT(errors_of(test::rover_world("        - {name: \"li dar\", type: lidar}\n")),
+              HasSubstr("must be made of letters, digits, '_' and '-', got 'li dar'"));
+  EXPECT_THAT(errors_of(test::rover_world("        - {name: " + std::string(70, 'x') + ", type: lidar}\n")),
+              HasSubstr("must have 1 to 63 characters"));
+}
+
+TEST(LoadWorld, ListsTheKnownTypesForAnUnknownDevice) {
+  EXPECT_THAT(errors_of(test::rover_world("        - {name: l, type: lider, beams: 3}\n")),
+              HasSubstr("device 'l': unknown device type 'lider'; known types: differential_drive, gps, joint_motor, "
+                        "lidar, modem, odometry, swarm_position"));
+}
+
+TEST(LoadWorld, ReportsEveryErrorNotOnlyTheFirst) {
+  try {
+    sim::load_world_text(
+        "shoal: 1\nphysics: {step_s: -1}\nrun: {seed: x}\nobjects: [{name: o, parts: [{shape: ball}]}]\n", "w.yaml");
+    FAIL();
+  } catch (const sim::ConfigError& error) {
+    EXPECT_EQ(error.lines().size(), 3u) << error.what();
+  }
+}
+
+TEST(LoadWorld, AMistakeInAVehicleFileIsReportedOnceForAllItsInstances) {
+  try {
+    sim::load_world_text(test::rover_world("        - {name: l, type: lidar, beams: 0}\n", "", "    count: 50\n"), "w.yaml");
+    FAIL();
+  } catch (const sim::ConfigError& error) {
+    EXPECT_EQ(error.lines().size(), 1u) << error.what();
+  }
+}
+
+TEST(LoadWorld, TheResolvedWorldIsAWorldFileOfItsOwn) {
+  const auto loaded = sim::load_world(SHOAL_SOURCE_DIR "/worlds/minimal.yaml", {{"run.duration_s=3"}, {}});
+  const std::string text = sim::to_yaml(loaded.resolved);
+  const auto again = sim::load_world_text(text, "elsewhere/world.yaml");
+  EXPECT_EQ(again.config.run.duration_s, 3);
+  sim::InProcessBus bus1, bus2;
+  sim::World first(loaded.config, bus1), second(again.config, bus2);
+  for (int i = 0; i < 100; ++i) {
+    first.step();
+    second.step();
+  }
+  EXPECT_EQ(first.state_hash(), second.state_hash());
+}
+
+TEST(LoadWorld, EveryFileInBadWorldsSaysWhatItsFirstLineExpects) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(SHOAL_SOURCE_DIR "/tests/bad_worlds")) {
+    if (entry.path().extension() != ".yaml") continue;
+    std::ifstream in(entry.path());
+    std::string first;
+    std::getline(in, first);
+    const std::string mark = "# expect: ";
+    if (first.rfind("# part of", 0) == 0) continue;  // included by another
+    ASSERT_EQ(first.rfind(mark, 0), 0u) << entry.path();
+    const std::string expected = first.substr(mark.size());
+    try {
+      const auto loaded = sim::load_world(entry.path().string());
+      sim::InProcessBus bus;
+      sim::World world(loaded.config, bus);
+      ADD_FAILURE() << entry.path() << " was accepted";
+    } catch (const sim::ConfigError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(expected)) << entry.path();
+    }
+    ++files;
+  }
+  EXPECT_GE(files, 20);
+}
+
+}  // namespace

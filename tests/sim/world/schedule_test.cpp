@@ -1,0 +1,102 @@
+#include <map>
+
+#include "shoal/planar_lidar_t.hpp"
+#include "tests/devices/world_fixture.hpp"
+
+namespace {
+
+using test::Listener;
+using test::TestWorld;
+
+std::string lidar(const std::string& more) {
+  return "        - {name: lidar, type: lidar, position_m: [0, 0, 0.3], beams: 3" + more + "}\n";
+}
+
+std::vector<std::int64_t> report_times_us(const std::string& keys, double time_s, const std::string& channel = "r1.lidar") {
+  TestWorld test(test::rover_world(lidar(keys)));
+  Listener<shoal::planar_lidar_t> scans(test, channel);
+  test.run_for(time_s);
+  std::vector<std::int64_t> times;
+  for (const auto& scan : scans.take_all()) times.push_back(scan.utime - test.world.epoch_us());
+  return times;
+}
+
+TEST(Schedule, SamplesAtItsRateAndPhase) {
+  EXPECT_EQ(report_times_us(", rate_hz: 10, phase_s: 0.05", 0.4),
+            (std::vector<std::int64_t>{50000, 150000, 250000, 350000}));
+}
+
+TEST(Schedule, ARateThatDoesNotDivideTheStepIsRightOnAverage) {
+  // 30 Hz with a step of 1 ms: each sample at the first step at or after its time.
+  const auto times = report_times_us(", rate_hz: 30, phase_s: 0.01", 10);
+  ASSERT_EQ(times.size(), 300u);
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const double due_us = 10000 + static_cast<double>(k) * 1e6 / 30;
+    EXPECT_GE(static_cast<double>(times[k]), due_us - 1e-3);
+    EXPECT_LT(static_cast<double>(times[k]), due_us + 1000);
+  }
+}
+
+TEST(Schedule, RateZeroSamplesEveryStep) { EXPECT_EQ(report_times_us(", rate_hz: 0", 0.1).size(), 100u); }
+
+TEST(Schedule, PhasesOfManyVehiclesSpreadOverThePeriod) {
+  TestWorld test(test::rover_world(lidar(", rate_hz: 10"), "",
+                                   "    count: 100\n    placement: {spacing_m: 2}\n"));
+  std::map<std::int64_t, int> reports_at;
+  std::vector<std::unique_ptr<Listener<shoal::planar_lidar_t>>> listeners;
+  for (int i = 1; i <= 100; ++i)
+    listeners.push_back(
+        std::make_unique<Listener<shoal::planar_lidar_t>>(test, "r1" + std::to_string(i) + ".lidar"));
+  test.run_for(0.1);
+  int reports = 0;
+  for (const auto& listener : listeners)
+    for (const auto& scan : listener->take_all()) {
+      ++reports_at[scan.utime];
+      ++reports;
+    }
+  EXPECT_NEAR(reports, 100, 1);
+  for (const auto& [time, count] : reports_at) EXPECT_LE(count, 8) << time;  // of 100 in 100 slots; Poisson: 1e-6
+}
+
+TEST(Schedule, SensorLatencyDelaysTheReportNotTheSample) {
+  TestWorld test(test::rover_world(lidar(", rate_hz: 10, phase_s: 0.05, latency_s: 0.02")));
+  Listener<shoal::planar_lidar_t> scans(test, "r1.lidar");
+  test.run_for(0.069);
+  EXPECT_TRUE(scans.take_all().empty());
+  test.world.step();  // 0.070 s
+  const auto late = scans.take_all();
+  ASSERT_EQ(late.size(), 1u);
+  EXPECT_EQ(late[0].utime - test.world.epoch_us(), 50000);
+}
+
+TEST(Schedule, JitterSpreadsTheDelayEvenly) {
+  TestWorld test(test::rover_world(lidar(", rate_hz: 50, phase_s: 0.02, jitter_s: 0.01")));
+  Listener<shoal::planar_lidar_t> scans(test, "r1.lidar");
+  double sum_s = 0;
+  int count = 0;
+  for (int i = 0; i < 20000; ++i) {
+    test.world.step();
+    for (const auto& scan : scans.take_all()) {
+      const double delay_s = static_cast<double>(test.world.epoch_us() + test.world.now().count() - scan.utime) * 1e-6;
+      EXPECT_LE(delay_s, 0.0101);
+      sum_s += delay_s;
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 990);
+  // Mean 5 ms, rounded up to steps of 1 ms: 5.5 ms; sigma of the mean 2.9 ms / sqrt(1000).
+  EXPECT_NEAR(sum_s / count, 0.0055, 4 * 0.0029 / std::sqrt(1000));
+}
+
+TEST(Schedule, DropoutLosesTheShareOfReportsAskedFor) {
+  const auto times = report_times_us(", rate_hz: 100, dropout: 0.25", 20);
+  // Binomial: 2000 * 0.75 = 1500, sigma 19.4.
+  EXPECT_NEAR(static_cast<double>(times.size()), 1500, 4 * 19.4);
+}
+
+TEST(Schedule, TruthIsPublishedOnlyWhenAskedFor) {
+  EXPECT_TRUE(report_times_us(", rate_hz: 10", 1, "r1.lidar.truth").empty());
+  EXPECT_EQ(report_times_us(", rate_hz: 10, truth: true, dropout: 1", 1, "r1.lidar.truth").size(), 10u);
+}
+
+}  // namespace
