@@ -35,13 +35,13 @@ SimService::SimService(sim::Bus& bus, const sim::World& world, sim::RunControl& 
       control_(control),
       lockstep_(lockstep),
       info_(std::move(info)),
-      requests_(bus.open_mailbox("sim.control")),
-      acknowledgements_(bus.open_mailbox("sim.ack")) {}
+      requests_(network.open_mailbox("sim.control")),
+      acknowledgements_(network.open_mailbox("sim.ack")) {}
 
 template <typename Message>
-void SimService::publish(const std::string& channel, const Message& message) {
+void SimService::publish(sim::Bus& bus, const std::string& channel, const Message& message) {
   shoal::encode_into(message, buffer_);
-  bus_.publish(channel, buffer_, world_.now());
+  bus.publish(channel, buffer_, world_.now());
 }
 
 bool SimService::due(double rate_hz) const {
@@ -59,7 +59,7 @@ void SimService::publish_step() {
   if (!due(world_.config().state_rate_hz)) return;
   shoal::utime_t clock;
   clock.utime = world_.epoch_us() + world_.now().count();
-  publish("sim.clock", clock);
+  publish(bus_, "sim.clock", clock);
   publish_state();
 }
 
@@ -71,7 +71,7 @@ void SimService::publish_info() {
   info.step_us = world_.step_time().count();
   info.resolved_config = info_.resolved_config;
   info.versions = info_.versions;
-  publish("sim.info", info);
+  publish(bus_, "sim.info", info);
 }
 
 void SimService::publish_state() {
@@ -99,7 +99,7 @@ void SimService::publish_state() {
     }
     state.orientation[i] = {q.w(), q.x(), q.y(), q.z()};
   }
-  publish("sim.state", state);
+  publish(bus_, "sim.state", state);
 }
 
 void SimService::publish_tick(const std::vector<std::string>& clients, bool last) {
@@ -109,12 +109,12 @@ void SimService::publish_tick(const std::vector<std::string>& clients, bool last
   tick.last = last;
   tick.count = static_cast<std::int32_t>(clients.size());
   tick.client = clients;
-  publish("sim.tick", tick);
+  publish(network_, "sim.tick", tick);
 }
 
 void SimService::publish_end() {
   publish_tick({}, true);
-  bus_.end_of_step();
+  network_.end_of_step();
 }
 
 void SimService::complain(const std::string& text) {
@@ -138,8 +138,8 @@ void SimService::handle_requests() {
     reply.client = request.client;
     reply.ok = error.empty();
     reply.text = error;
-    publish("sim.control.reply", reply);
-    bus_.end_of_step();
+    publish(network_, "sim.control.reply", reply);
+    network_.end_of_step();
   }
 }
 
@@ -204,7 +204,7 @@ void SimService::synchronize(double timeout_s, const Wait& wait, const std::func
   const std::int64_t step = world_.step_number();
   if (lockstep_.missing(step).empty()) return;
   publish_tick(lockstep_.missing(step), false);
-  bus_.end_of_step();
+  network_.end_of_step();
   const Clock::time_point begin = Clock::now();
   Clock::time_point sent = begin;
   while (true) {
@@ -219,7 +219,7 @@ void SimService::synchronize(double timeout_s, const Wait& wait, const std::func
                             std::to_string(step) + " within " + std::to_string(timeout_s) + " s");
     if (now - sent > resend_after) {
       publish_tick(missing, false);
-      bus_.end_of_step();
+      network_.end_of_step();
       sent = now;
     }
     wait(std::chrono::milliseconds(20));

@@ -60,9 +60,10 @@ class SimService {
   void complain(const std::string& text);
   bool due(double rate_hz) const;
   template <typename Message>
-  void publish(const std::string& channel, const Message& message);
+  void publish(sim::Bus& bus, const std::string& channel, const Message& message);
 
   sim::Bus& bus_;
+  sim::Bus& network_;
   const sim::World& world_;
   sim::RunControl& control_;
   sim::Lockstep& lockstep_;

@@ -1,6 +1,5 @@
 #include "sim/config/diagnostics.hpp"
 
-#include <algorithm>
 #include <mutex>
 #include <set>
 #include <utility>
@@ -45,7 +44,9 @@ void Diagnostics::error(const SourcePlace& place, const std::string& who, const 
     if (!part.empty()) line += (line.empty() ? "" : ": ") + part;
   // Names come from files: a line feed or an escape sequence in one must not reach the terminal.
   line = printable(line);
-  if (std::find(lines_.begin(), lines_.end(), line) != lines_.end()) return;
+  // A mistake in a vehicle file is one mistake, however many vehicles use the file.
+  const std::string seen = printable(place.line > 0 ? place.text() + ": " + text : line);
+  if (!seen_.insert(seen).second) return;
   if (lines_.size() == max_lines) line = "more errors are not shown";
   lines_.push_back(std::move(line));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -32,7 +33,7 @@ class ConfigError : public std::runtime_error {
 /// Collects errors so that all errors of a file are reported, not only the first.
 class Diagnostics {
  public:
-  /// Adds `place: who: text` (who may be empty).  The same line twice is kept once.
+  /// Adds `place: who: text` (who may be empty).  The same text at the same place is kept once, whoever it is about.
   void error(const SourcePlace& place, const std::string& who, const std::string& text);
   bool ok() const { return lines_.empty(); }
   const std::vector<std::string>& lines() const { return lines_; }
@@ -41,6 +42,7 @@ class Diagnostics {
 
  private:
   std::vector<std::string> lines_;
+  std::set<std::string> seen_;
 };
 
 }  // namespace sim

@@ -80,17 +80,18 @@ void OdeScene::refresh() const {
 void OdeScene::refresh(Layer& layer, std::uint64_t moves) const {
   if (layer.seen == moves) return;
   layer.seen = moves;
-  boxes_.clear();
+  part_boxes_.resize(parts_.size());
+  cluster_boxes_.clear();
   for (const Cluster& cluster : layer.clusters) {
-    AlignedBox box = box_of(parts_[cluster.parts.front()].geom);
-    for (std::size_t i = 1; i < cluster.parts.size(); ++i) {
-      const AlignedBox next = box_of(parts_[cluster.parts[i]].geom);
-      box.low = box.low.cwiseMin(next.low);
-      box.high = box.high.cwiseMax(next.high);
+    for (const int part : cluster.parts) part_boxes_[part] = box_of(parts_[part].geom);
+    AlignedBox box = part_boxes_[cluster.parts.front()];
+    for (const int part : cluster.parts) {
+      box.low = box.low.cwiseMin(part_boxes_[part].low);
+      box.high = box.high.cwiseMax(part_boxes_[part].high);
     }
-    boxes_.push_back(box);
+    cluster_boxes_.push_back(box);
   }
-  layer.grid.build(boxes_);
+  layer.grid.build(cluster_boxes_);
 }
 
 bool OdeScene::hit(int part, const Vector3d& origin_W, const Vector3d& direction_W, RayHit& nearest) const {
@@ -194,8 +195,8 @@ void OdeScene::FanSearch::beams_towards(const AlignedBox& box, Use&& use) const 
   const Vector3d half = box.half_extents();
   const Vector3d to_center = box.center() - p_WS;
   const double x = R_SW.row(0).dot(to_center), y = R_SW.row(1).dot(to_center);
-  const double radius = std::hypot(half.x(), half.y()) + half.z() * tilt;
-  const double away = std::hypot(x, y);
+  const double radius = std::sqrt(half.x() * half.x() + half.y() * half.y()) + half.z() * tilt;
+  const double away = std::sqrt(x * x + y * y);
   if (away <= radius * (1 + 1e-9) || !(fan.step_rad > 0) || fan.count == 1) return use(0, fan.count - 1);
   // asin s <= s + 0.5708 s^3 on [0, 1], with equality at both ends.
   const double s = radius / away;
@@ -219,7 +220,7 @@ bool OdeScene::FanSearch::any_beyond(const AlignedBox& box, double nearest_m) co
 }
 
 void OdeScene::FanSearch::try_part(int part) {
-  const AlignedBox box = box_of(scene.parts_[part].geom);
+  const AlignedBox& box = scene.part_boxes_[part];
   if (!crosses(box)) return;
   const double nearest_m = distance(box, p_WS);
   beams_towards(box, [&](int first, int last) {
@@ -253,7 +254,12 @@ void OdeScene::cast_fan(const Fan& fan, const RayFilter& filter, std::span<doubl
     if (parts_[plane].group != filter.exclude_group && (parts_[plane].category & filter.categories) != 0)
       search.try_plane(plane);
   find_candidates(search.around(), filter, search.p_WS, fan.range_max_m);
-  for (const Candidate& candidate : candidates_) {
+  double farthest_m = infinity;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const Candidate& candidate = candidates_[i];
+    // In a room or a crowd all beams end soon, and what lies behind need not be looked at.
+    if (i % 16 == 15) farthest_m = *std::max_element(ranges_m.begin(), ranges_m.end());
+    if (candidate.nearest_m > farthest_m) break;
     const Layer& layer = layers_[candidate.layer];
     const Cluster& cluster = layer.clusters[candidate.cluster];
     const AlignedBox& box = layer.grid.box(candidate.cluster);

@@ -78,7 +78,7 @@ class OdeScene final : public Scene {
   std::vector<int> planes_;
   mutable Layer layers_[2];  // moving, fixed
   mutable std::vector<Candidate> candidates_;
-  mutable std::vector<AlignedBox> boxes_;
+  mutable std::vector<AlignedBox> part_boxes_, cluster_boxes_;
   mutable std::vector<Vector3d> directions_S_;
   mutable Fan directions_of_;
   GeomHandle ray_;

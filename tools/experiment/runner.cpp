@@ -102,7 +102,7 @@ class Run {
         options_(options),
         buses_(open_buses(loaded, options)),
         world_(loaded.config, buses_.outer(), bridges::open_serial_port),
-        service_(buses_.outer(), world_, control_, lockstep_, {sim::to_yaml(loaded.resolved), version_text()}),
+        service_(buses_.outer(), *buses_.network, world_, control_, lockstep_, {sim::to_yaml(loaded.resolved), version_text()}),
         scoring_(world_, buses_.outer()),
         duration_s_(options.duration_s.value_or(loaded.config.run.duration_s)),
         progress_(duration_s_, options.quiet) {
