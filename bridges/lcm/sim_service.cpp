@@ -28,9 +28,10 @@ std::string joined(const std::vector<std::string>& names) {
 
 }  // namespace
 
-SimService::SimService(sim::Bus& bus, const sim::World& world, sim::RunControl& control,
-                       sim::Lockstep& lockstep, Info info)
+SimService::SimService(sim::Bus& bus, sim::Bus& network, const sim::World& world,
+                       sim::RunControl& control, sim::Lockstep& lockstep, Info info)
     : bus_(bus),
+      network_(network),
       world_(world),
       control_(control),
       lockstep_(lockstep),

@@ -30,8 +30,9 @@ class SimService {
     std::string versions;
   };
 
-  SimService(sim::Bus& bus, const sim::World& world, sim::RunControl& control, sim::Lockstep& lockstep,
-             Info info);
+  /// `network`: the bus under `bus`; the handshake goes there directly, so that records leave it out.
+  SimService(sim::Bus& bus, sim::Bus& network, const sim::World& world, sim::RunControl& control,
+             sim::Lockstep& lockstep, Info info);
 
   /// Publishes what is due after the world's current step: clock, state, info.
   void publish_step();

@@ -14,9 +14,13 @@ Pose Body::X_WB() const {
   return X_WB;
 }
 
-Vector3d Body::v_WB_W() const { return velocity_at_W(Vector3d::Zero()); }
+Vector3d Body::v_WB_W() const {
+  return velocity_at_W(Vector3d::Zero());
+}
 
-Vector3d Body::w_WB_W() const { return fixed() ? Vector3d(Vector3d::Zero()) : to_eigen(w_WB_W_); }
+Vector3d Body::w_WB_W() const {
+  return fixed() ? Vector3d(Vector3d::Zero()) : to_eigen(w_WB_W_);
+}
 
 Vector3d Body::velocity_at_W(const Vector3d& p_B) const {
   if (fixed()) return Vector3d::Zero();
@@ -105,16 +109,19 @@ Vector3d solve(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Ve
 
 }  // namespace
 
-// ODE's own gyroscopic term is an implicit Euler step that brakes: a body tumbling at 10 rad/s lost 11 % of its energy
-// in 10 s.  Without the term it does not precess at all.  The implicit midpoint rule for I w' + w x I w = 0 in the
-// body's axes keeps energy and angular momentum; the torque makes ODE's step arrive at its result.
+// ODE's own gyroscopic term is an implicit Euler step that brakes: a body tumbling at 10 rad/s lost 11 % of
+// its energy in 10 s.  Without the term it does not precess at all.  The implicit midpoint rule for I w' + w
+// x I w = 0 in the body's axes keeps energy and angular momentum; the torque makes ODE's step arrive at its
+// result.
 void Body::add_gyroscopic_torque(double step_s) {
   const Vector3d x = Vector3d(R_WB_[0], R_WB_[4], R_WB_[8]), y = Vector3d(R_WB_[1], R_WB_[5], R_WB_[9]),
                  z = Vector3d(R_WB_[2], R_WB_[6], R_WB_[10]);
   const Vector3d w_W = Vector3d(w_WB_W_[0], w_WB_W_[1], w_WB_W_[2]);
   const Vector3d w(x.dot(w_W), y.dot(w_W), z.dot(w_W));
   const Vector3d I_x = inertia_C_B_.col(0), I_y = inertia_C_B_.col(1), I_z = inertia_C_B_.col(2);
-  const auto times_inertia = [&](const Vector3d& v) -> Vector3d { return v.x() * I_x + v.y() * I_y + v.z() * I_z; };
+  const auto times_inertia = [&](const Vector3d& v) -> Vector3d {
+    return v.x() * I_x + v.y() * I_y + v.z() * I_z;
+  };
   const Vector3d momentum = times_inertia(w);
   // Nothing to do for a body at rest, or one that spins about a principal axis.
   constexpr double negligible = 1e-10;

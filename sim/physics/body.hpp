@@ -61,22 +61,24 @@ class Body {
   void place_fixed_geoms();
   void add_gyroscopic_torque(double step_s);
 
-  std::string name_;
+  // What each step needs, side by side.
+  BodyHandle ode_;
+  // Into the ODE body, which does not move in memory.
+  const dReal* p_WC_ = nullptr;
+  const dReal* v_WC_W_ = nullptr;
+  const dReal* w_WB_W_ = nullptr;
+  const dReal* R_WB_ = nullptr;
+  bool gyroscopic_ = true;
   int number_ = -1;
   int group_ = -1;
-  BodyHandle ode_;
+  Matrix3d inertia_C_B_ = Matrix3d::Zero();
+
+  std::string name_;
   double mass_kg_ = 0;
   Vector3d p_BC_ = Vector3d::Zero();
-  Matrix3d inertia_C_B_ = Matrix3d::Zero();
   Pose fixed_X_WB_ = Pose::Identity();
   std::vector<FixedGeom> fixed_geoms_;
   SceneMoves* moves_ = nullptr;  // of the world: the scene looks again when something was moved
-  // Into the ODE body, which does not move in memory.
-  const dReal* p_WC_ = nullptr;
-  const dReal* R_WB_ = nullptr;
-  const dReal* v_WC_W_ = nullptr;
-  const dReal* w_WB_W_ = nullptr;
-  bool gyroscopic_ = true;
 };
 
 }  // namespace sim

@@ -76,7 +76,8 @@ void Collider::join(int first, int second) {
 
 void Collider::close_group(int number) {
   Group& group = groups_[number];
-  if (dSpaceGetNumGeoms(group.space.get()) > 0 && !dGeomGetSpace(reinterpret_cast<dGeomID>(group.space.get())))
+  if (dSpaceGetNumGeoms(group.space.get()) > 0 &&
+      !dGeomGetSpace(reinterpret_cast<dGeomID>(group.space.get())))
     dSpaceAdd(space_.get(), reinterpret_cast<dGeomID>(group.space.get()));
   for (const dGeomID geom : group.fixed) dSpaceAdd(space_.get(), geom);
   group.fixed.clear();
@@ -90,7 +91,8 @@ int Collider::collide(dWorldID world, dJointGroupID contacts, Islands& islands) 
   sort_pairs();
   int count = 0;
   for (const std::uint64_t pair : pairs_)
-    count += touch(static_cast<int>(pair >> 32), static_cast<int>(pair & 0xffffffff), world, contacts, islands);
+    count +=
+        touch(static_cast<int>(pair >> 32), static_cast<int>(pair & 0xffffffff), world, contacts, islands);
   return count;
 }
 
@@ -99,7 +101,9 @@ void Collider::on_near(void* self, dGeomID first, dGeomID second) {
     dSpaceCollide2(first, second, self, &Collider::on_near);
     return;
   }
-  const auto number = [](dGeomID geom) { return static_cast<int>(reinterpret_cast<std::intptr_t>(dGeomGetData(geom))); };
+  const auto number = [](dGeomID geom) {
+    return static_cast<int>(reinterpret_cast<std::intptr_t>(dGeomGetData(geom)));
+  };
   static_cast<Collider*>(self)->add_pair(number(first), number(second));
 }
 
@@ -123,7 +127,8 @@ void Collider::sort_pairs() {
     std::sort(pairs_.begin(), pairs_.end());
     return;
   }
-  // Many pairs: counting sort by the second part, then by the first; half the time of std::sort at 1000 robots.
+  // Many pairs: counting sort by the second part, then by the first; half the time of std::sort at 1000
+  // robots.
   sorted_.resize(pairs_.size());
   for (const int shift : {0, 32}) {
     starts_.assign(numbers + 1, 0);
@@ -153,14 +158,15 @@ int Collider::touch(int first, int second, dWorldID world, dJointGroupID contact
   return count;
 }
 
-// ODE bounds friction along two axes by itself (a pyramid), which across the corners is up to 1.41 times too strong.
-// With one axis along the slip the bound is Coulomb's.  The slip meant is the one that a step without friction would
-// end with, so that a body at rest on a slope starts to slide at the right angle.
+// ODE bounds friction along two axes by itself (a pyramid), which across the corners is up to 1.41 times too
+// strong. With one axis along the slip the bound is Coulomb's.  The slip meant is the one that a step without
+// friction would end with, so that a body at rest on a slope starts to slide at the right angle.
 void Collider::align_friction(dContact& contact, const CollisionBody& a, const CollisionBody& b) const {
   const Vector3d at = to_eigen(contact.geom.pos);
   const auto free_velocity = [&](const CollisionBody& body) -> Vector3d {
     if (!body.ode) return Vector3d::Zero();
-    Vector3d v = to_eigen(body.velocity) + to_eigen(body.angular_velocity).cross(at - to_eigen(body.position)) +
+    Vector3d v = to_eigen(body.velocity) +
+                 to_eigen(body.angular_velocity).cross(at - to_eigen(body.position)) +
                  step_s_ * body.inverse_mass * to_eigen(dBodyGetForce(body.ode));
     if (dBodyGetGravityMode(body.ode)) v.z() -= step_s_ * gravity_mps2_;
     return v;

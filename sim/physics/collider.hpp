@@ -33,8 +33,8 @@ struct CollisionBody {
 
 /// Finds the parts that touch and makes contact joints.
 ///
-/// The order of contacts decides the last bits of a step, and each kind of space has an order of its own.  So pairs
-/// are collected first, the lower part number first, sorted, and only then looked at closely.
+/// The order of contacts decides the last bits of a step, and each kind of space has an order of its own.  So
+/// pairs are collected first, the lower part number first, sorted, and only then looked at closely.
 class Collider {
  public:
   Collider(const PhysicsConfig& config, ContactTable table);

@@ -41,17 +41,29 @@ Surface make_surface(const ContactConfig& config) {
   return surface;
 }
 
-bool names(const std::string& pattern, const std::string& material) { return pattern == "any" || pattern == material; }
+bool names(const std::string& pattern, const std::string& material) {
+  return pattern == "any" || pattern == material;
+}
 
 }  // namespace
 
-ContactTable::ContactTable(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts) {
+ContactTable::ContactTable(const std::vector<MaterialConfig>& materials,
+                           const std::vector<ContactConfig>& contacts) {
   names_.push_back("default");
   for (const MaterialConfig& material : materials)
-    if (std::find(names_.begin(), names_.end(), material.name) == names_.end()) names_.push_back(material.name);
+    if (std::find(names_.begin(), names_.end(), material.name) == names_.end())
+      names_.push_back(material.name);
   count_ = static_cast<int>(names_.size());
   surfaces_.assign(names_.size() * names_.size(), make_surface(ContactConfig{}));
-  for (const ContactConfig& contact : contacts)
+  // An entry that names both materials wins over one that says `any`; among equals the last one wins.
+  std::vector<ContactConfig> by_weight = contacts;
+  std::stable_sort(by_weight.begin(), by_weight.end(), [](const ContactConfig& a, const ContactConfig& b) {
+    const auto named = [](const ContactConfig& each) {
+      return (each.between[0] != "any") + (each.between[1] != "any");
+    };
+    return named(a) < named(b);
+  });
+  for (const ContactConfig& contact : by_weight)
     for (int i = 0; i < count_; ++i)
       for (int j = 0; j < count_; ++j)
         if (names(contact.between[0], names_[i]) && names(contact.between[1], names_[j]))

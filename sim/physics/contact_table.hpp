@@ -12,7 +12,7 @@ namespace sim {
 /// What ODE needs to know of a contact of two materials.
 struct Surface {
   dSurfaceParameters parameters = {};
-  int rows = 1;           ///< constraint rows of one contact
+  int rows = 1;  ///< constraint rows of one contact
   bool friction = false;
 };
 

@@ -4,8 +4,8 @@
 
 namespace sim {
 
-/// Counts the constraint rows of each island (bodies connected by joints and contacts) before a step, for WorldStep
-/// costs the cube of them.  Joints stay, contacts are new in each step.
+/// Counts the constraint rows of each island (bodies connected by joints and contacts) before a step, for
+/// WorldStep costs the cube of them.  Joints stay, contacts are new in each step.
 class Islands {
  public:
   void add_body();

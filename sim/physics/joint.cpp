@@ -21,10 +21,13 @@ dJointType kind_of(const std::string& type) {
 int axes_of(dJointType kind) {
   switch (kind) {
     case dJointTypeHinge:
-    case dJointTypeSlider: return 1;
+    case dJointTypeSlider:
+      return 1;
     case dJointTypeHinge2:
-    case dJointTypeUniversal: return 2;
-    default: return 0;
+    case dJointTypeUniversal:
+      return 2;
+    default:
+      return 0;
   }
 }
 
@@ -42,7 +45,8 @@ Joint::Joint(dWorldID world, std::string name, const JointConfig& config, dBodyI
   for (int axis = 0; axis < axes_; ++axis) wrapped_[axis] = wrapped_position(axis);
 }
 
-void Joint::create(dWorldID world, const JointConfig& config, const Pose& X_WV, dBodyID first, dBodyID second) {
+void Joint::create(dWorldID world, const JointConfig& config, const Pose& X_WV, dBodyID first,
+                   dBodyID second) {
   const Vector3d anchor = X_WV * config.anchor_m;
   const Vector3d axis1 = (X_WV.linear() * config.axis1.axis).normalized();
   const Vector3d axis2 = (X_WV.linear() * config.axis2.axis).normalized();
@@ -98,41 +102,58 @@ void Joint::configure_axis(const JointAxisConfig& config, int axis) {
 void Joint::set_parameter(int parameter, double value, int axis) {
   parameter += dParamGroup * axis;
   switch (kind_) {
-    case dJointTypeHinge: return dJointSetHingeParam(ode_.get(), parameter, value);
-    case dJointTypeSlider: return dJointSetSliderParam(ode_.get(), parameter, value);
-    case dJointTypeHinge2: return dJointSetHinge2Param(ode_.get(), parameter, value);
-    case dJointTypeUniversal: return dJointSetUniversalParam(ode_.get(), parameter, value);
-    default: return;
+    case dJointTypeHinge:
+      return dJointSetHingeParam(ode_.get(), parameter, value);
+    case dJointTypeSlider:
+      return dJointSetSliderParam(ode_.get(), parameter, value);
+    case dJointTypeHinge2:
+      return dJointSetHinge2Param(ode_.get(), parameter, value);
+    case dJointTypeUniversal:
+      return dJointSetUniversalParam(ode_.get(), parameter, value);
+    default:
+      return;
   }
 }
 
 int Joint::max_rows() const {
   switch (kind_) {
-    case dJointTypeBall: return 3;
-    default: return 6;
+    case dJointTypeBall:
+      return 3;
+    default:
+      return 6;
   }
 }
 
 double Joint::velocity(int axis) const {
   switch (kind_) {
-    case dJointTypeHinge: return sign_ * dJointGetHingeAngleRate(ode_.get());
-    case dJointTypeSlider: return sign_ * dJointGetSliderPositionRate(ode_.get());
+    case dJointTypeHinge:
+      return sign_ * dJointGetHingeAngleRate(ode_.get());
+    case dJointTypeSlider:
+      return sign_ * dJointGetSliderPositionRate(ode_.get());
     case dJointTypeHinge2:
-      return sign_ * (axis == 0 ? dJointGetHinge2Angle1Rate(ode_.get()) : dJointGetHinge2Angle2Rate(ode_.get()));
+      return sign_ *
+             (axis == 0 ? dJointGetHinge2Angle1Rate(ode_.get()) : dJointGetHinge2Angle2Rate(ode_.get()));
     case dJointTypeUniversal:
-      return sign_ * (axis == 0 ? dJointGetUniversalAngle1Rate(ode_.get()) : dJointGetUniversalAngle2Rate(ode_.get()));
-    default: return 0;
+      return sign_ * (axis == 0 ? dJointGetUniversalAngle1Rate(ode_.get())
+                                : dJointGetUniversalAngle2Rate(ode_.get()));
+    default:
+      return 0;
   }
 }
 
 double Joint::wrapped_position(int axis) const {
   switch (kind_) {
-    case dJointTypeHinge: return sign_ * dJointGetHingeAngle(ode_.get());
-    case dJointTypeSlider: return sign_ * dJointGetSliderPosition(ode_.get());
-    case dJointTypeHinge2: return axis == 0 ? sign_ * dJointGetHinge2Angle1(ode_.get()) : 0;
+    case dJointTypeHinge:
+      return sign_ * dJointGetHingeAngle(ode_.get());
+    case dJointTypeSlider:
+      return sign_ * dJointGetSliderPosition(ode_.get());
+    case dJointTypeHinge2:
+      return axis == 0 ? sign_ * dJointGetHinge2Angle1(ode_.get()) : 0;
     case dJointTypeUniversal:
-      return sign_ * (axis == 0 ? dJointGetUniversalAngle1(ode_.get()) : dJointGetUniversalAngle2(ode_.get()));
-    default: return 0;
+      return sign_ *
+             (axis == 0 ? dJointGetUniversalAngle1(ode_.get()) : dJointGetUniversalAngle2(ode_.get()));
+    default:
+      return 0;
   }
 }
 
@@ -171,11 +192,16 @@ void Joint::add_effort(double effort, int axis) {
   if (!std::isfinite(effort)) throw PhysicsFault("joint '" + name_ + "': an effort on it is not finite");
   const double torque1 = axis == 0 ? sign_ * effort : 0, torque2 = axis == 1 ? sign_ * effort : 0;
   switch (kind_) {
-    case dJointTypeHinge: return dJointAddHingeTorque(ode_.get(), sign_ * effort);
-    case dJointTypeSlider: return dJointAddSliderForce(ode_.get(), sign_ * effort);
-    case dJointTypeHinge2: return dJointAddHinge2Torques(ode_.get(), torque1, torque2);
-    case dJointTypeUniversal: return dJointAddUniversalTorques(ode_.get(), torque1, torque2);
-    default: return;
+    case dJointTypeHinge:
+      return dJointAddHingeTorque(ode_.get(), sign_ * effort);
+    case dJointTypeSlider:
+      return dJointAddSliderForce(ode_.get(), sign_ * effort);
+    case dJointTypeHinge2:
+      return dJointAddHinge2Torques(ode_.get(), torque1, torque2);
+    case dJointTypeUniversal:
+      return dJointAddUniversalTorques(ode_.get(), torque1, torque2);
+    default:
+      return;
   }
 }
 

@@ -7,8 +7,8 @@
 
 namespace sim {
 
-/// Starts ODE once per process, and makes its errors exceptions (PhysicsFault) instead of abort().  Call before any
-/// other use of ODE; cheap when ODE runs already.
+/// Starts ODE once per process, and makes its errors exceptions (PhysicsFault) instead of abort().  Call
+/// before any other use of ODE; cheap when ODE runs already.
 void start_ode();
 /// Messages that ODE printed so far in this process.
 std::int64_t ode_messages();

@@ -6,7 +6,9 @@
 
 namespace sim {
 
-inline Vector3d to_eigen(const dReal* v) { return {v[0], v[1], v[2]}; }
+inline Vector3d to_eigen(const dReal* v) {
+  return {v[0], v[1], v[2]};
+}
 
 /// ODE's 3x4 matrices, row by row.
 inline Matrix3d rotation_to_eigen(const dReal* R) {
@@ -29,7 +31,10 @@ inline void to_ode(const Quaterniond& q, dQuaternion out) {
   out[3] = q.z();
 }
 
-/// Eigen's rotation from a quaternion is exact for the identity, which keeps level things level to the last bit.
-inline Quaterniond to_quaternion(const Matrix3d& R) { return Quaterniond(R).normalized(); }
+/// Eigen's rotation from a quaternion is exact for the identity, which keeps level things level to the last
+/// bit.
+inline Quaterniond to_quaternion(const Matrix3d& R) {
+  return Quaterniond(R).normalized();
+}
 
 }  // namespace sim

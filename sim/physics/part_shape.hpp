@@ -38,10 +38,11 @@ class MeshCache {
 /// The part's geom, at the origin and in no space.  `mesh` is null unless the shape is a mesh.
 GeomHandle make_geom(const PartConfig& part, const CollisionMesh* mesh);
 
-/// Mass, centre of mass and inertia of the part, in the frame of the body (about its origin); mass 0 when the part
-/// has neither mass nor density.  Throws ConfigError at the part for a mesh that encloses no solid.
+/// Mass, centre of mass and inertia of the part, in the frame of the body (about its origin); mass 0 when the
+/// part has neither mass nor density.  Throws ConfigError at the part for a mesh that encloses no solid.
 dMass part_mass(const PartConfig& part, const CollisionMesh* mesh, const std::string& who);
 
-[[noreturn]] void throw_config_error(const SourcePlace& place, const std::string& who, const std::string& text);
+[[noreturn]] void throw_config_error(const SourcePlace& place, const std::string& who,
+                                     const std::string& text);
 
 }  // namespace sim

@@ -33,7 +33,8 @@ struct MaterialConfig {
   void read(ParamReader& in);
 };
 
-/// What happens where two materials touch.  The last entry that names a pair wins; `any` stands for every material.
+/// What happens where two materials touch.  `any` stands for every
+/// material.  An entry that names both materials wins over one that says `any`; among equals the last one wins.
 struct ContactConfig {
   std::vector<std::string> between = {"any", "any"};  ///< two names of materials, or `any`
   double friction = 0.8;                ///< Coulomb coefficient (friction pyramid, dContactApprox1)

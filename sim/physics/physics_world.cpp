@@ -36,7 +36,7 @@ struct PhysicsWorld::Impl {
   std::vector<std::unique_ptr<Body>> bodies;
   std::vector<Body*> moving;
   std::vector<std::unique_ptr<Joint>> joints;
-  std::vector<Joint*> joints_with_axes;
+  std::vector<std::pair<int, Joint*>> joints_with_axes;  // with their groups
   SceneMoves moves;
   std::unique_ptr<OdeScene> scene;
   StepCounts counts;
@@ -48,7 +48,7 @@ struct PhysicsWorld::Impl {
   void set_mass(Body& body, const BodyConfig& config, const dMass& total);
   void collide();
   void solve(std::int64_t step_number);
-  void check(std::int64_t step_number) const;
+  void finish(std::int64_t step_number);
   [[noreturn]] void fault(const Body& body, std::int64_t step_number) const;
 };
 
@@ -69,8 +69,8 @@ unsigned long step_seed(std::uint64_t seed, std::int64_t step_number) {
 }  // namespace
 
 PhysicsWorld::PhysicsWorld(const PhysicsConfig& config, const std::vector<MaterialConfig>& materials,
-                           const std::vector<ContactConfig>& contacts, const std::vector<std::string>& categories,
-                           std::uint64_t seed) {
+                           const std::vector<ContactConfig>& contacts,
+                           const std::vector<std::string>& categories, std::uint64_t seed) {
   start_ode();
   impl_ = std::make_unique<Impl>(config, ContactTable(materials, contacts), seed);
   for (const std::string& name : categories)
@@ -117,8 +117,8 @@ Body& PhysicsWorld::add_body(int group, const BodyConfig& config, const Pose& X_
     dBodySetGyroscopicMode(body.ode_.get(), 0);
   }
   impl_->add_parts(body, config, fixed);
-  impl_->collider.add_body({body.ode_.get(), body.p_WC_, body.v_WC_W_, body.w_WB_W_,
-                            body.mass_kg_ > 0 ? 1 / body.mass_kg_ : 0});
+  impl_->collider.add_body(
+      {body.ode_.get(), body.p_WC_, body.v_WC_W_, body.w_WB_W_, body.mass_kg_ > 0 ? 1 / body.mass_kg_ : 0});
   impl_->islands.add_body();
   if (!fixed) impl_->moving.push_back(&body);
   body.set_pose(X_WB);
@@ -133,7 +133,8 @@ void PhysicsWorld::Impl::add_parts(Body& body, const BodyConfig& config_, bool f
   dMassSetZero(&total);
   for (const PartConfig& part : config_.parts) {
     const std::string who = "body '" + body.name() + "': part '" + part.name + "'";
-    if (part.shape == "plane" && !fixed) throw_config_error(part.place, who, "a plane can only be part of a fixed body");
+    if (part.shape == "plane" && !fixed)
+      throw_config_error(part.place, who, "a plane can only be part of a fixed body");
     const CollisionMesh* mesh = part.shape == "mesh" ? &meshes.get(part, who) : nullptr;
     geoms.push_back(make_geom(part, mesh));
     if (fixed) continue;
@@ -156,9 +157,14 @@ void PhysicsWorld::Impl::add_parts(Body& body, const BodyConfig& config_, bool f
       to_ode(to_quaternion(X_BG.linear()), q);
       if (!part.rpy_rad.isZero(0)) dGeomSetOffsetQuaternion(geom, q);
     }
-    const CollisionPart collision{geom, body.number_, body.group_, collider.table().number_of(part.material),
-                                  category_bit(part.category), category_bits(part.collides_with)};
-    parts.push_back({part_name(body, part, i), body.group_, body.number_, collision.material, collision.category});
+    const CollisionPart collision{geom,
+                                  body.number_,
+                                  body.group_,
+                                  collider.table().number_of(part.material),
+                                  category_bit(part.category),
+                                  category_bits(part.collides_with)};
+    parts.push_back(
+        {part_name(body, part, i), body.group_, body.number_, collision.material, collision.category});
     scene->add_part(geom, body.group_, collision.category, !fixed);
     collider.add_part(collision, std::move(geoms[i]), !fixed);
   }
@@ -167,7 +173,8 @@ void PhysicsWorld::Impl::add_parts(Body& body, const BodyConfig& config_, bool f
 void PhysicsWorld::Impl::set_mass(Body& body, const BodyConfig& config_, const dMass& total) {
   if (!(total.mass > 0)) {
     const SourcePlace place = config_.parts.empty() ? SourcePlace{} : config_.parts.front().place;
-    throw_config_error(place, "body '" + body.name() + "'", "has no mass: give a part mass_kg or density_kgpm3");
+    throw_config_error(place, "body '" + body.name() + "'",
+                       "has no mass: give a part mass_kg or density_kgpm3");
   }
   dMass mass = total;
   body.mass_kg_ = mass.mass;
@@ -181,7 +188,8 @@ void PhysicsWorld::Impl::set_mass(Body& body, const BodyConfig& config_, const d
   dBodySetMass(body.ode_.get(), &mass);
 }
 
-Joint& PhysicsWorld::add_joint(int group, const JointConfig& config, Body& first, Body* second, const Pose& X_WV) {
+Joint& PhysicsWorld::add_joint(int group, const JointConfig& config, Body& first, Body* second,
+                               const Pose& X_WV) {
   const std::string name = impl_->groups[group] + "/" + config.name;
   const dBodyID a = first.ode_.get(), b = second ? second->ode_.get() : nullptr;
   if (!a && !b) throw_config_error({}, "joint '" + name + "'", "joins two fixed bodies");
@@ -194,7 +202,7 @@ Joint& PhysicsWorld::add_joint(int group, const JointConfig& config, Body& first
   if (config.type == "hinge" || config.type == "hinge2") dBodySetFiniteRotationMode(b ? b : a, 1);
   impl_->islands.add_joint(a ? first.number_ : -1, b ? second->number_ : -1, joint.max_rows());
   if (second) impl_->collider.join(first.number_, second->number_);
-  if (joint.axes() > 0) impl_->joints_with_axes.push_back(&joint);
+  if (joint.axes() > 0) impl_->joints_with_axes.emplace_back(group, &joint);
   impl_->joints.push_back(std::move(owned));
   return joint;
 }
@@ -212,8 +220,7 @@ void PhysicsWorld::step(std::int64_t step_number) {
     throw PhysicsFault(std::string(error.what()) + " at step " + std::to_string(step_number));
   }
   ++impl_->moves.moving;
-  impl_->check(step_number);
-  for (Joint* joint : impl_->joints_with_axes) joint->update_position(impl_->config.step_s);
+  impl_->finish(step_number);
 }
 
 void PhysicsWorld::Impl::collide() {
@@ -239,15 +246,24 @@ void PhysicsWorld::Impl::solve(std::int64_t step_number) {
   dJointGroupEmpty(contacts.get());
 }
 
-void PhysicsWorld::Impl::check(std::int64_t step_number) const {
+/// Checks the bodies and lets the joints follow: a group's joints right after its bodies, which are in the cache then.
+void PhysicsWorld::Impl::finish(std::int64_t step_number) {
   const double max_speed2 = config.max_speed_mps * config.max_speed_mps;
   const double max_distance2 = config.max_distance_m * config.max_distance_m;
   const auto square = [](const dReal* v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
-  // Written so that NaN fails.  A rotation rate has no bound of its own, but must stay a number.
-  for (const Body* body : moving)
+  auto joint = joints_with_axes.begin();
+  const auto update_joints_before = [&](int group) {
+    for (; joint != joints_with_axes.end() && joint->first < group; ++joint)
+      joint->second->update_position(config.step_s);
+  };
+  for (const Body* body : moving) {
+    update_joints_before(body->group_);
+    // Written so that NaN fails.  A rotation rate has no bound of its own, but must stay a number.
     if (!(square(body->v_WC_W_) <= max_speed2 && square(body->p_WC_) <= max_distance2 &&
           square(body->w_WB_W_) < 1e300))
       fault(*body, step_number);
+  }
+  update_joints_before(static_cast<int>(groups.size()));
 }
 
 void PhysicsWorld::Impl::fault(const Body& body, std::int64_t step_number) const {
@@ -260,21 +276,40 @@ void PhysicsWorld::Impl::fault(const Body& body, std::int64_t step_number) const
   else if (speed > config.max_speed_mps)
     std::snprintf(text, sizeof text, "speed %.2g m/s is over %g m/s", speed, config.max_speed_mps);
   else if (distance > config.max_distance_m)
-    std::snprintf(text, sizeof text, "distance %.3g m from the origin is over %g m", distance, config.max_distance_m);
+    std::snprintf(text, sizeof text, "distance %.3g m from the origin is over %g m", distance,
+                  config.max_distance_m);
   else
     std::snprintf(text, sizeof text, "angular velocity is not finite");
   throw PhysicsFault("body '" + body.name() + "': " + text + " at step " + std::to_string(step_number));
 }
 
-const Scene& PhysicsWorld::scene() const { return *impl_->scene; }
-std::span<const std::unique_ptr<Body>> PhysicsWorld::bodies() const { return impl_->bodies; }
-std::span<const std::unique_ptr<Joint>> PhysicsWorld::joints() const { return impl_->joints; }
-std::span<const PartInfo> PhysicsWorld::parts() const { return impl_->parts; }
-const std::string& PhysicsWorld::group_name(int group) const { return impl_->groups.at(group); }
-const StepCounts& PhysicsWorld::last_step() const { return impl_->counts; }
-std::int64_t PhysicsWorld::quick_steps() const { return impl_->quick_steps; }
-double PhysicsWorld::step_s() const { return impl_->config.step_s; }
-std::uint32_t PhysicsWorld::category_bit(const std::string& name) const { return impl_->category_bit(name); }
+const Scene& PhysicsWorld::scene() const {
+  return *impl_->scene;
+}
+std::span<const std::unique_ptr<Body>> PhysicsWorld::bodies() const {
+  return impl_->bodies;
+}
+std::span<const std::unique_ptr<Joint>> PhysicsWorld::joints() const {
+  return impl_->joints;
+}
+std::span<const PartInfo> PhysicsWorld::parts() const {
+  return impl_->parts;
+}
+const std::string& PhysicsWorld::group_name(int group) const {
+  return impl_->groups.at(group);
+}
+const StepCounts& PhysicsWorld::last_step() const {
+  return impl_->counts;
+}
+std::int64_t PhysicsWorld::quick_steps() const {
+  return impl_->quick_steps;
+}
+double PhysicsWorld::step_s() const {
+  return impl_->config.step_s;
+}
+std::uint32_t PhysicsWorld::category_bit(const std::string& name) const {
+  return impl_->category_bit(name);
+}
 
 std::uint32_t PhysicsWorld::Impl::category_bit(const std::string& name) const {
   const auto at = std::find(categories.begin(), categories.end(), name);

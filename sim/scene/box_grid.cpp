@@ -6,7 +6,9 @@
 namespace sim {
 namespace {
 
-double width_of(const AlignedBox& box) { return std::max(box.high.x() - box.low.x(), box.high.y() - box.low.y()); }
+double width_of(const AlignedBox& box) {
+  return std::max(box.high.x() - box.low.x(), box.high.y() - box.low.y());
+}
 
 }  // namespace
 
@@ -17,7 +19,8 @@ void BoxGrid::build(std::span<const AlignedBox> boxes) {
   if (boxes_.empty()) return;
   std::vector<double> widths;
   for (const AlignedBox& box : boxes_) widths.push_back(width_of(box));
-  std::nth_element(widths.begin(), widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2), widths.end());
+  std::nth_element(widths.begin(), widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2),
+                   widths.end());
   const double median_m = widths[widths.size() / 2];
   std::vector<int> small;
   reach_ = 0;

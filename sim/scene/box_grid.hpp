@@ -21,9 +21,9 @@ struct AlignedBox {
   }
 };
 
-/// Finds the boxes that meet a box, in a grid of square cells in the xy-plane.  Each box is in the cell of its centre,
-/// so it is found once; a search looks as far around as the largest of them reaches.  Boxes much larger than the
-/// median are kept apart and always looked at.
+/// Finds the boxes that meet a box, in a grid of square cells in the xy-plane.  Each box is in the cell of
+/// its centre, so it is found once; a search looks as far around as the largest of them reaches.  Boxes much
+/// larger than the median are kept apart and always looked at.
 class BoxGrid {
  public:
   void build(std::span<const AlignedBox> boxes);

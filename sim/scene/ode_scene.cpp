@@ -43,7 +43,9 @@ OdeScene::OdeScene(const SceneMoves& moves) : moves_(moves), ray_(dCreateRay(nul
   dGeomRaySetClosestHit(ray_.get(), 1);
 }
 
-void OdeScene::add_group() { open_.emplace_back(); }
+void OdeScene::add_group() {
+  open_.emplace_back();
+}
 
 void OdeScene::add_part(dGeomID geom, int group, std::uint32_t category, bool moving) {
   const int number = static_cast<int>(parts_.size());
@@ -101,7 +103,8 @@ bool OdeScene::hit(int part, const Vector3d& origin_W, const Vector3d& direction
   dContactGeom contact;
   if (dCollide(ray_.get(), parts_[part].geom, 1, &contact, sizeof contact) == 0) return false;
   // Of two parts that share a surface the one with the lower number is hit, whatever the order of looking.
-  if (contact.depth > nearest.range_m || (contact.depth == nearest.range_m && part >= nearest.part && nearest.part >= 0))
+  if (contact.depth > nearest.range_m ||
+      (contact.depth == nearest.range_m && part >= nearest.part && nearest.part >= 0))
     return false;
   nearest = {contact.depth, to_eigen(contact.normal), part};
   return true;
@@ -122,8 +125,8 @@ void OdeScene::find_candidates(const AlignedBox& around, const RayFilter& filter
   });
 }
 
-std::optional<RayHit> OdeScene::cast(const Vector3d& origin_W, const Vector3d& direction_W, double range_max_m,
-                                     const RayFilter& filter) const {
+std::optional<RayHit> OdeScene::cast(const Vector3d& origin_W, const Vector3d& direction_W,
+                                     double range_max_m, const RayFilter& filter) const {
   if (!(range_max_m > 0)) return std::nullopt;
   refresh();
   RayHit nearest{range_max_m, Vector3d::Zero(), -1};
@@ -204,9 +207,11 @@ void OdeScene::FanSearch::beams_towards(const AlignedBox& box, Use&& use) const 
   const double center = std::atan2(y, x) - fan.first_angle_rad;
   const double span = (fan.count - 1) * fan.step_rad;
   constexpr double turn = 2 * std::numbers::pi;
-  for (double at = center + turn * std::ceil((-half_width - center) / turn); at - half_width <= span; at += turn) {
+  for (double at = center + turn * std::ceil((-half_width - center) / turn); at - half_width <= span;
+       at += turn) {
     const int first = static_cast<int>(std::ceil(std::max(0.0, (at - half_width) / fan.step_rad)));
-    const int last = static_cast<int>(std::min<double>(fan.count - 1, std::floor((at + half_width) / fan.step_rad)));
+    const int last =
+        static_cast<int>(std::min<double>(fan.count - 1, std::floor((at + half_width) / fan.step_rad)));
     if (first <= last) use(first, last);
   }
 }

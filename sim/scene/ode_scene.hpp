@@ -18,10 +18,11 @@ struct SceneMoves {
   std::uint64_t fixed = 0;   ///< fixed bodies: only when someone puts them elsewhere
 };
 
-/// Rays against the collision geoms.  Not for two threads at once: the ray and the lists are used over and over.
+/// Rays against the collision geoms.  Not for two threads at once: the ray and the lists are used over and
+/// over.
 ///
-/// A search finds the boxes around groups (vehicles, with all their moving parts) and fixed parts that it may meet,
-/// looks at the nearest first, and drops what lies behind hits found already.
+/// A search finds the boxes around groups (vehicles, with all their moving parts) and fixed parts that it may
+/// meet, looks at the nearest first, and drops what lies behind hits found already.
 class OdeScene final : public Scene {
  public:
   explicit OdeScene(const SceneMoves& moves);

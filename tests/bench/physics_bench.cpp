@@ -1,5 +1,6 @@
-// A fleet of diff-drive robots through PhysicsWorld, against a loop over bare ODE with the same bodies.  The bare loop
-// has the best space of limits A1 (sweep and prune, a sub-space per robot) and makes contacts as it finds them.
+// A fleet of diff-drive robots through PhysicsWorld, against a loop over bare ODE with the same bodies.  The
+// bare loop has the best space of limits A1 (sweep and prune, a sub-space per robot) and makes contacts as it
+// finds them.
 #include <benchmark/benchmark.h>
 #include <ode/ode.h>
 
@@ -21,8 +22,12 @@ constexpr int settle_steps = 200;
 constexpr double motor_torque_Nm = 5;
 
 /// Robots turn in small circles of different size, and never leave their cells.
-double left_speed(int robot) { return 3 + 0.1 * (robot % 10); }
-double right_speed(int robot) { return -2 + 0.1 * (robot % 7); }
+double left_speed(int robot) {
+  return 3 + 0.1 * (robot % 10);
+}
+double right_speed(int robot) {
+  return -2 + 0.1 * (robot % 7);
+}
 Vector3d cell(int robot, int robots) {
   const int side = static_cast<int>(std::ceil(std::sqrt(robots)));
   return {cell_m * (robot % side), cell_m * (robot / side), 0};
@@ -99,7 +104,8 @@ class BareFleet {
     for (int i = 0; i < count; ++i) {
       contacts[i].surface.mode = dContactApprox1;
       contacts[i].surface.mu = dGeomGetData(a) || dGeomGetData(b) ? 0 : 0.8;
-      dJointAttach(dJointCreateContact(self.world_.get(), self.contacts_.get(), &contacts[i]), body_a, body_b);
+      dJointAttach(dJointCreateContact(self.world_.get(), self.contacts_.get(), &contacts[i]), body_a,
+                   body_b);
     }
   }
 

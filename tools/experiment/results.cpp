@@ -159,8 +159,10 @@ void Results::finish(const Summary& summary, const Scoring& scoring, const sim::
 void Results::plot(const Scoring& scoring) const {
   const auto tracks = scoring.tracks();
   std::string script =
-      "set datafile separator ','\nset terminal pngcairo size 1000,1000\nset output 'tracks.png'\n"
-      "set size ratio -1\nset xlabel 'east (m)'\nset ylabel 'north (m)'\nset grid\nset key outside top\n"
+      // The vehicles' rows alternate: without `missing` each row of another one would break the line.
+      "set datafile separator ','\nset datafile missing NaN\n"
+      "set terminal pngcairo size 1000,1080\nset output 'tracks.png'\n"
+      "set size ratio -1\nset xlabel 'east (m)'\nset ylabel 'north (m)'\nset grid\nset key below\n"
       "set title '" + world_.config().name + "' noenhanced\n"
       "plot 'outlines.dat' using (real(word(strcol(1),1))):(real(word(strcol(1),2))) with lines lc 'gray40' notitle";
   if (world_.vehicles().size() > most_named_tracks) {

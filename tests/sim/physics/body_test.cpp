@@ -44,7 +44,7 @@ TEST(Body, FliesLikeAProjectile) {
   const double elevation = sim::degrees_to_radians(40);
   ball.set_velocity_W(12 * Vector3d(std::cos(elevation), 0, std::sin(elevation)), Vector3d::Zero());
   run(*world, 1.2);
-  EXPECT_NEAR(ball.X_WB().translation().x(), 11.03103998, 1e-4);  // 12 cos(40 deg) 1.2
+  EXPECT_NEAR(ball.X_WB().translation().x(), 11.03103998, 1e-4);             // 12 cos(40 deg) 1.2
   EXPECT_NEAR(ball.X_WB().translation().z(), 2.195353579, g * 0.001 * 1.2);  // 12 sin(40 deg) t - g t^2 / 2
 }
 
@@ -76,7 +76,8 @@ TEST(Body, SpeaksOfItsOwnFrameNotOfTheCentreOfMass) {
   EXPECT_TRUE(hull.v_WB_W().isApprox(Vector3d(1, 0, 0), 1e-15));
   // v + w x r for the point at +y of the body.
   const Vector3d r_W = X_WB.linear() * Vector3d(0, 1, 0);
-  EXPECT_TRUE(hull.velocity_at_W({0, 1, 0}).isApprox(Vector3d(1, 0, 0) + Vector3d(0, 0, 2).cross(r_W), 1e-14));
+  EXPECT_TRUE(
+      hull.velocity_at_W({0, 1, 0}).isApprox(Vector3d(1, 0, 0) + Vector3d(0, 0, 2).cross(r_W), 1e-14));
 }
 
 TEST(Body, FixedBodyKeepsItsPlace) {
@@ -121,12 +122,13 @@ ShapeCase capsule_case(double r, double l) {
   return {round("capsule", r, l, 1), v, {across, across, along}};
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Shapes, ShapeMass,
-    testing::Values(ShapeCase{box({1, 2, 3}, 1), 6, {13.0 / 12, 10.0 / 12, 5.0 / 12}},
-                    ShapeCase{sphere(0.5, 1), pi / 6, {0.1, 0.1, 0.1}},  // 2/5 r^2
-                    ShapeCase{round("cylinder", 0.5, 2, 1), pi / 2, {0.25 / 4 + 4.0 / 12, 0.25 / 4 + 4.0 / 12, 0.125}},
-                    capsule_case(0.5, 2)));
+INSTANTIATE_TEST_SUITE_P(Shapes, ShapeMass,
+                         testing::Values(ShapeCase{box({1, 2, 3}, 1), 6, {13.0 / 12, 10.0 / 12, 5.0 / 12}},
+                                         ShapeCase{sphere(0.5, 1), pi / 6, {0.1, 0.1, 0.1}},  // 2/5 r^2
+                                         ShapeCase{round("cylinder", 0.5, 2, 1),
+                                                   pi / 2,
+                                                   {0.25 / 4 + 4.0 / 12, 0.25 / 4 + 4.0 / 12, 0.125}},
+                                         capsule_case(0.5, 2)));
 
 TEST(CompositeBody, AddsMassesCentresAndInertias) {
   const auto world = make_world();
@@ -136,14 +138,14 @@ TEST(CompositeBody, AddsMassesCentresAndInertias) {
   EXPECT_NEAR(dumb_bell.mass_kg(), 4, 1e-14);
   EXPECT_TRUE(dumb_bell.p_BC().isApprox(Vector3d(3, 0, 0), 1e-14));
   // Steiner: m1 m2 / (m1 + m2) d^2 = 3/4 16 = 12 across, on top of m / 6 each.
-  EXPECT_TRUE(dumb_bell.inertia_C_B().isApprox(Matrix3d(Vector3d(4.0 / 6, 12 + 4.0 / 6, 12 + 4.0 / 6).asDiagonal()),
-                                               1e-13));
+  EXPECT_TRUE(dumb_bell.inertia_C_B().isApprox(
+      Matrix3d(Vector3d(4.0 / 6, 12 + 4.0 / 6, 12 + 4.0 / 6).asDiagonal()), 1e-13));
 }
 
 TEST(CompositeBody, TurnsTheInertiaOfATurnedPart) {
   const auto world = make_world();
-  const sim::Body& plank = add(*world, body("plank", {at(box({1, 2, 3}, 12), {0, 0, 0}, {0, 0, pi / 2})}),
-                               Pose::Identity());
+  const sim::Body& plank =
+      add(*world, body("plank", {at(box({1, 2, 3}, 12), {0, 0, 0}, {0, 0, pi / 2})}), Pose::Identity());
   EXPECT_TRUE(plank.inertia_C_B().isApprox(Matrix3d(Vector3d(10, 13, 5).asDiagonal()), 1e-13));
 }
 
@@ -164,7 +166,8 @@ TEST(CompositeBody, WithoutMassIsAConfigError) {
     world->add_body(group, body("hull", {part}), Pose::Identity());
     FAIL();
   } catch (const sim::ConfigError& error) {
-    EXPECT_STREQ(error.what(), "ghost.yaml:3:5: body 'ghost/hull': has no mass: give a part mass_kg or density_kgpm3");
+    EXPECT_STREQ(error.what(),
+                 "ghost.yaml:3:5: body 'ghost/hull': has no mass: give a part mass_kg or density_kgpm3");
   }
 }
 
@@ -175,8 +178,8 @@ TEST(CompositeBody, PlaneInAMovingBodyIsAConfigError) {
 }
 
 TEST(Gyroscopic, SymmetricBodyPrecessesAtTheEulerRate) {
-  // closed_forms.csv torque_free_symmetric_body: (I_axial - I_transverse) / I_transverse * 6 rad/s = 4.5 rad/s.
-  // A cylinder with these inertias: m = 2 I_a / r^2 and I_t = m (3 r^2 + l^2) / 12.
+  // closed_forms.csv torque_free_symmetric_body: (I_axial - I_transverse) / I_transverse * 6 rad/s = 4.5
+  // rad/s. A cylinder with these inertias: m = 2 I_a / r^2 and I_t = m (3 r^2 + l^2) / 12.
   const double r = 0.5, axial = 0.35, transverse = 0.2, m = 2 * axial / (r * r);
   const double l = std::sqrt(12 * transverse / m - 3 * r * r);
   const auto world = make_world(with_step(0.001, 0));
@@ -200,11 +203,14 @@ TEST(Gyroscopic, TumblingBodyKeepsItsEnergyAndMomentum) {
   sim::Body& brick = add(*world, body("brick", {box({0.1, 0.4, 1}, 5)}), Pose::Identity());
   brick.set_velocity_W(Vector3d::Zero(), {1, 10, 1});  // about the middle axis: it tumbles
   const Matrix3d& I = brick.inertia_C_B();
-  const auto momentum = [&]() -> Vector3d { return I * (brick.X_WB().linear().transpose() * brick.w_WB_W()); };
+  const auto momentum = [&]() -> Vector3d {
+    return I * (brick.X_WB().linear().transpose() * brick.w_WB_W());
+  };
   const auto energy = [&] { return momentum().dot(brick.X_WB().linear().transpose() * brick.w_WB_W()) / 2; };
   const double momentum0 = momentum().norm(), energy0 = energy();
   run(*world, 10);
-  // The midpoint rule keeps both; ODE's rotation by the new velocity tilts the axes by (h w)^3 / 12 in a step.
+  // The midpoint rule keeps both; ODE's rotation by the new velocity tilts the axes by (h w)^3 / 12 in a
+  // step.
   EXPECT_NEAR(energy() / energy0, 1, 1e-3);
   EXPECT_NEAR(momentum().norm() / momentum0, 1, 1e-3);
 }

@@ -48,7 +48,8 @@ TEST_P(Incline, BoxSlidesAsCoulombSays) {
 TEST_P(Incline, BoxStartsToSlideAtTheAngleOfFriction) {
   // atan(0.5) = 26.565 deg, half a degree either way.
   EXPECT_LT(slip_acceleration(0.5, 26.065, GetParam()), 0.005);
-  EXPECT_GT(slip_acceleration(0.5, 27.065, GetParam()), 0.5 * g * (std::sin(0.47237) - 0.5 * std::cos(0.47237)));
+  EXPECT_GT(slip_acceleration(0.5, 27.065, GetParam()),
+            0.5 * g * (std::sin(0.47237) - 0.5 * std::cos(0.47237)));
 }
 
 INSTANTIATE_TEST_SUITE_P(Azimuths, Incline, testing::Values(0.0, 0.3, std::numbers::pi / 4, 1.2, 2.5));
@@ -72,7 +73,8 @@ TEST(Contact, PushedBoxStartsToSlideAtCoulombsForceInAnyDirection) {
 }
 
 TEST(Contact, BallBouncesToAQuarterOfItsHeight) {
-  // closed_forms.csv bounce: e^2 h = 0.25 m.  The ball sinks in by up to v h / 2 on average before it turns: 1 mm.
+  // closed_forms.csv bounce: e^2 h = 0.25 m.  The ball sinks in by up to v h / 2 on average before it turns:
+  // 1 mm.
   PhysicsConfig config;
   config.step_s = 0.0005;
   ContactConfig contact;

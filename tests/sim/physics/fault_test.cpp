@@ -23,15 +23,24 @@ std::string fault_of(Action&& action) {
 TEST(Fault, ForceThatIsNotANumberNamesTheBody) {
   const auto world = make_world();
   sim::Body& hull = add(*world, body("hull", {sphere(1, 1)}), Pose::Identity());
-  EXPECT_EQ(fault_of([&] { hull.add_force_W({0, nan, 0}, {0, 0, 0}); }),
+  EXPECT_EQ(fault_of([&] {
+              hull.add_force_W({0, nan, 0}, {0, 0, 0});
+            }),
             "body 'hull/hull': a force on it is not finite");
-  EXPECT_EQ(fault_of([&] { hull.add_force_W({0, 1, 0}, {nan, 0, 0}); }),
+  EXPECT_EQ(fault_of([&] {
+              hull.add_force_W({0, 1, 0}, {nan, 0, 0});
+            }),
             "body 'hull/hull': a force on it is not finite");
-  EXPECT_EQ(fault_of([&] { hull.add_torque_W({0, 0, std::numeric_limits<double>::infinity()}); }),
+  EXPECT_EQ(fault_of([&] {
+              hull.add_torque_W({0, 0, std::numeric_limits<double>::infinity()});
+            }),
             "body 'hull/hull': a torque on it is not finite");
-  EXPECT_EQ(fault_of([&] { hull.set_velocity_W({0, 0, nan}, {0, 0, 0}); }),
+  EXPECT_EQ(fault_of([&] {
+              hull.set_velocity_W({0, 0, nan}, {0, 0, 0});
+            }),
             "body 'hull/hull': its new velocity is not finite");
-  EXPECT_EQ(fault_of([&] { hull.set_pose(translation(0, 0, nan)); }), "body 'hull/hull': its new pose is not finite");
+  EXPECT_EQ(fault_of([&] { hull.set_pose(translation(0, 0, nan)); }),
+            "body 'hull/hull': its new pose is not finite");
   world->step(0);  // nothing of it reached ODE
 }
 
@@ -42,7 +51,8 @@ TEST(Fault, MotorThatIsNotANumberNamesTheJoint) {
   EXPECT_EQ(fault_of([&] { rover.left->set_motor(nan, 1); }), expected);
   EXPECT_EQ(fault_of([&] { rover.left->set_motor(1, nan); }), expected);
   EXPECT_EQ(fault_of([&] { rover.left->set_motor(1, -1); }), expected);
-  EXPECT_EQ(fault_of([&] { rover.left->add_effort(nan); }), "joint 'rover1/left': an effort on it is not finite");
+  EXPECT_EQ(fault_of([&] { rover.left->add_effort(nan); }),
+            "joint 'rover1/left': an effort on it is not finite");
 }
 
 TEST(Fault, ExplosionNamesTheBodyTheSpeedAndTheStep) {
@@ -50,7 +60,8 @@ TEST(Fault, ExplosionNamesTheBodyTheSpeedAndTheStep) {
   add(*world, body("calm", {sphere(1, 1)}), translation(9, 0, 0));
   sim::Body& rocket = add(*world, body("rocket", {sphere(1, 1)}), Pose::Identity());
   rocket.add_force_W({1.2e7, 0, 0}, {0, 0, 0});
-  EXPECT_EQ(fault_of([&] { world->step(123); }), "body 'rocket/rocket': speed 1.2e+05 m/s is over 1000 m/s at step 123");
+  EXPECT_EQ(fault_of([&] { world->step(123); }),
+            "body 'rocket/rocket': speed 1.2e+05 m/s is over 1000 m/s at step 123");
 }
 
 TEST(Fault, OverflowNamesTheBody) {
