@@ -33,7 +33,7 @@ void Modem::SerialParams::read(sim::ParamReader& in) {
 }
 
 void Modem::Params::read(sim::ParamReader& in) {
-  in.read("channel", channel, "modems hear each other only on the same channel");
+  in.read("network", network, "modems hear each other only in the same network, such as a radio channel");
   in.read("range_m", range_m, sim::above(0), "how far it is heard");
   in.read("data_rate_bps", data_rate_bps, sim::above(0), "bits per second");
   in.read("propagation_mps", propagation_mps, sim::above(0), "speed of radio waves or of sound");
@@ -67,10 +67,10 @@ void Modem::send(sim::Time, std::string destination, sim::Bytes data) {
                              " bytes, got " + std::to_string(data.size()));
   const auto& members = network_.members();
   const bool known = destination.empty() || std::any_of(members.begin(), members.end(), [&](const Modem* other) {
-    return other != this && other->vehicle_ == destination && other->params_.channel == params_.channel;
+    return other != this && other->vehicle_ == destination && other->params_.network == params_.network;
   });
   if (!known)
-    throw std::runtime_error("'destination' names no vehicle with a modem on channel '" + params_.channel + "': '" +
+    throw std::runtime_error("'destination' names no vehicle with a modem in network '" + params_.network + "': '" +
                              destination + "'");
   if (queue_.size() >= static_cast<std::size_t>(params_.queue_messages)) {
     queue_.pop_front();
@@ -103,7 +103,7 @@ void Modem::transmit(sim::Time now, const Outgoing& message) {
   frame.utime = 0;
   const sim::Bytes payload = shoal::encode(frame);
   for (Modem* receiver : network_.members()) {
-    if (receiver == this || receiver->params_.channel != params_.channel) continue;
+    if (receiver == this || receiver->params_.network != params_.network) continue;
     if (!message.destination.empty() && receiver->vehicle_ != message.destination) continue;
     const double distance_m = (receiver->p_WS() - p_WS()).norm();
     if (distance_m > params_.range_m || lost_on_the_way_to(*receiver)) continue;
@@ -135,15 +135,22 @@ void Modem::measure(const sim::SenseContext&) {
 }
 
 void Modem::hash_state(sim::StateHash& hash) const {
+  hash.add(static_cast<std::uint64_t>(queue_.size()));
   for (const Outgoing& message : queue_) {
     hash.add(std::string_view(message.destination));
     hash.add_bytes(message.data.data(), message.data.size());
   }
-  for (const std::vector<Packet>* packets : {&arrived_, &received_})
+  for (const std::vector<Packet>* packets : {&arrived_, &received_}) {
+    hash.add(static_cast<std::uint64_t>(packets->size()));
     for (const Packet& packet : *packets) {
+      hash.add(std::string_view(packet.source));
+      hash.add(std::string_view(packet.destination));
+      hash.add(static_cast<std::int64_t>(packet.sent.count()));
       hash.add(static_cast<std::int64_t>(packet.arrived.count()));
       hash.add_bytes(packet.data.data(), packet.data.size());
     }
+  }
+  hash.add_bytes(line_.data(), line_.size());
   hash.add(static_cast<std::int64_t>(busy_until_.count()));
   hash.add(sent_);
 }

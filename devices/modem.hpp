@@ -11,7 +11,7 @@
 namespace devices {
 
 /// Radio or acoustic modem: carries messages of bytes between vehicles.  It sends one message at a time, which takes
-/// size / data rate; the message arrives distance / speed of propagation later at every modem on the same channel
+/// size / data rate; the message arrives distance / speed of propagation later at every modem of the same network
 /// that was in range when the sending began.
 class Modem final : public sim::Sensor {
  public:
@@ -24,7 +24,7 @@ class Modem final : public sim::Sensor {
     void read(sim::ParamReader& in);
   };
   struct Params {
-    std::string channel = "radio";
+    std::string network = "radio";
     double range_m = 100;
     double data_rate_bps = 9600;
     double propagation_mps = 299792458.0;

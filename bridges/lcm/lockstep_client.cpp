@@ -121,8 +121,10 @@ bool LockstepClient::next_tick(shoal::sim_tick_t& tick) {
 
 std::optional<shoal::sim_tick_t> LockstepClient::as_new_tick(const Received& message) {
   auto tick = try_decode<shoal::sim_tick_t>(message.payload);
-  if (!tick || std::find(tick->client.begin(), tick->client.end(), name_) == tick->client.end())
-    return std::nullopt;
+  if (!tick) return std::nullopt;
+  // The end of the run concerns all, named or not, and may come at a step that was already acknowledged.
+  if (tick->last != 0) return tick;
+  if (std::find(tick->client.begin(), tick->client.end(), name_) == tick->client.end()) return std::nullopt;
   if (acknowledged_utime_ == tick->utime) {
     acknowledge(*tick);  // the simulator asks again: our answer was lost, or crossed with the question
     return std::nullopt;

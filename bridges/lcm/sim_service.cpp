@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "shoal/message_codec.hpp"
@@ -204,8 +205,7 @@ void SimService::synchronize(double timeout_s, const Wait& wait, const std::func
   using Clock = std::chrono::steady_clock;
   const std::int64_t step = world_.step_number();
   if (lockstep_.missing(step).empty()) return;
-  publish_tick(lockstep_.missing(step), false);
-  network_.end_of_step();
+  std::vector<std::string> asked;
   const Clock::time_point begin = Clock::now();
   Clock::time_point sent = begin;
   while (true) {
@@ -218,9 +218,12 @@ void SimService::synchronize(double timeout_s, const Wait& wait, const std::func
     if (now - begin > std::chrono::duration<double>(timeout_s))
       throw LockstepTimeout("lockstep: no acknowledgement from " + joined(missing) + " for step " +
                             std::to_string(step) + " within " + std::to_string(timeout_s) + " s");
-    if (now - sent > resend_after) {
+    // Who joins while the world waits is asked too.
+    const bool newcomer = !std::includes(asked.begin(), asked.end(), missing.begin(), missing.end());
+    if (newcomer || now - sent > resend_after) {
       publish_tick(missing, false);
       network_.end_of_step();
+      asked = missing;
       sent = now;
     }
     wait(std::chrono::milliseconds(20));

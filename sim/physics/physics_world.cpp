@@ -246,7 +246,8 @@ void PhysicsWorld::Impl::solve(std::int64_t step_number) {
   dJointGroupEmpty(contacts.get());
 }
 
-/// Checks the bodies and lets the joints follow: a group's joints right after its bodies, which are in the cache then.
+/// Checks the bodies and lets the joints follow: a group's joints right after its bodies, which are in the
+/// cache then.
 void PhysicsWorld::Impl::finish(std::int64_t step_number) {
   const double max_speed2 = config.max_speed_mps * config.max_speed_mps;
   const double max_distance2 = config.max_distance_m * config.max_distance_m;

@@ -5,7 +5,7 @@
 namespace {
 
 /// Three boxes on a line, 150 m apart, with a modem each.
-std::string modem_world(const std::string& keys, const std::string& third_channel = "radio") {
+std::string modem_world(const std::string& keys, const std::string& third_network = "radio") {
   std::string text =
       "shoal: 1\nphysics: {step_s: 0.001}\nobjects:\n  - {name: ground, fixed: true, parts: [{shape: plane}]}\nvehicles:\n";
   const char* names[] = {"a", "b", "c"};
@@ -13,8 +13,8 @@ std::string modem_world(const std::string& keys, const std::string& third_channe
     text += std::string("  - {name: ") + names[i] + ", position_m: [" + std::to_string(150 * i) +
             ", 0, 0], model: {shoal: 1, vehicle: box" + std::to_string(i) +
             ", bodies: [{name: b, position_m: [0, 0, 0.2], parts: [{shape: box, size_m: [0.4, 0.4, 0.4], "
-            "mass_kg: 5}]}], devices: [{name: modem, type: modem, channel: " +
-            (i == 2 ? third_channel : "radio") + ", " + keys + "}]}}\n";
+            "mass_kg: 5}]}], devices: [{name: modem, type: modem, network: " +
+            (i == 2 ? third_network : "radio") + ", " + keys + "}]}}\n";
   return text;
 }
 
@@ -47,7 +47,7 @@ TEST(Modem, DeliversAfterAirTimeAndPropagation) {
   EXPECT_EQ(c[0].utime - c[0].sent_utime, 300000);
 }
 
-TEST(Modem, IsNotHeardBeyondItsRangeOrOnAnotherChannel) {
+TEST(Modem, IsNotHeardBeyondItsRangeOrInAnotherNetwork) {
   test::TestWorld near(modem_world("range_m: 200"));
   test::Listener<shoal::modem_received_t> b(near, "b.modem"), c(near, "c.modem");
   near.send("a.modem.cmd", message("x"));

@@ -18,9 +18,9 @@
 
 namespace autonomy {
 
-/// The autonomy of one rover of the cooperative experiment.  A rover with GPS tells the others where it is; a rover
-/// without finds its place from odometry and from sightings of those that told.  A pure function of the messages in
-/// their order: it knows no clock and no bus.
+/// The autonomy of one rover of the cooperative experiment.  A rover with GPS tells the others where it is; a
+/// rover without finds its place from odometry and from sightings of those that told.  A pure function of the
+/// messages in their order: it knows no clock and no bus.
 class CoopRover {
  public:
   struct Params {
@@ -30,7 +30,7 @@ class CoopRover {
     double speed_mps = 0.8;
     double start_position_std_m = 0.1;
     double start_yaw_std_rad = 0.03;
-    double seen_std_m = 0.15;         ///< of each coordinate of a sighting
+    double seen_std_m = 0.15;  ///< of each coordinate of a sighting
     double report_period_s = 1.0;
   };
   struct Outgoing {

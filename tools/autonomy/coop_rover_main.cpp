@@ -53,7 +53,8 @@ int drive(const Options& options) {
   client.set_silence_limit(std::chrono::minutes(10));
   shoal::sim_tick_t tick;
   while (client.next_tick(tick)) {
-    for (const autonomy::CoopRover::Outgoing& out : rover.step(tick.utime)) client.publish(out.channel, out.payload);
+    for (const autonomy::CoopRover::Outgoing& out : rover.step(tick.utime))
+      client.publish(out.channel, out.payload);
     client.acknowledge(tick);
   }
   std::signal(SIGTERM, SIG_DFL);
@@ -71,22 +72,30 @@ int run(int argc, char** argv) {
   std::string start = "0,0,0";
   CLI::App app{"Drives one rover of the cooperative experiment, in lockstep with `shoal run`."};
   app.add_option("--name", options.rover.name, "vehicle to drive; also the name in the lockstep")->required();
-  app.add_option("--waypoints", waypoints, "\"x,y;x,y;...\", east and north in m, driven in a loop")->required();
+  app.add_option("--waypoints", waypoints, "\"x,y;x,y;...\", east and north in m, driven in a loop")
+      ->required();
   app.add_option("--start", start, "\"x,y,yaw_deg\": where the rover stands at first")->capture_default_str();
-  app.add_option("--speed", options.rover.speed_mps, "m/s")->capture_default_str()->check(CLI::Range(0.05, 5.0));
+  app.add_option("--speed", options.rover.speed_mps, "m/s")
+      ->capture_default_str()
+      ->check(CLI::Range(0.05, 5.0));
   app.add_option("--period", options.period_s, "s of simulated time between decisions")
-      ->capture_default_str()->check(CLI::Range(0.001, 10.0));
+      ->capture_default_str()
+      ->check(CLI::Range(0.001, 10.0));
   app.add_option("--seen-std", options.rover.seen_std_m, "error of a swarm_position sighting, m")
-      ->capture_default_str()->check(CLI::Range(0.001, 100.0));
+      ->capture_default_str()
+      ->check(CLI::Range(0.001, 100.0));
   app.add_option("--join-timeout", options.join_timeout_s, "s to wait for the simulator")
-      ->capture_default_str()->check(CLI::Range(0.1, 3600.0));
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 3600.0));
   app.add_option("--lcm-url", options.lcm_url, "unset: LCM_DEFAULT_URL, then LCM's default");
   app.footer(
-      "It reads NAME.odometry, .lidar, .modem and, where there are such, .gps and .swarm_position; it publishes\n"
+      "It reads NAME.odometry, .lidar, .modem and, where there are such, .gps and .swarm_position; it "
+      "publishes\n"
       "NAME.drive.cmd, .modem.cmd, .estimate and .odometry_only.\n"
       "Example, beside `shoal run worlds/coop_land.yaml`, or started by it with --launch:\n"
       "  shoal-coop-rover --name rover1 --start=-20,-20,90 --waypoints=\"-20,20;-5,20;-5,-20;-20,-20\"\n"
-      "Exit codes: 0 the run ended, 2 usage, 4 bus trouble, 5 the simulator fell silent, 130 SIGINT, 143 SIGTERM.");
+      "Exit codes: 0 the run ended, 2 usage, 4 bus trouble, 5 the simulator fell silent, 130 SIGINT, 143 "
+      "SIGTERM.");
   try {
     app.parse(argc, argv);
     options.rover.waypoints_W = autonomy::parse_waypoints(waypoints);

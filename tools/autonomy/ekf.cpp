@@ -9,7 +9,9 @@ namespace autonomy {
 
 namespace {
 
-double squared(double x) { return x * x; }
+double squared(double x) {
+  return x * x;
+}
 
 }  // namespace
 
@@ -31,7 +33,8 @@ void Ekf::predict(const Increment& move) {
   const double way_m = std::hypot(move.forward_m, move.left_m);
   Eigen::Matrix3d Q_B = Eigen::Matrix3d::Zero();
   Q_B.diagonal() << squared(params_.along_std_m) * way_m, squared(params_.across_std_m) * way_m,
-      squared(params_.yaw_per_turn_std_rad) * std::abs(move.turn_rad) + squared(params_.yaw_per_metre_std_rad) * way_m;
+      squared(params_.yaw_per_turn_std_rad) * std::abs(move.turn_rad) +
+          squared(params_.yaw_per_metre_std_rad) * way_m;
 
   pose_.p_W += moved_W;
   pose_.yaw_rad = sim::wrap_angle(pose_.yaw_rad + move.turn_rad);
@@ -44,15 +47,15 @@ bool Ekf::update_position(const Vector2d& p_W, double std_m) {
   return update(p_W - pose_.p_W, H, squared(std_m) * Eigen::Matrix2d::Identity());
 }
 
-bool Ekf::update_relative(const Vector2d& p_BN_B, double seen_std_m, const Vector2d& p_WN_W, double neighbour_std_m) {
+bool Ekf::update_relative(const Vector2d& p_BN_B, double seen_std_m, const Vector2d& p_WN_W,
+                          double neighbour_std_m) {
   const Vector2d d_W = p_WN_W - pose_.p_W;
   const Vector2d expected_B = turned(d_W, -pose_.yaw_rad);
   const double c = std::cos(pose_.yaw_rad);
   const double s = std::sin(pose_.yaw_rad);
   // h = R(yaw)^T (p_WN - p_WB): moving there makes it smaller, turning left turns it right.
   Jacobian H;
-  H << -c, -s, expected_B.y(),
-       s, -c, -expected_B.x();
+  H << -c, -s, expected_B.y(), s, -c, -expected_B.x();
   // Both errors are round, so the turn between the frames does not matter.
   const double variance = squared(seen_std_m) + squared(neighbour_std_m);
   return update(p_BN_B - expected_B, H, variance * Eigen::Matrix2d::Identity());
@@ -84,6 +87,8 @@ void Ekf::count_refusal() {
   P_.diagonal() += Eigen::Vector3d(squared(5.0), squared(5.0), squared(0.5));
 }
 
-double Ekf::position_std_m() const { return std::sqrt(0.5 * (P_(0, 0) + P_(1, 1))); }
+double Ekf::position_std_m() const {
+  return std::sqrt(0.5 * (P_(0, 0) + P_(1, 1)));
+}
 
 }  // namespace autonomy

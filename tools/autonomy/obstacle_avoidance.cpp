@@ -21,16 +21,18 @@ double ObstacleAvoidance::free_way_m(const Scan& scan, double direction_rad) con
     const double range_m = scan.ranges_m[i];
     const double angle = scan.first_angle_rad + static_cast<double>(i) * scan.step_rad - direction_rad;
     const double ahead_m = range_m * std::cos(angle);
-    if (ahead_m > 0 && std::abs(range_m * std::sin(angle)) < params_.half_width_m) free_m = std::min(free_m, ahead_m);
+    if (ahead_m > 0 && std::abs(range_m * std::sin(angle)) < params_.half_width_m)
+      free_m = std::min(free_m, ahead_m);
   }
   return free_m;
 }
 
-bool ObstacleAvoidance::choose_direction(const Vector2d& goal_B, const Scan& scan, double& direction_rad) const {
+bool ObstacleAvoidance::choose_direction(const Vector2d& goal_B, const Scan& scan,
+                                         double& direction_rad) const {
   const double goal_rad = std::atan2(goal_B.y(), goal_B.x());
   const double needed_m = std::min(params_.look_ahead_m, goal_B.norm() + params_.half_width_m);
-  // Staying with the last choice keeps the rover from wavering before an obstacle.  The small preference for the
-  // right makes two rovers that meet pass each other on the same hand.
+  // Staying with the last choice keeps the rover from wavering before an obstacle.  The small preference for
+  // the right makes two rovers that meet pass each other on the same hand.
   constexpr double habit = 0.3;
   constexpr double keep_right_rad = 0.02;
   double lowest = std::numeric_limits<double>::infinity();
@@ -38,7 +40,8 @@ bool ObstacleAvoidance::choose_direction(const Vector2d& goal_B, const Scan& sca
     const double candidate = i * direction_step_rad;
     if (free_way_m(scan, candidate) < needed_m) continue;
     const double cost = std::abs(sim::wrap_angle(candidate - goal_rad)) +
-                        habit * std::abs(candidate - last_direction_rad_) + (candidate > 0 ? keep_right_rad : 0.0);
+                        habit * std::abs(candidate - last_direction_rad_) +
+                        (candidate > 0 ? keep_right_rad : 0.0);
     if (cost >= lowest) continue;
     lowest = cost;
     direction_rad = candidate;
@@ -61,8 +64,8 @@ Twist ObstacleAvoidance::turn_out(const Scan& scan) {
 
 Twist ObstacleAvoidance::steer(const Vector2d& goal_B, const Scan& scan) {
   double direction_rad = 0;
-  // Once it turns on the spot it goes on in that sense until the way ahead is free; otherwise the two sides of a
-  // corner would send it to and fro.
+  // Once it turns on the spot it goes on in that sense until the way ahead is free; otherwise the two sides
+  // of a corner would send it to and fro.
   const bool out = turning_out_ == 0 || free_way_m(scan, 0) >= params_.slow_m;
   if (!out || !choose_direction(goal_B, scan, direction_rad)) return turn_out(scan);
   turning_out_ = 0;

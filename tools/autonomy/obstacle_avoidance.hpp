@@ -5,17 +5,17 @@
 
 namespace autonomy {
 
-/// Steers towards a goal and around what the lidar sees: takes the free direction nearest to the goal, and turns on
-/// the spot where none is free.
+/// Steers towards a goal and around what the lidar sees: takes the free direction nearest to the goal, and
+/// turns on the spot where none is free.
 class ObstacleAvoidance {
  public:
   struct Params {
     double speed_mps = 0.8;
     double max_turn_radps = 1.0;
-    double half_width_m = 0.55;   ///< of the lane the rover needs: its corners are 0.39 m from its middle
-    double stop_m = 0.55;         ///< no way ahead when the lane is blocked nearer than this
-    double slow_m = 2.0;          ///< full speed when the lane is free so far
-    double look_ahead_m = 3.0;    ///< a direction is free when its lane is, so far or up to the goal
+    double half_width_m = 0.55;  ///< of the lane the rover needs: its corners are 0.39 m from its middle
+    double stop_m = 0.55;        ///< no way ahead when the lane is blocked nearer than this
+    double slow_m = 2.0;         ///< full speed when the lane is free so far
+    double look_ahead_m = 3.0;   ///< a direction is free when its lane is, so far or up to the goal
   };
 
   ObstacleAvoidance() : ObstacleAvoidance(Params()) {}

@@ -31,8 +31,9 @@ class PositionReports {
 
   /// Throws shoal::MessageError when the bytes are no report that can be believed: anybody may send anything.
   void receive(const shoal::modem_received_t& packet);
-  /// Where a rover is at `utime` by its last report, and that report is used up: its error would count again and
-  /// again with every sighting, though it is the same.  Nothing when there is no unused report or it is too old.
+  /// Where a rover is at `utime` by its last report, and that report is used up: its error would count again
+  /// and again with every sighting, though it is the same.  Nothing when there is no unused report or it is
+  /// too old.
   std::optional<Neighbour> take(const std::string& vehicle, std::int64_t utime);
 
  private:

@@ -9,8 +9,8 @@
 
 namespace autonomy {
 
-/// Drives about without a goal: ahead, and to the left for a random while when something is in the way.  The brain
-/// of the benchmark's rovers; one step for each scan.
+/// Drives about without a goal: ahead, and to the left for a random while when something is in the way.  The
+/// brain of the benchmark's rovers; one step for each scan.
 class Wander {
  public:
   static constexpr double forward_mps = 0.4;

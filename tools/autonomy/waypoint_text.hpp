@@ -7,8 +7,8 @@
 
 namespace autonomy {
 
-/// Waypoints as on the command line: `10,5;20,-3`, east and north in m.  Throws std::invalid_argument with the place
-/// that is wrong.
+/// Waypoints as on the command line: `10,5;20,-3`, east and north in m.  Throws std::invalid_argument with
+/// the place that is wrong.
 std::vector<Vector2d> parse_waypoints(const std::string& text);
 
 /// A start pose: `x,y,yaw_deg`.

@@ -41,7 +41,7 @@ int run(RunArguments& arguments) {
   const Summary summary = run_world(loaded, arguments.run);
   if (!summary.error.empty()) std::cerr << "shoal: " << summary.error << '\n';
   if (summary.steps > 0 && !arguments.run.quiet) std::cout << summary.to_text();
-  if (summary.steps > 0 && !arguments.run.results.empty())
+  if (summary.steps > 0 && !arguments.run.results.empty() && !arguments.run.quiet)
     std::cout << "  results in " << arguments.run.results << "/ (summary.json, tracks.png)\n";
   return summary.exit_code;
 }
@@ -68,7 +68,9 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_flag("--paused", arguments->run.paused, "wait for a resume on sim.control");
   command->add_flag("--launch", arguments->run.launch, "start the programs that the world names");
   command->add_option("--await", arguments->run.await, "lockstep clients, started by hand, to wait for")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->type_size(1)
+      ->allow_extra_args(false);
   command->add_flag("--quiet", arguments->run.quiet, "no progress and no summary");
   command->add_option("--log-level", arguments->log_level, "what is said on stderr")
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}));

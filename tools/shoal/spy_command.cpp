@@ -31,11 +31,18 @@ struct Seen {
   sim::Bytes last;
 };
 
+/// The start of a text on one line.
+std::string one_line(std::string_view text) {
+  std::string line;
+  for (const char c : text.substr(0, 200)) line += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  return line + (text.size() > 200 ? "..." : "");
+}
+
 std::string value_text(const shoal::FieldValue& value) {
   if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
   if (const double* number = std::get_if<double>(&value)) return fmt::format("{:.6g}", *number);
-  if (const auto* text = std::get_if<std::string_view>(&value)) return "\"" + std::string(text->substr(0, 200)) + "\"";
+  if (const auto* text = std::get_if<std::string_view>(&value)) return "\"" + one_line(*text) + "\"";
   return fmt::format("{} bytes", std::get<std::span<const std::byte>>(value).size());
 }
 

@@ -108,6 +108,25 @@ TEST(LockstepClient, RunsInStepWithTheSimulator) {
   EXPECT_EQ(client.end(), LockstepClient::End::last_tick);
 }
 
+TEST(LockstepClient, EndsWithTheRunThoughTheLastTickNamesNobody) {
+  FakeSimulator simulator;
+  LockstepClient client(own_url(1), "pilot");
+  std::thread thread([&] {
+    simulator.reply(simulator.await_request(), true, "");
+    simulator.tick(1, {"pilot"});
+    EXPECT_EQ(simulator.await_ack().step, 1);
+    simulator.tick(1, {}, true);  // the run ends at the step that was just acknowledged
+  });
+  client.join(0.1, 10s);
+  client.set_silence_limit(10s);
+  shoal::sim_tick_t tick;
+  ASSERT_TRUE(client.next_tick(tick));
+  client.acknowledge(tick);
+  EXPECT_FALSE(client.next_tick(tick));
+  thread.join();
+  EXPECT_EQ(client.end(), LockstepClient::End::last_tick);
+}
+
 TEST(LockstepClient, AsksAgainUntilItIsAnswered) {
   FakeSimulator simulator;
   LockstepClient client(own_url(1), "pilot");

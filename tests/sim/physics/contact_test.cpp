@@ -136,12 +136,13 @@ TEST(Contact, RollingFrictionStopsABall) {
   EXPECT_NEAR(ball.v_WB_W().x(), 1 - 0.5 * 0.01 * g / (1.4 * 0.1), 0.01);
 }
 
-TEST(Contact, LastEntryThatNamesAPairWins) {
+TEST(Contact, EntryThatNamesBothMaterialsWinsAndAmongEqualsTheLast) {
   MaterialConfig ice{"ice"}, rubber{"rubber"};
-  ContactConfig all = with_friction(1), ice_any = with_friction(0), ice_rubber = with_friction(0.25);
+  ContactConfig all = with_friction(1), ice_any = with_friction(0), ice_rubber = with_friction(0.25),
+                old_ice_rubber = with_friction(0.9);
   ice_any.between = {"ice", "any"};
-  ice_rubber.between = {"rubber", "ice"};
-  PhysicsWorld world({}, {ice, rubber}, {all, ice_any, ice_rubber}, {}, 1);
+  ice_rubber.between = old_ice_rubber.between = {"rubber", "ice"};
+  PhysicsWorld world({}, {ice, rubber}, {old_ice_rubber, ice_rubber, ice_any, all}, {}, 1);
   PartConfig ground = plane();
   ground.material = "ice";
   add(world, body("ground", {ground}), Pose::Identity(), true);

@@ -57,9 +57,9 @@ vehicles:
     model:
       shoal: 1
       vehicle: box
-      parameters: {mass: 5, channel: "radio${index}"}
+      parameters: {mass: 5}
       bodies: [{name: b, parts: [{shape: box, mass_kg: "${mass}"}]}]
-      devices: [{name: modem, type: modem, channel: "net${index}"}]
+      devices: [{name: modem, type: modem, network: "net${index}"}]
 )";
   const auto loaded = sim::load_world_text(world, "test.yaml");
   ASSERT_EQ(loaded.config.vehicles.size(), 2u);

@@ -71,7 +71,8 @@ const CoopRover::Outgoing* find(const Outgoing& out, const std::string& channel)
 }
 
 double forward_mps(const Outgoing& out) {
-  return shoal::decode<shoal::twist_command_t>(find(out, "rover1.drive.cmd")->payload, shoal::Finite::required)
+  return shoal::decode<shoal::twist_command_t>(find(out, "rover1.drive.cmd")->payload,
+                                               shoal::Finite::required)
       .forward_mps;
 }
 
@@ -122,7 +123,8 @@ TEST(CoopRover, TellsNothingWithoutAFix) {
 
 /// Takes what rover1 gave its modem to the modem of another.
 std::vector<std::byte> arrived(const Outgoing& out, std::int64_t utime) {
-  const auto sent = shoal::decode<shoal::modem_send_t>(find(out, "rover1.modem.cmd")->payload, shoal::Finite::any);
+  const auto sent =
+      shoal::decode<shoal::modem_send_t>(find(out, "rover1.modem.cmd")->payload, shoal::Finite::any);
   shoal::modem_received_t packet{};
   packet.utime = utime;
   packet.source = "rover1";
@@ -133,7 +135,8 @@ std::vector<std::byte> arrived(const Outgoing& out, std::int64_t utime) {
 
 TEST(CoopRover, FindsItsPlaceByARoverWithGps) {
   CoopRover with_gps(params_of("rover1"));
-  // rover1 stands at 20 m east.  rover3 believes to be at the origin, and is 3 m farther; it is not sure at all.
+  // rover1 stands at 20 m east.  rover3 believes to be at the origin, and is 3 m farther; it is not sure at
+  // all.
   auto params = params_of("rover3");
   params.start_position_std_m = 5;
   params.start_yaw_std_rad = 0.001;

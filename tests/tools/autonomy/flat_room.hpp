@@ -21,10 +21,13 @@ struct Wall {
   Vector2d a, b;
 };
 
-inline double cross(const Vector2d& u, const Vector2d& v) { return u.x() * v.y() - u.y() * v.x(); }
+inline double cross(const Vector2d& u, const Vector2d& v) {
+  return u.x() * v.y() - u.y() * v.x();
+}
 
 /// Distance from `origin` along a unit vector to the nearest wall.
-inline double cast(const std::vector<Wall>& walls, const Vector2d& origin, const Vector2d& direction, double range_max_m) {
+inline double cast(const std::vector<Wall>& walls, const Vector2d& origin, const Vector2d& direction,
+                   double range_max_m) {
   double nearest = range_max_m;
   for (const Wall& wall : walls) {
     const Vector2d along = wall.b - wall.a;
@@ -65,12 +68,14 @@ inline double distance_m(const std::vector<Wall>& walls, const Vector2d& p) {
 /// Drives on for a while at constant speeds (at the mean heading: second order in the turn).
 inline Pose2 driven(const Pose2& pose, const Twist& twist, double dt_s) {
   const double half_turn = 0.5 * twist.turn_radps * dt_s;
-  return {pose.p_W + turned({twist.forward_mps * dt_s, 0}, pose.yaw_rad + half_turn), pose.yaw_rad + 2 * half_turn};
+  return {pose.p_W + turned({twist.forward_mps * dt_s, 0}, pose.yaw_rad + half_turn),
+          pose.yaw_rad + 2 * half_turn};
 }
 
 /// The four walls of a box about the origin.
 inline std::vector<Wall> box(double half_x_m, double half_y_m) {
-  const Vector2d p[4] = {{half_x_m, -half_y_m}, {half_x_m, half_y_m}, {-half_x_m, half_y_m}, {-half_x_m, -half_y_m}};
+  const Vector2d p[4] = {
+      {half_x_m, -half_y_m}, {half_x_m, half_y_m}, {-half_x_m, half_y_m}, {-half_x_m, -half_y_m}};
   return {{p[0], p[1]}, {p[1], p[2]}, {p[2], p[3]}, {p[3], p[0]}};
 }
 

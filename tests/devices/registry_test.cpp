@@ -1,0 +1,43 @@
+#include "sim/device/device_registry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace {
+
+std::vector<sim::ParamInfo> params_of(auto&& read) {
+  std::vector<sim::ParamInfo> table;
+  sim::ParamReader in(table);
+  read(in);
+  return table;
+}
+
+TEST(DeviceRegistry, NoDeviceTypeTakesAKeyThatAllDevicesHave) {
+  std::set<std::string> common;
+  sim::DeviceConfig config;
+  for (const auto& info : params_of([&](sim::ParamReader& in) { config.read_common(in); })) common.insert(info.key);
+  ASSERT_TRUE(common.contains("rate_hz"));
+  for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all())
+    for (const auto& info : params_of([&](sim::ParamReader& in) { type->make_params()->read(in); }))
+      EXPECT_FALSE(common.contains(info.key)) << type->name << ": " << info.key;
+}
+
+TEST(DeviceRegistry, EveryTypeSaysWhatItIsAndWhatItSpeaks) {
+  const auto all = sim::DeviceRegistry::instance().all();
+  EXPECT_GE(all.size(), 7u);
+  for (const sim::DeviceType* type : all) {
+    EXPECT_FALSE(type->meaning.empty()) << type->name;
+    EXPECT_FALSE(type->report_message.empty() && type->command_messages.empty()) << type->name;
+    for (const auto& info : params_of([&](sim::ParamReader& in) { type->make_params()->read(in); }))
+      EXPECT_FALSE(info.meaning.empty()) << type->name << ": " << info.key;
+  }
+}
+
+TEST(DeviceRegistry, RefusesASecondTypeOfTheSameName) {
+  sim::DeviceType type;
+  type.name = "lidar";
+  EXPECT_THROW(sim::DeviceRegistry::instance().add(type), std::logic_error);
+}
+
+}  // namespace
