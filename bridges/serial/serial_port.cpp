@@ -131,6 +131,7 @@ class FifoPort final : public sim::BytePort {
  public:
   explicit FifoPort(const std::string& path) : in_path_(path + ".in"), out_path_(path + ".out") {
     make_parent(path);
+    refuse_if_read(in_path_);
     make_fifo(in_path_);
     try {
       make_fifo(out_path_);
@@ -160,6 +161,16 @@ class FifoPort final : public sim::BytePort {
   std::uint64_t dropped_bytes() const override { return outbox_.dropped(); }
 
  private:
+  /// A FIFO that somebody reads belongs to a run that is not dead.
+  static void refuse_if_read(const std::string& path) {
+    struct stat status {};
+    if (lstat(path.c_str(), &status) != 0 || !S_ISFIFO(status.st_mode)) return;
+    const int descriptor = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0) return;
+    ::close(descriptor);
+    errno = EEXIST;
+    fail("is in use", path);
+  }
   static void make_fifo(const std::string& path) {
     struct stat status {};
     if (lstat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode)) unlink(path.c_str());

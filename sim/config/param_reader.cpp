@@ -181,6 +181,9 @@ void ParamReader::declare(const char* kind, const std::string& name) {
     for (const NamedPlace& named : named_places_)
       if (named.kind == listed_as && named.name == name && ++seen == count) place = named.place;
     if (seen >= count) break;
+    // The other one goes by a name that is not written, such as that of an instance.
+    for (const NamedPlace& named : named_places_)
+      if (seen == 1 && named.kind == listed_as && named.name == name) place = named.place;
   }
   error_at(place, "duplicate " + std::string(kind) + " " + quoted_name(name));
 }

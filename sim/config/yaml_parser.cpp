@@ -294,6 +294,17 @@ std::optional<BadByte> hopeless_nesting(std::string_view text) {
   return std::nullopt;
 }
 
+/// yaml-cpp calls a tab in the indentation `illegal map value`, among others.
+bool is_indented_with_tab(std::string_view text, int line) {
+  for (int before = 0; before < line; ++before) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos) return false;
+    text.remove_prefix(end + 1);
+  }
+  const std::size_t first = text.find_first_not_of(' ');
+  return first != std::string_view::npos && text[first] == '\t';
+}
+
 SourcePlace place_at(std::string_view text, std::size_t at, const std::string* file) {
   SourcePlace place{file, 1, 1};
   for (std::size_t i = 0; i < at; ++i) {
@@ -325,7 +336,9 @@ ConfigNode parse_config_text(const std::string& text, const std::string& file_na
   } catch (const YAML::DeepRecursion& error) {
     builder.error(builder.place_of(error.mark), "nested more than " + std::to_string(max_depth) + " deep");
   } catch (const YAML::Exception& error) {
-    builder.error(builder.place_of(error.mark), "not valid YAML: " + error.msg);
+    const bool tab = !error.mark.is_null() && is_indented_with_tab(text, error.mark.line);
+    builder.error(builder.place_of(error.mark),
+                  "not valid YAML: " + (tab ? "the line is indented with a tab; use spaces" : error.msg));
   }
   if (builder.failed()) return {};
   return builder.take_root();

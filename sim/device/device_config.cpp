@@ -22,6 +22,7 @@ void DeviceConfig::read_common(ParamReader& in) {
 }
 
 void DeviceConfig::read(ParamReader& in) {
+  if (in.node() != nullptr) place = in.node()->place;
   if (const ConfigNode* node = in.child("type"); node != nullptr) {
     device_type = DeviceRegistry::instance().find(node->scalar);
     if (device_type == nullptr) {
@@ -29,6 +30,7 @@ void DeviceConfig::read(ParamReader& in) {
       for (const DeviceType* each : DeviceRegistry::instance().all())
         known += (known.empty() ? "" : ", ") + each->name;
       in.error("type", "unknown device type '" + node->scalar + "'; known types: " + known);
+      in.read("name", name, "");
       // The other keys belong to a type nobody knows; calling them unknown too would bury the mistake.
       for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
       return;

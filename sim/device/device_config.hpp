@@ -35,6 +35,7 @@ struct DeviceConfig {
 
   const DeviceType* device_type = nullptr;
   std::shared_ptr<const DeviceParams> params;
+  SourcePlace place;                       ///< where the device was written, for errors found later
 
   void read(ParamReader& in);
   /// The keys common to all devices, for `shoal describe` and the docs.

@@ -145,7 +145,7 @@ std::uint32_t obj_index(std::string_view word, std::size_t vertices) {
 
 std::string read_file(const std::string& path) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) throw MeshError("there is no such file");
+  if (!std::filesystem::is_regular_file(path, error)) throw MeshError("does not exist");
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error || size > max_file_bytes) throw MeshError("is larger than 1 GB");
   std::string bytes(size, '\0');

@@ -6,12 +6,14 @@
 #include <filesystem>
 #include <numbers>
 
+#include "sim/config/message_text.hpp"
+
 namespace sim {
 
 void PhysicsConfig::read(ParamReader& in) {
   in.read("step_s", step_s, above_to(0, 1), "time of one step; a whole number of microseconds");
   if (std::abs(step_s * 1e6 - std::round(step_s * 1e6)) > 1e-6 || step_s < 1e-6)
-    in.error("step_s", "'step_s' must be a whole number of microseconds");
+    in.error("step_s", "'step_s' must be a whole number of microseconds, got " + number_text(step_s) + " s");
   in.read("gravity_mps2", gravity_mps2, any_number(), "gravity, downwards");
   in.read_choice("solver", solver, {"auto", "step", "quick"},
                  "step: exact; quick: iterative; auto: step, but quick for large islands");
@@ -114,6 +116,7 @@ void PartConfig::read(ParamReader& in) {
 }
 
 void BodyConfig::read(ParamReader& in) {
+  if (!in.describing()) place = in.node()->place;
   in.require("name");
   in.read("name", name, "name of the body");
   in.read("position_m", position_m, any_number(), "origin of the body's frame in the frame of the vehicle");
@@ -130,7 +133,8 @@ void JointAxisConfig::read(ParamReader& in) {
   in.read("low_stop", low_stop, any_number(), "lowest angle in rad, or position of a slider in m");
   in.read("high_stop", high_stop, any_number(), "highest angle in rad, or position of a slider in m");
   if (low_stop && high_stop && *low_stop > *high_stop)
-    in.error("low_stop", "'low_stop' must not be above 'high_stop'");
+    in.error("low_stop", "'low_stop' must not be above 'high_stop', got " + number_text(*low_stop) + " and " +
+                             number_text(*high_stop));
   in.read("motor_velocity", motor_velocity, any_number(), "speed of the motor at the start, rad/s or m/s");
   in.read("motor_max_force", motor_max_force, at_least(0),
           "N m, or N of a slider; 0: no motor until a device sets it");

@@ -79,6 +79,7 @@ struct BodyConfig {
   Vector3d position_m = Vector3d::Zero();  ///< of the body frame B in the vehicle frame V
   Vector3d rpy_rad = Vector3d::Zero();
   std::vector<PartConfig> parts;
+  SourcePlace place;  ///< where the body was written, for errors found while building
 
   void read(ParamReader& in);
 };

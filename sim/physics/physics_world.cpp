@@ -131,8 +131,10 @@ void PhysicsWorld::Impl::add_parts(Body& body, const BodyConfig& config_, bool f
   std::vector<GeomHandle> geoms;
   dMass total;
   dMassSetZero(&total);
-  for (const PartConfig& part : config_.parts) {
-    const std::string who = "body '" + body.name() + "': part '" + part.name + "'";
+  for (std::size_t i = 0; i < config_.parts.size(); ++i) {
+    const PartConfig& part = config_.parts[i];
+    const std::string who = "body '" + body.name() + "': part " +
+                            (part.name.empty() ? std::to_string(i + 1) : "'" + part.name + "'");
     if (part.shape == "plane" && !fixed)
       throw_config_error(part.place, who, "a plane can only be part of a fixed body");
     const CollisionMesh* mesh = part.shape == "mesh" ? &meshes.get(part, who) : nullptr;
@@ -172,7 +174,7 @@ void PhysicsWorld::Impl::add_parts(Body& body, const BodyConfig& config_, bool f
 
 void PhysicsWorld::Impl::set_mass(Body& body, const BodyConfig& config_, const dMass& total) {
   if (!(total.mass > 0)) {
-    const SourcePlace place = config_.parts.empty() ? SourcePlace{} : config_.parts.front().place;
+    const SourcePlace place = config_.parts.empty() ? config_.place : config_.parts.front().place;
     throw_config_error(place, "body '" + body.name() + "'",
                        "has no mass: give a part mass_kg or density_kgpm3");
   }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "sim/bus/bus.hpp"
+#include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
 
 namespace sim {
@@ -91,7 +92,7 @@ class VehicleLoader {
 
  private:
   const ConfigNode* model_of(const VehicleEntry& entry, const std::string& who) {
-    if (entry.file.empty()) return entry.model.kind == ConfigNode::Kind::map ? &entry.model : nullptr;
+    if (entry.file.empty()) return model_of_node(entry.model, who);
     const std::string path = find_file(entry.file, entry.place);
     if (path.empty()) {
       diagnostics_.error(entry.place, who, "there is no vehicle file '" + entry.file +
@@ -101,6 +102,14 @@ class VehicleLoader {
     auto [at, fresh] = files_.try_emplace(path);
     if (fresh) at->second = load_config_file(path, diagnostics_);
     return at->second.kind == ConfigNode::Kind::map ? &at->second : nullptr;
+  }
+
+  const ConfigNode* model_of_node(const ConfigNode& model, const std::string& who) {
+    if (model.kind == ConfigNode::Kind::map) return &model;
+    // An entry without a model at all was reported by the reader.
+    if (model.place.file != nullptr)
+      diagnostics_.error(model.place, who, "'model' must be a map, got " + shown(model));
+    return nullptr;
   }
 
   std::shared_ptr<const VehicleConfig> instance(const VehicleEntry& entry, const ConfigNode& model,
@@ -117,7 +126,7 @@ class VehicleLoader {
     config->read(in);
     in.finish();
     for (const DeviceConfig& device : config->devices)
-      check_name(device.name, tree.place, who + ": device '" + device.name + "'", diagnostics_);
+      check_name(device.name, device.place, who + ": device '" + device.name + "'", diagnostics_);
     return config;
   }
 
@@ -180,11 +189,13 @@ void gather_from_vehicles(WorldConfig& world) {
   world.categories = std::move(categories);
 }
 
-void check_channels(const WorldConfig& world, const SourcePlace& place, Diagnostics& diagnostics) {
+void check_channels(const WorldConfig& world, Diagnostics& diagnostics) {
   std::set<std::string> taken;
+  std::set<std::string> seen;
   for (const VehicleInstance& vehicle : world.vehicles)
     for (const DeviceConfig& device : vehicle.config->devices) {
-      if (device.device_type == nullptr) continue;
+      // Of two devices of one name, which the reader has reported, all channels would clash.
+      if (device.device_type == nullptr || !seen.insert(vehicle.name + "/" + device.name).second) continue;
       const std::string who = "vehicle '" + vehicle.name + "': device '" + device.name + "'";
       const std::string report = device.channel.empty()
                                      ? channel_name(world.channels.report, vehicle.name, device.name)
@@ -192,9 +203,11 @@ void check_channels(const WorldConfig& world, const SourcePlace& place, Diagnost
       for (const std::string& channel : {report, channel_name(world.channels.command, vehicle.name, device.name),
                                          channel_name(world.channels.truth, vehicle.name, device.name)}) {
         if (channel.empty() || channel.size() > Bus::max_channel_length)
-          diagnostics.error(place, who, "channel '" + channel + "' must have 1 to 63 characters");
+          diagnostics.error(device.place, who,
+                            "a channel must have 1 to 63 characters, got " + std::to_string(channel.size()) + ": '" +
+                                channel + "'");
         else if (!taken.insert(channel).second)
-          diagnostics.error(place, who, "channel '" + channel + "' is used twice");
+          diagnostics.error(device.place, who, "channel '" + channel + "' is used twice");
       }
     }
 }
@@ -225,7 +238,7 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   if (loaded.config.name.empty() && file.file != nullptr) loaded.config.name = fs::path(*file.file).stem().string();
   VehicleLoader vehicles(loaded.config, diagnostics);
   for (const VehicleEntry& entry : loaded.config.vehicle_entries) vehicles.load(entry);
-  check_channels(loaded.config, file, diagnostics);
+  check_channels(loaded.config, diagnostics);
   diagnostics.throw_if_any();
   gather_from_vehicles(loaded.config);
   vehicles.resolve(root);

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstdio>
 #include <ctime>
+#include <set>
 
 namespace sim {
 
@@ -36,6 +37,7 @@ void ObjectConfig::read(ParamReader& in) {
   in.read("placement", placement, "where the instances stand when there is a count");
   in.require("parts");
   in.read_list("parts", parts, "part", "what it is made of");
+  if (in.has("parts") && parts.empty()) in.error("parts", "'parts' must have at least one part");
 }
 
 void VehicleEntry::read(ParamReader& in) {
@@ -51,7 +53,7 @@ void VehicleEntry::read(ParamReader& in) {
   in.read_raw("parameters", parameters, "values of the vehicle file's ${names}; ${index} counts from 1");
   in.read_raw("overrides", overrides, "dotted path: value, such as devices.lidar.rate_hz: 5");
   if (!in.describing() && in.has("file") == in.has("model"))
-    in.error("needs either 'file' or 'model'");
+    in.error(in.has("file") ? "needs either 'file' or 'model', not both" : "needs either 'file' or 'model'");
 }
 
 void ProcessConfig::read(ParamReader& in) {
@@ -61,7 +63,8 @@ void ProcessConfig::read(ParamReader& in) {
   in.read("command", command, "program and its arguments; {lcm_url} is replaced");
   in.read("client", client, "the name it joins the lockstep with; the run then waits for it");
   in.read_choice("on_exit", on_exit, {"continue", "end"}, "when it ends before the run does");
-  if (in.has("command") && command.empty()) in.error("command", "'command' must name a program");
+  if (in.has("command") && command.empty() && in.child("command")->scalar.empty())
+    in.error("command", "'command' must name a program");
 }
 
 void LockstepConfig::read(ParamReader& in) {
@@ -81,12 +84,13 @@ void MetricConfig::read(ParamReader& in) {
 
 void PassRule::read(ParamReader& in) {
   in.require("metric");
-  in.read("metric", metric, "such as NAME.rms_m");
+  in.read_reference("metric", metric, "figure", "such as NAME.rms_m");
   in.read("below", below, any_number(), "the metric must be below this");
-  in.read("below_metric", below_metric, "the metric must be below this other metric times factor");
+  in.read_reference("below_metric", below_metric, "figure", "the metric must be below this other metric times factor");
   in.read("factor", factor, above(0), "see below_metric");
   if (!in.describing() && in.has("below") == in.has("below_metric"))
-    in.error("needs either 'below' or 'below_metric'");
+    in.error(in.has("below") ? "needs either 'below' or 'below_metric', not both"
+                             : "needs either 'below' or 'below_metric'");
 }
 
 namespace {
@@ -108,16 +112,13 @@ bool parse_utc(const std::string& text, std::int64_t& utime) {
   return true;
 }
 
-const std::vector<std::string> metric_figures = {"rms_m", "final_m", "max_m", "samples"};
-
-void check_metric_name(ParamReader& in, const std::vector<MetricConfig>& metrics, const std::string& name) {
-  std::string known;
+/// What pass rules may name.
+void declare_figures(ParamReader& in, const std::vector<MetricConfig>& metrics) {
+  std::set<std::string> names;  // a metric that is there twice has been reported
   for (const MetricConfig& metric : metrics)
-    for (const std::string& figure : metric_figures) {
-      if (name == metric.name + "." + figure) return;
-      known += (known.empty() ? "" : ", ") + metric.name + "." + figure;
-    }
-  in.error("pass", "names no metric '" + name + "'; known metrics: " + (known.empty() ? "none" : known));
+    if (names.insert(metric.name).second)
+      for (const char* figure : {".rms_m", ".final_m", ".max_m", ".samples"})
+        in.declare("figure", metric.name + figure);
 }
 
 }  // namespace
@@ -156,11 +157,8 @@ void WorldConfig::read(ParamReader& in) {
   in.read("lockstep", lockstep, "waiting for clients");
   in.read_list("metrics", metrics, "metric", "figures that score the run");
   for (const MetricConfig& metric : metrics) in.declare("metric", metric.name);
+  declare_figures(in, metrics);
   in.read_list("pass", pass, "rule", "the run passes when every rule holds; else exit code 1");
-  for (const PassRule& rule : pass) {
-    check_metric_name(in, metrics, rule.metric);
-    if (!rule.below_metric.empty()) check_metric_name(in, metrics, rule.below_metric);
-  }
 }
 
 std::string channel_name(const std::string& pattern, const std::string& vehicle, const std::string& device) {

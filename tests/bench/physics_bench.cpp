@@ -176,3 +176,5 @@ BENCHMARK(bare_ode)->RangeMultiplier(10)->Range(1, 1000);
 BENCHMARK(physics_world)->RangeMultiplier(10)->Range(1, 1000);
 BENCHMARK(physics_world_quadtree)->Arg(1000);
 BENCHMARK(build)->Arg(1000)->Unit(benchmark::kMillisecond);
+
+BENCHMARK_MAIN();

@@ -124,3 +124,5 @@ BENCHMARK(fan_among_boxes)->RangeMultiplier(10)->Range(10, 10000);
 BENCHMARK(single_cast_among_boxes)->RangeMultiplier(10)->Range(10, 10000);
 BENCHMARK_CAPTURE(step_and_scan, sap, "sap")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(step_and_scan, quadtree, "quadtree")->Unit(benchmark::kMillisecond);
+
+BENCHMARK_MAIN();

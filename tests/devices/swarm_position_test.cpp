@@ -3,12 +3,12 @@
 
 namespace {
 
-/// r1 at (1, 2) looking north, and boxes as other vehicles.
+/// r1 at (1, 2) looking north, its sensor 0.2 m above the ground, and boxes as other vehicles.
 std::string swarm_world(const std::string& more, const std::string& objects = "") {
   const std::string box = ", model: {shoal: 1, vehicle: box, bodies: [{name: b, position_m: [0, 0, 0.2], parts: "
                           "[{shape: box, size_m: [0.4, 0.4, 0.4], mass_kg: 5}]}]}}\n";
   return test::rover_world(
-             "        - {name: swarm, type: swarm_position, position_m: [0, 0, -0.1], rate_hz: 10" + more + "}\n",
+             "        - {name: swarm, type: swarm_position, position_m: [0, 0, 0.1], rate_hz: 10" + more + "}\n",
              objects, "    position_m: [1, 2, 0]\n    rpy_deg: [0, 0, 90]\n") +
          "  - {name: near, position_m: [1, 6, 0]" + box + "  - {name: far, position_m: [31, 2, 0]" + box;
 }

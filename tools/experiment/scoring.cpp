@@ -21,9 +21,11 @@ constexpr double truth_memory_s = 10;
 
 Scoring::Scoring(const sim::World& world, sim::Bus& bus) : world_(world) {
   const auto steps = static_cast<std::size_t>(truth_memory_s / sim::to_seconds(world.step_time())) + 1;
-  for (const sim::MetricConfig& config : world.config().metrics)
-    metrics_.push_back({&config, world.find_vehicle(config.vehicle), bus.open_mailbox(config.channel),
-                        std::vector<sim::Vector3d>(steps, sim::Vector3d::Zero()), {}});
+  for (const sim::MetricConfig& config : world.config().metrics) {
+    const sim::Vehicle* vehicle = world.find_vehicle(config.vehicle);
+    metrics_.push_back({&config, vehicle, bus.open_mailbox(config.channel),
+                        std::vector<sim::Vector3d>(steps, vehicle->X_WV().translation()), {}});
+  }
 }
 
 void Scoring::after_step() {
@@ -37,11 +39,14 @@ void Scoring::after_step() {
 void Scoring::take(Metric& metric, const sim::Message& message) {
   try {
     const auto pose = shoal::decode<shoal::pose_t>(message.payload, shoal::Finite::required);
-    const std::int64_t t_us = pose.utime - world_.epoch_us();
     const std::int64_t step_us = world_.step_time().count();
-    const std::int64_t step = (t_us + step_us / 2) / step_us;
     const auto memory = static_cast<std::int64_t>(metric.recent_truth.size());
-    if (t_us < 0 || step > world_.step_number() || step <= world_.step_number() - memory)
+    // Compared before it is subtracted: any 64 bits may come.
+    const bool in_run =
+        pose.utime >= world_.epoch_us() && pose.utime < world_.epoch_us() + world_.now().count() + (step_us + 1) / 2;
+    const std::int64_t t_us = in_run ? pose.utime - world_.epoch_us() : 0;
+    const std::int64_t step = (t_us + step_us / 2) / step_us;
+    if (!in_run || step <= world_.step_number() - memory)
       throw std::runtime_error(fmt::format("'utime' is not within the last {} s of simulated time", truth_memory_s));
     if (static_cast<double>(t_us) * 1e-6 < metric.config->from_s) return;
     metric.samples.push_back({static_cast<double>(t_us) * 1e-6,

@@ -1,8 +1,7 @@
-#include <lcm/lcm.h>
-
 #include <ode/ode.h>
 #include <spdlog/fmt/fmt.h>
 
+#include "bridges/lcm/lcm_version.hpp"
 #include "tools/experiment/runner.hpp"
 
 namespace tools {
@@ -11,9 +10,9 @@ std::string version_text() {
   return fmt::format(
       "shoal {} ({})\n"
       "ODE: {}\n"
-      "LCM {}.{}.{}, Eigen {}.{}.{}, fmt {}\n"
+      "LCM {}, Eigen {}.{}.{}, fmt {}\n"
       "compiler: {}\n",
-      SHOAL_VERSION, SHOAL_GIT_HASH, dGetConfiguration(), LCM_MAJOR_VERSION, LCM_MINOR_VERSION, LCM_MICRO_VERSION,
+      SHOAL_VERSION, SHOAL_GIT_HASH, dGetConfiguration(), bridges::lcm_version(),
       EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, FMT_VERSION, __VERSION__);
 }
 

@@ -25,10 +25,17 @@ TEST(Diagnostics, ALineIsPlaceWhoAndText) {
   Diagnostics diagnostics;
   const SourcePlace place{sim::intern_file_name("w.yaml"), 2, 3};
   diagnostics.error(place, "vehicle 'auv1'", "is lost");
-  diagnostics.error(place, "", "is lost");
+  diagnostics.error(place, "", "is late");
   diagnostics.error({}, "", "is lost");
   EXPECT_EQ(diagnostics.lines(),
-            (Lines{"w.yaml:2:3: vehicle 'auv1': is lost", "w.yaml:2:3: is lost", "is lost"}));
+            (Lines{"w.yaml:2:3: vehicle 'auv1': is lost", "w.yaml:2:3: is late", "is lost"}));
+}
+
+TEST(Diagnostics, AMistakeAtOnePlaceIsKeptOnceForAllWhoMakeIt) {
+  Diagnostics diagnostics;
+  const SourcePlace place{sim::intern_file_name("auv.yaml"), 2, 3};
+  for (const char* who : {"vehicle 'auv1'", "vehicle 'auv2'"}) diagnostics.error(place, who, "is lost");
+  EXPECT_EQ(diagnostics.lines(), Lines{"auv.yaml:2:3: vehicle 'auv1': is lost"});
 }
 
 TEST(Diagnostics, TheSameLineIsKeptOnce) {

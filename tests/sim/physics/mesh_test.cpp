@@ -150,7 +150,7 @@ TEST(Mesh, ErrorsSayWhatIsWrong) {
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 inf\n"); }), "has a vertex that is not finite");
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\n"); }), "has no triangles");
   EXPECT_EQ(error_of([] { sim::parse_obj(""); }), "has no triangles");
-  EXPECT_EQ(error_of([] { sim::load_mesh("/nowhere/hull.stl", 1); }), "there is no such file");
+  EXPECT_EQ(error_of([] { sim::load_mesh("/nowhere/hull.stl", 1); }), "does not exist");
   EXPECT_EQ(error_of([] { sim::load_mesh("/tmp", 1); }), "must end in .stl or .obj");
   std::string nan_stl = binary_stl_of(box_mesh({1, 1, 1}, {0, 0, 0}));
   const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -189,7 +189,7 @@ TEST(MeshPart, OpenSurfaceCannotGiveMassButCanStandFixed) {
   const int group = world->add_group("boat");
   const std::string error = error_of(
       [&] { world->add_body(group, body("hull", {mesh_part(file.path(), 500)}), Pose::Identity()); });
-  EXPECT_NE(error.find("boat.yaml:7:3: body 'boat/hull': part '': mesh '"), std::string::npos) << error;
+  EXPECT_NE(error.find("boat.yaml:7:3: body 'boat/hull': part 1: mesh '"), std::string::npos) << error;
   EXPECT_NE(error.find("has an open surface"), std::string::npos) << error;
   add(*world, body("deck", {mesh_part(file.path(), 0)}), Pose::Identity(), true);
   const sim::Body& ball = add(*world, body("ball", {sphere(0.2, 1)}), translation(1, 0.5, 0.25));
@@ -204,7 +204,7 @@ TEST(MeshPart, MissingFileIsAConfigErrorAtThePart) {
   part.directory = "/nowhere";
   part.name = "shell";
   EXPECT_EQ(error_of([&] { world->add_body(group, body("hull", {part}), Pose::Identity(), true); }),
-            "boat.yaml:7:3: body 'boat/hull': part 'shell': mesh '/nowhere/hull.stl' there is no such file");
+            "boat.yaml:7:3: body 'boat/hull': part 'shell': mesh '/nowhere/hull.stl' does not exist");
   EXPECT_TRUE(world->bodies().empty());
   EXPECT_TRUE(world->parts().empty());
 }

@@ -47,7 +47,7 @@ TEST(PhysicsConfig, IsRead) {
 
 TEST(PhysicsConfig, StepIsAWholeNumberOfMicroseconds) {
   EXPECT_EQ(error_of<sim::PhysicsConfig>("{step_s: 0.0033333333}"),
-            "worlds/test.yaml:1:10: 'step_s' must be a whole number of microseconds");
+            "worlds/test.yaml:1:10: 'step_s' must be a whole number of microseconds, got 0.0033333333 s");
   EXPECT_NE(error_of<sim::PhysicsConfig>("{step_s: 0}"), "no error");
   EXPECT_NE(error_of<sim::PhysicsConfig>("{step_s: 1e-7}"), "no error");
   EXPECT_EQ(error_of<sim::PhysicsConfig>("{step_s: 0.000001}"), "no error");

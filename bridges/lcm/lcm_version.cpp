@@ -1,0 +1,12 @@
+#include "bridges/lcm/lcm_version.hpp"
+
+#include <lcm/lcm.h>
+
+namespace bridges {
+
+std::string lcm_version() {
+  return std::to_string(LCM_MAJOR_VERSION) + "." + std::to_string(LCM_MINOR_VERSION) + "." +
+         std::to_string(LCM_MICRO_VERSION);
+}
+
+}  // namespace bridges

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace bridges {
+
+/// Of the LCM library, such as `1.3.1`.
+std::string lcm_version();
+
+}  // namespace bridges

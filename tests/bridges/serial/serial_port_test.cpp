@@ -1,0 +1,188 @@
+#include "bridges/serial/serial_port.hpp"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/bridges/lcm/lcm_test_support.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+using bridges::open_serial_port;
+using lcm_test::await;
+using lcm_test::bytes_of;
+using lcm_test::ScratchFolder;
+using lcm_test::text_of;
+
+/// A program's end of the port.
+class Program {
+ public:
+  Program(const std::string& path, int how) : descriptor_(open(path.c_str(), how | O_NOCTTY | O_NONBLOCK)) {
+    if (descriptor_ < 0) throw std::runtime_error("cannot open " + path);
+  }
+  ~Program() { close(descriptor_); }
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  void write(const std::string& text) const {
+    ASSERT_EQ(::write(descriptor_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
+  /// What is there, until nothing has come for 200 ms.
+  std::string read() const {
+    std::string all;
+    pollfd waiting{descriptor_, POLLIN, 0};
+    while (poll(&waiting, 1, 200) == 1) {
+      char chunk[4096];
+      const ssize_t size = ::read(descriptor_, chunk, sizeof chunk);
+      if (size <= 0) break;
+      all.append(chunk, static_cast<std::size_t>(size));
+    }
+    return all;
+  }
+
+ private:
+  int descriptor_;
+};
+
+/// Reads the port until `size` bytes have come.
+std::string read_from(sim::BytePort& port, std::size_t size) {
+  std::string all;
+  await([&] { return (all += text_of(port.read())).size() >= size; });
+  return all;
+}
+
+std::string error_of(const std::string& kind, const std::string& path) {
+  try {
+    open_serial_port(kind, path);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string all_bytes() {
+  std::string text;
+  for (int c = 0; c < 256; ++c) text += static_cast<char>(c);
+  return text;
+}
+
+TEST(SerialPort, PtyCarriesEveryByteBothWays) {
+  const ScratchFolder folder;
+  const auto port = open_serial_port("pty", folder.file("modem"));
+  const Program program(folder.file("modem"), O_RDWR);
+  program.write(all_bytes());
+  EXPECT_EQ(read_from(*port, 256), all_bytes());
+  port->write(bytes_of(all_bytes()));
+  EXPECT_EQ(program.read(), all_bytes());  // and no echo of what it wrote
+}
+
+TEST(SerialPort, PtyOutlivesTheProgramsThatOpenIt) {
+  const ScratchFolder folder;
+  const auto port = open_serial_port("pty", folder.file("modem"));
+  Program(folder.file("modem"), O_RDWR).write("first");
+  EXPECT_EQ(read_from(*port, 5), "first");
+  Program(folder.file("modem"), O_RDWR).write("second");
+  EXPECT_EQ(read_from(*port, 6), "second");
+}
+
+TEST(SerialPort, FifoCarriesEveryByteBothWays) {
+  const ScratchFolder folder;
+  const auto port = open_serial_port("fifo", folder.file("modem"));
+  const Program writer(folder.file("modem.in"), O_WRONLY);
+  const Program reader(folder.file("modem.out"), O_RDONLY);
+  writer.write(all_bytes());
+  EXPECT_EQ(read_from(*port, 256), all_bytes());
+  port->write(bytes_of(all_bytes()));
+  EXPECT_EQ(reader.read(), all_bytes());
+}
+
+TEST(SerialPort, NothingToReadIsNoWait) {
+  const ScratchFolder folder;
+  for (const char* kind : {"pty", "fifo"}) EXPECT_TRUE(open_serial_port(kind, folder.file("modem"))->read().empty());
+}
+
+TEST(SerialPort, LeavesNothingBehind) {
+  const ScratchFolder folder;
+  for (const char* kind : {"pty", "fifo"}) {
+    open_serial_port(kind, folder.file("port/modem"));
+    EXPECT_TRUE(fs::is_empty(folder.file("port"))) << kind;
+  }
+}
+
+TEST(SerialPort, MakesTheDirectory) {
+  const ScratchFolder folder;
+  const auto port = open_serial_port("pty", folder.file("a/b/modem"));
+  EXPECT_TRUE(fs::is_symlink(folder.file("a/b/modem")));
+  EXPECT_THAT(error_of("pty", "/proc/nowhere/modem"),
+              testing::StartsWith("serial port '/proc/nowhere/modem': cannot make its directory: "));
+}
+
+TEST(SerialPort, ReplacesWhatADeadRunLeft) {
+  const ScratchFolder folder;
+  fs::create_symlink("/dev/pts/no-such-terminal", folder.file("modem"));
+  const auto pty = open_serial_port("pty", folder.file("modem"));
+  Program(folder.file("modem"), O_RDWR).write("x");
+  EXPECT_EQ(read_from(*pty, 1), "x");
+
+  ASSERT_EQ(mkfifo(folder.file("fifo.in").c_str(), 0600), 0);
+  ASSERT_EQ(mkfifo(folder.file("fifo.out").c_str(), 0600), 0);
+  const auto fifo = open_serial_port("fifo", folder.file("fifo"));
+  Program(folder.file("fifo.in"), O_WRONLY).write("x");
+  EXPECT_EQ(read_from(*fifo, 1), "x");
+}
+
+TEST(SerialPort, RefusesToReplaceAnyOtherFile) {
+  const ScratchFolder folder;
+  for (const char* name : {"modem", "fifo.in", "fifo2.out"}) std::ofstream(folder.file(name)) << "precious";
+  EXPECT_EQ(error_of("pty", folder.file("modem")),
+            "serial port '" + folder.file("modem") + "': cannot make the link: File exists");
+  EXPECT_EQ(error_of("fifo", folder.file("fifo")),
+            "serial port '" + folder.file("fifo.in") + "': cannot make the FIFO: File exists");
+  EXPECT_EQ(error_of("fifo", folder.file("fifo2")),
+            "serial port '" + folder.file("fifo2.out") + "': cannot make the FIFO: File exists");
+  EXPECT_FALSE(fs::exists(folder.file("fifo2.in")));  // nothing half made is left
+  EXPECT_EQ(fs::file_size(folder.file("modem")), 8u);
+}
+
+TEST(SerialPort, RefusesThePortOfARunningProgram) {
+  const ScratchFolder folder;
+  const auto pty = open_serial_port("pty", folder.file("modem"));
+  EXPECT_THAT(error_of("pty", folder.file("modem")), testing::HasSubstr("is in use"));
+  const auto fifo = open_serial_port("fifo", folder.file("fifo"));
+  EXPECT_THAT(error_of("fifo", folder.file("fifo")), testing::HasSubstr("is in use"));
+  Program(folder.file("fifo.in"), O_WRONLY).write("still mine");
+  EXPECT_EQ(read_from(*fifo, 10), "still mine");
+}
+
+TEST(SerialPort, AReaderThatNeverReadsCostsOnlyTheOldestBytes) {
+  const ScratchFolder folder;
+  for (const char* kind : {"pty", "fifo"}) {
+    const auto port = open_serial_port(kind, folder.file("modem"));
+    const bool fifo = std::string(kind) == "fifo";
+    const Program program(folder.file(fifo ? "modem.out" : "modem"), fifo ? O_RDONLY : O_RDWR);
+    const std::string line = "0123456789abcde\n";
+    constexpr int lines = 50'000;
+    for (int i = 0; i < lines; ++i) port->write(bytes_of(line));
+    port->write(bytes_of("the end\n"));
+    const std::uint64_t sent = lines * line.size() + 8;
+    EXPECT_GT(port->dropped_bytes(), sent / 2) << kind;
+    std::string received;
+    // The port sends what waits when it is used.
+    await([&] {
+      port->read();
+      received += program.read();
+      return received.ends_with("the end\n");
+    });
+    EXPECT_EQ(received.size() + port->dropped_bytes(), sent) << kind;
+    EXPECT_TRUE(received.ends_with("the end\n")) << kind;
+  }
+}
+
+}  // namespace

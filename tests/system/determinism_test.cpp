@@ -1,0 +1,135 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "bridges/lcm/lcm_listener.hpp"
+#include "sim/bus/in_process_bus.hpp"
+#include "sim/world/load_world.hpp"
+#include "sim/world/world.hpp"
+#include "tests/system/shoal_program.hpp"
+
+// The same world gives the same run: one hash, however it is run and whoever listens.
+
+namespace {
+
+using namespace system_test;
+
+struct Case {
+  const char* world;
+  const char* duration_s;
+};
+
+class Determinism : public testing::TestWithParam<Case> {
+ protected:
+  std::vector<std::string> run_arguments(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {"run", source(GetParam().world), "--duration", GetParam().duration_s};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+  std::string hash_of(const std::vector<std::string>& more) const {
+    return state_hash_in(run_shoal(run_arguments(more)));
+  }
+  /// The hash after every step, in this process.
+  std::vector<std::uint64_t> hashes_here() const {
+    const auto loaded = sim::load_world(source(GetParam().world));
+    sim::InProcessBus bus;
+    sim::World world(loaded.config, bus);
+    std::vector<std::uint64_t> hashes;
+    while (world.now() < sim::from_seconds(std::stod(GetParam().duration_s))) {
+      world.step();
+      hashes.push_back(world.state_hash());
+    }
+    return hashes;
+  }
+};
+
+std::string hexadecimal(std::uint64_t value) {
+  char text[20];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+TEST_P(Determinism, HoldsForASecondRunInOneProcessAndInAnotherProcess) {
+  const auto first = hashes_here();
+  EXPECT_EQ(first, hashes_here());
+  EXPECT_EQ(hash_of({"--bus", "none", "--speed", "max"}), hexadecimal(first.back()));
+}
+
+TEST_P(Determinism, HoldsForAnySpeedBusRecordAndListener) {
+  const ScratchFolder folder;
+  const std::string expected = hash_of({"--bus", "none", "--speed", "max"});
+  EXPECT_EQ(hash_of({"--bus", "none", "--speed", "20"}), expected);
+  const std::string url = own_url();
+  EXPECT_EQ(hash_of({"--lcm-url", url, "--speed", "max"}), expected);
+  EXPECT_EQ(hash_of({"--lcm-url", url, "--speed", "50", "--record", folder.file("run.lcm")}), expected);
+
+  Program spy({built("shoal"), "spy", "--lcm-url", url});
+  bridges::LcmListener listener(url);
+  listener.listen_to_all();
+  EXPECT_EQ(hash_of({"--lcm-url", url, "--speed", "max"}), expected);
+  EXPECT_TRUE(listener.next(patience));  // somebody did listen
+  spy.send_signal(SIGINT);
+  EXPECT_EQ(spy.wait(), 0) << spy.errors();
+}
+
+TEST_P(Determinism, HoldsForRecordsByteByByte) {
+  const ScratchFolder folder;
+  hash_of({"--bus", "none", "--speed", "max", "--record", folder.file("a.lcm")});
+  hash_of({"--lcm-url", own_url(1), "--speed", "50", "--record", folder.file("b.lcm")});
+  const std::string record = text_of_file(folder.file("a.lcm"));
+  EXPECT_GT(record.size(), 1000u);
+  EXPECT_TRUE(record == text_of_file(folder.file("b.lcm")));
+}
+
+TEST_P(Determinism, AnotherSeedIsAnotherRun) {
+  EXPECT_NE(hash_of({"--bus", "none", "--speed", "max", "--seed", "1"}),
+            hash_of({"--bus", "none", "--speed", "max", "--seed", "2"}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Worlds, Determinism,
+                         testing::Values(Case{"worlds/minimal.yaml", "2"}, Case{"worlds/erl_room.yaml", "2"},
+                                         Case{"worlds/scale.yaml", "0.5"}),
+                         [](const auto& info) {
+                           return std::filesystem::path(info.param.world).stem().string();
+                         });
+
+TEST(CoopLand, IsTheSameRunAtAnySpeedWithItsProcesses) {
+  const ScratchFolder folder;
+  std::string hashes[2];
+  const char* speeds[] = {"max", "20"};
+  for (int i = 0; i < 2; ++i) {
+    const Ended ended =
+        run_shoal({"run", source("worlds/coop_land.yaml"), "--launch", "--duration", "20", "--speed", speeds[i],
+                   "--lcm-url", own_url(i), "--record", folder.file(speeds[i])});
+    EXPECT_TRUE(ended.exit_code == 0 || ended.exit_code == 1) << ended.errors;  // too short to be judged
+    hashes[i] = state_hash_in(ended);
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+  const std::string record = text_of_file(folder.file("max"));
+  EXPECT_GT(record.size(), 100'000u);
+  EXPECT_TRUE(record == text_of_file(folder.file("20")));
+}
+
+class EveryWorld : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryWorld, RunsForASecond) {
+  const Ended ended =
+      run_shoal({"run", source("worlds/" + GetParam() + ".yaml"), "--duration", "1", "--speed", "max", "--bus", "none"});
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_NE(ended.output.find("1.00 s simulated"), std::string::npos) << ended.output;
+}
+
+std::vector<std::string> world_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(source("worlds")))
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Worlds, EveryWorld, testing::ValuesIn(world_names()),
+                         [](const auto& info) { return info.param; });
+
+}  // namespace

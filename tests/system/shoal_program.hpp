@@ -1,0 +1,76 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "tests/bridges/lcm/lcm_test_support.hpp"
+
+namespace system_test {
+
+using namespace std::chrono_literals;
+
+using lcm_test::await;
+using lcm_test::own_url;
+using lcm_test::ScratchFolder;
+
+/// Much more than anything here takes: other tests may run at the same time.
+constexpr std::chrono::seconds patience{60};
+
+/// A program of the build tree, such as `shoal`.
+std::string built(const std::string& program);
+/// A file of the source tree, such as `worlds/minimal.yaml`.
+std::string source(const std::string& path);
+std::string text_of_file(const std::string& path);
+void write_file(const std::string& path, const std::string& text);
+
+/// A child process, killed at the latest when this goes.
+class Program {
+ public:
+  /// `arguments[0]` is the program, looked up in PATH.
+  explicit Program(std::vector<std::string> arguments);
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  pid_t pid() const { return pid_; }
+  void send_signal(int signal) const;
+  /// The exit code, 128 + signal when one killed it.  Kills it when it does not end in time, and gives -1.
+  int wait(std::chrono::milliseconds limit = patience);
+  bool running();
+  std::string output() const { return text_of_file(scratch_.file("out")); }
+  std::string errors() const { return text_of_file(scratch_.file("err")); }
+  /// Processes that it started itself.
+  std::vector<pid_t> children() const;
+
+ private:
+  ScratchFolder scratch_;
+  pid_t pid_ = 0;
+  bool over_ = false;
+  int exit_code_ = -1;
+};
+
+struct Ended {
+  int exit_code = -1;
+  std::string output;
+  std::string errors;
+};
+
+/// Runs `shoal` with these arguments to its end.
+Ended run_shoal(std::vector<std::string> arguments, std::chrono::milliseconds limit = patience);
+/// The 16 digits after `state hash`, or what was said instead.
+std::string state_hash_in(const Ended& ended);
+
+/// Neither gone nor dead and waiting to be noticed.
+bool is_running(pid_t pid);
+
+/// The value of a key at the top of DIRECTORY/summary.json, as written there.
+std::string summary_value(const std::string& directory, const std::string& key);
+
+/// One rover on flat ground that runs until it is told to quit, with a report of its pose at every step of 0.01 s.
+/// `more`: further keys of the rover, indented by four spaces, and of the world.
+std::string endless_world(const std::string& more = "");
+
+}  // namespace system_test

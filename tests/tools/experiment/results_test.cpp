@@ -1,0 +1,140 @@
+#include "tools/experiment/results.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "tests/bridges/lcm/lcm_test_support.hpp"
+#include "tests/devices/world_fixture.hpp"
+#include "tools/experiment/runner.hpp"
+
+namespace {
+
+using lcm_test::ScratchFolder;
+
+std::string text_of_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::size_t lines_in(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+sim::LoadedWorld small_world(const std::string& more = "") {
+  return sim::load_world_text(test::rover_world("        - {name: lidar, type: lidar}\n", "", "",
+                                                "name: small\nrun: {duration_s: 0.5, track_rate_hz: 10, seed: 7}\n" + more),
+                              "small.yaml");
+}
+
+tools::RunOptions quiet_run() {
+  tools::RunOptions options;
+  options.bus = "none";
+  options.quiet = true;
+  return options;
+}
+
+TEST(Summary, HasTheSameKeysForEveryWorld) {
+  tools::Summary summary;
+  summary.world = "harbor";
+  summary.seed = 3;
+  summary.steps = 1000;
+  summary.sim_time_s = 10;
+  summary.wall_s = 2;
+  summary.state_hash = 0x0123456789abcdef;
+  summary.metrics["position.rms_m"] = 0.25;
+  summary.verdicts = {{"position.rms_m (0.250) < 1", true}};
+  const auto json = nlohmann::ordered_json::parse(summary.to_json());
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.push_back(key);
+  EXPECT_THAT(keys, testing::ElementsAre("world", "seed", "steps", "sim_time_s", "wall_s", "real_time_factor",
+                                         "state_hash", "messages", "dropped_messages", "bad_messages", "quick_steps",
+                                         "metrics", "rules", "passed", "ended", "error", "exit_code"));
+  EXPECT_EQ(json["world"], "harbor");
+  EXPECT_EQ(json["seed"], 3);
+  EXPECT_EQ(json["steps"], 1000);
+  EXPECT_EQ(json["real_time_factor"], 5);
+  EXPECT_EQ(json["state_hash"], "0123456789abcdef");
+  EXPECT_EQ(json["metrics"]["position.rms_m"], 0.25);
+  EXPECT_EQ(json["rules"][0]["passed"], true);
+  EXPECT_EQ(json["passed"], true);
+}
+
+TEST(Summary, AFigureThatIsNoNumberIsNull) {
+  tools::Summary summary;
+  summary.metrics["position.rms_m"] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(nlohmann::json::parse(summary.to_json())["metrics"]["position.rms_m"].is_null());
+}
+
+TEST(Summary, PassesOnlyWhenEveryRuleHoldsAndNothingBroke) {
+  tools::Summary summary;
+  EXPECT_EQ(nlohmann::json::parse(summary.to_json())["passed"], true);
+  summary.exit_code = 5;
+  EXPECT_EQ(nlohmann::json::parse(summary.to_json())["passed"], false);
+  summary.exit_code = 0;
+  summary.verdicts = {{"a", true}, {"b", false}};
+  EXPECT_EQ(nlohmann::json::parse(summary.to_json())["passed"], false);
+  EXPECT_THAT(summary.to_text(), testing::HasSubstr("FAILED: b"));
+}
+
+TEST(Results, AreLeftByARun) {
+  const ScratchFolder folder;
+  const auto loaded = small_world("metrics:\n  - {name: position, vehicle: r1, channel: r1.estimate}\n");
+  auto options = quiet_run();
+  options.results = folder.file("a/results");
+  const tools::Summary summary = tools::run_world(loaded, options);
+  EXPECT_EQ(summary.exit_code, 0) << summary.error;
+  const auto text = [&](const std::string& name) { return text_of_file(options.results + "/" + name); };
+
+  EXPECT_EQ(text("summary.json"), summary.to_json());
+  const auto json = nlohmann::json::parse(text("summary.json"));
+  EXPECT_EQ(json["world"], "small");
+  EXPECT_EQ(json["seed"], 7);
+  EXPECT_EQ(json["steps"], 500);
+  EXPECT_EQ(json["sim_time_s"], 0.5);
+  EXPECT_EQ(json["ended"], "duration");
+
+  EXPECT_THAT(text("metrics.csv"), testing::StartsWith("metric,value\nposition.final_m,nan\n"));
+  EXPECT_THAT(text("errors.csv"), testing::StartsWith("time_s,metric,error_m,"));
+  EXPECT_THAT(text("tracks.csv"), testing::StartsWith("time_s,vehicle,x_m,y_m,z_m,yaw_rad\n0.100000,r1,"));
+  EXPECT_EQ(lines_in(text("tracks.csv")), 6u);  // a header and 5 rows: 10 Hz over 0.5 s
+  EXPECT_THAT(text("tracks.png"), testing::StartsWith("\x89PNG"));
+  EXPECT_NO_THROW(sim::load_world(options.results + "/world.yaml"));
+}
+
+TEST(Results, AreLeftByARunThatFailed) {
+  const ScratchFolder folder;
+  const auto loaded = small_world("metrics:\n  - {name: position, vehicle: r1, channel: r1.estimate}\n"
+                                  "pass:\n  - {metric: position.rms_m, below: 1}\n");
+  auto options = quiet_run();
+  options.results = folder.file("results");
+  EXPECT_EQ(tools::run_world(loaded, options).exit_code, 1);  // no estimate came
+  const auto json = nlohmann::json::parse(text_of_file(options.results + "/summary.json"));
+  EXPECT_EQ(json["exit_code"], 1);
+  EXPECT_EQ(json["passed"], false);
+}
+
+TEST(Results, NameWhatCannotBeWritten) {
+  const auto loaded = small_world();
+  auto options = quiet_run();
+  options.results = "/proc/nowhere";
+  const tools::Summary summary = tools::run_world(loaded, options);
+  EXPECT_EQ(summary.exit_code, 4);
+  EXPECT_THAT(summary.error, testing::HasSubstr("cannot write results to '/proc/nowhere"));
+}
+
+TEST(Results, DoNotChangeTheRun) {
+  const ScratchFolder folder;
+  const auto loaded = small_world();
+  auto options = quiet_run();
+  const tools::Summary without = tools::run_world(loaded, options);
+  options.results = folder.file("results");
+  options.record = folder.file("run.lcm");
+  EXPECT_EQ(tools::run_world(loaded, options).state_hash, without.state_hash);
+}
+
+}  // namespace

@@ -1,0 +1,154 @@
+#include "tools/experiment/scoring.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "shoal/pose_t.hpp"
+#include "shoal/twist_command_t.hpp"
+#include "tests/devices/world_fixture.hpp"
+
+namespace {
+
+/// A rover that stands at (1, 2); `more`: keys of the world, after two metrics of its position.
+std::string scored_world(const std::string& more = "") {
+  return test::rover_world("        - {name: drive, type: differential_drive, left_joint: left, right_joint: right, "
+                           "wheel_radius_m: 0.1, track_m: 0.5}\n",
+                           "", "    position_m: [1, 2, 0]\n",
+                           "metrics:\n"
+                           "  - {name: good, vehicle: r1, channel: good}\n"
+                           "  - {name: late, vehicle: r1, channel: late, from_s: 0.5}\n" +
+                               more);
+}
+
+struct ScoredWorld {
+  explicit ScoredWorld(const std::string& more = "") : test(scored_world(more)), scoring(test.world, test.bus) {}
+
+  void run_for(double time_s) {
+    const sim::Time end = test.world.now() + sim::from_seconds(time_s);
+    while (test.world.now() < end) {
+      test.world.step();
+      scoring.after_step();
+    }
+  }
+  /// An estimate for a time that lies `age_s` back.
+  void estimate(const std::string& channel, double x_m, double y_m, double age_s = 0) {
+    shoal::pose_t pose{};
+    pose.utime = test.world.epoch_us() + test.world.now().count() - sim::from_seconds(age_s).count();
+    pose.pos[0] = x_m;
+    pose.pos[1] = y_m;
+    pose.pos[2] = 77;  // heights do not count
+    test.send(channel, pose);
+  }
+
+  test::TestWorld test;
+  tools::Scoring scoring;
+};
+
+TEST(Scoring, SumsUpTheErrors) {
+  ScoredWorld world;
+  world.run_for(0.1);
+  world.estimate("good", 1 + 3, 2 + 4);  // 5 m off
+  world.estimate("good", 1, 2 + 1);      // 1 m off
+  world.run_for(0.1);
+  const auto figures = world.scoring.figures();
+  // A rover that stands still may creep by some 0.01 mm.
+  EXPECT_NEAR(figures.at("good.rms_m"), std::sqrt((25.0 + 1.0) / 2), 1e-4);
+  EXPECT_NEAR(figures.at("good.max_m"), 5, 1e-4);
+  EXPECT_NEAR(figures.at("good.final_m"), 1, 1e-4);
+  EXPECT_EQ(figures.at("good.samples"), 2);
+  EXPECT_EQ(world.scoring.bad_messages(), 0);
+}
+
+TEST(Scoring, ComparesWithTheTruthAtTheTimeOfTheEstimate) {
+  ScoredWorld world;
+  shoal::twist_command_t forward{};
+  forward.forward_mps = 0.5;
+  world.test.send("r1.drive.cmd", forward);
+  world.run_for(1);
+  const double then_m = world.test.world.find_vehicle("r1")->X_WV().translation().x();
+  world.run_for(2);
+  world.estimate("good", then_m, 2, 2.0);
+  world.run_for(0.01);
+  EXPECT_NEAR(world.scoring.figures().at("good.final_m"), 0, 1e-4);
+  world.estimate("good", then_m, 2);
+  world.run_for(0.01);
+  EXPECT_NEAR(world.scoring.figures().at("good.final_m"), 1.0, 0.01);  // 0.5 m/s for 2 s
+}
+
+TEST(Scoring, KnowsTheTruthAtTheStart) {
+  ScoredWorld world;
+  world.estimate("good", 1, 2);
+  world.run_for(0.01);
+  EXPECT_NEAR(world.scoring.figures().at("good.final_m"), 0, 1e-4);
+}
+
+TEST(Scoring, LeavesOutWhatCameBeforeItsTime) {
+  ScoredWorld world;
+  world.run_for(0.49);
+  world.estimate("late", 9, 9);
+  world.run_for(0.02);
+  world.estimate("late", 1, 2);
+  world.run_for(0.01);
+  EXPECT_EQ(world.scoring.figures().at("late.samples"), 1);
+  EXPECT_NEAR(world.scoring.figures().at("late.max_m"), 0, 1e-4);
+  EXPECT_EQ(world.scoring.bad_messages(), 0);
+}
+
+TEST(Scoring, CountsAndIgnoresBadEstimates) {
+  ScoredWorld world;
+  world.run_for(11);
+  world.estimate("good", std::numeric_limits<double>::quiet_NaN(), 0);
+  world.estimate("good", 1, 2, -1);    // from the future
+  world.estimate("good", 1, 2, 10.5);  // too late: the truth is kept for 10 s
+  world.estimate("good", 1, 2, 12);    // before the run
+  world.test.bus.publish("good", sim::Bytes(30), world.test.world.now());
+  world.test.bus.publish("good", sim::Bytes(), world.test.world.now());
+  world.test.send("good", shoal::twist_command_t{});
+  world.run_for(0.01);
+  EXPECT_EQ(world.scoring.bad_messages(), 7);
+  EXPECT_EQ(world.scoring.figures().at("good.samples"), 0);
+}
+
+TEST(Scoring, SurvivesTimesAtTheEndsOfTheirRange) {
+  ScoredWorld world;
+  world.run_for(0.1);
+  for (const std::int64_t utime : {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()}) {
+    shoal::pose_t pose{};
+    pose.utime = utime;
+    world.test.send("good", pose);
+  }
+  world.run_for(0.01);
+  EXPECT_EQ(world.scoring.bad_messages(), 2);
+}
+
+TEST(Scoring, JudgesByTheRulesOfTheWorld) {
+  ScoredWorld world(
+      "pass:\n"
+      "  - {metric: good.max_m, below: 2}\n"
+      "  - {metric: good.max_m, below: 0.5}\n"
+      "  - {metric: good.max_m, below_metric: late.max_m, factor: 0.5}\n"
+      "  - {metric: good.max_m, below_metric: late.max_m, factor: 0.2}\n");
+  world.run_for(1);
+  world.estimate("good", 2, 2);  // 1 m off
+  world.estimate("late", 5, 2);  // 4 m off
+  world.run_for(0.01);
+  const auto verdicts = world.scoring.verdicts();
+  ASSERT_EQ(verdicts.size(), 4u);
+  EXPECT_TRUE(verdicts[0].passed);
+  EXPECT_FALSE(verdicts[1].passed);
+  EXPECT_TRUE(verdicts[2].passed) << verdicts[2].rule;
+  EXPECT_FALSE(verdicts[3].passed) << verdicts[3].rule;
+  EXPECT_EQ(verdicts[1].rule, "good.max_m (1.000) < 0.5");
+  EXPECT_EQ(verdicts[3].rule, "good.max_m (1.000) < 0.2 * late.max_m (0.800)");
+}
+
+TEST(Scoring, FailsARuleWhenNoEstimateCame) {
+  ScoredWorld world("pass:\n  - {metric: good.rms_m, below: 1000}\n");
+  world.run_for(0.1);
+  EXPECT_TRUE(std::isnan(world.scoring.figures().at("good.rms_m")));
+  EXPECT_FALSE(world.scoring.verdicts().at(0).passed);
+}
+
+}  // namespace

@@ -1,0 +1,64 @@
+#include "tools/shoal/reference_pages.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "shoal/message_schema.hpp"
+#include "sim/device/device_registry.hpp"
+
+namespace {
+
+TEST(ReferencePages, InDocsAreUpToDate) {
+  for (const std::string name : {"devices", "world_format", "messages"}) {
+    std::ifstream in(std::string(SHOAL_SOURCE_DIR "/docs/") + name + ".md", std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    // Not EXPECT_EQ: nobody wants to read two whole pages.
+    EXPECT_TRUE(text == tools::reference_page(name))
+        << "docs/" << name << ".md is stale; type\n  build/bin/shoal describe --page " << name << " > docs/" << name
+        << ".md";
+  }
+}
+
+TEST(ReferencePages, ThereIsNoOtherPage) { EXPECT_THROW(tools::reference_page("lidars"), std::out_of_range); }
+
+TEST(ReferencePages, NameEveryDeviceAndEveryMessage) {
+  const std::string devices = tools::reference_page("devices");
+  for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all())
+    EXPECT_THAT(devices, testing::HasSubstr("\n## " + type->name + "\n"));
+  const std::string messages = tools::reference_page("messages");
+  for (const auto& [name, schema] : shoal::embedded_types().all())
+    EXPECT_THAT(messages, testing::HasSubstr("\n## " + name + "\n"));
+}
+
+TEST(ReferencePages, NoDeviceTakesAKeyThatAllDevicesHave) {
+  std::set<std::string> common;
+  {
+    std::vector<sim::ParamInfo> table;
+    sim::ParamReader in(table);
+    sim::DeviceConfig config;
+    config.read_common(in);
+    for (const sim::ParamInfo& info : table) common.insert(info.key);
+  }
+  for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all()) {
+    std::vector<sim::ParamInfo> table;
+    sim::ParamReader in(table);
+    type->make_params()->read(in);
+    for (const sim::ParamInfo& info : table) EXPECT_FALSE(common.contains(info.key)) << type->name << ": " << info.key;
+  }
+}
+
+TEST(Describe, KnowsDevicesMessagesAndFiles) {
+  EXPECT_THAT(tools::describe_text("lidar"), testing::HasSubstr("beams"));
+  EXPECT_THAT(tools::describe_text("device"), testing::HasSubstr("rate_hz"));
+  EXPECT_THAT(tools::describe_text("world"), testing::HasSubstr("duration_s"));
+  EXPECT_THAT(tools::describe_text("vehicle"), testing::HasSubstr("bodies"));
+  EXPECT_THAT(tools::describe_text("noise"), testing::HasSubstr("gaussian_std"));
+  EXPECT_THAT(tools::describe_text("pose_t"), testing::HasSubstr("fingerprint"));
+  EXPECT_EQ(tools::describe_text("pose_t"), tools::describe_text("shoal.pose_t"));
+  EXPECT_EQ(tools::describe_text("lider"), "");
+}
+
+}  // namespace
