@@ -27,6 +27,7 @@ constexpr std::size_t max_text_bytes = 256'000'000;
 struct Stop {
   SourcePlace place;
   std::string text;
+  bool bad_key = false;
 };
 
 /// What a tree costs when an alias copies it.
@@ -140,7 +141,7 @@ class TreeBuilder final : public YAML::EventHandler {
   }
 
   [[noreturn]] void stop_at_bad_key(const YAML::Mark& mark, const char* what) const {
-    throw Stop{place_of(mark), std::string("a key must be text, got ") + what};
+    throw Stop{place_of(mark), std::string("a key must be text, got ") + what, true};
   }
 
   ConfigNode new_node(Kind kind, const YAML::Mark& mark) {
@@ -294,6 +295,13 @@ std::optional<BadByte> hopeless_nesting(std::string_view text) {
   return std::nullopt;
 }
 
+/// Brackets in comments and quotes are counted too: good for a hint only.
+bool may_have_open_bracket(std::string_view text) {
+  std::ptrdiff_t open = 0;
+  for (const char c : text) open += (c == '[' || c == '{') - (c == ']' || c == '}');
+  return open > 0;
+}
+
 /// yaml-cpp calls a tab in the indentation `illegal map value`, among others.
 bool is_indented_with_tab(std::string_view text, int line) {
   for (int before = 0; before < line; ++before) {
@@ -332,7 +340,9 @@ ConfigNode parse_config_text(const std::string& text, const std::string& file_na
     while (parser.HandleNextDocument(builder)) {
     }
   } catch (const Stop& stop) {
-    builder.error(stop.place, stop.text);
+    // yaml-cpp takes what stands in an open bracket for a key.
+    const bool open = stop.bad_key && may_have_open_bracket(text);
+    builder.error(stop.place, stop.text + (open ? "; is a bracket not closed?" : ""));
   } catch (const YAML::DeepRecursion& error) {
     builder.error(builder.place_of(error.mark), "nested more than " + std::to_string(max_depth) + " deep");
   } catch (const YAML::Exception& error) {

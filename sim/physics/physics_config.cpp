@@ -161,7 +161,8 @@ void check_axes(ParamReader& in, const JointConfig& joint) {
   // ODE measures angles from -pi to pi; a stop beyond would never act.
   for (const auto& stop :
        {joint.axis1.low_stop, joint.axis1.high_stop, joint.axis2.low_stop, joint.axis2.high_stop})
-    if (stop && std::abs(*stop) > std::numbers::pi) in.error("stops of an angle must lie between -pi and pi");
+    if (stop && std::abs(*stop) > std::numbers::pi)
+      in.error("stops of an angle must lie between -pi and pi, got " + number_text(*stop));
 }
 
 }  // namespace

@@ -37,7 +37,8 @@ void ObjectConfig::read(ParamReader& in) {
   in.read("placement", placement, "where the instances stand when there is a count");
   in.require("parts");
   in.read_list("parts", parts, "part", "what it is made of");
-  if (in.has("parts") && parts.empty()) in.error("parts", "'parts' must have at least one part");
+  if (in.has("parts") && in.child("parts")->items.empty() && in.child("parts")->kind != ConfigNode::Kind::scalar)
+    in.error("parts", "'parts' must have at least one part");
 }
 
 void VehicleEntry::read(ParamReader& in) {

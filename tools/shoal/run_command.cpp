@@ -32,6 +32,13 @@ std::optional<double> parse_speed(const std::string& text) {
   throw CLI::ValidationError("--speed", "must be 'max' or a number > 0, got '" + text + "'");
 }
 
+/// CLI::Range lets nan pass.
+std::string check_duration(const std::string& text) {
+  double duration_s = 0;
+  const bool good = CLI::detail::lexical_cast(text, duration_s) && duration_s >= 0 && duration_s <= 1e9;
+  return good ? "" : "must be from 0 to 1e9, got '" + text + "'";
+}
+
 int run(RunArguments& arguments) {
   spdlog::set_level(spdlog::level::from_str(arguments.log_level));
   arguments.run.speed = parse_speed(arguments.speed);
@@ -53,7 +60,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<RunArguments>();
   command->add_option("WORLD", arguments->world, "world file")->required();
   command->add_option("--duration", arguments->duration_s, "simulated seconds; 0: until told to quit")
-      ->check(CLI::Range(0.0, 1e9));
+      ->check(check_duration);
   command->add_option("--speed", arguments->speed, "times real time, or max");
   command->add_option("--seed", arguments->load.seed, "of every random stream")->check(CLI::NonNegativeNumber);
   command->add_option("--set", arguments->load.sets, "path=value: change a value of the world file")

@@ -1,0 +1,126 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "bridges/lcm/event_log.hpp"
+#include "bridges/lcm/lcm_listener.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/odometry_t.hpp"
+#include "shoal/planar_lidar_t.hpp"
+#include "shoal/sim_state_t.hpp"
+#include "tests/system/shoal_program.hpp"
+
+// LCM's own logger and player work with Shoal as with any program.
+
+namespace {
+
+using namespace system_test;
+
+std::map<std::string, int> channels_in(const std::string& path) {
+  std::map<std::string, int> channels;
+  bridges::EventLogReader log(path);
+  while (const auto event = log.next()) ++channels[event->channel];
+  EXPECT_TRUE(log.problems().empty());
+  return channels;
+}
+
+/// Plays a log with lcm-logplayer and decodes what a listener hears.
+std::map<std::string, int> played_back(const std::string& path, const std::string& speed) {
+  bridges::LcmListener listener(own_url(2));
+  listener.listen_to_all();
+  Program player({"lcm-logplayer", "--speed=" + speed, "--lcm-url=" + own_url(2), path});
+  std::map<std::string, int> heard;
+  while (true) {
+    const bool over = !player.running();
+    const auto message = listener.next(over ? 200ms : 20ms);
+    if (!message && over) break;
+    if (!message) continue;
+    ++heard[message->channel];
+    if (message->channel == "rover1.odometry") {
+      const auto odometry = shoal::decode<shoal::odometry_t>(message->payload, shoal::Finite::any);
+      EXPECT_GT(odometry.utime, 0);
+    } else if (message->channel == "rover1.lidar") {
+      const auto lidar = shoal::decode<shoal::planar_lidar_t>(message->payload, shoal::Finite::any);
+      EXPECT_EQ(lidar.nranges, 180);
+    } else if (message->channel == "sim.state") {
+      const auto state = shoal::decode<shoal::sim_state_t>(message->payload, shoal::Finite::any);
+      EXPECT_EQ(state.count, 3);
+    }
+  }
+  EXPECT_EQ(player.wait(), 0) << player.errors();
+  return heard;
+}
+
+TEST(LcmTools, LogAndPlayBackARunWithItsProcesses) {
+  const ScratchFolder folder;
+  Program logger({"lcm-logger", "--force", "--flush-interval=20", "--lcm-url=" + own_url(), folder.file("logger.lcm")});
+  // It listens when the first probe is in the file.
+  bridges::LcmListener probe(own_url());
+  ASSERT_TRUE(await([&] {
+    probe.publish("probe", lcm_test::bytes_of("are you there"));
+    std::error_code error;
+    const auto size = std::filesystem::file_size(folder.file("logger.lcm"), error);
+    return !error && size > 0;
+  }));
+  const Ended ended = run_shoal({"run", source("worlds/coop_land.yaml"), "--launch", "--duration", "8", "--speed", "4",
+                                 "--lcm-url", own_url(), "--record", folder.file("shoal.lcm")});
+  EXPECT_TRUE(ended.exit_code == 0 || ended.exit_code == 1) << ended.errors;
+  logger.send_signal(SIGINT);
+  logger.wait();
+
+  const auto recorded = channels_in(folder.file("shoal.lcm"));
+  const auto logged = channels_in(folder.file("logger.lcm"));
+  for (const char* channel : {"rover1.odometry", "rover1.lidar", "rover1.drive.cmd", "rover3.estimate", "sim.state"}) {
+    ASSERT_GT(recorded.count(channel), 0u) << channel;
+    ASSERT_GT(logged.count(channel), 0u) << channel;
+    // lcm-logger keeps 30 messages at most and may lose some on a busy machine; our own record does not.
+    EXPECT_GT(logged.at(channel), recorded.at(channel) / 2) << channel;
+    EXPECT_LE(logged.at(channel), recorded.at(channel) + 1) << channel;
+  }
+  EXPECT_EQ(recorded.at("rover1.odometry"), 160);  // 20 Hz for 8 s
+
+  for (const char* log : {"logger.lcm", "shoal.lcm"}) {
+    const auto heard = played_back(folder.file(log), "8");
+    for (const char* channel : {"rover1.odometry", "rover1.lidar", "sim.state"})
+      EXPECT_GT(heard.count(channel), 0u) << log << " " << channel;
+  }
+}
+
+TEST(LcmTools, InfoAndCsvReadARecord) {
+  const ScratchFolder folder;
+  const std::string log = folder.file("run.lcm");
+  ASSERT_EQ(run_shoal({"run", source("worlds/minimal.yaml"), "--duration", "2", "--speed", "max", "--bus", "none",
+                       "--record", log})
+                .exit_code,
+            0);
+  const Ended info = run_shoal({"log", "info", log});
+  EXPECT_EQ(info.exit_code, 0) << info.errors;
+  for (const char* text : {"world minimal, seed 1", "rover1.odometry", "shoal.odometry_t", "sim.info"})
+    EXPECT_NE(info.output.find(text), std::string::npos) << text << " in " << info.output;
+  const Ended csv = run_shoal({"log", "csv", log, "rover1.odometry"});
+  EXPECT_EQ(csv.exit_code, 0) << csv.errors;
+  EXPECT_EQ(csv.output.substr(0, 16), "log_utime,utime,");
+  EXPECT_EQ(std::count(csv.output.begin(), csv.output.end(), '\n'), 1 + 40);  // 20 Hz for 2 s
+  EXPECT_EQ(run_shoal({"log", "csv", log, "rover9.odometry"}).exit_code, 4);
+  EXPECT_EQ(run_shoal({"log", "info", folder.file("no.lcm")}).exit_code, 4);
+}
+
+TEST(LcmTools, SpyShowsWhatIsOnTheBus) {
+  Program spy({built("shoal"), "spy", "rover1.odometry", "--lcm-url", own_url()});
+  Program shoal({built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "0", "--lcm-url", own_url()});
+  EXPECT_TRUE(await([&] { return spy.output().find("shoal.odometry_t\n  utime=") != std::string::npos; }, patience));
+  spy.send_signal(SIGINT);
+  EXPECT_EQ(spy.wait(), 0);
+  shoal.send_signal(SIGINT);
+  EXPECT_EQ(shoal.wait(), 130);
+}
+
+TEST(LcmTools, DoctorSaysThatLcmIsUsableHere) {
+  const Ended ended = run_shoal({"doctor", "--lcm-url", own_url()});
+  EXPECT_EQ(ended.exit_code, 0) << ended.output << ended.errors;
+}
+
+}  // namespace
