@@ -37,7 +37,7 @@ struct MaterialConfig {
 /// material.  An entry that names both materials wins over one that says `any`; among equals the last one wins.
 struct ContactConfig {
   std::vector<std::string> between = {"any", "any"};  ///< two names of materials, or `any`
-  double friction = 0.8;                ///< Coulomb coefficient (friction pyramid, dContactApprox1)
+  double friction = 0.8;                ///< Coulomb coefficient, along the slip (dContactApprox1)
   double bounce = 0;                    ///< coefficient of restitution, 0 to 1
   double bounce_velocity_mps = 0.1;     ///< slower impacts do not bounce
   std::optional<double> soft_erp;       ///< unset: the world's erp

@@ -138,7 +138,8 @@ void WorldConfig::read(ParamReader& in) {
   in.declare("category", "solid");
   in.read_list("materials", materials, "material", "materials of this world");
   for (const MaterialConfig& material : materials) in.declare("material", material.name);
-  in.read_list("contacts", contacts, "contact", "what happens where two materials touch; the last match wins");
+  in.read_list("contacts", contacts, "contact",
+               "what happens where two materials touch; both named wins over any, then the last one");
   in.read("categories", categories, "categories of parts, beside `solid`; at most 30");
   for (const std::string& category : categories) in.declare("category", category);
   if (categories.size() > 30) in.error("categories", "'categories' must have at most 30 names");

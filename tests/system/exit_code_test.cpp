@@ -10,7 +10,8 @@
 #include "bridges/lcm/lockstep_client.hpp"
 #include "tests/system/shoal_program.hpp"
 
-// 0 ok, 1 a pass rule failed, 2 usage or configuration, 3 physics, 4 bus or file, 5 time-out, 130 and 143 signals.
+// 0 ok, 1 a pass rule failed, 2 usage or configuration, 3 physics, 4 bus or file, 5 time-out, 130 and 143
+// signals.
 
 namespace {
 
@@ -116,11 +117,12 @@ TEST(ExitCode, Is2ForGarbageOfAnySize) {
 TEST(ExitCode, Is3ForAPhysicsFaultAndTheRecordIsWhole) {
   const ScratchFolder folder;
   // Free fall: 5 m/s are reached after 0.51 s.
-  write_file(folder.file("fall.yaml"),
-             "shoal: 1\nphysics: {max_speed_mps: 5}\nvehicles:\n  - name: stone\n    position_m: [0, 0, 100]\n"
-             "    model: {shoal: 1, bodies: [{name: body, parts: [{shape: sphere, mass_kg: 1}]}]}\n");
-  const Ended ended = run_shoal({"run", folder.file("fall.yaml"), "--bus", "none", "--record", folder.file("run.lcm"),
-                                 "--results", folder.file("results")});
+  write_file(
+      folder.file("fall.yaml"),
+      "shoal: 1\nphysics: {max_speed_mps: 5}\nvehicles:\n  - name: stone\n    position_m: [0, 0, 100]\n"
+      "    model: {shoal: 1, bodies: [{name: body, parts: [{shape: sphere, mass_kg: 1}]}]}\n");
+  const Ended ended = run_shoal({"run", folder.file("fall.yaml"), "--bus", "none", "--record",
+                                 folder.file("run.lcm"), "--results", folder.file("results")});
   EXPECT_EQ(ended.exit_code, 3);
   EXPECT_THAT(ended.errors, HasSubstr("stone"));
   EXPECT_GT(events_in(folder.file("run.lcm")), 5u);
@@ -142,8 +144,9 @@ TEST(ExitCode, Is4ForABusThatCannotBeUsed) {
 
 TEST(ExitCode, Is4ForARecordThatCannotBeWritten) {
   const ScratchFolder folder;
-  const std::vector<std::string> run = {"run", source("worlds/minimal.yaml"), "--duration", "20", "--bus", "none",
-                                        "--speed", "max", "--record"};
+  const std::vector<std::string> run = {
+      "run",     source("worlds/minimal.yaml"), "--duration", "20", "--bus", "none", "--speed", "max",
+      "--record"};
   const auto with = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments = run;
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -165,8 +168,9 @@ TEST(ExitCode, Is4ForARecordThatCannotBeWritten) {
 
 TEST(ExitCode, Is5ForAClientThatNeverAcknowledges) {
   const ScratchFolder folder;
-  Program shoal({built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "10", "--await", "sleeper",
-                 "--set", "lockstep.timeout_s=0.5", "--lcm-url", own_url(), "--record", folder.file("run.lcm")});
+  Program shoal({built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "10", "--await",
+                 "sleeper", "--set", "lockstep.timeout_s=0.5", "--lcm-url", own_url(), "--record",
+                 folder.file("run.lcm")});
   bridges::LockstepClient client(own_url(), "sleeper");
   client.join(0.1, patience);
   EXPECT_EQ(shoal.wait(), 5);
@@ -185,12 +189,13 @@ TEST(ExitCode, Is128PlusTheSignal) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const ScratchFolder folder;
     write_file(folder.file("world.yaml"),
-               endless_world("    overrides: {devices.modem.serial: {path: " + folder.file("port") + "}}\n"
+               endless_world("    overrides: {devices.modem.serial: {path: " + folder.file("port") +
+                             "}}\n"
                              "processes: [{name: idler, command: [sleep, '1000']}]\n"));
     bridges::LcmListener listener(own_url());
     listener.listen("sim.clock");
-    Program shoal({built("shoal"), "run", folder.file("world.yaml"), "--launch", "--lcm-url", own_url(), "--record",
-                   folder.file("run.lcm")});
+    Program shoal({built("shoal"), "run", folder.file("world.yaml"), "--launch", "--lcm-url", own_url(),
+                   "--record", folder.file("run.lcm")});
     ASSERT_TRUE(listener.next(patience));
     EXPECT_TRUE(std::filesystem::is_symlink(folder.file("port")));
     const auto children = shoal.children();

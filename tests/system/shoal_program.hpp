@@ -69,8 +69,8 @@ bool is_running(pid_t pid);
 /// The value of a key at the top of DIRECTORY/summary.json, as written there.
 std::string summary_value(const std::string& directory, const std::string& key);
 
-/// One rover on flat ground that runs until it is told to quit, with a report of its pose at every step of 0.01 s.
-/// `more`: further keys of the rover, indented by four spaces, and of the world.
+/// One rover on flat ground that runs until it is told to quit, with a report of its pose at every step of
+/// 0.01 s. `more`: further keys of the rover, indented by four spaces, and of the world.
 std::string endless_world(const std::string& more = "");
 
 }  // namespace system_test

@@ -15,9 +15,13 @@ extern char** environ;
 
 namespace system_test {
 
-std::string built(const std::string& program) { return SHOAL_BINARY_DIR "/bin/" + program; }
+std::string built(const std::string& program) {
+  return SHOAL_BINARY_DIR "/bin/" + program;
+}
 
-std::string source(const std::string& path) { return SHOAL_SOURCE_DIR "/" + path; }
+std::string source(const std::string& path) {
+  return SHOAL_SOURCE_DIR "/" + path;
+}
 
 std::string text_of_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -36,8 +40,10 @@ Program::Program(std::vector<std::string> arguments) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, 1, scratch_.file("out").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
-  posix_spawn_file_actions_addopen(&actions, 2, scratch_.file("err").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+  posix_spawn_file_actions_addopen(&actions, 1, scratch_.file("out").c_str(), O_WRONLY | O_CREAT | O_APPEND,
+                                   0600);
+  posix_spawn_file_actions_addopen(&actions, 2, scratch_.file("err").c_str(), O_WRONLY | O_CREAT | O_APPEND,
+                                   0600);
   const int error = posix_spawnp(&pid_, pointers[0], &actions, nullptr, pointers.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) throw std::runtime_error("cannot start " + arguments[0]);
@@ -49,7 +55,9 @@ Program::~Program() {
   wait();
 }
 
-void Program::send_signal(int signal) const { kill(pid_, signal); }
+void Program::send_signal(int signal) const {
+  kill(pid_, signal);
+}
 
 bool Program::running() {
   int status = 0;

@@ -142,8 +142,8 @@ TEST(ProcessGroup, KillsWhatDoesNotListen) {
   const auto begin = std::chrono::steady_clock::now();
   {
     tools::ProcessGroup group;
-    group.start(shell("trap '' TERM; echo $$ > " + folder.file("pid") + "; while true; do sleep 0.1; done"), "memq://",
-                "");
+    group.start(shell("trap '' TERM; echo $$ > " + folder.file("pid") + "; while true; do sleep 0.1; done"),
+                "memq://", "");
     pid = std::stoi(await_line(folder.file("pid")));
   }
   EXPECT_FALSE(is_running(pid));

@@ -26,9 +26,10 @@ std::size_t lines_in(const std::string& text) {
 }
 
 sim::LoadedWorld small_world(const std::string& more = "") {
-  return sim::load_world_text(test::rover_world("        - {name: lidar, type: lidar}\n", "", "",
-                                                "name: small\nrun: {duration_s: 0.5, track_rate_hz: 10, seed: 7}\n" + more),
-                              "small.yaml");
+  return sim::load_world_text(
+      test::rover_world("        - {name: lidar, type: lidar}\n", "", "",
+                        "name: small\nrun: {duration_s: 0.5, track_rate_hz: 10, seed: 7}\n" + more),
+      "small.yaml");
 }
 
 tools::RunOptions quiet_run() {
@@ -51,9 +52,10 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   const auto json = nlohmann::ordered_json::parse(summary.to_json());
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(keys, testing::ElementsAre("world", "seed", "steps", "sim_time_s", "wall_s", "real_time_factor",
-                                         "state_hash", "messages", "dropped_messages", "bad_messages", "quick_steps",
-                                         "metrics", "rules", "passed", "ended", "error", "exit_code"));
+  EXPECT_THAT(
+      keys, testing::ElementsAre("world", "seed", "steps", "sim_time_s", "wall_s", "real_time_factor",
+                                 "state_hash", "messages", "dropped_messages", "bad_messages", "quick_steps",
+                                 "metrics", "rules", "passed", "ended", "error", "exit_code"));
   EXPECT_EQ(json["world"], "harbor");
   EXPECT_EQ(json["seed"], 3);
   EXPECT_EQ(json["steps"], 1000);
@@ -108,8 +110,9 @@ TEST(Results, AreLeftByARun) {
 
 TEST(Results, AreLeftByARunThatFailed) {
   const ScratchFolder folder;
-  const auto loaded = small_world("metrics:\n  - {name: position, vehicle: r1, channel: r1.estimate}\n"
-                                  "pass:\n  - {metric: position.rms_m, below: 1}\n");
+  const auto loaded = small_world(
+      "metrics:\n  - {name: position, vehicle: r1, channel: r1.estimate}\n"
+      "pass:\n  - {metric: position.rms_m, below: 1}\n");
   auto options = quiet_run();
   options.results = folder.file("results");
   EXPECT_EQ(tools::run_world(loaded, options).exit_code, 1);  // no estimate came

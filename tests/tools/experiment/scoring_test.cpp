@@ -13,17 +13,19 @@ namespace {
 
 /// A rover that stands at (1, 2); `more`: keys of the world, after two metrics of its position.
 std::string scored_world(const std::string& more = "") {
-  return test::rover_world("        - {name: drive, type: differential_drive, left_joint: left, right_joint: right, "
-                           "wheel_radius_m: 0.1, track_m: 0.5}\n",
-                           "", "    position_m: [1, 2, 0]\n",
-                           "metrics:\n"
-                           "  - {name: good, vehicle: r1, channel: good}\n"
-                           "  - {name: late, vehicle: r1, channel: late, from_s: 0.5}\n" +
-                               more);
+  return test::rover_world(
+      "        - {name: drive, type: differential_drive, left_joint: left, right_joint: right, "
+      "wheel_radius_m: 0.1, track_m: 0.5}\n",
+      "", "    position_m: [1, 2, 0]\n",
+      "metrics:\n"
+      "  - {name: good, vehicle: r1, channel: good}\n"
+      "  - {name: late, vehicle: r1, channel: late, from_s: 0.5}\n" +
+          more);
 }
 
 struct ScoredWorld {
-  explicit ScoredWorld(const std::string& more = "") : test(scored_world(more)), scoring(test.world, test.bus) {}
+  explicit ScoredWorld(const std::string& more = "")
+      : test(scored_world(more)), scoring(test.world, test.bus) {}
 
   void run_for(double time_s) {
     const sim::Time end = test.world.now() + sim::from_seconds(time_s);
@@ -114,7 +116,8 @@ TEST(Scoring, CountsAndIgnoresBadEstimates) {
 TEST(Scoring, SurvivesTimesAtTheEndsOfTheirRange) {
   ScoredWorld world;
   world.run_for(0.1);
-  for (const std::int64_t utime : {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()}) {
+  for (const std::int64_t utime :
+       {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()}) {
     shoal::pose_t pose{};
     pose.utime = utime;
     world.test.send("good", pose);

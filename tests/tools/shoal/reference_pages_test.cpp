@@ -17,12 +17,14 @@ TEST(ReferencePages, InDocsAreUpToDate) {
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     // Not EXPECT_EQ: nobody wants to read two whole pages.
     EXPECT_TRUE(text == tools::reference_page(name))
-        << "docs/" << name << ".md is stale; type\n  build/bin/shoal describe --page " << name << " > docs/" << name
-        << ".md";
+        << "docs/" << name << ".md is stale; type\n  build/bin/shoal describe --page " << name << " > docs/"
+        << name << ".md";
   }
 }
 
-TEST(ReferencePages, ThereIsNoOtherPage) { EXPECT_THROW(tools::reference_page("lidars"), std::out_of_range); }
+TEST(ReferencePages, ThereIsNoOtherPage) {
+  EXPECT_THROW(tools::reference_page("lidars"), std::out_of_range);
+}
 
 TEST(ReferencePages, NameEveryDeviceAndEveryMessage) {
   const std::string devices = tools::reference_page("devices");
@@ -46,7 +48,8 @@ TEST(ReferencePages, NoDeviceTakesAKeyThatAllDevicesHave) {
     std::vector<sim::ParamInfo> table;
     sim::ParamReader in(table);
     type->make_params()->read(in);
-    for (const sim::ParamInfo& info : table) EXPECT_FALSE(common.contains(info.key)) << type->name << ": " << info.key;
+    for (const sim::ParamInfo& info : table)
+      EXPECT_FALSE(common.contains(info.key)) << type->name << ": " << info.key;
   }
 }
 
