@@ -29,8 +29,7 @@ DifferentialDrive::DifferentialDrive(const Params& params, const sim::DeviceCont
 void DifferentialDrive::act(sim::Time, double step_s) {
   const double change = params_.max_acceleration_mps2 / params_.wheel_radius_m * step_s;
   for (int side = 0; side < 2; ++side)
-    current_radps_[side] +=
-        std::clamp(target_radps_[side] - current_radps_[side], -change, change);
+    current_radps_[side] += std::clamp(target_radps_[side] - current_radps_[side], -change, change);
   left_.set_motor(current_radps_[0], params_.max_torque_Nm);
   right_.set_motor(current_radps_[1], params_.max_torque_Nm);
 }

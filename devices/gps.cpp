@@ -23,16 +23,13 @@ Gps::Gps(const Params& params, const sim::DeviceContext& context)
       geodesy_(context.world.geodesy()),
       horizontal_noise_(params.horizontal_noise, 2,
                         sim::Random(context.world.seed(), context.full_name() + "#horizontal")),
-      vertical_noise_(params.vertical_noise, 1,
-                      sim::Random(context.world.seed(), context.full_name() + "#vertical")),
-      velocity_noise_(params.velocity_noise, 3,
-                      sim::Random(context.world.seed(), context.full_name() + "#velocity")) {}
+      vertical_noise_(params.vertical_noise, 1, sim::Random(context.world.seed(), context.full_name() + "#vertical")),
+      velocity_noise_(params.velocity_noise, 3, sim::Random(context.world.seed(), context.full_name() + "#velocity")) {}
 
 void Gps::measure(const sim::SenseContext& context) {
   reading_.p_W = context.X_WS.translation();
   reading_.v_W = context.v_WS_W;
-  reading_.fix_quality =
-      params_.min_height_m && reading_.p_W.z() < *params_.min_height_m ? 0 : params_.fix_quality;
+  reading_.fix_quality = params_.min_height_m && reading_.p_W.z() < *params_.min_height_m ? 0 : params_.fix_quality;
   reading_.position = geodesy_.to_geodetic(reading_.p_W);
 }
 

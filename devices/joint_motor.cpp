@@ -17,7 +17,9 @@ void JointMotor::Params::read(sim::ParamReader& in) {
 JointMotor::JointMotor(const Params& params, const sim::DeviceContext& context)
     : params_(params), joint_(context.joint(params.joint)) {}
 
-void JointMotor::act(sim::Time, double) { joint_.set_motor(velocity_, params_.max_force); }
+void JointMotor::act(sim::Time, double) {
+  joint_.set_motor(velocity_, params_.max_force);
+}
 
 void JointMotor::set_velocity(double velocity) {
   velocity_ = std::clamp(velocity, -params_.max_velocity, params_.max_velocity);

@@ -50,8 +50,7 @@ void Lidar::measure(const sim::SenseContext& context) {
 void Lidar::disturb(double dt_s, sim::Random& random) {
   noise_.apply(std::span<double>(ranges_m_), dt_s, random);
   for (std::size_t i = 0; i < ranges_m_.size(); ++i) {
-    if (params_.resolution_m > 0)
-      ranges_m_[i] = std::round(ranges_m_[i] / params_.resolution_m) * params_.resolution_m;
+    if (params_.resolution_m > 0) ranges_m_[i] = std::round(ranges_m_[i] / params_.resolution_m) * params_.resolution_m;
     ranges_m_[i] = hit_[i] ? std::clamp(ranges_m_[i], params_.range_min_m, params_.range_max_m) : params_.range_max_m;
   }
 }

@@ -6,6 +6,7 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/modem_received_t.hpp"
 #include "shoal/modem_send_t.hpp"
+#include "sim/config/message_text.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
@@ -35,8 +36,8 @@ void Modem::SerialParams::read(sim::ParamReader& in) {
 void Modem::Params::read(sim::ParamReader& in) {
   in.read("network", network, "modems hear each other only in the same network, such as a radio channel");
   in.read("range_m", range_m, sim::above(0), "how far it is heard");
-  in.read("data_rate_bps", data_rate_bps, sim::above(0), "bits per second");
-  in.read("propagation_mps", propagation_mps, sim::above(0), "speed of radio waves or of sound");
+  in.read("data_rate_bps", data_rate_bps, sim::between(1e-3, 1e12), "bits per second");
+  in.read("propagation_mps", propagation_mps, sim::between(1, 1e12), "speed of radio waves or of sound");
   in.read("loss_probability", loss_probability, sim::between(0, 1), "of each message at each receiver");
   in.read("queue_messages", queue_messages, sim::at_least(1), "messages waiting to be sent; the oldest is dropped");
   in.read("max_message_bytes", max_message_bytes, sim::between(1, 1 << 20), "longer messages are refused");
@@ -58,7 +59,9 @@ Modem::Modem(const Params& params, const sim::DeviceContext& context)
 
 Modem::~Modem() = default;
 
-sim::Vector3d Modem::p_WS() const { return body_.X_WB() * p_BS_; }
+sim::Vector3d Modem::p_WS() const {
+  return body_.X_WB() * p_BS_;
+}
 
 void Modem::send(sim::Time, std::string destination, sim::Bytes data) {
   if (data.empty()) throw std::runtime_error("a message must have at least 1 byte");
@@ -66,12 +69,13 @@ void Modem::send(sim::Time, std::string destination, sim::Bytes data) {
     throw std::runtime_error("a message must have at most " + std::to_string(params_.max_message_bytes) +
                              " bytes, got " + std::to_string(data.size()));
   const auto& members = network_.members();
-  const bool known = destination.empty() || std::any_of(members.begin(), members.end(), [&](const Modem* other) {
-    return other != this && other->vehicle_ == destination && other->params_.network == params_.network;
-  });
+  const bool known =
+      destination.empty() || std::any_of(members.begin(), members.end(), [&](const Modem* other) {
+        return other != this && other->vehicle_ == destination && other->params_.network == params_.network;
+      });
   if (!known)
     throw std::runtime_error("'destination' names no vehicle with a modem in network '" + params_.network + "': '" +
-                             destination + "'");
+                             sim::shortened(sim::printable(destination)) + "'");
   if (queue_.size() >= static_cast<std::size_t>(params_.queue_messages)) {
     queue_.pop_front();
     ++dropped_;
@@ -79,18 +83,20 @@ void Modem::send(sim::Time, std::string destination, sim::Bytes data) {
   queue_.push_back({std::move(destination), std::move(data)});
 }
 
-void Modem::act(sim::Time now, double) {
+void Modem::act(sim::Time now, double step_s) {
   if (serial_) read_serial(now);
-  while (!queue_.empty() && busy_until_ <= now) {
+  // Short messages go out several in a step, each when the one before has ended.
+  const sim::Time end = now + sim::from_seconds(step_s);
+  for (sim::Time start = std::max(now, busy_until_); !queue_.empty() && start < end; start = busy_until_) {
     const Outgoing message = std::move(queue_.front());
     queue_.pop_front();
-    transmit(now, message);
+    transmit(start, message);
   }
 }
 
 void Modem::transmit(sim::Time now, const Outgoing& message) {
   const double air_time_s = 8.0 * static_cast<double>(message.data.size()) / params_.data_rate_bps;
-  busy_until_ = now + sim::from_seconds(air_time_s);
+  busy_until_ = now + std::max(sim::from_seconds(air_time_s), sim::Time{1});
   ++sent_;
   // The frame between modems is a modem_received_t; the receiver's copy is completed when it arrives.
   shoal::modem_received_t frame;
@@ -157,8 +163,12 @@ void Modem::hash_state(sim::StateHash& hash) const {
 
 void Modem::open_serial(const sim::DeviceContext& context) {
   if (!context.world.open_port()) return;  // the program that builds this world offers no ports
-  serial_ = context.world.open_port()(params_.serial->kind,
-                                      sim::channel_name(params_.serial->path, vehicle_, context.config.name));
+  try {
+    serial_ = context.world.open_port()(params_.serial->kind,
+                                        sim::channel_name(params_.serial->path, vehicle_, context.config.name));
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error("vehicle '" + vehicle_ + "': device '" + context.config.name + "': " + error.what());
+  }
 }
 
 void Modem::read_serial(sim::Time now) {

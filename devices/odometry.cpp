@@ -70,9 +70,12 @@ void Odometry::disturb(double dt_s, sim::Random& random) {
 }
 
 void Odometry::hash_state(sim::StateHash& hash) const {
-  for (const double number : {reckoned_.x_m, reckoned_.y_m, reckoned_.theta_rad, believed_rad_[0], believed_rad_[1],
-                              truth_theta_rad_})
+  for (const double number :
+       {reckoned_.x_m, reckoned_.y_m, reckoned_.theta_rad, believed_rad_[0], believed_rad_[1], truth_theta_rad_})
     hash.add(number);
+  hash.add(std::span<const double>(wheel_rad_));
+  hash.add(reckoned_.left_ticks);
+  hash.add(reckoned_.right_ticks);
   noise_.hash_state(hash);
 }
 

@@ -10,7 +10,8 @@ namespace devices {
 /// which may be off, and knows nothing of slip: the error grows as it does on a real rover.
 class Odometry final : public sim::Sensor {
  public:
-  static constexpr const char* meaning = "Position from the ticks of two wheels; errors by slip, ticks and calibration.";
+  static constexpr const char* meaning =
+      "Position from the ticks of two wheels; errors by slip, ticks and calibration.";
   static constexpr double default_rate_hz = 20;
   struct Params {
     std::string left_joint;
@@ -40,10 +41,10 @@ class Odometry final : public sim::Sensor {
   const sim::Joint& left_;
   const sim::Joint& right_;
   sim::Noise noise_;
-  sim::Pose X_W0_;          ///< where the vehicle started
+  sim::Pose X_W0_;  ///< where the vehicle started
   double truth_theta_rad_ = 0;
-  double wheel_rad_[2] = {0, 0};      ///< true angles at the last sample
-  double believed_rad_[2] = {0, 0};   ///< with the noise, before they are cut into ticks
+  double wheel_rad_[2] = {0, 0};     ///< true angles at the last sample
+  double believed_rad_[2] = {0, 0};  ///< with the noise, before they are cut into ticks
   Reading reading_;
   Reading reckoned_;
 };

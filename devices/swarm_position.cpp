@@ -1,6 +1,5 @@
 #include "devices/swarm_position.hpp"
 
-#include <algorithm>
 #include <limits>
 
 #include "shoal/message_codec.hpp"
@@ -20,8 +19,7 @@ void SwarmPosition::Params::read(sim::ParamReader& in) {
 
 SwarmPosition::SwarmPosition(const Params& params, const sim::DeviceContext& context)
     : params_(params), seed_(context.world.seed()), full_name_(context.full_name()) {
-  for (const std::string& category : params.see_through)
-    categories_ &= ~context.world.physics().category_bit(category);
+  for (const std::string& category : params.see_through) categories_ &= ~context.world.physics().category_bit(category);
 }
 
 bool SwarmPosition::visible(const sim::SenseContext& context, const sim::Vehicle& other) const {
@@ -31,8 +29,8 @@ bool SwarmPosition::visible(const sim::SenseContext& context, const sim::Vehicle
   const sim::Vector3d d = to_W - from_W;
   const double distance_m = d.norm();
   if (distance_m < 1e-9) return true;
-  const auto hit = context.world.scene().cast(from_W, d / distance_m, distance_m,
-                                              {categories_, context.vehicle.group()});
+  const auto hit =
+      context.world.scene().cast(from_W, d / distance_m, distance_m, {categories_, context.vehicle.group()});
   return !hit || context.world.physics().parts()[static_cast<std::size_t>(hit->part)].group == other.group();
 }
 
@@ -51,9 +49,10 @@ void SwarmPosition::measure(const sim::SenseContext& context) {
 }
 
 SwarmPosition::Errors& SwarmPosition::errors_of(const Sighting& sighting) {
-  const auto known = std::find_if(errors_.begin(), errors_.end(),
-                                  [&](const Errors& each) { return each.vehicle == sighting.vehicle; });
-  if (known != errors_.end()) return *known;
+  const auto number = static_cast<std::size_t>(sighting.vehicle);
+  if (number >= errors_index_.size()) errors_index_.resize(number + 1, -1);
+  if (errors_index_[number] >= 0) return errors_[static_cast<std::size_t>(errors_index_[number])];
+  errors_index_[number] = static_cast<int>(errors_.size());
   const auto noise = [&](const sim::NoiseParams& params, const char* what) {
     return sim::Noise(params, 3, sim::Random(seed_, full_name_ + what + sighting.name));
   };
@@ -79,6 +78,8 @@ void SwarmPosition::hash_state(sim::StateHash& hash) const {
     hash.add(sighting.p_WV);
   }
   for (const Errors& errors : errors_) {
+    hash.add(errors.vehicle);
+    hash.add(errors.seen_at_s);
     errors.relative.hash_state(hash);
     errors.absolute.hash_state(hash);
   }

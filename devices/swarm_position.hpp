@@ -51,7 +51,8 @@ class SwarmPosition final : public sim::Sensor {
   std::uint64_t seed_;
   std::string full_name_;
   std::vector<Sighting> sightings_;
-  std::vector<Errors> errors_;  ///< of each vehicle seen so far, in the order of first sight
+  std::vector<Errors> errors_;     ///< of each vehicle seen so far, in the order of first sight
+  std::vector<int> errors_index_;  ///< by vehicle number; -1: not seen yet
   double now_s_ = 0;
 };
 

@@ -9,8 +9,7 @@ struct Geodesy::Impl {
 };
 
 Geodesy::Geodesy(const GeodeticPosition& origin)
-    : impl_(new Impl{
-          GeographicLib::LocalCartesian(origin.latitude_deg, origin.longitude_deg, origin.height_m)}) {}
+    : impl_(new Impl{GeographicLib::LocalCartesian(origin.latitude_deg, origin.longitude_deg, origin.height_m)}) {}
 
 Geodesy::~Geodesy() = default;
 

@@ -3,8 +3,7 @@
 namespace sim {
 
 Matrix3d rotation_from_rpy(const Vector3d& rpy_rad) {
-  return (Eigen::AngleAxisd(rpy_rad.z(), Vector3d::UnitZ()) *
-          Eigen::AngleAxisd(rpy_rad.y(), Vector3d::UnitY()) *
+  return (Eigen::AngleAxisd(rpy_rad.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy_rad.y(), Vector3d::UnitY()) *
           Eigen::AngleAxisd(rpy_rad.x(), Vector3d::UnitX()))
       .toRotationMatrix();
 }
@@ -21,7 +20,9 @@ Pose make_pose(const Vector3d& position_m, const Vector3d& rpy_rad) {
   return X;
 }
 
-double yaw_of(const Matrix3d& R) { return std::atan2(R(1, 0), R(0, 0)); }
+double yaw_of(const Matrix3d& R) {
+  return std::atan2(R(1, 0), R(0, 0));
+}
 
 double wrap_angle(double angle_rad) {
   const double wrapped = std::remainder(angle_rad, 2 * std::numbers::pi);

@@ -12,8 +12,12 @@ using Quaterniond = Eigen::Quaterniond;
 /// A pose X_AB: takes a point given in frame B to frame A.
 using Pose = Eigen::Isometry3d;
 
-constexpr double degrees_to_radians(double angle_deg) { return angle_deg * std::numbers::pi / 180.0; }
-constexpr double radians_to_degrees(double angle_rad) { return angle_rad * 180.0 / std::numbers::pi; }
+constexpr double degrees_to_radians(double angle_deg) {
+  return angle_deg * std::numbers::pi / 180.0;
+}
+constexpr double radians_to_degrees(double angle_rad) {
+  return angle_rad * 180.0 / std::numbers::pi;
+}
 
 /// The rotation of roll, pitch, yaw about the fixed x, y and z axes, in that order: Rz(yaw) Ry(pitch) Rx(roll).
 Matrix3d rotation_from_rpy(const Vector3d& rpy_rad);

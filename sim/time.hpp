@@ -9,8 +9,12 @@ namespace sim {
 /// Simulated time since the start of the run: an integer number of microseconds.  Never the wall clock.
 using Time = std::chrono::microseconds;
 
-inline double to_seconds(Time t) { return static_cast<double>(t.count()) * 1e-6; }
+inline double to_seconds(Time t) {
+  return static_cast<double>(t.count()) * 1e-6;
+}
 /// The nearest whole microsecond.
-inline Time from_seconds(double t_s) { return Time{std::llround(t_s * 1e6)}; }
+inline Time from_seconds(double t_s) {
+  return Time{std::llround(t_s * 1e6)};
+}
 
 }  // namespace sim

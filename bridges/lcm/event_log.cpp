@@ -63,8 +63,7 @@ std::optional<LogEvent> EventLogReader::next() {
 EventLogReader::Outcome EventLogReader::read_event(LogEvent& event) {
   std::array<unsigned char, header_bytes> header;
   const std::uint64_t left = file_bytes_ - at_;
-  const std::size_t got =
-      std::fread(header.data(), 1, std::min<std::uint64_t>(header_bytes, left), file_.get());
+  const std::size_t got = std::fread(header.data(), 1, std::min<std::uint64_t>(header_bytes, left), file_.get());
   if (got >= 4 && big_endian<std::uint32_t>(header.data()) != sync_word) return Outcome::garbage;
   if (got < header_bytes) return Outcome::truncated;
   const auto channel_bytes = static_cast<std::int32_t>(big_endian<std::uint32_t>(&header[20]));

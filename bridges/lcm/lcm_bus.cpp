@@ -156,8 +156,7 @@ struct LcmBus::Threads {
   }
 
   LcmBusOptions options;
-  std::map<std::string, std::unique_ptr<Channel>, std::less<>>
-      channels;  // outlives the connection's handlers
+  std::map<std::string, std::unique_ptr<Channel>, std::less<>> channels;  // outlives the connection's handlers
   LcmConnection connection;
   OutgoingQueue outgoing;
   std::mutex transmit_mutex;
@@ -189,8 +188,8 @@ void LcmBus::publish(std::string_view channel, std::span<const std::byte> payloa
   if (payload.size() > threads_->options.max_message_bytes) {
     threads_->refused.fetch_add(1);
     if (!threads_->warned_of_size.exchange(true))
-      spdlog::warn("channel {}: message of {} bytes is not sent; LCM carries at most {} bytes", channel,
-                   payload.size(), threads_->options.max_message_bytes);
+      spdlog::warn("channel {}: message of {} bytes is not sent; LCM carries at most {} bytes", channel, payload.size(),
+                   threads_->options.max_message_bytes);
     return;
   }
   threads_->outgoing.push(channel, payload);
@@ -231,8 +230,7 @@ bool LcmBus::wait_for_message(std::chrono::milliseconds timeout) {
   Threads& t = *threads_;
   t.waiters.fetch_add(1);
   std::unique_lock lock(t.arrival_mutex);
-  const bool arrived =
-      t.arrival.wait_for(lock, timeout, [&] { return t.arrivals.load() != t.seen_arrivals; });
+  const bool arrived = t.arrival.wait_for(lock, timeout, [&] { return t.arrivals.load() != t.seen_arrivals; });
   t.waiters.fetch_sub(1);
   t.seen_arrivals = t.arrivals.load();
   return arrived;

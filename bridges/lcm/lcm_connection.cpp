@@ -46,8 +46,7 @@ UrlParts split_url(const std::string& url) {
     const std::string option = options.substr(0, end);
     options = end == std::string::npos ? "" : options.substr(end + 1);
     const auto equals = option.find('=');
-    parts.options.emplace_back(option.substr(0, equals),
-                               equals == std::string::npos ? "" : option.substr(equals + 1));
+    parts.options.emplace_back(option.substr(0, equals), equals == std::string::npos ? "" : option.substr(equals + 1));
   }
   return parts;
 }
@@ -75,8 +74,7 @@ LcmEndpoint endpoint_of(const std::string& url, const UrlParts& parts) {
     endpoint.port = *port;
   }
   in_addr address{};
-  if (!tcp &&
-      (inet_pton(AF_INET, endpoint.address.c_str(), &address) != 1 || !IN_MULTICAST(ntohl(address.s_addr))))
+  if (!tcp && (inet_pton(AF_INET, endpoint.address.c_str(), &address) != 1 || !IN_MULTICAST(ntohl(address.s_addr))))
     fail(url, "'" + endpoint.address + "' is no multicast address (224.0.0.0 to 239.255.255.255)");
   return endpoint;
 }
@@ -134,8 +132,7 @@ std::string resolve_lcm_url(const std::string& url) {
     if (const char* variable = std::getenv("LCM_DEFAULT_URL")) chosen = variable;
   if (chosen.empty()) chosen = default_lcm_url;
   const UrlParts parts = split_url(chosen);
-  if (parts.kind == "file")
-    fail(chosen, "the simulator writes logs with --record, and plays them with replay");
+  if (parts.kind == "file") fail(chosen, "the simulator writes logs with --record; lcm-logplayer plays them");
   if (parts.kind != "udpm" && parts.kind != "mpudpm" && parts.kind != "tcpq" && parts.kind != "memq")
     fail(chosen, "unknown kind '" + parts.kind + "'; known kinds: memq, mpudpm, tcpq, udpm");
   check_options(chosen, parts);

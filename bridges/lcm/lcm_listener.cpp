@@ -44,8 +44,7 @@ std::optional<Received> LcmListener::next(std::chrono::milliseconds timeout) {
 }
 
 bool LcmListener::publish(std::string_view channel, std::span<const std::byte> payload) {
-  if (channel.empty() || channel.size() > sim::Bus::max_channel_length ||
-      payload.size() > max_lcm_message_bytes)
+  if (channel.empty() || channel.size() > sim::Bus::max_channel_length || payload.size() > max_lcm_message_bytes)
     return false;
   return connection_.publish(std::string(channel).c_str(), payload);
 }

@@ -49,8 +49,7 @@ void LockstepClient::subscribe(const std::string& channel, Handler handler) {
 
 void LockstepClient::publish(std::string_view channel, std::span<const std::byte> payload) {
   if (!lcm_.publish(channel, payload))
-    throw BusError("cannot publish " + std::to_string(payload.size()) + " bytes on '" + std::string(channel) +
-                   "'");
+    throw BusError("cannot publish " + std::to_string(payload.size()) + " bytes on '" + std::string(channel) + "'");
 }
 
 void LockstepClient::request(const std::string& command, std::int32_t id, double value) {
@@ -79,8 +78,8 @@ void LockstepClient::join(double period_s, std::chrono::milliseconds timeout) {
       early_.push_back(std::move(*message));
     }
   }
-  throw BusError("no simulator answered '" + name_ + "' within " + std::to_string(timeout.count()) +
-                 " ms on " + lcm_.url() + "; is it running, with the same LCM URL?");
+  throw BusError("no simulator answered '" + name_ + "' within " + std::to_string(timeout.count()) + " ms on " +
+                 lcm_.url() + "; is it running, with the same LCM URL?");
 }
 
 std::optional<Received> LockstepClient::wait(steady_clock::time_point deadline) {

@@ -127,8 +127,7 @@ Finding check_buffers() {
   if (standard >= 0 && standard < wanted_buffer_bytes) {
     finding.text += "; net.core.rmem_default is " + std::to_string(standard) +
                     ", so other LCM programs need ?recv_buf_size=4194304 in their URL";
-    if (finding.verdict != Verdict::ok)
-      finding.commands.emplace_back("sysctl -w net.core.rmem_default=4194304");
+    if (finding.verdict != Verdict::ok) finding.commands.emplace_back("sysctl -w net.core.rmem_default=4194304");
   }
   return finding;
 }
@@ -176,8 +175,7 @@ std::vector<std::string> owners_of(const std::set<std::string>& inodes) {
   const std::string own = std::to_string(getpid());
   while (const dirent* entry = readdir(directory)) {
     const std::string pid = entry->d_name;
-    if (pid == own || pid.find_first_not_of("0123456789") != std::string::npos || !holds_socket(pid, inodes))
-      continue;
+    if (pid == own || pid.find_first_not_of("0123456789") != std::string::npos || !holds_socket(pid, inodes)) continue;
     std::string name;
     std::getline(std::ifstream("/proc/" + pid + "/comm"), name);
     owners.push_back(name + " (" + pid + ")");
@@ -334,8 +332,7 @@ std::vector<Finding> check_network(const std::string& url, std::chrono::millisec
   findings.push_back(check_round_trip(resolved, time_limit));
   // With no route the way to mend it is known; repeat it where the symptom is.
   for (const Finding& finding : findings)
-    if (finding.name == "multicast route" && finding.verdict == Verdict::bad &&
-        findings.back().verdict == Verdict::bad)
+    if (finding.name == "multicast route" && finding.verdict == Verdict::bad && findings.back().verdict == Verdict::bad)
       findings.back().commands = finding.commands;
   return findings;
 }

@@ -30,8 +30,7 @@ struct RecordingBus::Log {
     // O_EXCL decides and creates in one go; a device such as /dev/full is never "made".
     const int flags = O_WRONLY | O_CREAT | O_CLOEXEC | (existing == Existing::refuse ? O_EXCL : O_TRUNC);
     const int fd = open(path.c_str(), flags, 0666);
-    if (fd < 0 && errno == EEXIST)
-      throw BusError(path + ": exists already; choose another name or pass --overwrite");
+    if (fd < 0 && errno == EEXIST) throw BusError(path + ": exists already; choose another name or pass --overwrite");
     if (fd < 0) throw BusError(path + ": " + std::strerror(errno));
     ::close(fd);
     events = lcm_eventlog_create(path.c_str(), "w");
@@ -81,8 +80,7 @@ RecordingBus::RecordingBus(std::unique_ptr<sim::Bus> inner, const std::string& p
   owned_ = std::move(inner);
 }
 
-RecordingBus::RecordingBus(sim::Bus& inner, const std::string& path, std::int64_t epoch_utime,
-                           Existing existing)
+RecordingBus::RecordingBus(sim::Bus& inner, const std::string& path, std::int64_t epoch_utime, Existing existing)
     : inner_(inner),
       path_(path),
       epoch_utime_(epoch_utime),
@@ -118,8 +116,7 @@ void RecordingBus::set_time(sim::Time at) {
 void RecordingBus::record_incoming(Channel& channel, const sim::Message& message) {
   auto& echoes = channel.echoes;
   // The network keeps the order, so those before the one that came back are lost.
-  if (const auto echo = std::find(echoes.begin(), echoes.end(), hash_of(message.payload));
-      echo != echoes.end()) {
+  if (const auto echo = std::find(echoes.begin(), echoes.end(), hash_of(message.payload)); echo != echoes.end()) {
     echoes.erase(echoes.begin(), echo + 1);
     return;
   }

@@ -12,6 +12,7 @@
 #include "shoal/sim_state_t.hpp"
 #include "shoal/sim_tick_t.hpp"
 #include "shoal/utime_t.hpp"
+#include "sim/config/message_text.hpp"
 
 namespace bridges {
 
@@ -29,8 +30,8 @@ std::string joined(const std::vector<std::string>& names) {
 
 }  // namespace
 
-SimService::SimService(sim::Bus& bus, sim::Bus& network, const sim::World& world,
-                       sim::RunControl& control, sim::Lockstep& lockstep, Info info)
+SimService::SimService(sim::Bus& bus, sim::Bus& network, const sim::World& world, sim::RunControl& control,
+                       sim::Lockstep& lockstep, Info info)
     : bus_(bus),
       network_(network),
       world_(world),
@@ -52,8 +53,7 @@ bool SimService::due(double rate_hz) const {
   const double period_us = 1e6 / rate_hz;
   const double now = static_cast<double>(world_.now().count());
   const double before = now - static_cast<double>(world_.step_time().count());
-  return world_.step_number() == 0 ||
-         std::floor(now / period_us + 1e-9) > std::floor(before / period_us + 1e-9);
+  return world_.step_number() == 0 || std::floor(now / period_us + 1e-9) > std::floor(before / period_us + 1e-9);
 }
 
 void SimService::publish_step() {
@@ -114,13 +114,24 @@ void SimService::publish_tick(const std::vector<std::string>& clients, bool last
   publish(network_, "sim.tick", tick);
 }
 
+bool SimService::hears_another_simulator(const Wait& wait) {
+  const auto clock = network_.open_mailbox("sim.clock");
+  const auto tick = network_.open_mailbox("sim.tick");
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(300);
+  while (std::chrono::steady_clock::now() < end) {
+    if (clock->take() || tick->take()) return true;
+    wait(std::chrono::milliseconds(50));
+  }
+  return false;
+}
+
 void SimService::publish_end() {
   publish_tick({}, true);
   network_.end_of_step();
 }
 
 void SimService::complain(const std::string& text) {
-  if (++bad_messages_ <= 100) spdlog::warn("{} (ignored)", text);
+  if (++bad_messages_ <= 100) spdlog::warn("{} (ignored)", sim::shortened(sim::printable(text), 300));
 }
 
 void SimService::handle_requests() {
@@ -133,7 +144,7 @@ void SimService::handle_requests() {
       continue;
     }
     const std::string error = obey(request);
-    if (!error.empty()) complain("sim.control: client '" + request.client + "': " + error);
+    if (!error.empty()) complain("sim.control: client '" + sim::shortened(request.client) + "': " + error);
     shoal::sim_control_reply_t reply;
     reply.utime = world_.epoch_us() + world_.now().count();
     reply.id = request.id;
@@ -167,19 +178,20 @@ std::string SimService::obey(const shoal::sim_control_request_t& request) {
   if (command == "join") return join(request);
   if (command == "leave")
     return lockstep_.leave(request.client) ? "" : "no client of the name '" + request.client + "' has joined";
-  return "unknown command '" + command + "'; known commands: join, leave, pause, quit, resume, speed, step";
+  return "unknown command '" + sim::shortened(sim::printable(command)) +
+         "'; known commands: join, leave, pause, quit, resume, speed, step";
 }
 
 std::string SimService::set_speed(double speed) {
-  if (speed < 0) return "'speed' must be >= 0 (0: as fast as possible)";
+  if (speed != 0 && !(speed >= 1e-3 && speed <= 1e6))
+    return "'speed' must be 0 (as fast as possible) or from 0.001 to 1e6";
   control_.speed = speed;
   ++control_.changes;
   return {};
 }
 
 std::string SimService::join(const shoal::sim_control_request_t& request) {
-  if (request.client.empty() || request.client.size() > 60)
-    return "'join' needs a client name of 1 to 60 characters";
+  if (request.client.empty() || request.client.size() > 60) return "'join' needs a client name of 1 to 60 characters";
   const double steps = request.value * 1e6 / static_cast<double>(world_.step_time().count());
   if (!(steps > 0.5 && steps < 1e12)) return "'join' needs a period of at least one step, in seconds";
   const auto period_steps = static_cast<std::int64_t>(std::llround(steps));
@@ -194,6 +206,9 @@ void SimService::take_acknowledgements() {
   while (const auto message = acknowledgements_->take()) {
     try {
       const auto ack = shoal::decode<shoal::sim_ack_t>(message->payload, shoal::Finite::any);
+      if (ack.step > world_.step_number())
+        throw shoal::MessageError("client '" + sim::shortened(ack.client) + "' acknowledges step " +
+                                  std::to_string(ack.step) + ", which is still to come");
       lockstep_.acknowledge(ack.client, ack.step);
     } catch (const std::runtime_error& error) {
       complain(std::string("sim.ack: ") + error.what());

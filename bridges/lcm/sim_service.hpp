@@ -43,6 +43,9 @@ class SimService {
 
   /// Waits for messages up to the given time, or returns earlier.
   using Wait = std::function<void(std::chrono::milliseconds)>;
+  /// Listens for 0.3 s of wall time, before anything is published: two simulators that answer the same clients would
+  /// spoil each other's runs.
+  bool hears_another_simulator(const Wait& wait);
   /// Step 8 of a step: ticks the clients that are due and waits for their acknowledgements.  `idle` is called
   /// while waiting; false ends the wait.  Throws LockstepTimeout after `timeout_s` of wall time without an
   /// answer.

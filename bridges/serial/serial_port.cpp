@@ -30,8 +30,7 @@ void make_parent(const std::string& path) {
   const fs::path parent = fs::path(path).parent_path();
   std::error_code error;
   if (!parent.empty()) fs::create_directories(parent, error);
-  if (error)
-    throw std::runtime_error("serial port '" + path + "': cannot make its directory: " + error.message());
+  if (error) throw std::runtime_error("serial port '" + path + "': cannot make its directory: " + error.message());
 }
 
 /// Bytes that wait to be written to a descriptor that never blocks.

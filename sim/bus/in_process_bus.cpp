@@ -12,9 +12,8 @@ namespace {
 void check_channel(std::string_view channel) {
   if (channel.empty()) throw std::invalid_argument("a channel name must not be empty");
   if (channel.size() > Bus::max_channel_length)
-    throw std::invalid_argument("channel '" + std::string(channel) + "' has " +
-                                std::to_string(channel.size()) + " characters; at most " +
-                                std::to_string(Bus::max_channel_length) + " are allowed");
+    throw std::invalid_argument("channel '" + std::string(channel) + "' has " + std::to_string(channel.size()) +
+                                " characters; at most " + std::to_string(Bus::max_channel_length) + " are allowed");
 }
 
 }  // namespace

@@ -81,8 +81,7 @@ class Substitution {
         return;
       }
       if (value->kind != Kind::scalar)
-        return error(node,
-                     "parameter '" + shortened(name) + "' must be text inside of text, got " + shown(*value));
+        return error(node, "parameter '" + shortened(name) + "' must be text inside of text, got " + shown(*value));
       if (!within_limits(node, *value)) return;
       result.append(text, copied, begin - copied).append(value->scalar);
       copied = end + 1;
@@ -147,12 +146,11 @@ ConfigNode* ConfigNode::find(std::string_view key) {
   return const_cast<ConfigNode*>(static_cast<const ConfigNode*>(this)->find(key));
 }
 
-void set_config_path(ConfigNode& root, std::string_view path, const ConfigNode& value,
-                     const SourcePlace& place, Diagnostics& diagnostics) {
+void set_config_path(ConfigNode& root, std::string_view path, const ConfigNode& value, const SourcePlace& place,
+                     Diagnostics& diagnostics) {
   const std::vector<std::string> keys = split_path(path);
   if (keys.size() > max_path_keys || std::find(keys.begin(), keys.end(), "") != keys.end()) {
-    diagnostics.error(place, "",
-                      "bad path '" + shortened(path) + "'; a path is keys and names with dots between");
+    diagnostics.error(place, "", "bad path '" + shortened(path) + "'; a path is keys and names with dots between");
     return;
   }
   ConfigNode* node = &root;
@@ -163,8 +161,8 @@ void set_config_path(ConfigNode& root, std::string_view path, const ConfigNode& 
       node->place = place;
     }
     if (node->kind == Kind::scalar) {
-      diagnostics.error(
-          place, "", "no '" + shortened(key) + "' in '" + shortened(parent) + "', which is " + shown(*node));
+      diagnostics.error(place, "",
+                        "no '" + shortened(key) + "' in '" + shortened(parent) + "', which is " + shown(*node));
       return;
     }
     ConfigNode* next = node->kind == Kind::list ? find_item(*node, key) : node->find(key);
@@ -179,8 +177,7 @@ void set_config_path(ConfigNode& root, std::string_view path, const ConfigNode& 
   *node = value;
 }
 
-void substitute_parameters(ConfigNode& node,
-                           const std::vector<std::pair<std::string, ConfigNode>>& parameters,
+void substitute_parameters(ConfigNode& node, const std::vector<std::pair<std::string, ConfigNode>>& parameters,
                            const std::string& who, Diagnostics& diagnostics) {
   Substitution(parameters, who, diagnostics).apply(node);
 }

@@ -86,8 +86,7 @@ class Loader {
   /// `asked_at`: where the file was asked for; a place without a line for the first file.
   ConfigNode load(const fs::path& path, const SourcePlace& asked_at) {
     const SourcePlace whole_file{intern_file_name(path.string()), 0, 0};
-    if (++files_ > max_files)
-      return fail(asked_at, "more than " + std::to_string(max_files) + " files included");
+    if (++files_ > max_files) return fail(asked_at, "more than " + std::to_string(max_files) + " files included");
     std::error_code error;
     fs::path canonical = fs::weakly_canonical(path, error);
     if (error) canonical = path;
@@ -160,11 +159,8 @@ class Loader {
     std::vector<const ConfigNode*> names;
     if (include.kind == Kind::scalar) names.push_back(&include);
     for (const ConfigNode& item : include.items) names.push_back(&item);
-    const auto is_name = [](const ConfigNode* name) {
-      return name->kind == Kind::scalar && !name->scalar.empty();
-    };
-    if (include.kind == Kind::map || include.kind == Kind::null ||
-        !std::all_of(names.begin(), names.end(), is_name)) {
+    const auto is_name = [](const ConfigNode* name) { return name->kind == Kind::scalar && !name->scalar.empty(); };
+    if (include.kind == Kind::map || include.kind == Kind::null || !std::all_of(names.begin(), names.end(), is_name)) {
       fail(include.place, "'include' must be a file name or a list of file names, got " + shown(include));
       return {};
     }

@@ -38,8 +38,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
       row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        row[j] = std::min(row[j], before[j - 2] + 1);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) row[j] = std::min(row[j], before[j - 2] + 1);
     }
     before.swap(last);
     last.swap(row);
@@ -79,9 +78,7 @@ std::string shown(const ConfigNode& node) {
     case ConfigNode::Kind::null:
       return "nothing";
     case ConfigNode::Kind::scalar:
-      return "'" +
-             shortened(printable(std::string_view(node.scalar).substr(0, 4 * shown_length)), shown_length) +
-             "'";
+      return "'" + shortened(printable(std::string_view(node.scalar).substr(0, 4 * shown_length)), shown_length) + "'";
     default:
       return shortened(printable(to_flow_yaml(node, 2 * shown_length)), shown_length);
   }
@@ -115,8 +112,7 @@ std::string with_article(std::string_view word) {
 std::string list_text(const std::vector<std::string>& names, std::size_t most) {
   if (names.empty()) return "none";
   std::string text;
-  for (std::size_t i = 0; i < names.size() && i < most; ++i)
-    text += (i == 0 ? "" : ", ") + shortened(names[i]);
+  for (std::size_t i = 0; i < names.size() && i < most; ++i) text += (i == 0 ? "" : ", ") + shortened(names[i]);
   if (names.size() > most) text += ", ... (" + std::to_string(names.size()) + " in all)";
   return text;
 }

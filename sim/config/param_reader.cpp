@@ -1,6 +1,7 @@
 #include "sim/config/param_reader.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -101,8 +102,7 @@ Rule above_to(double low, double high) {
 ParamReader::ParamReader(const ConfigNode& node, std::string who, Diagnostics& diagnostics)
     : ParamReader(node, std::move(who), diagnostics, nullptr) {}
 
-ParamReader::ParamReader(const ConfigNode& node, std::string who, Diagnostics& diagnostics,
-                         const ParamReader* parent)
+ParamReader::ParamReader(const ConfigNode& node, std::string who, Diagnostics& diagnostics, const ParamReader* parent)
     : node_(&node), who_(std::move(who)), diagnostics_(&diagnostics), parent_(parent) {
   if (node.kind == Kind::scalar || node.kind == Kind::list)
     error_at(node.place, "must be a map of keys and values, got " + shown(node));
@@ -137,6 +137,14 @@ const ConfigNode* ParamReader::child(const char* key) {
   return take(key);
 }
 
+void ParamReader::read_name(const char* key, std::string& value, const char* meaning) {
+  read(key, value, meaning);
+  const bool plain = std::all_of(value.begin(), value.end(),
+                                 [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
+  if (has(key) && (value.empty() || !plain))
+    error(key, "a name must be made of letters, digits, '_' and '-', got '" + shortened(value) + "'");
+}
+
 void ParamReader::require(const char* key) {
   required_.push_back(key);
 }
@@ -161,8 +169,7 @@ void ParamReader::finish() {
   for (const ConfigNode::Entry& entry : node_->entries) {
     if (std::binary_search(known_.begin(), known_.end(), entry.key)) continue;
     if (++unknown > max_unknown_keys) return error_at(entry.place, "more unknown keys are not shown");
-    std::string text =
-        "unknown key " + quoted_name(entry.key) + "; known keys: " + list_text(known_, known_.size());
+    std::string text = "unknown key " + quoted_name(entry.key) + "; known keys: " + list_text(known_, known_.size());
     if (const std::string meant = closest_name(entry.key, known_); !meant.empty())
       text += "; did you mean '" + meant + "'?";
     error_at(entry.place, text);
@@ -204,16 +211,15 @@ void ParamReader::check_reference(const char* key, const char* kind, const std::
     if (const auto found = reader->declared_.find(kind);
         found != reader->declared_.end() && found->second.contains(name))
       return;
-  error_at(place, quoted_name(key) + " names no " + kind + " " + quoted_name(name) + "; known " +
-                      plural_of(kind) + ": " + list_text(declared(kind)));
+  error_at(place, quoted_name(key) + " names no " + kind + " " + quoted_name(name) + "; known " + plural_of(kind) +
+                      ": " + list_text(declared(kind)));
 }
 
 // Describing
 
 void ParamReader::describe(ParamInfo info) {
   if (!describing()) return;
-  if (const auto required = std::find(required_.begin(), required_.end(), info.key);
-      required != required_.end()) {
+  if (const auto required = std::find(required_.begin(), required_.end(), info.key); required != required_.end()) {
     required_.erase(required);
     info.required = true;
   }
@@ -241,8 +247,8 @@ std::vector<ParamInfo> ParamReader::describe_children(const void* type, const Re
   return children;
 }
 
-void ParamReader::describe_nested(const char* key, const char* type_name, const std::string& initial,
-                                  const void* type, const ReadInto& read_into, const char* meaning) {
+void ParamReader::describe_nested(const char* key, const char* type_name, const std::string& initial, const void* type,
+                                  const ReadInto& read_into, const char* meaning) {
   ParamInfo info;
   info.key = key;
   info.type = type_name;
@@ -254,8 +260,7 @@ void ParamReader::describe_nested(const char* key, const char* type_name, const 
 
 // Values
 
-bool ParamReader::take_number(const std::string& what, const ConfigNode& node, const Rule& rule,
-                              double& value) {
+bool ParamReader::take_number(const std::string& what, const ConfigNode& node, const Rule& rule, double& value) {
   double number = 0;
   const NumberText found =
       node.kind == Kind::scalar && !node.quoted ? parse_number(node.scalar, number) : NumberText::no_number;
@@ -272,16 +277,14 @@ bool ParamReader::take_number(const std::string& what, const ConfigNode& node, c
   return false;
 }
 
-bool ParamReader::take_integer(const std::string& what, const ConfigNode& node, const Rule& rule,
-                               std::int64_t& value) {
+bool ParamReader::take_integer(const std::string& what, const ConfigNode& node, const Rule& rule, std::int64_t& value) {
   constexpr double exact_whole_numbers = 9007199254740992.0;  // 2^53
   std::int64_t whole = 0;
   double number = 0;
   const std::string_view text = node.scalar;
   const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), whole);
-  const bool all_read =
-      end == digits.data() + digits.size() && !(text.starts_with('+') && digits.starts_with('-'));
+  const bool all_read = end == digits.data() + digits.size() && !(text.starts_with('+') && digits.starts_with('-'));
   NumberText found = NumberText::no_number;
   if (node.kind == Kind::scalar && !node.quoted) {
     found = parse_number(text, number);
@@ -387,8 +390,7 @@ void ParamReader::read(const char* key, double& value, const Rule& rule, const c
 }
 
 void ParamReader::read(const char* key, std::optional<double>& value, const Rule& rule, const char* meaning) {
-  if (describing())
-    return describe_row(key, "number", rule.text(), value ? number_text(*value) : "~", meaning);
+  if (describing()) return describe_row(key, "number", rule.text(), value ? number_text(*value) : "~", meaning);
   const ConfigNode* node = take(key);
   if (node == nullptr) return;
   double number = 0;
@@ -404,14 +406,12 @@ void ParamReader::read(const char* key, std::string& value, const char* meaning)
 }
 
 void ParamReader::read(const char* key, Vector3d& value, const Rule& rule, const char* meaning) {
-  if (describing())
-    return describe_row(key, "[x, y, z]", rule.text(), yaml_list(value, number_text), meaning);
+  if (describing()) return describe_row(key, "[x, y, z]", rule.text(), yaml_list(value, number_text), meaning);
   if (const ConfigNode* node = take(key)) take_vector(key, *node, rule, value);
 }
 
 void ParamReader::read(const char* key, std::vector<double>& value, const Rule& rule, const char* meaning) {
-  if (describing())
-    return describe_row(key, "list of numbers", rule.text(), yaml_list(value, number_text), meaning);
+  if (describing()) return describe_row(key, "list of numbers", rule.text(), yaml_list(value, number_text), meaning);
   const ConfigNode* node = take(key);
   if (node == nullptr) return;
   if (node->kind != Kind::list && node->kind != Kind::null)
@@ -431,8 +431,7 @@ void ParamReader::read(const char* key, std::vector<std::string>& value, const c
 }
 
 void ParamReader::read_deg(const char* key, double& value_rad, const Rule& rule, const char* meaning) {
-  if (describing())
-    return describe_row(key, "number", rule.text(), number_text(rounded_degrees(value_rad)), meaning);
+  if (describing()) return describe_row(key, "number", rule.text(), number_text(rounded_degrees(value_rad)), meaning);
   double angle_deg = 0;
   const ConfigNode* node = take(key);
   if (node != nullptr && take_number(quoted_name(key), *node, rule, angle_deg))
@@ -470,8 +469,7 @@ void ParamReader::read_choice(const char* key, std::string& value, const std::ve
 }
 
 void ParamReader::read_reference(const char* key, std::string& value, const char* kind, const char* meaning) {
-  if (describing())
-    return describe_row(key, "text", "name of " + with_article(kind), yaml_of(value), meaning);
+  if (describing()) return describe_row(key, "text", "name of " + with_article(kind), yaml_of(value), meaning);
   const ConfigNode* node = take(key);
   if (node == nullptr || !take_text(quoted_name(key), *node, value)) return;
   if (!value.empty()) check_reference(key, kind, value, node->place);
@@ -480,8 +478,7 @@ void ParamReader::read_reference(const char* key, std::string& value, const char
 void ParamReader::read_references(const char* key, std::vector<std::string>& value, const char* kind,
                                   const char* meaning) {
   if (describing())
-    return describe_row(key, "list of text", "names of " + plural_of(kind), yaml_list(value, yaml_of),
-                        meaning);
+    return describe_row(key, "list of text", "names of " + plural_of(kind), yaml_list(value, yaml_of), meaning);
   const ConfigNode* node = take(key);
   if (node == nullptr || !take_texts(key, *node, value)) return;
   for (std::size_t i = 0; i < value.size(); ++i) check_reference(key, kind, value[i], node->items[i].place);
@@ -510,8 +507,7 @@ std::string ParamReader::who_of_item(const ConfigNode& item, const char* kind, s
   return who_.empty() ? own : who_ + ": " + own;
 }
 
-bool ParamReader::read_items(const char* key, const ConfigNode& node, const char* kind,
-                             const ReadInto& read_into) {
+bool ParamReader::read_items(const char* key, const ConfigNode& node, const char* kind, const ReadInto& read_into) {
   if (node.kind != Kind::list && node.kind != Kind::null) {
     error_at(node.place, quoted_name(key) + " must be a list of maps, got " + shown(node));
     return false;
@@ -519,8 +515,8 @@ bool ParamReader::read_items(const char* key, const ConfigNode& node, const char
   for (std::size_t i = 0; i < node.items.size(); ++i) {
     const ConfigNode& item = node.items[i];
     if (item.kind != Kind::map) {
-      error_at(item.place, "item " + std::to_string(i + 1) + " of " + quoted_name(key) +
-                               " must be a map, got " + shown(item));
+      error_at(item.place,
+               "item " + std::to_string(i + 1) + " of " + quoted_name(key) + " must be a map, got " + shown(item));
       continue;
     }
     if (const ConfigNode* name = item.find("name"); name != nullptr && name->kind == Kind::scalar)

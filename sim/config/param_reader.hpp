@@ -34,8 +34,8 @@ Rule any_number();
 Rule at_least(double low);
 Rule above(double low);
 Rule at_most(double high);
-Rule between(double low, double high);       ///< both ends allowed
-Rule above_to(double low, double high);      ///< low excluded, high allowed
+Rule between(double low, double high);   ///< both ends allowed
+Rule above_to(double low, double high);  ///< low excluded, high allowed
 
 /// What is known of one key: the source of error messages, `shoal describe`, docs and schemas.
 struct ParamInfo {
@@ -51,7 +51,9 @@ struct ParamInfo {
 class ParamReader;
 
 template <typename T>
-concept ReadsParams = requires(T value, ParamReader& in) { value.read(in); };
+concept ReadsParams = requires(T value, ParamReader& in) {
+  value.read(in);
+};
 
 /// Hands the keys of one YAML map to a struct, or (describing) collects what the struct would read.  A struct names
 /// each key, its range and its meaning once, in its `read`.  Members hold the defaults.  Errors are collected, never
@@ -75,6 +77,8 @@ class ParamReader {
   /// Any number of numbers, each inside `rule`.
   void read(const char* key, std::vector<double>& value, const Rule& rule, const char* meaning);
   void read(const char* key, std::vector<std::string>& value, const char* meaning);
+  /// A name, which may become part of a channel or a file name: letters, digits, '_' and '-'.
+  void read_name(const char* key, std::string& value, const char* meaning);
   /// A number in degrees in the file (key ends in `_deg`), in radians in the struct; `rule` is in degrees.
   void read_deg(const char* key, double& value_rad, const Rule& rule, const char* meaning);
   /// Three angles in degrees in the file, in radians in the struct.
@@ -82,7 +86,7 @@ class ParamReader {
   /// One word out of `choices`.
   void read_choice(const char* key, std::string& value, const std::vector<std::string>& choices, const char* meaning);
   template <typename Enum>
-    requires std::is_enum_v<Enum>
+  requires std::is_enum_v<Enum>
   void read_choice(const char* key, Enum& value, const std::vector<std::pair<std::string, Enum>>& choices,
                    const char* meaning);
   /// A name that must have been announced by `declare(kind, name)`.  Empty (the default) means none.

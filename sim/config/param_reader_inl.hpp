@@ -16,8 +16,8 @@ inline constexpr char type_mark = 0;
 
 template <typename Enum>
 requires std::is_enum_v<Enum>
-void ParamReader::read_choice(const char* key, Enum& value,
-                              const std::vector<std::pair<std::string, Enum>>& choices, const char* meaning) {
+void ParamReader::read_choice(const char* key, Enum& value, const std::vector<std::pair<std::string, Enum>>& choices,
+                              const char* meaning) {
   std::vector<std::string> words;
   std::string initial;
   for (const auto& [word, choice] : choices) {
@@ -36,8 +36,7 @@ void ParamReader::read(const char* key, T& value, const char* meaning) {
     describe_nested(key, "map", "{}", &detail::type_mark<T>, read_copy, meaning);
     return;
   }
-  if (const ConfigNode* node = take(key))
-    read_nested(key, *node, [&value](ParamReader& in) { value.read(in); });
+  if (const ConfigNode* node = take(key)) read_nested(key, *node, [&value](ParamReader& in) { value.read(in); });
 }
 
 template <ReadsParams T>

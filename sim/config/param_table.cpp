@@ -61,9 +61,8 @@ std::string markdown_table(const std::vector<ParamInfo>& params) {
   std::string text = "| key | type | rule | default | meaning |\n|---|---|---|---|---|\n";
   for (const Row& row : rows_of(params)) {
     const bool is_value = row[3] != "required" && row[3] != "unset";
-    text += "| " + code(row[0]) + " | " + escaped_for_markdown(row[1]) + " | " +
-            escaped_for_markdown(row[2]) + " | " + (is_value ? code(row[3]) : row[3]) + " | " +
-            escaped_for_markdown(row[4]) + " |\n";
+    text += "| " + code(row[0]) + " | " + escaped_for_markdown(row[1]) + " | " + escaped_for_markdown(row[2]) + " | " +
+            (is_value ? code(row[3]) : row[3]) + " | " + escaped_for_markdown(row[4]) + " |\n";
   }
   return text;
 }

@@ -136,9 +136,7 @@ class TreeBuilder final : public YAML::EventHandler {
     TreeSize size;
   };
 
-  bool expects_key() const {
-    return !open_.empty() && open_.back().node.kind == Kind::map && !open_.back().has_key;
-  }
+  bool expects_key() const { return !open_.empty() && open_.back().node.kind == Kind::map && !open_.back().has_key; }
 
   [[noreturn]] void stop_at_bad_key(const YAML::Mark& mark, const char* what) const {
     throw Stop{place_of(mark), std::string("a key must be text, got ") + what, true};
@@ -191,8 +189,7 @@ class TreeBuilder final : public YAML::EventHandler {
       error(map.key_place, "merge keys ('<<') are not supported; use include, overrides or parameters");
     const auto [first, is_new] = map.line_of_key.emplace(key, map.key_place.line);
     if (!is_new)
-      error(map.key_place,
-            "duplicate key '" + shortened(key) + "', first at line " + std::to_string(first->second));
+      error(map.key_place, "duplicate key '" + shortened(key) + "', first at line " + std::to_string(first->second));
   }
 
   void start(Kind kind, const YAML::Mark& mark, YAML::anchor_t anchor) {
@@ -260,8 +257,8 @@ std::size_t character_length(std::string_view text, std::size_t at) {
   for (std::size_t i = 1; i < length; ++i)
     if ((byte(at + i) & 0xc0) != 0x80) return 0;
   const unsigned second = byte(at + 1);
-  if ((lead == 0xe0 && second < 0xa0) || (lead == 0xed && second >= 0xa0) ||
-      (lead == 0xf0 && second < 0x90) || (lead == 0xf4 && second >= 0x90))
+  if ((lead == 0xe0 && second < 0xa0) || (lead == 0xed && second >= 0xa0) || (lead == 0xf0 && second < 0x90) ||
+      (lead == 0xf4 && second >= 0x90))
     return 0;
   return length;
 }
@@ -324,8 +321,7 @@ SourcePlace place_at(std::string_view text, std::size_t at, const std::string* f
 
 }  // namespace
 
-ConfigNode parse_config_text(const std::string& text, const std::string& file_name,
-                             Diagnostics& diagnostics) {
+ConfigNode parse_config_text(const std::string& text, const std::string& file_name, Diagnostics& diagnostics) {
   const std::string* file = intern_file_name(file_name);
   auto bad = first_bad_byte(text);
   if (!bad) bad = hopeless_nesting(text);

@@ -20,13 +20,11 @@ bool is_control(char c) {
 
 /// Read without quotes, the text is the same text again.
 bool plain_is_safe(std::string_view text, bool in_flow) {
-  if (text.empty() || text == "~" || text == "null" || text == "Null" || text == "NULL" || text == "<<")
-    return false;
+  if (text.empty() || text == "~" || text == "null" || text == "Null" || text == "NULL" || text == "<<") return false;
   if (text.front() == ' ' || text.back() == ' ' || text.back() == ':') return false;
   if (text.starts_with("---") || text.starts_with("...")) return false;
   if (std::string_view(",[]{}#&*!|>'\"%@`").find(text.front()) != std::string_view::npos) return false;
-  if (std::string_view("-?:").find(text.front()) != std::string_view::npos &&
-      (text.size() == 1 || text[1] == ' '))
+  if (std::string_view("-?:").find(text.front()) != std::string_view::npos && (text.size() == 1 || text[1] == ' '))
     return false;
   if (text.find(": ") != std::string_view::npos || text.find(" #") != std::string_view::npos) return false;
   if (text.starts_with("\xef\xbb\xbf")) return false;  // a byte order mark would be dropped
@@ -93,8 +91,7 @@ bool fits_on_a_line(const ConfigNode& node) {
     case Kind::scalar:
       return node.quoted || plain_is_safe(node.scalar, true) || !plain_is_safe(node.scalar, false);
     case Kind::list:
-      return node.items.size() <= max_flow_width &&
-             std::all_of(node.items.begin(), node.items.end(), fits_on_a_line);
+      return node.items.size() <= max_flow_width && std::all_of(node.items.begin(), node.items.end(), fits_on_a_line);
     case Kind::map:
       return node.entries.empty();
   }

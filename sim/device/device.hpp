@@ -20,9 +20,9 @@ class World;
 struct SenseContext {
   const World& world;
   const Vehicle& vehicle;
-  Time now;      ///< the time sampled
-  double dt_s;   ///< since this sensor's last sample; 0 at the first
-  Pose X_WS;     ///< the sensor frame, as mounted
+  Time now;         ///< the time sampled
+  double dt_s;      ///< since this sensor's last sample; 0 at the first
+  Pose X_WS;        ///< the sensor frame, as mounted
   Vector3d v_WS_W;  ///< velocity of its origin
 };
 

@@ -6,16 +6,18 @@ namespace sim {
 
 void DeviceConfig::read_common(ParamReader& in) {
   in.require("name");
-  in.read("name", name, "name of the device, unique in its vehicle; part of its channels");
+  in.read_name("name", name, "name of the device, unique in its vehicle; part of its channels");
   in.require("type");
   in.read("type", type, "device type, see `shoal list devices`");
   in.read_reference("body", body, "body", "body it is mounted on; unset: the vehicle's first body");
   in.read("position_m", position_m, any_number(), "place of the sensor frame in the body frame");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw of the sensor frame in the body frame");
-  in.read("rate_hz", rate_hz, at_least(0), "samples per simulated second; 0: every step");
-  in.read("phase_s", phase_s, at_least(0), "time of the first sample; unset: spread over the period by name");
-  in.read("latency_s", latency_s, at_least(0), "from sample to report, or from command to effect");
-  in.read("jitter_s", jitter_s, at_least(0), "added to the latency, uniform between 0 and this");
+  in.read("rate_hz", rate_hz, between(0, 1e6), "samples per simulated second; 0: every step");
+  if (rate_hz > 0 && rate_hz < 1e-6)
+    in.error("rate_hz", "'rate_hz' must be 0 or >= 1e-6: one sample in twelve days is rare enough");
+  in.read("phase_s", phase_s, between(0, 1e6), "time of the first sample; unset: spread over the period by name");
+  in.read("latency_s", latency_s, between(0, 1e6), "from sample to report, or from command to effect");
+  in.read("jitter_s", jitter_s, between(0, 1e6), "added to the latency, uniform between 0 and this");
   in.read("dropout", dropout, between(0, 1), "probability that a report or a command is lost");
   in.read("truth", truth, "publish the reading without its errors on CHANNEL.truth");
   in.read("channel", channel, "channel of the reports; unset: by the world's template");
@@ -27,8 +29,7 @@ void DeviceConfig::read(ParamReader& in) {
     device_type = DeviceRegistry::instance().find(node->scalar);
     if (device_type == nullptr) {
       std::string known;
-      for (const DeviceType* each : DeviceRegistry::instance().all())
-        known += (known.empty() ? "" : ", ") + each->name;
+      for (const DeviceType* each : DeviceRegistry::instance().all()) known += (known.empty() ? "" : ", ") + each->name;
       in.error("type", "unknown device type '" + node->scalar + "'; known types: " + known);
       in.read("name", name, "");
       // The other keys belong to a type nobody knows; calling them unknown too would bury the mistake.

@@ -25,17 +25,17 @@ struct DeviceConfig {
   std::string body;                        ///< where it is mounted; empty: the vehicle's first body
   Vector3d position_m = Vector3d::Zero();  ///< of the sensor frame S in the body frame B
   Vector3d rpy_rad = Vector3d::Zero();
-  double rate_hz = 0;                      ///< samples per simulated second; 0: every step
-  std::optional<double> phase_s;           ///< time of the first sample; unset: spread over the period by name
-  double latency_s = 0;                    ///< sensor: sample to report; actuator: message to effect
-  double jitter_s = 0;                     ///< added to the latency, uniform in [0, jitter)
-  double dropout = 0;                      ///< probability that a report or a command is lost
-  bool truth = false;                      ///< publish the reading without errors beside the report
-  std::string channel;                     ///< of the reports; empty: by the world's template
+  double rate_hz = 0;             ///< samples per simulated second; 0: every step
+  std::optional<double> phase_s;  ///< time of the first sample; unset: spread over the period by name
+  double latency_s = 0;           ///< sensor: sample to report; actuator: message to effect
+  double jitter_s = 0;            ///< added to the latency, uniform in [0, jitter)
+  double dropout = 0;             ///< probability that a report or a command is lost
+  bool truth = false;             ///< publish the reading without errors beside the report
+  std::string channel;            ///< of the reports; empty: by the world's template
 
   const DeviceType* device_type = nullptr;
   std::shared_ptr<const DeviceParams> params;
-  SourcePlace place;                       ///< where the device was written, for errors found later
+  SourcePlace place;  ///< where the device was written, for errors found later
 
   void read(ParamReader& in);
   /// The keys common to all devices, for `shoal describe` and the docs.

@@ -7,9 +7,13 @@
 
 namespace sim {
 
-Joint& DeviceContext::joint(const std::string& name) const { return vehicle.joint(name); }
+Joint& DeviceContext::joint(const std::string& name) const {
+  return vehicle.joint(name);
+}
 
-std::string DeviceContext::full_name() const { return vehicle.name() + "/" + config.name; }
+std::string DeviceContext::full_name() const {
+  return vehicle.name() + "/" + config.name;
+}
 
 DeviceRegistry& DeviceRegistry::instance() {
   static DeviceRegistry registry;

@@ -36,7 +36,7 @@ struct BuiltDevice {
 /// A device type by its YAML name.
 struct DeviceType {
   std::string name;
-  std::string meaning;           ///< one sentence
+  std::string meaning;  ///< one sentence
   double default_rate_hz = 0;
   std::string report_message;    ///< such as `shoal.pose_t`; empty: does not report
   std::string command_messages;  ///< comma separated; empty: takes no commands

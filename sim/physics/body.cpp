@@ -119,9 +119,7 @@ void Body::add_gyroscopic_torque(double step_s) {
   const Vector3d w_W = Vector3d(w_WB_W_[0], w_WB_W_[1], w_WB_W_[2]);
   const Vector3d w(x.dot(w_W), y.dot(w_W), z.dot(w_W));
   const Vector3d I_x = inertia_C_B_.col(0), I_y = inertia_C_B_.col(1), I_z = inertia_C_B_.col(2);
-  const auto times_inertia = [&](const Vector3d& v) -> Vector3d {
-    return v.x() * I_x + v.y() * I_y + v.z() * I_z;
-  };
+  const auto times_inertia = [&](const Vector3d& v) -> Vector3d { return v.x() * I_x + v.y() * I_y + v.z() * I_z; };
   const Vector3d momentum = times_inertia(w);
   // Nothing to do for a body at rest, or one that spins about a principal axis.
   constexpr double negligible = 1e-10;

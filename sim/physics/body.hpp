@@ -28,7 +28,7 @@ class Body {
   bool fixed() const { return ode_ == nullptr; }
 
   double mass_kg() const { return mass_kg_; }
-  const Vector3d& p_BC() const { return p_BC_; }          ///< centre of mass in B
+  const Vector3d& p_BC() const { return p_BC_; }                ///< centre of mass in B
   const Matrix3d& inertia_C_B() const { return inertia_C_B_; }  ///< about the centre of mass, axes of B, kg m^2
 
   Pose X_WB() const;

@@ -76,8 +76,7 @@ void Collider::join(int first, int second) {
 
 void Collider::close_group(int number) {
   Group& group = groups_[number];
-  if (dSpaceGetNumGeoms(group.space.get()) > 0 &&
-      !dGeomGetSpace(reinterpret_cast<dGeomID>(group.space.get())))
+  if (dSpaceGetNumGeoms(group.space.get()) > 0 && !dGeomGetSpace(reinterpret_cast<dGeomID>(group.space.get())))
     dSpaceAdd(space_.get(), reinterpret_cast<dGeomID>(group.space.get()));
   for (const dGeomID geom : group.fixed) dSpaceAdd(space_.get(), geom);
   group.fixed.clear();
@@ -91,8 +90,7 @@ int Collider::collide(dWorldID world, dJointGroupID contacts, Islands& islands) 
   sort_pairs();
   int count = 0;
   for (const std::uint64_t pair : pairs_)
-    count +=
-        touch(static_cast<int>(pair >> 32), static_cast<int>(pair & 0xffffffff), world, contacts, islands);
+    count += touch(static_cast<int>(pair >> 32), static_cast<int>(pair & 0xffffffff), world, contacts, islands);
   return count;
 }
 
@@ -142,8 +140,8 @@ void Collider::sort_pairs() {
 int Collider::touch(int first, int second, dWorldID world, dJointGroupID contacts, Islands& islands) {
   const CollisionPart& part_a = parts_[first];
   const CollisionPart& part_b = parts_[second];
-  const int count = dCollide(part_a.geom, part_b.geom, static_cast<int>(touching_.size()), &touching_[0].geom,
-                             sizeof(dContact));
+  const int count =
+      dCollide(part_a.geom, part_b.geom, static_cast<int>(touching_.size()), &touching_[0].geom, sizeof(dContact));
   if (count == 0) return 0;
   const Surface& surface = table_.of(part_a.material, part_b.material);
   const CollisionBody& a = bodies_[part_a.body];
@@ -165,8 +163,7 @@ void Collider::align_friction(dContact& contact, const CollisionBody& a, const C
   const Vector3d at = to_eigen(contact.geom.pos);
   const auto free_velocity = [&](const CollisionBody& body) -> Vector3d {
     if (!body.ode) return Vector3d::Zero();
-    Vector3d v = to_eigen(body.velocity) +
-                 to_eigen(body.angular_velocity).cross(at - to_eigen(body.position)) +
+    Vector3d v = to_eigen(body.velocity) + to_eigen(body.angular_velocity).cross(at - to_eigen(body.position)) +
                  step_s_ * body.inverse_mass * to_eigen(dBodyGetForce(body.ode));
     if (dBodyGetGravityMode(body.ode)) v.z() -= step_s_ * gravity_mps2_;
     return v;

@@ -47,12 +47,10 @@ bool names(const std::string& pattern, const std::string& material) {
 
 }  // namespace
 
-ContactTable::ContactTable(const std::vector<MaterialConfig>& materials,
-                           const std::vector<ContactConfig>& contacts) {
+ContactTable::ContactTable(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts) {
   names_.push_back("default");
   for (const MaterialConfig& material : materials)
-    if (std::find(names_.begin(), names_.end(), material.name) == names_.end())
-      names_.push_back(material.name);
+    if (std::find(names_.begin(), names_.end(), material.name) == names_.end()) names_.push_back(material.name);
   count_ = static_cast<int>(names_.size());
   surfaces_.assign(names_.size() * names_.size(), make_surface(ContactConfig{}));
   // An entry that names both materials wins over one that says `any`; among equals the last one wins.

@@ -45,8 +45,7 @@ Joint::Joint(dWorldID world, std::string name, const JointConfig& config, dBodyI
   for (int axis = 0; axis < axes_; ++axis) wrapped_[axis] = wrapped_position(axis);
 }
 
-void Joint::create(dWorldID world, const JointConfig& config, const Pose& X_WV, dBodyID first,
-                   dBodyID second) {
+void Joint::create(dWorldID world, const JointConfig& config, const Pose& X_WV, dBodyID first, dBodyID second) {
   const Vector3d anchor = X_WV * config.anchor_m;
   const Vector3d axis1 = (X_WV.linear() * config.axis1.axis).normalized();
   const Vector3d axis2 = (X_WV.linear() * config.axis2.axis).normalized();
@@ -131,11 +130,9 @@ double Joint::velocity(int axis) const {
     case dJointTypeSlider:
       return sign_ * dJointGetSliderPositionRate(ode_.get());
     case dJointTypeHinge2:
-      return sign_ *
-             (axis == 0 ? dJointGetHinge2Angle1Rate(ode_.get()) : dJointGetHinge2Angle2Rate(ode_.get()));
+      return sign_ * (axis == 0 ? dJointGetHinge2Angle1Rate(ode_.get()) : dJointGetHinge2Angle2Rate(ode_.get()));
     case dJointTypeUniversal:
-      return sign_ * (axis == 0 ? dJointGetUniversalAngle1Rate(ode_.get())
-                                : dJointGetUniversalAngle2Rate(ode_.get()));
+      return sign_ * (axis == 0 ? dJointGetUniversalAngle1Rate(ode_.get()) : dJointGetUniversalAngle2Rate(ode_.get()));
     default:
       return 0;
   }
@@ -150,8 +147,7 @@ double Joint::wrapped_position(int axis) const {
     case dJointTypeHinge2:
       return axis == 0 ? sign_ * dJointGetHinge2Angle1(ode_.get()) : 0;
     case dJointTypeUniversal:
-      return sign_ *
-             (axis == 0 ? dJointGetUniversalAngle1(ode_.get()) : dJointGetUniversalAngle2(ode_.get()));
+      return sign_ * (axis == 0 ? dJointGetUniversalAngle1(ode_.get()) : dJointGetUniversalAngle2(ode_.get()));
     default:
       return 0;
   }

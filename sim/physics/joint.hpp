@@ -41,8 +41,7 @@ class Joint {
  private:
   friend class PhysicsWorld;
   /// Attaches at the poses the bodies have now.  `second` null: the world.
-  Joint(dWorldID world, std::string name, const JointConfig& config, dBodyID first, dBodyID second,
-        const Pose& X_WV);
+  Joint(dWorldID world, std::string name, const JointConfig& config, dBodyID first, dBodyID second, const Pose& X_WV);
   void create(dWorldID world, const JointConfig& config, const Pose& X_WV, dBodyID first, dBodyID second);
   void configure_axis(const JointAxisConfig& config, int axis);
   void set_parameter(int parameter, double value, int axis);

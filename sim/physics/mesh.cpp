@@ -19,8 +19,7 @@ class Words {
   explicit Words(std::string_view text) : text_(text) {}
   /// The next word of the line; empty at its end.
   std::string_view in_line() {
-    while (!text_.empty() && (text_[0] == ' ' || text_[0] == '\t' || text_[0] == '\r'))
-      text_.remove_prefix(1);
+    while (!text_.empty() && (text_[0] == ' ' || text_[0] == '\t' || text_[0] == '\r')) text_.remove_prefix(1);
     return take();
   }
   /// The next word of the text; empty at its end.
@@ -37,9 +36,7 @@ class Words {
   }
 
  private:
-  static bool is_space(char c) {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v';
-  }
+  static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v'; }
   std::string_view take() {
     std::size_t length = 0;
     while (length < text_.size() && !is_space(text_[length])) ++length;
@@ -195,8 +192,7 @@ Mesh parse_obj(std::string_view text) {
       for (auto corner = words.in_line(); !corner.empty(); corner = words.in_line())
         corners.push_back(obj_index(corner, mesh.vertices_m.size()));
       if (corners.size() < 3) throw MeshError("has a face with fewer than three vertices");
-      for (std::size_t i = 2; i < corners.size(); ++i)
-        add_triangle(mesh, corners[0], corners[i - 1], corners[i]);
+      for (std::size_t i = 2; i < corners.size(); ++i) add_triangle(mesh, corners[0], corners[i - 1], corners[i]);
     }
   } while (words.next_line());
   return not_empty(std::move(mesh));
@@ -223,8 +219,7 @@ MeshSolid solid_of(const Mesh& mesh) {
   Vector3d first = Vector3d::Zero();
   Matrix3d second = Matrix3d::Zero();
   for (const auto& t : mesh.triangles) {
-    const Vector3d a = mesh.vertices_m[t[0]] - near, b = mesh.vertices_m[t[1]] - near,
-                   c = mesh.vertices_m[t[2]] - near;
+    const Vector3d a = mesh.vertices_m[t[0]] - near, b = mesh.vertices_m[t[1]] - near, c = mesh.vertices_m[t[2]] - near;
     const double det = a.dot(b.cross(c));
     const Vector3d sum = a + b + c;
     volume += det / 6;

@@ -22,8 +22,7 @@ std::string formatted(const char* text, va_list arguments) {
 
 // "LCP internal error, s <= 0" comes by the hundred from stacks of boxes that stand well: say it once.
 void on_message(int, const char* text, va_list arguments) {
-  if (message_count++ == 0)
-    spdlog::debug("ODE: {} (further messages are only counted)", formatted(text, arguments));
+  if (message_count++ == 0) spdlog::debug("ODE: {} (further messages are only counted)", formatted(text, arguments));
 }
 
 [[noreturn]] void on_error(int, const char* text, va_list arguments) {

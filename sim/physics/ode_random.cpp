@@ -24,8 +24,7 @@ void dRandSetSeed(unsigned long new_seed) {
 
 int dRandInt(int n) {
   // The high bits of the product: the low bits of this generator have short periods.
-  return n > 1 ? static_cast<int>((static_cast<unsigned long long>(dRand()) * static_cast<unsigned>(n)) >> 32)
-               : 0;
+  return n > 1 ? static_cast<int>((static_cast<unsigned long long>(dRand()) * static_cast<unsigned>(n)) >> 32) : 0;
 }
 
 }  // extern "C"

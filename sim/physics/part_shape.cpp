@@ -39,8 +39,7 @@ const CollisionMesh& MeshCache::get(const PartConfig& part, const std::string& w
 }
 
 GeomHandle make_geom(const PartConfig& part, const CollisionMesh* mesh) {
-  if (part.shape == "box")
-    return GeomHandle(dCreateBox(nullptr, part.size_m.x(), part.size_m.y(), part.size_m.z()));
+  if (part.shape == "box") return GeomHandle(dCreateBox(nullptr, part.size_m.x(), part.size_m.y(), part.size_m.z()));
   if (part.shape == "sphere") return GeomHandle(dCreateSphere(nullptr, part.radius_m));
   if (part.shape == "capsule") return GeomHandle(dCreateCapsule(nullptr, part.radius_m, part.length_m));
   if (part.shape == "cylinder") return GeomHandle(dCreateCylinder(nullptr, part.radius_m, part.length_m));
@@ -66,8 +65,8 @@ dMass unit_density_mass(const PartConfig& part, const CollisionMesh* mesh) {
     dMassSetCylinder(&mass, 1, along_z, part.radius_m, part.length_m);
   } else if (mesh != nullptr) {
     const MeshSolid& solid = mesh->solid;
-    dMassSetParameters(&mass, solid.volume_m3, 0, 0, 0, solid.inertia(0, 0), solid.inertia(1, 1),
-                       solid.inertia(2, 2), solid.inertia(0, 1), solid.inertia(0, 2), solid.inertia(1, 2));
+    dMassSetParameters(&mass, solid.volume_m3, 0, 0, 0, solid.inertia(0, 0), solid.inertia(1, 1), solid.inertia(2, 2),
+                       solid.inertia(0, 1), solid.inertia(0, 2), solid.inertia(1, 2));
     dMassTranslate(&mass, solid.centroid_m.x(), solid.centroid_m.y(), solid.centroid_m.z());
   }
   return mass;
@@ -81,8 +80,7 @@ dMass part_mass(const PartConfig& part, const CollisionMesh* mesh, const std::st
   if (!part.mass_kg && !part.density_kgpm3) return mass;
   if (mesh != nullptr && !mesh->closed)
     throw_config_error(part.place, who,
-                       "mesh '" + part.mesh +
-                           "' has an open surface, so that its inertia is unknown: close it, or " +
+                       "mesh '" + part.mesh + "' has an open surface, so that its inertia is unknown: close it, or " +
                            "put the mass into another part");
   mass = unit_density_mass(part, mesh);
   if (!(mass.mass > 0)) throw_config_error(part.place, who, "encloses no volume");

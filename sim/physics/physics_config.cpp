@@ -27,11 +27,9 @@ void PhysicsConfig::read(ParamReader& in) {
   in.read("contact_surface_layer_m", contact_surface_layer_m, between(0, 1),
           "depth to which parts at rest sink in, which keeps contacts from flickering");
   in.read("max_contacts_per_pair", max_contacts_per_pair, between(1, 256), "contact points of two parts");
-  in.read_choice("space", space, {"sap", "quadtree", "hash", "simple"},
-                 "how parts near each other are found");
+  in.read_choice("space", space, {"sap", "quadtree", "hash", "simple"}, "how parts near each other are found");
   in.read("max_speed_mps", max_speed_mps, above(0), "a body faster than this stops the run");
-  in.read("max_distance_m", max_distance_m, above(0),
-          "a body farther from the origin than this stops the run");
+  in.read("max_distance_m", max_distance_m, above(0), "a body farther from the origin than this stops the run");
 }
 
 void MaterialConfig::read(ParamReader& in) {
@@ -54,8 +52,7 @@ void ContactConfig::read(ParamReader& in) {
   in.read("soft_erp", soft_erp, sim::between(0, 1), "erp of these contacts, instead of the world's");
   in.read("soft_cfm", soft_cfm, sim::between(0, 1), "cfm of these contacts, instead of the world's");
   in.read("rolling_friction_m", rolling_friction_m, at_least(0), "lever of rolling resistance");
-  in.read("spinning_friction_m", spinning_friction_m, at_least(0),
-          "lever of resistance to spinning on the spot");
+  in.read("spinning_friction_m", spinning_friction_m, at_least(0), "lever of resistance to spinning on the spot");
   in.read("slip", slip, at_least(0), "speed of slip by force, (m/s)/N");
 }
 
@@ -89,8 +86,7 @@ void PartConfig::read(ParamReader& in) {
     if (place.file) directory = std::filesystem::path(*place.file).parent_path().string();
   }
   in.read("name", name, "name of the part");
-  in.read_choice("shape", shape, {"box", "sphere", "capsule", "cylinder", "plane", "mesh"},
-                 "shape of the part");
+  in.read_choice("shape", shape, {"box", "sphere", "capsule", "cylinder", "plane", "mesh"}, "shape of the part");
   in.read("size_m", size_m, above(0), "box: lengths along x, y and z");
   in.read("radius_m", radius_m, above(0), "sphere, capsule, cylinder");
   in.read("length_m", length_m, above(0), "capsule (without its caps) and cylinder: length along z");
@@ -100,10 +96,8 @@ void PartConfig::read(ParamReader& in) {
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch and yaw of the part in the frame of the body");
   in.read("mass_kg", mass_kg, above(0), "mass; a part with neither mass nor density weighs nothing");
   in.read("density_kgpm3", density_kgpm3, above(0), "density, instead of a mass");
-  in.read_reference("material", material, "material",
-                    "decides friction and bounce, see contacts of the world");
-  in.read_reference("category", category, "category",
-                    "what others see in the part: whether it collides, stops rays");
+  in.read_reference("material", material, "material", "decides friction and bounce, see contacts of the world");
+  in.read_reference("category", category, "category", "what others see in the part: whether it collides, stops rays");
   in.read_references("collides_with", collides_with, "category",
                      "categories it collides with, if they want to as well; none: all");
   in.read("color", color, "color in viewers, #rrggbb");
@@ -111,14 +105,13 @@ void PartConfig::read(ParamReader& in) {
   check_keys_of_shape(in, shape);
   if (mass_kg && density_kgpm3) in.error("density_kgpm3", "give 'mass_kg' or 'density_kgpm3', not both");
   if (shape == "mesh" && mesh.empty()) in.error("a part of shape mesh needs the key 'mesh'");
-  if (!color.empty() && !is_color(color))
-    in.error("color", "'color' must look like #rrggbb, got '" + color + "'");
+  if (!color.empty() && !is_color(color)) in.error("color", "'color' must look like #rrggbb, got '" + color + "'");
 }
 
 void BodyConfig::read(ParamReader& in) {
   if (!in.describing()) place = in.node()->place;
   in.require("name");
-  in.read("name", name, "name of the body");
+  in.read_name("name", name, "name of the body");
   in.read("position_m", position_m, any_number(), "origin of the body's frame in the frame of the vehicle");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch and yaw of the body's frame in the frame of the vehicle");
   in.read_list("parts", parts, "part", "shapes that move as one");
@@ -136,15 +129,13 @@ void JointAxisConfig::read(ParamReader& in) {
     in.error("low_stop", "'low_stop' must not be above 'high_stop', got " + number_text(*low_stop) + " and " +
                              number_text(*high_stop));
   in.read("motor_velocity", motor_velocity, any_number(), "speed of the motor at the start, rad/s or m/s");
-  in.read("motor_max_force", motor_max_force, at_least(0),
-          "N m, or N of a slider; 0: no motor until a device sets it");
+  in.read("motor_max_force", motor_max_force, at_least(0), "N m, or N of a slider; 0: no motor until a device sets it");
   in.read("bounce", bounce, between(0, 1), "restitution at the stops");
   in.read("erp", erp, between(0, 1), "error reduction of the joint, instead of the world's");
   in.read("cfm", cfm, between(0, 1), "softness of the motor");
   in.read("stop_erp", stop_erp, between(0, 1), "error reduction at the stops");
   in.read("stop_cfm", stop_cfm, between(0, 1), "softness of the stops");
-  in.read("fudge_factor", fudge_factor, between(0, 1),
-          "part of the motor's force that may push away from a stop");
+  in.read("fudge_factor", fudge_factor, between(0, 1), "part of the motor's force that may push away from a stop");
   in.read("suspension_erp", suspension_erp, between(0, 1), "hinge2: spring of the suspension");
   in.read("suspension_cfm", suspension_cfm, between(0, 1), "hinge2: damping of the suspension");
 }
@@ -153,14 +144,13 @@ namespace {
 
 void check_axes(ParamReader& in, const JointConfig& joint) {
   const bool two_axes = joint.type == "hinge2" || joint.type == "universal";
-  if (two_axes && joint.axis1.axis.cross(joint.axis2.axis).norm() <
-                      1e-6 * joint.axis1.axis.norm() * joint.axis2.axis.norm())
+  if (two_axes &&
+      joint.axis1.axis.cross(joint.axis2.axis).norm() < 1e-6 * joint.axis1.axis.norm() * joint.axis2.axis.norm())
     in.error("axis2", "the axes of a " + joint.type + " must not be parallel");
   if (!two_axes && in.has("axis2")) in.error("axis2", "a " + joint.type + " has no second axis");
   if (joint.type == "slider") return;
   // ODE measures angles from -pi to pi; a stop beyond would never act.
-  for (const auto& stop :
-       {joint.axis1.low_stop, joint.axis1.high_stop, joint.axis2.low_stop, joint.axis2.high_stop})
+  for (const auto& stop : {joint.axis1.low_stop, joint.axis1.high_stop, joint.axis2.low_stop, joint.axis2.high_stop})
     if (stop && std::abs(*stop) > std::numbers::pi)
       in.error("stops of an angle must lie between -pi and pi, got " + number_text(*stop));
 }
@@ -169,7 +159,7 @@ void check_axes(ParamReader& in, const JointConfig& joint) {
 
 void JointConfig::read(ParamReader& in) {
   in.require("name");
-  in.read("name", name, "name of the joint");
+  in.read_name("name", name, "name of the joint");
   in.read_choice("type", type, {"fixed", "ball", "hinge", "hinge2", "universal", "slider"}, "kind of joint");
   in.require("bodies");
   in.read_references("bodies", bodies, "body",
@@ -179,8 +169,7 @@ void JointConfig::read(ParamReader& in) {
   else if (bodies.size() == 2 && bodies[0] == bodies[1])
     in.error("bodies", "a joint needs two different bodies");
   else if (bodies.size() == 2 && (bodies[0] == "world" || (type == "hinge2" && bodies[1] == "world")))
-    in.error("bodies",
-             bodies[0] == "world" ? "'world' can only be the second body" : "a hinge2 cannot join the world");
+    in.error("bodies", bodies[0] == "world" ? "'world' can only be the second body" : "a hinge2 cannot join the world");
   in.read("anchor_m", anchor_m, any_number(), "point of the joint in the frame of the vehicle");
   axis1.read(in);
   in.read("axis2", axis2, "second axis of hinge2 (the wheel's) and universal: the same keys");

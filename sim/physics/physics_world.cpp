@@ -41,6 +41,7 @@ struct PhysicsWorld::Impl {
   std::unique_ptr<OdeScene> scene;
   StepCounts counts;
   std::int64_t quick_steps = 0;
+  bool broken = false;  ///< ODE threw in mid-step
 
   std::uint32_t category_bit(const std::string& name) const;
   std::uint32_t category_bits(const std::vector<std::string>& names) const;
@@ -49,6 +50,7 @@ struct PhysicsWorld::Impl {
   void collide();
   void solve(std::int64_t step_number);
   void finish(std::int64_t step_number);
+  bool out_of_bounds(const Body& body) const;
   [[noreturn]] void fault(const Body& body, std::int64_t step_number) const;
 };
 
@@ -69,8 +71,8 @@ unsigned long step_seed(std::uint64_t seed, std::int64_t step_number) {
 }  // namespace
 
 PhysicsWorld::PhysicsWorld(const PhysicsConfig& config, const std::vector<MaterialConfig>& materials,
-                           const std::vector<ContactConfig>& contacts,
-                           const std::vector<std::string>& categories, std::uint64_t seed) {
+                           const std::vector<ContactConfig>& contacts, const std::vector<std::string>& categories,
+                           std::uint64_t seed) {
   start_ode();
   impl_ = std::make_unique<Impl>(config, ContactTable(materials, contacts), seed);
   for (const std::string& name : categories)
@@ -90,7 +92,12 @@ PhysicsWorld::PhysicsWorld(const PhysicsConfig& config, const std::vector<Materi
   impl_->scene = std::make_unique<OdeScene>(impl_->moves);
 }
 
-PhysicsWorld::~PhysicsWorld() = default;
+PhysicsWorld::~PhysicsWorld() {
+  if (!impl_ || !impl_->broken) return;
+  // A world that was left in mid-step trips ODE's asserts when it is destroyed.  It stays, where leak checkers see it.
+  static std::vector<Impl*> left_behind;
+  left_behind.push_back(impl_.release());
+}
 
 int PhysicsWorld::add_group(const std::string& name, bool self_collision) {
   impl_->groups.push_back(name);
@@ -133,8 +140,8 @@ void PhysicsWorld::Impl::add_parts(Body& body, const BodyConfig& config_, bool f
   dMassSetZero(&total);
   for (std::size_t i = 0; i < config_.parts.size(); ++i) {
     const PartConfig& part = config_.parts[i];
-    const std::string who = "body '" + body.name() + "': part " +
-                            (part.name.empty() ? std::to_string(i + 1) : "'" + part.name + "'");
+    const std::string who =
+        "body '" + body.name() + "': part " + (part.name.empty() ? std::to_string(i + 1) : "'" + part.name + "'");
     if (part.shape == "plane" && !fixed)
       throw_config_error(part.place, who, "a plane can only be part of a fixed body");
     const CollisionMesh* mesh = part.shape == "mesh" ? &meshes.get(part, who) : nullptr;
@@ -165,8 +172,7 @@ void PhysicsWorld::Impl::add_parts(Body& body, const BodyConfig& config_, bool f
                                   collider.table().number_of(part.material),
                                   category_bit(part.category),
                                   category_bits(part.collides_with)};
-    parts.push_back(
-        {part_name(body, part, i), body.group_, body.number_, collision.material, collision.category});
+    parts.push_back({part_name(body, part, i), body.group_, body.number_, collision.material, collision.category});
     scene->add_part(geom, body.group_, collision.category, !fixed);
     collider.add_part(collision, std::move(geoms[i]), !fixed);
   }
@@ -175,8 +181,7 @@ void PhysicsWorld::Impl::add_parts(Body& body, const BodyConfig& config_, bool f
 void PhysicsWorld::Impl::set_mass(Body& body, const BodyConfig& config_, const dMass& total) {
   if (!(total.mass > 0)) {
     const SourcePlace place = config_.parts.empty() ? config_.place : config_.parts.front().place;
-    throw_config_error(place, "body '" + body.name() + "'",
-                       "has no mass: give a part mass_kg or density_kgpm3");
+    throw_config_error(place, "body '" + body.name() + "'", "has no mass: give a part mass_kg or density_kgpm3");
   }
   dMass mass = total;
   body.mass_kg_ = mass.mass;
@@ -190,8 +195,7 @@ void PhysicsWorld::Impl::set_mass(Body& body, const BodyConfig& config_, const d
   dBodySetMass(body.ode_.get(), &mass);
 }
 
-Joint& PhysicsWorld::add_joint(int group, const JointConfig& config, Body& first, Body* second,
-                               const Pose& X_WV) {
+Joint& PhysicsWorld::add_joint(int group, const JointConfig& config, Body& first, Body* second, const Pose& X_WV) {
   const std::string name = impl_->groups[group] + "/" + config.name;
   const dBodyID a = first.ode_.get(), b = second ? second->ode_.get() : nullptr;
   if (!a && !b) throw_config_error({}, "joint '" + name + "'", "joins two fixed bodies");
@@ -219,6 +223,9 @@ void PhysicsWorld::step(std::int64_t step_number) {
     impl_->collide();
     impl_->solve(step_number);
   } catch (const PhysicsFault& error) {
+    impl_->broken = true;
+    for (const Body* body : impl_->moving)
+      if (impl_->out_of_bounds(*body)) impl_->fault(*body, step_number);
     throw PhysicsFault(std::string(error.what()) + " at step " + std::to_string(step_number));
   }
   ++impl_->moves.moving;
@@ -251,9 +258,6 @@ void PhysicsWorld::Impl::solve(std::int64_t step_number) {
 /// Checks the bodies and lets the joints follow: a group's joints right after its bodies, which are in the
 /// cache then.
 void PhysicsWorld::Impl::finish(std::int64_t step_number) {
-  const double max_speed2 = config.max_speed_mps * config.max_speed_mps;
-  const double max_distance2 = config.max_distance_m * config.max_distance_m;
-  const auto square = [](const dReal* v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
   auto joint = joints_with_axes.begin();
   const auto update_joints_before = [&](int group) {
     for (; joint != joints_with_axes.end() && joint->first < group; ++joint)
@@ -261,12 +265,16 @@ void PhysicsWorld::Impl::finish(std::int64_t step_number) {
   };
   for (const Body* body : moving) {
     update_joints_before(body->group_);
-    // Written so that NaN fails.  A rotation rate has no bound of its own, but must stay a number.
-    if (!(square(body->v_WC_W_) <= max_speed2 && square(body->p_WC_) <= max_distance2 &&
-          square(body->w_WB_W_) < 1e300))
-      fault(*body, step_number);
+    if (out_of_bounds(*body)) fault(*body, step_number);
   }
   update_joints_before(static_cast<int>(groups.size()));
+}
+
+bool PhysicsWorld::Impl::out_of_bounds(const Body& body) const {
+  const auto square = [](const dReal* v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
+  // Written so that NaN is out.  A rotation rate has no bound of its own, but must stay a number.
+  return !(square(body.v_WC_W_) <= config.max_speed_mps * config.max_speed_mps &&
+           square(body.p_WC_) <= config.max_distance_m * config.max_distance_m && square(body.w_WB_W_) < 1e300);
 }
 
 void PhysicsWorld::Impl::fault(const Body& body, std::int64_t step_number) const {
@@ -279,8 +287,7 @@ void PhysicsWorld::Impl::fault(const Body& body, std::int64_t step_number) const
   else if (speed > config.max_speed_mps)
     std::snprintf(text, sizeof text, "speed %.2g m/s is over %g m/s", speed, config.max_speed_mps);
   else if (distance > config.max_distance_m)
-    std::snprintf(text, sizeof text, "distance %.3g m from the origin is over %g m", distance,
-                  config.max_distance_m);
+    std::snprintf(text, sizeof text, "distance %.3g m from the origin is over %g m", distance, config.max_distance_m);
   else
     std::snprintf(text, sizeof text, "angular velocity is not finite");
   throw PhysicsFault("body '" + body.name() + "': " + text + " at step " + std::to_string(step_number));

@@ -27,7 +27,7 @@ class PhysicsFault : public std::runtime_error {
 struct PartInfo {
   std::string name;
   int group = -1;
-  int body = -1;       ///< number in PhysicsWorld::bodies()
+  int body = -1;  ///< number in PhysicsWorld::bodies()
   int material = 0;
   std::uint32_t category = 1;
 };

@@ -14,18 +14,18 @@ namespace sim {
 /// scale error, constant bias, random walk, Gauss-Markov, gaussian, uniform, outliers, quantisation, saturation.
 /// YAML: a map with any of these keys; all are off by default.
 struct NoiseParams {
-  double scale_error = 0;             ///< measured = truth * (1 + scale_error)
-  double bias = 0;                    ///< constant offset
-  double bias_std = 0;                ///< a constant offset drawn once per run
-  double random_walk_std = 0;         ///< of the drift after one second (grows with the square root of time)
-  double gauss_markov_std = 0;        ///< stationary standard deviation of a first order Gauss-Markov error
-  double gauss_markov_time_s = 100;   ///< its correlation time
-  double gaussian_std = 0;            ///< white
-  double uniform_half_width = 0;      ///< white, uniform in +- this
+  double scale_error = 0;            ///< measured = truth * (1 + scale_error)
+  double bias = 0;                   ///< constant offset
+  double bias_std = 0;               ///< a constant offset drawn once per run
+  double random_walk_std = 0;        ///< of the drift after one second (grows with the square root of time)
+  double gauss_markov_std = 0;       ///< stationary standard deviation of a first order Gauss-Markov error
+  double gauss_markov_time_s = 100;  ///< its correlation time
+  double gaussian_std = 0;           ///< white
+  double uniform_half_width = 0;     ///< white, uniform in +- this
   double outlier_probability = 0;
   double outlier_std = 0;
-  double quantization = 0;            ///< step of the output; 0: none
-  std::optional<double> saturation;   ///< the output is cut to +- this
+  double quantization = 0;           ///< step of the output; 0: none
+  std::optional<double> saturation;  ///< the output is cut to +- this
 
   void read(ParamReader& in);
   bool any() const;

@@ -21,7 +21,9 @@ bool Lockstep::leave(const std::string& client) {
   return std::erase_if(clients_, [&](const Client& each) { return each.name == client; }) > 0;
 }
 
-bool Lockstep::has(const std::string& client) const { return const_cast<Lockstep*>(this)->find(client) != nullptr; }
+bool Lockstep::has(const std::string& client) const {
+  return const_cast<Lockstep*>(this)->find(client) != nullptr;
+}
 
 std::vector<std::string> Lockstep::due(std::int64_t step) const {
   std::vector<std::string> names;

@@ -19,8 +19,7 @@ void BoxGrid::build(std::span<const AlignedBox> boxes) {
   if (boxes_.empty()) return;
   std::vector<double> widths;
   for (const AlignedBox& box : boxes_) widths.push_back(width_of(box));
-  std::nth_element(widths.begin(), widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2),
-                   widths.end());
+  std::nth_element(widths.begin(), widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2), widths.end());
   const double median_m = widths[widths.size() / 2];
   std::vector<int> small;
   reach_ = 0;

@@ -48,9 +48,7 @@ class BoxGrid {
  private:
   int column(double x) const { return cell_number((x - low_x_) / cell_m_, columns_); }
   int row(double y) const { return cell_number((y - low_y_) / cell_m_, rows_); }
-  static int cell_number(double at, int count) {
-    return at <= 0 ? 0 : at >= count ? count - 1 : static_cast<int>(at);
-  }
+  static int cell_number(double at, int count) { return at <= 0 ? 0 : at >= count ? count - 1 : static_cast<int>(at); }
   void choose_cells(const std::vector<int>& small);
 
   std::vector<AlignedBox> boxes_;

@@ -98,8 +98,7 @@ void OdeScene::refresh(Layer& layer, std::uint64_t moves) const {
 
 bool OdeScene::hit(int part, const Vector3d& origin_W, const Vector3d& direction_W, RayHit& nearest) const {
   dGeomRaySetLength(ray_.get(), nearest.range_m);
-  dGeomRaySet(ray_.get(), origin_W.x(), origin_W.y(), origin_W.z(), direction_W.x(), direction_W.y(),
-              direction_W.z());
+  dGeomRaySet(ray_.get(), origin_W.x(), origin_W.y(), origin_W.z(), direction_W.x(), direction_W.y(), direction_W.z());
   dContactGeom contact;
   if (dCollide(ray_.get(), parts_[part].geom, 1, &contact, sizeof contact) == 0) return false;
   // Of two parts that share a surface the one with the lower number is hit, whatever the order of looking.
@@ -125,8 +124,8 @@ void OdeScene::find_candidates(const AlignedBox& around, const RayFilter& filter
   });
 }
 
-std::optional<RayHit> OdeScene::cast(const Vector3d& origin_W, const Vector3d& direction_W,
-                                     double range_max_m, const RayFilter& filter) const {
+std::optional<RayHit> OdeScene::cast(const Vector3d& origin_W, const Vector3d& direction_W, double range_max_m,
+                                     const RayFilter& filter) const {
   if (!(range_max_m > 0)) return std::nullopt;
   refresh();
   RayHit nearest{range_max_m, Vector3d::Zero(), -1};
@@ -207,11 +206,9 @@ void OdeScene::FanSearch::beams_towards(const AlignedBox& box, Use&& use) const 
   const double center = std::atan2(y, x) - fan.first_angle_rad;
   const double span = (fan.count - 1) * fan.step_rad;
   constexpr double turn = 2 * std::numbers::pi;
-  for (double at = center + turn * std::ceil((-half_width - center) / turn); at - half_width <= span;
-       at += turn) {
+  for (double at = center + turn * std::ceil((-half_width - center) / turn); at - half_width <= span; at += turn) {
     const int first = static_cast<int>(std::ceil(std::max(0.0, (at - half_width) / fan.step_rad)));
-    const int last =
-        static_cast<int>(std::min<double>(fan.count - 1, std::floor((at + half_width) / fan.step_rad)));
+    const int last = static_cast<int>(std::min<double>(fan.count - 1, std::floor((at + half_width) / fan.step_rad)));
     if (first <= last) use(first, last);
   }
 }

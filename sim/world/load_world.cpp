@@ -17,14 +17,6 @@ namespace fs = std::filesystem;
 
 using Parameters = std::vector<std::pair<std::string, ConfigNode>>;
 
-void check_name(const std::string& name, const SourcePlace& place, const std::string& who, Diagnostics& diagnostics) {
-  const bool good = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '-';
-  });
-  if (!good)
-    diagnostics.error(place, who, "a name must be made of letters, digits, '_' and '-', got '" + name + "'");
-}
-
 /// Where a file named in a world is found: beside it, then in ../vehicles.
 std::string find_file(const std::string& file, const SourcePlace& named_in) {
   const fs::path directory = named_in.file ? fs::path(*named_in.file).parent_path() : fs::path();
@@ -58,14 +50,13 @@ class VehicleLoader {
 
   void load(const VehicleEntry& entry) {
     const std::string who = "vehicle '" + entry.name + "'";
-    check_name(entry.name, entry.place, who, diagnostics_);
     const ConfigNode* model = model_of(entry, who);
     if (model == nullptr) return;
     const Pose X_WE = make_pose(entry.position_m, entry.rpy_rad);
-    const std::vector<Pose> poses =
-        entry.count == 1 ? std::vector<Pose>{X_WE}
-                         : place_instances(entry.placement, entry.count, X_WE,
-                                           static_cast<std::uint64_t>(world_.run.seed), entry.name);
+    const std::vector<Pose> poses = entry.count == 1
+                                        ? std::vector<Pose>{X_WE}
+                                        : place_instances(entry.placement, entry.count, X_WE,
+                                                          static_cast<std::uint64_t>(world_.run.seed), entry.name);
     const bool alike = !mentions(*model, "${index}") && !mentions(entry.parameters, "${index}") &&
                        !mentions(entry.overrides, "${index}");
     std::shared_ptr<const VehicleConfig> shared;
@@ -95,8 +86,8 @@ class VehicleLoader {
     if (entry.file.empty()) return model_of_node(entry.model, who);
     const std::string path = find_file(entry.file, entry.place);
     if (path.empty()) {
-      diagnostics_.error(entry.place, who, "there is no vehicle file '" + entry.file +
-                                               "' beside the world file or in ../vehicles");
+      diagnostics_.error(entry.place, who,
+                         "there is no vehicle file '" + entry.file + "' beside the world file or in ../vehicles");
       return nullptr;
     }
     auto [at, fresh] = files_.try_emplace(path);
@@ -107,8 +98,7 @@ class VehicleLoader {
   const ConfigNode* model_of_node(const ConfigNode& model, const std::string& who) {
     if (model.kind == ConfigNode::Kind::map) return &model;
     // An entry without a model at all was reported by the reader.
-    if (model.place.file != nullptr)
-      diagnostics_.error(model.place, who, "'model' must be a map, got " + shown(model));
+    if (model.place.file != nullptr) diagnostics_.error(model.place, who, "'model' must be a map, got " + shown(model));
     return nullptr;
   }
 
@@ -125,8 +115,6 @@ class VehicleLoader {
     for (const char* kind : {"material", "category"}) declare_all(in, kind);
     config->read(in);
     in.finish();
-    for (const DeviceConfig& device : config->devices)
-      check_name(device.name, device.place, who + ": device '" + device.name + "'", diagnostics_);
     return config;
   }
 
@@ -148,8 +136,8 @@ class VehicleLoader {
     if (defaults != nullptr)
       for (const ConfigNode::Entry& each : defaults->entries) parameters.emplace_back(each.key, each.value);
     for (const ConfigNode::Entry& given : entry.parameters.entries) {
-      const auto known = std::find_if(parameters.begin(), parameters.end(),
-                                      [&](const auto& each) { return each.first == given.key; });
+      const auto known =
+          std::find_if(parameters.begin(), parameters.end(), [&](const auto& each) { return each.first == given.key; });
       if (known == parameters.end()) {
         diagnostics_.error(given.place, who, "the vehicle has no parameter '" + given.key + "'");
         continue;
@@ -165,24 +153,26 @@ class VehicleLoader {
   std::map<std::string, ConfigNode> files_;
 };
 
-/// Materials, contacts and categories that vehicles bring, each kind of vehicle once.  The world's own come after,
-/// so that they win.
+/// Materials, contacts and categories that vehicles bring.  The world's own contacts come after, so that they win.
 void gather_from_vehicles(WorldConfig& world) {
   std::vector<MaterialConfig> materials;
   std::vector<ContactConfig> contacts;
   std::vector<std::string> categories;
-  std::set<std::string> kinds_seen;
+  std::set<const VehicleConfig*> configs_seen;  // asked, never iterated
   std::set<std::string> materials_seen{"default"};
   std::set<std::string> categories_seen{"solid"};
   const auto add = [&](const auto& from, const std::vector<std::string>& own_categories) {
     for (const MaterialConfig& material : from.materials)
       if (materials_seen.insert(material.name).second) materials.push_back(material);
-    contacts.insert(contacts.end(), from.contacts.begin(), from.contacts.end());
+    for (const ContactConfig& contact : from.contacts)
+      if (std::find(contacts.begin(), contacts.end(), contact) == contacts.end()) contacts.push_back(contact);
     for (const std::string& category : own_categories)
       if (categories_seen.insert(category).second) categories.push_back(category);
   };
   for (const VehicleInstance& vehicle : world.vehicles)
-    if (kinds_seen.insert(vehicle.config->vehicle).second) add(*vehicle.config, vehicle.config->categories);
+    if (configs_seen.insert(vehicle.config.get()).second) add(*vehicle.config, vehicle.config->categories);
+  // Again, even where a vehicle said the same before: the last of equals wins.
+  for (const ContactConfig& contact : world.contacts) std::erase(contacts, contact);
   add(world, world.categories);
   world.materials = std::move(materials);
   world.contacts = std::move(contacts);
@@ -197,19 +187,48 @@ void check_channels(const WorldConfig& world, Diagnostics& diagnostics) {
       // Of two devices of one name, which the reader has reported, all channels would clash.
       if (device.device_type == nullptr || !seen.insert(vehicle.name + "/" + device.name).second) continue;
       const std::string who = "vehicle '" + vehicle.name + "': device '" + device.name + "'";
-      const std::string report = device.channel.empty()
-                                     ? channel_name(world.channels.report, vehicle.name, device.name)
-                                     : channel_name(device.channel, vehicle.name, device.name);
+      const std::string report = device.channel.empty() ? channel_name(world.channels.report, vehicle.name, device.name)
+                                                        : channel_name(device.channel, vehicle.name, device.name);
       for (const std::string& channel : {report, channel_name(world.channels.command, vehicle.name, device.name),
                                          channel_name(world.channels.truth, vehicle.name, device.name)}) {
         if (channel.empty() || channel.size() > Bus::max_channel_length)
-          diagnostics.error(device.place, who,
-                            "a channel must have 1 to 63 characters, got " + std::to_string(channel.size()) + ": '" +
-                                channel + "'");
+          diagnostics.error(
+              device.place, who,
+              "a channel must have 1 to 63 characters, got " + std::to_string(channel.size()) + ": '" + channel + "'");
         else if (!taken.insert(channel).second)
           diagnostics.error(device.place, who, "channel '" + channel + "' is used twice");
+        else if (channel.starts_with("sim."))
+          diagnostics.error(device.place, who, "channel '" + channel + "' belongs to the simulator: sim.*");
       }
     }
+}
+
+/// `vehicles.NAME.devices.lidar.rate_hz` changes what is in the vehicle's file: it becomes one of its overrides.
+bool set_override(ConfigNode& root, const std::string& path, const ConfigNode& value, const SourcePlace& place) {
+  static const std::set<std::string> own_keys = {"name",  "file",      "model",      "position_m", "rpy_deg",
+                                                 "count", "placement", "parameters", "overrides"};
+  const std::size_t first = path.find('.');
+  const std::size_t second = path.find('.', first + 1);
+  if (path.rfind("vehicles.", 0) != 0 || second == std::string::npos) return false;
+  const std::string name = path.substr(first + 1, second - first - 1);
+  const std::string rest = path.substr(second + 1);
+  ConfigNode* vehicles = root.find("vehicles");
+  if (vehicles == nullptr || own_keys.contains(rest.substr(0, rest.find('.')))) return false;
+  for (ConfigNode& vehicle : vehicles->items) {
+    const ConfigNode* known = vehicle.find("name");
+    if (known == nullptr || known->scalar != name || vehicle.kind != ConfigNode::Kind::map) continue;
+    if (vehicle.find("overrides") == nullptr) {
+      ConfigNode overrides;
+      overrides.kind = ConfigNode::Kind::map;
+      overrides.place = place;
+      vehicle.entries.push_back({"overrides", place, overrides});
+    }
+    ConfigNode& overrides = *vehicle.find("overrides");
+    std::erase_if(overrides.entries, [&](const ConfigNode::Entry& entry) { return entry.key == rest; });
+    overrides.entries.push_back({rest, place, value});
+    return true;
+  }
+  return false;
 }
 
 void apply_sets(ConfigNode& root, const LoadOptions& options, Diagnostics& diagnostics) {
@@ -222,7 +241,22 @@ void apply_sets(ConfigNode& root, const LoadOptions& options, Diagnostics& diagn
     }
     ConfigNode value = parse_config_text(set.substr(equals + 1), *place.file, diagnostics);
     // Relative file names in the value still start at the world file.
-    set_config_path(root, set.substr(0, equals), value, place, diagnostics);
+    const std::string path = set.substr(0, equals);
+    if (!set_override(root, path, value, place)) set_config_path(root, path, value, place, diagnostics);
+  }
+}
+
+/// The resolved world may be written anywhere: mesh files are named by their whole path.
+void make_mesh_paths_absolute(ConfigNode& node) {
+  for (ConfigNode& item : node.items) make_mesh_paths_absolute(item);
+  for (ConfigNode::Entry& entry : node.entries) {
+    if (entry.key != "mesh" || entry.value.scalar.empty() || entry.value.place.file == nullptr) {
+      make_mesh_paths_absolute(entry.value);
+      continue;
+    }
+    std::error_code error;
+    const fs::path path = fs::absolute(fs::path(*entry.value.place.file).parent_path() / entry.value.scalar, error);
+    if (!error) entry.value.scalar = path.lexically_normal().string();
   }
 }
 
@@ -242,6 +276,11 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   diagnostics.throw_if_any();
   gather_from_vehicles(loaded.config);
   vehicles.resolve(root);
+  make_mesh_paths_absolute(root);
+  if (options.seed) {
+    const SourcePlace place{intern_file_name("--seed"), 0, 0};
+    set_config_path(root, "run.seed", scalar_node(std::to_string(*options.seed), place), place, diagnostics);
+  }
   loaded.resolved = std::move(root);
   return loaded;
 }

@@ -1,5 +1,6 @@
 #include "sim/world/mounted_device.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/world/vehicle.hpp"
@@ -79,13 +80,17 @@ void MountedDevice::plan_next_sample() {
   // Sample k is due at phase + k * period, so that a rate which does not divide the step is right on average.  Two
   // samples never share a step, and none is before the first step.
   const std::int64_t earliest = samples_planned_ == 0 ? 1 : next_sample_step_ + 1;
-  std::int64_t step = 0;
-  do {
-    const double due_us = phase_us_ + static_cast<double>(samples_planned_) * period_us_;
-    step = static_cast<std::int64_t>(std::ceil(due_us / static_cast<double>(host_.step.count()) - 1e-9));
-    ++samples_planned_;
-  } while (step < earliest);
-  next_sample_step_ = step;
+  const auto step_us = static_cast<double>(host_.step.count());
+  const auto step_of = [&](std::int64_t sample) {
+    const double due_us = phase_us_ + static_cast<double>(sample) * period_us_;
+    return static_cast<std::int64_t>(std::ceil(due_us / step_us - 1e-9));
+  };
+  // Where many samples fall into one step, all but one are skipped at once.
+  const double skip = (static_cast<double>(earliest - 1) * step_us - phase_us_) / period_us_;
+  std::int64_t sample = std::max(samples_planned_, static_cast<std::int64_t>(std::floor(skip)));
+  while (step_of(sample) < earliest) ++sample;
+  samples_planned_ = sample + 1;
+  next_sample_step_ = step_of(sample);
 }
 
 Time MountedDevice::next_latency() {
@@ -154,6 +159,7 @@ void MountedDevice::handle(const Event& event) {
 }
 
 void MountedDevice::hash_state(StateHash& hash) const {
+  hash.add(samples_planned_);
   hash.add(next_sample_step_);
   hash.add(static_cast<std::int64_t>(last_sample_.count()));
   if (built_.sensor) built_.sensor->hash_state(hash);

@@ -15,8 +15,12 @@ Part& find_named(const std::vector<std::pair<std::string, Part*>>& all, const st
 
 }  // namespace
 
-Body& Vehicle::body(const std::string& name) const { return find_named(bodies_, name); }
+Body& Vehicle::body(const std::string& name) const {
+  return find_named(bodies_, name);
+}
 
-Joint& Vehicle::joint(const std::string& name) const { return find_named(joints_, name); }
+Joint& Vehicle::joint(const std::string& name) const {
+  return find_named(joints_, name);
+}
 
 }  // namespace sim

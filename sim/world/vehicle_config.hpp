@@ -10,15 +10,15 @@ namespace sim {
 
 /// A kind of vehicle, as a vehicle file describes it.
 struct VehicleConfig {
-  int shoal = 1;                            ///< version of the file format
-  std::string vehicle;                      ///< name of the kind
+  int shoal = 1;        ///< version of the file format
+  std::string vehicle;  ///< name of the kind
   std::string description;
-  ConfigNode parameters;                    ///< name: default value, for ${name} in the file
+  ConfigNode parameters;  ///< name: default value, for ${name} in the file
   std::vector<MaterialConfig> materials;
   std::vector<ContactConfig> contacts;
   std::vector<std::string> categories;
   bool self_collision = false;
-  std::vector<BodyConfig> bodies;           ///< the first one carries the vehicle frame
+  std::vector<BodyConfig> bodies;  ///< the first one carries the vehicle frame
   std::vector<JointConfig> joints;
   std::vector<DeviceConfig> devices;
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "sim/config/message_text.hpp"
+
 namespace sim {
 
 World::World(const WorldConfig& config, Bus& bus, PortOpener open_port)
@@ -12,7 +14,11 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port)
       step_us_(from_seconds(config.physics.step_s).count()),
       step_s_(config.physics.step_s),
       geodesy_(config.origin.position),
-      host_{bus, events_, config.epoch_us, Time{step_us_}, static_cast<std::uint64_t>(config.run.seed),
+      host_{bus,
+            events_,
+            config.epoch_us,
+            Time{step_us_},
+            static_cast<std::uint64_t>(config.run.seed),
             [this](const BadMessage& bad) { complain(bad); }},
       physics_(std::make_unique<PhysicsWorld>(config.physics, config.materials, config.contacts, config.categories,
                                               static_cast<std::uint64_t>(config.run.seed))) {
@@ -30,9 +36,9 @@ World::~World() = default;
 void World::add_objects() {
   for (const ObjectConfig& object : config_.objects) {
     const Pose X_WE = make_pose(object.position_m, object.rpy_rad);
-    const std::vector<Pose> poses =
-        object.count == 1 ? std::vector<Pose>{X_WE}
-                          : place_instances(object.placement, object.count, X_WE, seed(), object.name);
+    const std::vector<Pose> poses = object.count == 1
+                                        ? std::vector<Pose>{X_WE}
+                                        : place_instances(object.placement, object.count, X_WE, seed(), object.name);
     for (int i = 0; i < object.count; ++i) {
       const std::string name = object.count == 1 ? object.name : object.name + std::to_string(i + 1);
       const int group = physics_->add_group(name);
@@ -94,9 +100,8 @@ void World::complain(const BadMessage& bad) {
   ++counts_.bad_messages;
   // One line for each kind of mistake: a flood of bad messages must not become a flood of lines.
   constexpr std::size_t most_lines = 100;
-  const std::string line = bad.channel + ": " + bad.text;
-  if (complaints_.size() >= most_lines ||
-      std::find(complaints_.begin(), complaints_.end(), line) != complaints_.end())
+  const std::string line = bad.channel + ": " + shortened(printable(bad.text), 300);
+  if (complaints_.size() >= most_lines || std::find(complaints_.begin(), complaints_.end(), line) != complaints_.end())
     return;
   complaints_.push_back(line);
   spdlog::warn("{} (ignored, at {:.3f} s)", line, to_seconds(now()));

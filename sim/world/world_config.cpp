@@ -15,10 +15,10 @@ void OriginConfig::read(ParamReader& in) {
 }
 
 void RunConfig::read(ParamReader& in) {
-  in.read("duration_s", duration_s, at_least(0), "simulated time of the run; 0: until told to quit");
-  in.read("speed", speed, at_least(0), "times real time; 0: as fast as possible");
+  in.read("duration_s", duration_s, between(0, 1e9), "simulated time of the run; 0: until told to quit");
+  in.read("speed", speed, between(0, 1e6), "times real time; 0: as fast as possible");
   in.read("seed", seed, at_least(0), "of every random stream");
-  in.read("track_rate_hz", track_rate_hz, above(0), "samples per second of the tracks in the results");
+  in.read("track_rate_hz", track_rate_hz, between(1e-3, 1e6), "samples per second of the tracks in the results");
 }
 
 void ChannelConfig::read(ParamReader& in) {
@@ -29,7 +29,7 @@ void ChannelConfig::read(ParamReader& in) {
 
 void ObjectConfig::read(ParamReader& in) {
   in.require("name");
-  in.read("name", name, "name of the object, unique in the world");
+  in.read_name("name", name, "name of the object, unique in the world");
   in.read("position_m", position_m, any_number(), "place in the world");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
   in.read("fixed", fixed, "it never moves");
@@ -44,7 +44,7 @@ void ObjectConfig::read(ParamReader& in) {
 void VehicleEntry::read(ParamReader& in) {
   if (in.node() != nullptr) place = in.node()->place;
   in.require("name");
-  in.read("name", name, "name of the vehicle, unique in the world; part of its channels");
+  in.read_name("name", name, "name of the vehicle, unique in the world; part of its channels");
   in.read("file", file, "vehicle file, beside the world file or in ../vehicles");
   in.read_raw("model", model, "the vehicle itself, as in a vehicle file, instead of a file");
   in.read("position_m", position_m, any_number(), "place of the vehicle frame in the world");
@@ -59,7 +59,7 @@ void VehicleEntry::read(ParamReader& in) {
 
 void ProcessConfig::read(ParamReader& in) {
   in.require("name");
-  in.read("name", name, "name of the process in messages");
+  in.read_name("name", name, "name of the process in messages");
   in.require("command");
   in.read("command", command, "program and its arguments; {lcm_url} is replaced");
   in.read("client", client, "the name it joins the lockstep with; the run then waits for it");
@@ -69,17 +69,19 @@ void ProcessConfig::read(ParamReader& in) {
 }
 
 void LockstepConfig::read(ParamReader& in) {
-  in.read("timeout_s", timeout_s, above(0), "wall time to wait for a client's acknowledgement");
-  in.read("join_timeout_s", join_timeout_s, above(0), "wall time to wait for launched clients to join");
+  in.read("timeout_s", timeout_s, between(0.001, 1e6), "wall time to wait for a client's acknowledgement");
+  in.read("join_timeout_s", join_timeout_s, between(0.001, 1e6), "wall time to wait for launched clients to join");
 }
 
 void MetricConfig::read(ParamReader& in) {
   in.require("name");
-  in.read("name", name, "name of the metric; gives NAME.rms_m, NAME.final_m, NAME.max_m, NAME.samples");
+  in.read_name("name", name, "name of the metric; gives NAME.rms_m, NAME.final_m, NAME.max_m, NAME.samples");
   in.require("vehicle");
   in.read_reference("vehicle", vehicle, "vehicle", "whose true position counts");
   in.require("channel");
   in.read("channel", channel, "of the estimate, shoal.pose_t");
+  if (in.has("channel") && (channel.empty() || channel.size() > 63))
+    in.error("channel", "'channel' must have 1 to 63 characters, got " + std::to_string(channel.size()));
   in.read("from_s", from_s, at_least(0), "errors before this simulated time do not count");
 }
 
@@ -145,14 +147,13 @@ void WorldConfig::read(ParamReader& in) {
   if (categories.size() > 30) in.error("categories", "'categories' must have at most 30 names");
   in.read("channels", channels, "names of the channels");
   in.read("run", run, "how a run goes when the command line says nothing else");
-  in.read("state_rate_hz", state_rate_hz, at_least(0), "of sim.state and sim.clock; 0: never");
+  in.read("state_rate_hz", state_rate_hz, between(0, 1e6), "of sim.state and sim.clock; 0: never");
   in.read_list("objects", objects, "object", "things without devices");
   for (const ObjectConfig& object : objects) in.declare("object", object.name);
   in.read_list("vehicles", vehicle_entries, "vehicle", "vehicles, by file or model");
   for (const VehicleEntry& entry : vehicle_entries) {
     if (entry.count == 1) in.declare("vehicle", entry.name);
-    for (int i = 1; entry.count > 1 && i <= entry.count; ++i)
-      in.declare("vehicle", entry.name + std::to_string(i));
+    for (int i = 1; entry.count > 1 && i <= entry.count; ++i) in.declare("vehicle", entry.name + std::to_string(i));
   }
   in.read_list("processes", processes, "process", "external programs, started only with --launch");
   for (const ProcessConfig& process : processes) in.declare("process", process.name);

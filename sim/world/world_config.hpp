@@ -53,7 +53,7 @@ struct ObjectConfig {
 struct VehicleEntry {
   std::string name;
   std::string file;
-  ConfigNode model;       ///< the vehicle itself instead of a file
+  ConfigNode model;  ///< the vehicle itself instead of a file
   Vector3d position_m = Vector3d::Zero();
   Vector3d rpy_rad = Vector3d::Zero();
   int count = 1;
@@ -89,17 +89,17 @@ struct LockstepConfig {
 /// A figure that scores the run: the distance between an estimate on a channel and the truth.
 struct MetricConfig {
   std::string name;
-  std::string vehicle;   ///< whose position is estimated
-  std::string channel;   ///< of shoal.pose_t, position in the world frame
-  double from_s = 0;     ///< errors before this time do not count
+  std::string vehicle;  ///< whose position is estimated
+  std::string channel;  ///< of shoal.pose_t, position in the world frame
+  double from_s = 0;    ///< errors before this time do not count
   void read(ParamReader& in);
 };
 
 /// The run passes when every rule holds.
 struct PassRule {
-  std::string metric;                  ///< such as `cooperative.rms_m`
+  std::string metric;  ///< such as `cooperative.rms_m`
   std::optional<double> below;
-  std::string below_metric;            ///< another metric, times `factor`
+  std::string below_metric;  ///< another metric, times `factor`
   double factor = 1;
   void read(ParamReader& in);
 };

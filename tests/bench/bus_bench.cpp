@@ -117,8 +117,7 @@ BENCHMARK(encode_scan);
 
 void validate_and_decode_scan(benchmark::State& state) {
   const auto payload = shoal::encode(scan_of(181));
-  for (auto _ : state)
-    benchmark::DoNotOptimize(shoal::decode<shoal::planar_lidar_t>(payload, shoal::Finite::required));
+  for (auto _ : state) benchmark::DoNotOptimize(shoal::decode<shoal::planar_lidar_t>(payload, shoal::Finite::required));
 }
 BENCHMARK(validate_and_decode_scan);
 

@@ -67,9 +67,7 @@ void report(const char* name, std::vector<std::int64_t> times_ns) {
   if (times_ns.empty()) return;
   std::sort(times_ns.begin(), times_ns.end());
   const auto at = [&](double q) {
-    return static_cast<double>(
-               times_ns[static_cast<std::size_t>(q * static_cast<double>(times_ns.size() - 1))]) *
-           1e-3;
+    return static_cast<double>(times_ns[static_cast<std::size_t>(q * static_cast<double>(times_ns.size() - 1))]) * 1e-3;
   };
   std::printf("  %-12s p50 %7.1f us   p99 %7.1f us\n", name, at(0.5), at(0.99));
 }

@@ -104,8 +104,7 @@ class BareFleet {
     for (int i = 0; i < count; ++i) {
       contacts[i].surface.mode = dContactApprox1;
       contacts[i].surface.mu = dGeomGetData(a) || dGeomGetData(b) ? 0 : 0.8;
-      dJointAttach(dJointCreateContact(self.world_.get(), self.contacts_.get(), &contacts[i]), body_a,
-                   body_b);
+      dJointAttach(dJointCreateContact(self.world_.get(), self.contacts_.get(), &contacts[i]), body_a, body_b);
     }
   }
 
@@ -146,9 +145,8 @@ void run(benchmark::State& state, Fleet& fleet) {
   for (auto _ : state) fleet.step();
   // Both columns should show robots that drive: a loop that lost its contacts would be fast.
   state.counters["z_m"] = fleet.position(robots - 1).z();
-  state.counters["robot_step"] =
-      benchmark::Counter(static_cast<double>(state.iterations()) * robots,
-                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["robot_step"] = benchmark::Counter(static_cast<double>(state.iterations()) * robots,
+                                                    benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 void bare_ode(benchmark::State& state) {

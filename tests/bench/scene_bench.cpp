@@ -30,8 +30,7 @@ struct Arena {
       rovers.back().left->set_motor(3 + 0.1 * (i % 10), 5);
       rovers.back().right->set_motor(-2 + 0.1 * (i % 7), 5);
       if (i % 2 == 0)
-        add(*world, body("box" + std::to_string(i), {box({0.2, 0.2, 0.6}, 0)}),
-            translation(x + 1, y + 1, 0.3), true);
+        add(*world, body("box" + std::to_string(i), {box({0.2, 0.2, 0.6}, 0)}), translation(x + 1, y + 1, 0.3), true);
     }
     for (int i = 0; i < 100; ++i) world->step(step_number++);
   }
@@ -79,9 +78,7 @@ void step_and_scan(benchmark::State& state, const std::string& space) {
 std::unique_ptr<PhysicsWorld> strewn_boxes(int count) {
   auto world = make_world();
   std::mt19937 random(1);
-  const auto uniform = [&](double low, double high) {
-    return low + (high - low) * (random() / 4294967296.0);
-  };
+  const auto uniform = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
   add_ground(*world);
   for (int i = 0; i < count; ++i)
     add(*world, body("box" + std::to_string(i), {box({uniform(0.3, 1.5), uniform(0.3, 1.5), 2}, 0)}),
@@ -95,8 +92,7 @@ void fan_among_boxes(benchmark::State& state) {
   std::vector<double> ranges(beams);
   for (auto _ : state) {
     sim::Fan fan;
-    fan.X_WS =
-        sim::make_pose({random() % 100 + 0.5, random() % 100 + 0.5, 0.5}, {0, 0, 0.01 * (random() % 628)});
+    fan.X_WS = sim::make_pose({random() % 100 + 0.5, random() % 100 + 0.5, 0.5}, {0, 0, 0.01 * (random() % 628)});
     fan.first_angle_rad = -std::numbers::pi / 2;
     fan.step_rad = std::numbers::pi / (beams - 1);
     fan.count = beams;

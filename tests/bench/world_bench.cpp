@@ -18,10 +18,10 @@ void ScaleSceneSecond(benchmark::State& state) {
     scene.run_for(1);
     contacts += scene.world().physics().last_step().contacts;
   }
-  state.counters["ms_per_robot_second"] =
-      benchmark::Counter(static_cast<double>(state.iterations()) * robots * 1e-3,
-                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-  state.counters["contacts_per_robot"] = static_cast<double>(contacts) / static_cast<double>(state.iterations()) / robots;
+  state.counters["ms_per_robot_second"] = benchmark::Counter(static_cast<double>(state.iterations()) * robots * 1e-3,
+                                                             benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["contacts_per_robot"] =
+      static_cast<double>(contacts) / static_cast<double>(state.iterations()) / robots;
 }
 BENCHMARK(ScaleSceneSecond)->Arg(1)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond);
 

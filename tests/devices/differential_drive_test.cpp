@@ -16,7 +16,9 @@ shoal::twist_command_t twist(double forward_mps, double turn_radps) {
   return command;
 }
 
-sim::Pose pose_of(const test::TestWorld& test) { return test.world.find_vehicle("r1")->X_WV(); }
+sim::Pose pose_of(const test::TestWorld& test) {
+  return test.world.find_vehicle("r1")->X_WV();
+}
 
 TEST(DifferentialDrive, WheelSpeedsGiveTheArcOfTheTextbook) {
   test::TestWorld test(test::rover_world(drive));
@@ -80,7 +82,7 @@ TEST(DifferentialDrive, IgnoresBadCommandsAndGoesOn) {
   test.run_for(0.5);
   const auto publish = [&](const sim::Bytes& payload) { test.bus.publish("r1.drive.cmd", payload, test.world.now()); };
   publish({});
-  publish(sim::Bytes(8));                                     // an unknown fingerprint
+  publish(sim::Bytes(8));  // an unknown fingerprint
   sim::Bytes cut = shoal::encode(twist(-1, 0));
   cut.pop_back();
   publish(cut);

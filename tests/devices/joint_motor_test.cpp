@@ -5,7 +5,8 @@
 
 namespace {
 
-constexpr const char* motor = "        - {name: motor, type: joint_motor, joint: left, max_velocity: 3, max_force: 5}\n";
+constexpr const char* motor =
+    "        - {name: motor, type: joint_motor, joint: left, max_velocity: 3, max_force: 5}\n";
 
 TEST(JointMotor, TurnsTheJointAtTheCommandedVelocity) {
   test::TestWorld test(test::rover_world(motor));
@@ -30,7 +31,8 @@ TEST(JointMotor, NamesAJointThatDoesNotExist) {
     test::TestWorld test(test::rover_world("        - {name: motor, type: joint_motor, joint: lft}\n"));
     FAIL();
   } catch (const sim::ConfigError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("device 'motor': 'joint' names no joint 'lft'; known joints: left, right"));
+    EXPECT_THAT(error.what(),
+                testing::HasSubstr("device 'motor': 'joint' names no joint 'lft'; known joints: left, right"));
   }
 }
 

@@ -12,7 +12,8 @@ std::string lidar(const std::string& more = "") {
 }
 
 /// Front face at x = 5 m.
-constexpr const char* wall = "  - {name: wall, fixed: true, position_m: [6, 0, 1], parts: [{shape: box, size_m: [2, 100, 2]}]}\n";
+constexpr const char* wall =
+    "  - {name: wall, fixed: true, position_m: [6, 0, 1], parts: [{shape: box, size_m: [2, 100, 2]}]}\n";
 
 TEST(Lidar, SeesAWallAsGeometrySays) {
   test::TestWorld test(test::rover_world(lidar(), wall));
@@ -38,8 +39,8 @@ TEST(Lidar, ReportsItsLargestRangeWhereItHitsNothing) {
 TEST(Lidar, DoesNotSeeItsOwnVehicleUnlessAsked) {
   const auto ahead = [](const char* more) {
     // Inside the hull's height, from behind its front face.
-    test::TestWorld test(test::rover_world("        - {name: lidar, type: lidar, position_m: [-0.5, 0, 0.03], beams: 1" +
-                                           std::string(more) + "}\n"));
+    test::TestWorld test(test::rover_world(
+        "        - {name: lidar, type: lidar, position_m: [-0.5, 0, 0.03], beams: 1" + std::string(more) + "}\n"));
     test::Listener<shoal::planar_lidar_t> scans(test, "r1.lidar");
     test.run_for(0.5);
     return scans.last().ranges[0];
@@ -50,7 +51,8 @@ TEST(Lidar, DoesNotSeeItsOwnVehicleUnlessAsked) {
 
 TEST(Lidar, LooksThroughTheCategoriesItIsToldTo) {
   const std::string glass =
-      "  - {name: pane, fixed: true, position_m: [2, 0, 1], parts: [{shape: box, size_m: [0.02, 4, 2], category: glass}]}\n";
+      "  - {name: pane, fixed: true, position_m: [2, 0, 1], parts: [{shape: box, size_m: [0.02, 4, 2], category: "
+      "glass}]}\n";
   const auto ahead = [&](const char* more) {
     test::TestWorld test(test::rover_world(lidar(more), glass + wall) + "\ncategories: [glass]\n");
     test::Listener<shoal::planar_lidar_t> scans(test, "r1.lidar");
@@ -72,7 +74,8 @@ TEST(Lidar, NoiseHasTheMeanAndVarianceAskedFor) {
   double sum = 0, squares = 0, count = 0;
   for (std::size_t i = 0; i < measured.size(); ++i)
     for (std::size_t beam = 60; beam < 120; ++beam) {
-      const double error = static_cast<double>(measured[i].ranges[beam]) - static_cast<double>(true_scans[i].ranges[beam]);
+      const double error =
+          static_cast<double>(measured[i].ranges[beam]) - static_cast<double>(true_scans[i].ranges[beam]);
       sum += error;
       squares += error * error;
       ++count;

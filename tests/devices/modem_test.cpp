@@ -7,7 +7,8 @@ namespace {
 /// Three boxes on a line, 150 m apart, with a modem each.
 std::string modem_world(const std::string& keys, const std::string& third_network = "radio") {
   std::string text =
-      "shoal: 1\nphysics: {step_s: 0.001}\nobjects:\n  - {name: ground, fixed: true, parts: [{shape: plane}]}\nvehicles:\n";
+      "shoal: 1\nphysics: {step_s: 0.001}\nobjects:\n  - {name: ground, fixed: true, parts: [{shape: "
+      "plane}]}\nvehicles:\n";
   const char* names[] = {"a", "b", "c"};
   for (int i = 0; i < 3; ++i)
     text += std::string("  - {name: ") + names[i] + ", position_m: [" + std::to_string(150 * i) +
@@ -26,7 +27,9 @@ shoal::modem_send_t message(const std::string& text, const std::string& destinat
   return send;
 }
 
-std::string text_of(const shoal::modem_received_t& received) { return {received.data.begin(), received.data.end()}; }
+std::string text_of(const shoal::modem_received_t& received) {
+  return {received.data.begin(), received.data.end()};
+}
 
 TEST(Modem, DeliversAfterAirTimeAndPropagation) {
   // 10 bytes at 800 bit/s: 0.1 s; 150 m at 1500 m/s: 0.1 s.
@@ -83,6 +86,18 @@ TEST(Modem, SendsOneMessageAfterTheOther) {
   EXPECT_EQ(received[1].sent_utime - received[0].sent_utime, 100000);
 }
 
+TEST(Modem, SendsSeveralShortMessagesInOneStep) {
+  // 5 bytes at 1 Mbit/s: 40 us; a step of 1 ms has room for 25.
+  test::TestWorld test(modem_world("range_m: 200, data_rate_bps: 1e6, propagation_mps: 1e9, queue_messages: 100"));
+  test::Listener<shoal::modem_received_t> b(test, "b.modem");
+  for (int i = 0; i < 30; ++i) test.send("a.modem.cmd", message("12345"));
+  test.world.step();
+  test.world.step();
+  const auto received = b.take_all();
+  ASSERT_EQ(received.size(), 30u);
+  EXPECT_EQ(received[1].sent_utime - received[0].sent_utime, 40);
+}
+
 TEST(Modem, LosesTheShareOfMessagesAskedFor) {
   test::TestWorld test(modem_world("range_m: 200, data_rate_bps: 1e6, loss_probability: 0.3"));
   test::Listener<shoal::modem_received_t> b(test, "b.modem");
@@ -135,8 +150,8 @@ class FakePort final : public sim::BytePort {
 };
 
 TEST(Modem, SpeaksLinesThroughItsSerialPort) {
-  const auto loaded = sim::load_world_text(modem_world("range_m: 1000, serial: {path: \"/nowhere/{vehicle}\"}"),
-                                           "worlds/test.yaml");
+  const auto loaded =
+      sim::load_world_text(modem_world("range_m: 1000, serial: {path: \"/nowhere/{vehicle}\"}"), "worlds/test.yaml");
   std::map<std::string, std::shared_ptr<std::pair<std::string, std::string>>> ends;
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus, [&](const std::string& kind, const std::string& path) {

@@ -1,8 +1,8 @@
-#include "sim/device/device_registry.hpp"
-
 #include <gtest/gtest.h>
 
 #include <set>
+
+#include "sim/device/device_registry.hpp"
 
 namespace {
 

@@ -5,8 +5,9 @@ namespace {
 
 /// r1 at (1, 2) looking north, its sensor 0.2 m above the ground, and boxes as other vehicles.
 std::string swarm_world(const std::string& more, const std::string& objects = "") {
-  const std::string box = ", model: {shoal: 1, vehicle: box, bodies: [{name: b, position_m: [0, 0, 0.2], parts: "
-                          "[{shape: box, size_m: [0.4, 0.4, 0.4], mass_kg: 5}]}]}}\n";
+  const std::string box =
+      ", model: {shoal: 1, vehicle: box, bodies: [{name: b, position_m: [0, 0, 0.2], parts: "
+      "[{shape: box, size_m: [0.4, 0.4, 0.4], mass_kg: 5}]}]}}\n";
   return test::rover_world(
              "        - {name: swarm, type: swarm_position, position_m: [0, 0, 0.1], rate_hz: 10" + more + "}\n",
              objects, "    position_m: [1, 2, 0]\n    rpy_deg: [0, 0, 90]\n") +
@@ -39,7 +40,8 @@ TEST(SwarmPosition, SeesNothingBeyondItsRange) {
 }
 
 TEST(SwarmPosition, AWallHidesAVehicleWhenOcclusionIsOn) {
-  const std::string wall = "  - {name: wall, fixed: true, position_m: [1, 4, 1], parts: [{shape: box, size_m: [2, 0.1, 2]}]}\n";
+  const std::string wall =
+      "  - {name: wall, fixed: true, position_m: [1, 4, 1], parts: [{shape: box, size_m: [2, 0.1, 2]}]}\n";
   const auto seen = [&](const char* more) {
     test::TestWorld test(swarm_world(std::string(", range_max_m: 100") + more, wall));
     test::Listener<shoal::swarm_position_t> reports(test, "r1.swarm");

@@ -65,10 +65,12 @@ materials: [{name: rubber}, {name: slick}]
 contacts: [{between: [slick, any], friction: 0}, {between: [rubber, any], friction: 1}]
 objects:
   - {name: ground, fixed: true, parts: [{shape: plane}]}
-)" + objects + R"(
+)" + objects +
+         R"(
 vehicles:
   - name: r1
-)" + entry + R"(
+)" + entry +
+         R"(
     model:
       shoal: 1
       vehicle: test_rover
@@ -85,7 +87,8 @@ vehicles:
         - {name: left, type: hinge, bodies: [chassis, left_wheel], anchor_m: [0, 0.25, 0.1], axis: [0, 1, 0]}
         - {name: right, type: hinge, bodies: [chassis, right_wheel], anchor_m: [0, -0.25, 0.1], axis: [0, 1, 0]}
       devices:
-)" + devices + more;
+)" + devices +
+         more;
 }
 
 }  // namespace test

@@ -36,8 +36,7 @@ std::vector<std::string> offenders_in(const std::string& path, std::istream& tex
     if (!std::regex_match(line, match, include)) continue;
     const std::string target = match[1];
     if (known_folders.contains(target) && !allowed.contains(target))
-      offenders.push_back(path + ":" + std::to_string(number) + ": " + folder + "/ must not include " +
-                          target + "/");
+      offenders.push_back(path + ":" + std::to_string(number) + ": " + folder + "/ must not include " + target + "/");
   }
   return offenders;
 }
@@ -67,25 +66,21 @@ TEST(IncludeDirection, PointsDownEverywhere) {
 }
 
 TEST(IncludeDirection, NamesAnOffender) {
-  EXPECT_EQ(
-      offenders_in_text("sim/world.cpp", "#include \"sim/world.hpp\"\n#include \"devices/lidar.hpp\"\n"),
-      std::vector<std::string>{"sim/world.cpp:2: sim/ must not include devices/"});
+  EXPECT_EQ(offenders_in_text("sim/world.cpp", "#include \"sim/world.hpp\"\n#include \"devices/lidar.hpp\"\n"),
+            std::vector<std::string>{"sim/world.cpp:2: sim/ must not include devices/"});
   EXPECT_EQ(offenders_in_text("devices/lidar.cpp", "\n#  include <lcm/lcm.h>\n"),
             std::vector<std::string>{"devices/lidar.cpp:2: devices/ must not include lcm/"});
   EXPECT_EQ(offenders_in_text("sim/bus/bus.hpp", "#include \"shoal/pose_t.hpp\"\n"),
             std::vector<std::string>{"sim/bus/bus.hpp:1: sim/ must not include shoal/"});
-  EXPECT_EQ(
-      offenders_in_text("bridges/lcm/a.cpp", "#include \"../../tools/a.hpp\"\n#include \"tests/b.hpp\"\n")
-          .size(),
-      2u);
+  EXPECT_EQ(offenders_in_text("bridges/lcm/a.cpp", "#include \"../../tools/a.hpp\"\n#include \"tests/b.hpp\"\n").size(),
+            2u);
 }
 
 TEST(IncludeDirection, LetsPassWhatIsAllowed) {
+  EXPECT_TRUE(offenders_in_text("bridges/lcm/a.cpp", "#include <lcm/lcm.h>\n#include \"sim/time.hpp\"\n").empty());
   EXPECT_TRUE(
-      offenders_in_text("bridges/lcm/a.cpp", "#include <lcm/lcm.h>\n#include \"sim/time.hpp\"\n").empty());
-  EXPECT_TRUE(offenders_in_text("sim/a.cpp",
-                                "#include <sys/stat.h>\n#include <ode/ode.h>\n// #include \"tools/a.hpp\"\n")
-                  .empty());
+      offenders_in_text("sim/a.cpp", "#include <sys/stat.h>\n#include <ode/ode.h>\n// #include \"tools/a.hpp\"\n")
+          .empty());
 }
 
 }  // namespace

@@ -26,8 +26,7 @@ struct Case {
 class Determinism : public testing::TestWithParam<Case> {
  protected:
   std::vector<std::string> run_arguments(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {"run", source(GetParam().world), "--duration",
-                                          GetParam().duration_s};
+    std::vector<std::string> arguments = {"run", source(GetParam().world), "--duration", GetParam().duration_s};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
@@ -92,20 +91,17 @@ TEST_P(Determinism, AnotherSeedIsAnotherRun) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Worlds, Determinism,
-                         testing::Values(Case{"worlds/minimal.yaml", "20"},
-                                         Case{"worlds/erl_room.yaml", "20"}, Case{"worlds/scale.yaml", "2"}),
-                         [](const auto& test) {
-                           return std::filesystem::path(test.param.world).stem().string();
-                         });
+                         testing::Values(Case{"worlds/minimal.yaml", "20"}, Case{"worlds/erl_room.yaml", "20"},
+                                         Case{"worlds/scale.yaml", "2"}),
+                         [](const auto& test) { return std::filesystem::path(test.param.world).stem().string(); });
 
 TEST(CoopLand, IsTheSameRunAtAnySpeedWithItsProcesses) {
   const ScratchFolder folder;
   std::string hashes[2];
   const char* speeds[] = {"max", "20"};
   for (int i = 0; i < 2; ++i) {
-    const Ended ended =
-        run_shoal({"run", source("worlds/coop_land.yaml"), "--launch", "--duration", "20", "--speed",
-                   speeds[i], "--lcm-url", own_url(i), "--record", folder.file(speeds[i])});
+    const Ended ended = run_shoal({"run", source("worlds/coop_land.yaml"), "--launch", "--duration", "20", "--speed",
+                                   speeds[i], "--lcm-url", own_url(i), "--record", folder.file(speeds[i])});
     EXPECT_TRUE(ended.exit_code == 0 || ended.exit_code == 1) << ended.errors;  // too short to be judged
     hashes[i] = state_hash_in(ended);
   }
@@ -118,8 +114,8 @@ TEST(CoopLand, IsTheSameRunAtAnySpeedWithItsProcesses) {
 class EveryWorld : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryWorld, RunsForASecond) {
-  const Ended ended = run_shoal({"run", source("worlds/" + GetParam() + ".yaml"), "--duration", "1",
-                                 "--speed", "max", "--bus", "none"});
+  const Ended ended = run_shoal(
+      {"run", source("worlds/" + GetParam() + ".yaml"), "--duration", "1", "--speed", "max", "--bus", "none"});
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_NE(ended.output.find("1.00 s simulated"), std::string::npos) << ended.output;
 }

@@ -10,7 +10,7 @@
 #include "bridges/lcm/lockstep_client.hpp"
 #include "tests/system/shoal_program.hpp"
 
-// 0 ok, 1 a pass rule failed, 2 usage or configuration, 3 physics, 4 bus or file, 5 time-out, 130 and 143
+// 0 ok, 1 a pass rule failed, 2 usage or configuration, 3 physics, 4 bus or file, 5 time-out, 129, 130 and 143
 // signals.
 
 namespace {
@@ -40,6 +40,14 @@ TEST(ExitCode, Is2ForWrongUsage) {
       {"run"},
       {"run", world, "--speed", "fast"},
       {"run", world, "--speed", "-1"},
+      {"run", world, "--speed", "0.0001"},
+      {"run", world, "--speed", "nan"},
+      {"run", world, "--speed", "inf"},
+      {"run", world, "--duration", "inf"},
+      {"run", world, "--launch", "--bus", "none"},
+      {"spy", "--duration", "nan"},
+      {"bench", "--measure", "nan"},
+      {"bench", "--warm-up", "inf"},
       {"run", world, "--duration", "-1"},
       {"run", world, "--duration", "nan"},
       {"run", world, "--seed", "x"},
@@ -117,12 +125,11 @@ TEST(ExitCode, Is2ForGarbageOfAnySize) {
 TEST(ExitCode, Is3ForAPhysicsFaultAndTheRecordIsWhole) {
   const ScratchFolder folder;
   // Free fall: 5 m/s are reached after 0.51 s.
-  write_file(
-      folder.file("fall.yaml"),
-      "shoal: 1\nphysics: {max_speed_mps: 5}\nvehicles:\n  - name: stone\n    position_m: [0, 0, 100]\n"
-      "    model: {shoal: 1, bodies: [{name: body, parts: [{shape: sphere, mass_kg: 1}]}]}\n");
-  const Ended ended = run_shoal({"run", folder.file("fall.yaml"), "--bus", "none", "--record",
-                                 folder.file("run.lcm"), "--results", folder.file("results")});
+  write_file(folder.file("fall.yaml"),
+             "shoal: 1\nphysics: {max_speed_mps: 5}\nvehicles:\n  - name: stone\n    position_m: [0, 0, 100]\n"
+             "    model: {shoal: 1, bodies: [{name: body, parts: [{shape: sphere, mass_kg: 1}]}]}\n");
+  const Ended ended = run_shoal({"run", folder.file("fall.yaml"), "--bus", "none", "--record", folder.file("run.lcm"),
+                                 "--results", folder.file("results")});
   EXPECT_EQ(ended.exit_code, 3);
   EXPECT_THAT(ended.errors, HasSubstr("stone"));
   EXPECT_GT(events_in(folder.file("run.lcm")), 5u);
@@ -145,8 +152,7 @@ TEST(ExitCode, Is4ForABusThatCannotBeUsed) {
 TEST(ExitCode, Is4ForARecordThatCannotBeWritten) {
   const ScratchFolder folder;
   const std::vector<std::string> run = {
-      "run",     source("worlds/minimal.yaml"), "--duration", "20", "--bus", "none", "--speed", "max",
-      "--record"};
+      "run", source("worlds/minimal.yaml"), "--duration", "20", "--bus", "none", "--speed", "max", "--record"};
   const auto with = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments = run;
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -166,11 +172,30 @@ TEST(ExitCode, Is4ForARecordThatCannotBeWritten) {
   EXPECT_EQ(with({folder.file("no/such/folder.lcm")}).exit_code, 4);
 }
 
+TEST(ExitCode, Is4ForOutputThatCannotBeWritten) {
+  const std::string shoal = built("shoal");
+  for (const std::string& command : {std::string("list messages"), "check " + source("worlds/minimal.yaml")}) {
+    Program program({"sh", "-c", shoal + " " + command + " > /dev/full"});
+    EXPECT_EQ(program.wait(), 4) << command;
+    EXPECT_THAT(program.errors(), HasSubstr("cannot write to stdout: No space left on device"));
+  }
+}
+
+TEST(ExitCode, Is2ForASeedThatIsNone) {
+  for (const char* seed : {"-1", "9223372036854775808", "x", "1.5"}) {
+    const Ended ended = run_shoal({"run", source("worlds/minimal.yaml"), "--seed", seed});
+    EXPECT_EQ(ended.exit_code, 2) << seed;
+    EXPECT_THAT(ended.errors, HasSubstr("must be a whole number from 0 to 9223372036854775807")) << seed;
+  }
+  const Ended most = run_shoal({"run", source("worlds/minimal.yaml"), "--seed", "9223372036854775807", "--bus", "none",
+                                "--duration", "0.1", "--speed", "max"});
+  EXPECT_EQ(most.exit_code, 0) << most.errors;
+}
+
 TEST(ExitCode, Is5ForAClientThatNeverAcknowledges) {
   const ScratchFolder folder;
-  Program shoal({built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "10", "--await",
-                 "sleeper", "--set", "lockstep.timeout_s=0.5", "--lcm-url", own_url(), "--record",
-                 folder.file("run.lcm")});
+  Program shoal({built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "10", "--await", "sleeper",
+                 "--set", "lockstep.timeout_s=0.5", "--lcm-url", own_url(), "--record", folder.file("run.lcm")});
   bridges::LockstepClient client(own_url(), "sleeper");
   client.join(0.1, patience);
   EXPECT_EQ(shoal.wait(), 5);
@@ -180,13 +205,14 @@ TEST(ExitCode, Is5ForAClientThatNeverAcknowledges) {
 
 TEST(ExitCode, Is5ForAClientThatNeverJoins) {
   const Ended ended = run_shoal({"run", source("worlds/minimal.yaml"), "--await", "nobody", "--set",
-                                 "lockstep.join_timeout_s=0.2", "--lcm-url", own_url()});
+                                 "lockstep.join_timeout_s=1.5", "--lcm-url", own_url()});
   EXPECT_EQ(ended.exit_code, 5);
+  EXPECT_THAT(ended.errors, HasSubstr("waiting for 'nobody' to join the lockstep"));
   EXPECT_THAT(ended.errors, HasSubstr("client 'nobody' has not joined"));
 }
 
 TEST(ExitCode, Is128PlusTheSignal) {
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const ScratchFolder folder;
     write_file(folder.file("world.yaml"),
                endless_world("    overrides: {devices.modem.serial: {path: " + folder.file("port") +
@@ -194,8 +220,8 @@ TEST(ExitCode, Is128PlusTheSignal) {
                              "processes: [{name: idler, command: [sleep, '1000']}]\n"));
     bridges::LcmListener listener(own_url());
     listener.listen("sim.clock");
-    Program shoal({built("shoal"), "run", folder.file("world.yaml"), "--launch", "--lcm-url", own_url(),
-                   "--record", folder.file("run.lcm")});
+    Program shoal({built("shoal"), "run", folder.file("world.yaml"), "--launch", "--lcm-url", own_url(), "--record",
+                   folder.file("run.lcm")});
     ASSERT_TRUE(listener.next(patience));
     EXPECT_TRUE(std::filesystem::is_symlink(folder.file("port")));
     const auto children = shoal.children();

@@ -57,8 +57,7 @@ std::map<std::string, int> played_back(const std::string& path, const std::strin
 
 TEST(LcmTools, LogAndPlayBackARunWithItsProcesses) {
   const ScratchFolder folder;
-  Program logger(
-      {"lcm-logger", "--force", "--flush-interval=20", "--lcm-url=" + own_url(), folder.file("logger.lcm")});
+  Program logger({"lcm-logger", "--force", "--flush-interval=20", "--lcm-url=" + own_url(), folder.file("logger.lcm")});
   // It listens when the first probe is in the file.
   bridges::LcmListener probe(own_url());
   ASSERT_TRUE(await([&] {
@@ -67,9 +66,8 @@ TEST(LcmTools, LogAndPlayBackARunWithItsProcesses) {
     const auto size = std::filesystem::file_size(folder.file("logger.lcm"), error);
     return !error && size > 0;
   }));
-  const Ended ended =
-      run_shoal({"run", source("worlds/coop_land.yaml"), "--launch", "--duration", "8", "--speed", "4",
-                 "--lcm-url", own_url(), "--record", folder.file("shoal.lcm")});
+  const Ended ended = run_shoal({"run", source("worlds/coop_land.yaml"), "--launch", "--duration", "8", "--speed", "4",
+                                 "--lcm-url", own_url(), "--record", folder.file("shoal.lcm")});
   EXPECT_TRUE(ended.exit_code == 0 || ended.exit_code == 1) << ended.errors;
   logger.send_signal(SIGINT);
   logger.wait();
@@ -98,8 +96,8 @@ TEST(LcmTools, LogAndPlayBackARunWithItsProcesses) {
 TEST(LcmTools, InfoAndCsvReadARecord) {
   const ScratchFolder folder;
   const std::string log = folder.file("run.lcm");
-  ASSERT_EQ(run_shoal({"run", source("worlds/minimal.yaml"), "--duration", "2", "--speed", "max", "--bus",
-                       "none", "--record", log})
+  ASSERT_EQ(run_shoal({"run", source("worlds/minimal.yaml"), "--duration", "2", "--speed", "max", "--bus", "none",
+                       "--record", log})
                 .exit_code,
             0);
   const Ended info = run_shoal({"log", "info", log});
@@ -116,10 +114,8 @@ TEST(LcmTools, InfoAndCsvReadARecord) {
 
 TEST(LcmTools, SpyShowsWhatIsOnTheBus) {
   Program spy({built("shoal"), "spy", "rover1.odometry", "--lcm-url", own_url()});
-  Program shoal(
-      {built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "0", "--lcm-url", own_url()});
-  EXPECT_TRUE(
-      await([&] { return spy.output().find("shoal.odometry_t\n  utime=") != std::string::npos; }, patience));
+  Program shoal({built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "0", "--lcm-url", own_url()});
+  EXPECT_TRUE(await([&] { return spy.output().find("shoal.odometry_t\n  utime=") != std::string::npos; }, patience));
   spy.send_signal(SIGINT);
   EXPECT_EQ(spy.wait(), 0);
   shoal.send_signal(SIGINT);

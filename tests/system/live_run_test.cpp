@@ -35,8 +35,7 @@ class LiveRun : public testing::Test {
 
   void start(const std::string& more = "", const std::vector<std::string>& options = {}) {
     write_file(folder_.file("world.yaml"), endless_world(more));
-    std::vector<std::string> arguments = {built("shoal"), "run", folder_.file("world.yaml"), "--lcm-url",
-                                          own_url()};
+    std::vector<std::string> arguments = {built("shoal"), "run", folder_.file("world.yaml"), "--lcm-url", own_url()};
     arguments.insert(arguments.end(), options.begin(), options.end());
     shoal_ = std::make_unique<Program>(arguments);
     await_clock([](std::int64_t) { return true; });
@@ -129,8 +128,7 @@ TEST_F(LiveRun, RefusesWhatItDoesNotUnderstand) {
   start();
   const auto unknown = request("fly");
   EXPECT_FALSE(unknown.ok);
-  EXPECT_EQ(unknown.text,
-            "unknown command 'fly'; known commands: join, leave, pause, quit, resume, speed, step");
+  EXPECT_EQ(unknown.text, "unknown command 'fly'; known commands: join, leave, pause, quit, resume, speed, step");
   EXPECT_FALSE(request("speed", -1).ok);
   EXPECT_FALSE(request("step", 0).ok);
   EXPECT_FALSE(request("step", 1e300).ok);
@@ -168,8 +166,7 @@ TEST_F(LiveRun, WaitsForAClientThatJoinsLate) {
 
 TEST_F(LiveRun, GoesOnWithoutAProcessThatDied) {
   start("processes: [{name: pilot, command: [sh, -c, exit 3]}]\n", {"--launch"});
-  EXPECT_TRUE(
-      await([&] { return shoal_->errors().find("the run goes on without it") != std::string::npos; }));
+  EXPECT_TRUE(await([&] { return shoal_->errors().find("the run goes on without it") != std::string::npos; }));
   EXPECT_THAT(shoal_->errors(), HasSubstr("process 'pilot' exited with code 3"));
   await_steps(3);
   quit();
@@ -178,17 +175,14 @@ TEST_F(LiveRun, GoesOnWithoutAProcessThatDied) {
 TEST_F(LiveRun, EndsWithAProcessThatItShouldEndWith) {
   start("processes: [{name: pilot, command: [sh, -c, sleep 0.2], on_exit: end}]\n", {"--launch"});
   EXPECT_EQ(shoal_->wait(), 1);
-  EXPECT_THAT(shoal_->errors(),
-              HasSubstr("process 'pilot' exited with code 0; the world says the run ends with it"));
+  EXPECT_THAT(shoal_->errors(), HasSubstr("process 'pilot' exited with code 0; the world says the run ends with it"));
 }
 
 TEST_F(LiveRun, NamesAProcessThatCannotBeStarted) {
-  write_file(folder_.file("world.yaml"),
-             endless_world("processes: [{name: pilot, command: [no-such-pilot]}]\n"));
+  write_file(folder_.file("world.yaml"), endless_world("processes: [{name: pilot, command: [no-such-pilot]}]\n"));
   const Ended ended = run_shoal({"run", folder_.file("world.yaml"), "--launch", "--lcm-url", own_url()});
   EXPECT_EQ(ended.exit_code, 4);
-  EXPECT_THAT(ended.errors,
-              HasSubstr("process 'pilot': cannot start 'no-such-pilot': No such file or directory"));
+  EXPECT_THAT(ended.errors, HasSubstr("process 'pilot': cannot start 'no-such-pilot': No such file or directory"));
 }
 
 TEST_F(LiveRun, StartsNoProcessUnlessAsked) {

@@ -38,8 +38,7 @@ CoopRover::CoopRover(const Params& params)
       avoidance_(avoidance_params(params)) {}
 
 std::span<const std::string_view> CoopRover::devices() {
-  static constexpr std::array<std::string_view, 5> names = {"odometry", "gps", "swarm_position", "lidar",
-                                                            "modem"};
+  static constexpr std::array<std::string_view, 5> names = {"odometry", "gps", "swarm_position", "lidar", "modem"};
   return names;
 }
 
@@ -48,8 +47,7 @@ void CoopRover::receive(std::string_view device, Payload payload) {
   if (device == "odometry") receive_odometry(payload);
   // Without a fix its numbers are NaN, and so are absolute positions that a swarm sensor does not measure.
   if (device == "gps") receive_gps(shoal::decode<shoal::gps_data_t>(payload, Finite::any));
-  if (device == "swarm_position")
-    receive_sightings(shoal::decode<shoal::swarm_position_t>(payload, Finite::any));
+  if (device == "swarm_position") receive_sightings(shoal::decode<shoal::swarm_position_t>(payload, Finite::any));
   if (device == "lidar") receive_scan(payload);
   if (device == "modem") reports_.receive(shoal::decode<shoal::modem_received_t>(payload, Finite::required));
 }

@@ -53,8 +53,7 @@ int drive(const Options& options) {
   client.set_silence_limit(std::chrono::minutes(10));
   shoal::sim_tick_t tick;
   while (client.next_tick(tick)) {
-    for (const autonomy::CoopRover::Outgoing& out : rover.step(tick.utime))
-      client.publish(out.channel, out.payload);
+    for (const autonomy::CoopRover::Outgoing& out : rover.step(tick.utime)) client.publish(out.channel, out.payload);
     client.acknowledge(tick);
   }
   std::signal(SIGTERM, SIG_DFL);
@@ -72,12 +71,9 @@ int run(int argc, char** argv) {
   std::string start = "0,0,0";
   CLI::App app{"Drives one rover of the cooperative experiment, in lockstep with `shoal run`."};
   app.add_option("--name", options.rover.name, "vehicle to drive; also the name in the lockstep")->required();
-  app.add_option("--waypoints", waypoints, "\"x,y;x,y;...\", east and north in m, driven in a loop")
-      ->required();
+  app.add_option("--waypoints", waypoints, "\"x,y;x,y;...\", east and north in m, driven in a loop")->required();
   app.add_option("--start", start, "\"x,y,yaw_deg\": where the rover stands at first")->capture_default_str();
-  app.add_option("--speed", options.rover.speed_mps, "m/s")
-      ->capture_default_str()
-      ->check(CLI::Range(0.05, 5.0));
+  app.add_option("--speed", options.rover.speed_mps, "m/s")->capture_default_str()->check(CLI::Range(0.05, 5.0));
   app.add_option("--period", options.period_s, "s of simulated time between decisions")
       ->capture_default_str()
       ->check(CLI::Range(0.001, 10.0));

@@ -33,8 +33,7 @@ void Ekf::predict(const Increment& move) {
   const double way_m = std::hypot(move.forward_m, move.left_m);
   Eigen::Matrix3d Q_B = Eigen::Matrix3d::Zero();
   Q_B.diagonal() << squared(params_.along_std_m) * way_m, squared(params_.across_std_m) * way_m,
-      squared(params_.yaw_per_turn_std_rad) * std::abs(move.turn_rad) +
-          squared(params_.yaw_per_metre_std_rad) * way_m;
+      squared(params_.yaw_per_turn_std_rad) * std::abs(move.turn_rad) + squared(params_.yaw_per_metre_std_rad) * way_m;
 
   pose_.p_W += moved_W;
   pose_.yaw_rad = sim::wrap_angle(pose_.yaw_rad + move.turn_rad);
@@ -47,8 +46,7 @@ bool Ekf::update_position(const Vector2d& p_W, double std_m) {
   return update(p_W - pose_.p_W, H, squared(std_m) * Eigen::Matrix2d::Identity());
 }
 
-bool Ekf::update_relative(const Vector2d& p_BN_B, double seen_std_m, const Vector2d& p_WN_W,
-                          double neighbour_std_m) {
+bool Ekf::update_relative(const Vector2d& p_BN_B, double seen_std_m, const Vector2d& p_WN_W, double neighbour_std_m) {
   const Vector2d d_W = p_WN_W - pose_.p_W;
   const Vector2d expected_B = turned(d_W, -pose_.yaw_rad);
   const double c = std::cos(pose_.yaw_rad);

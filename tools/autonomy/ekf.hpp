@@ -16,8 +16,8 @@ class Ekf {
     double across_std_m = 0.01;            ///< sideways slip after 1 m
     double yaw_per_turn_std_rad = 0.04;    ///< after a turn of 1 rad
     double yaw_per_metre_std_rad = 0.015;  ///< after 1 m
-    double gate = 13.82;     ///< Mahalanobis distance squared: 99.9 % of chi-square with 2 degrees
-    int most_refusals = 10;  ///< in a row, before the estimate is held to be the wrong one
+    double gate = 13.82;                   ///< Mahalanobis distance squared: 99.9 % of chi-square with 2 degrees
+    int most_refusals = 10;                ///< in a row, before the estimate is held to be the wrong one
   };
 
   Ekf(const Pose2& start, double position_std_m, double yaw_std_rad)
@@ -28,8 +28,7 @@ class Ekf {
   /// A position in the world.  False when the gate refuses it; the estimate is then left alone.
   bool update_position(const Vector2d& p_W, double std_m);
   /// Another rover seen at `p_BN_B` from here, in the body frame, which says it is at `p_WN_W`.
-  bool update_relative(const Vector2d& p_BN_B, double seen_std_m, const Vector2d& p_WN_W,
-                       double neighbour_std_m);
+  bool update_relative(const Vector2d& p_BN_B, double seen_std_m, const Vector2d& p_WN_W, double neighbour_std_m);
 
   const Pose2& pose() const { return pose_; }
   const Eigen::Matrix3d& covariance() const { return P_; }

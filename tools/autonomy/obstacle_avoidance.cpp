@@ -21,14 +21,12 @@ double ObstacleAvoidance::free_way_m(const Scan& scan, double direction_rad) con
     const double range_m = scan.ranges_m[i];
     const double angle = scan.first_angle_rad + static_cast<double>(i) * scan.step_rad - direction_rad;
     const double ahead_m = range_m * std::cos(angle);
-    if (ahead_m > 0 && std::abs(range_m * std::sin(angle)) < params_.half_width_m)
-      free_m = std::min(free_m, ahead_m);
+    if (ahead_m > 0 && std::abs(range_m * std::sin(angle)) < params_.half_width_m) free_m = std::min(free_m, ahead_m);
   }
   return free_m;
 }
 
-bool ObstacleAvoidance::choose_direction(const Vector2d& goal_B, const Scan& scan,
-                                         double& direction_rad) const {
+bool ObstacleAvoidance::choose_direction(const Vector2d& goal_B, const Scan& scan, double& direction_rad) const {
   const double goal_rad = std::atan2(goal_B.y(), goal_B.x());
   const double needed_m = std::min(params_.look_ahead_m, goal_B.norm() + params_.half_width_m);
   // Staying with the last choice keeps the rover from wavering before an obstacle.  The small preference for
@@ -40,8 +38,7 @@ bool ObstacleAvoidance::choose_direction(const Vector2d& goal_B, const Scan& sca
     const double candidate = i * direction_step_rad;
     if (free_way_m(scan, candidate) < needed_m) continue;
     const double cost = std::abs(sim::wrap_angle(candidate - goal_rad)) +
-                        habit * std::abs(candidate - last_direction_rad_) +
-                        (candidate > 0 ? keep_right_rad : 0.0);
+                        habit * std::abs(candidate - last_direction_rad_) + (candidate > 0 ? keep_right_rad : 0.0);
     if (cost >= lowest) continue;
     lowest = cost;
     direction_rad = candidate;

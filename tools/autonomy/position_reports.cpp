@@ -27,18 +27,15 @@ void PositionReports::receive(const shoal::modem_received_t& packet) {
   const auto* data = reinterpret_cast<const std::byte*>(packet.data.data());
   auto report = shoal::decode<shoal::position_report_t>({data, packet.data.size()}, shoal::Finite::required);
   if (report.vehicle != packet.source)
-    throw shoal::MessageError("'" + packet.source + "' sent a position report in the name of '" +
-                              report.vehicle + "'");
-  if (!(report.position_std_m > 0))
-    throw shoal::MessageError("a position report must have position_std_m > 0");
+    throw shoal::MessageError("'" + packet.source + "' sent a position report in the name of '" + report.vehicle + "'");
+  if (!(report.position_std_m > 0)) throw shoal::MessageError("a position report must have position_std_m > 0");
   if (std::hypot(report.velocity_mps[0], report.velocity_mps[1]) > max_speed_mps)
     throw shoal::MessageError("a position report says its rover is faster than any rover");
   if (report.utime > packet.utime) throw shoal::MessageError("a position report is from the future");
   unused_[report.vehicle] = std::move(report);
 }
 
-std::optional<PositionReports::Neighbour> PositionReports::take(const std::string& vehicle,
-                                                                std::int64_t utime) {
+std::optional<PositionReports::Neighbour> PositionReports::take(const std::string& vehicle, std::int64_t utime) {
   const auto found = unused_.find(vehicle);
   if (found == unused_.end()) return std::nullopt;
   const shoal::position_report_t report = found->second;

@@ -16,8 +16,7 @@ struct Scan {
 /// The smallest range of beams [first, last); infinity when there are none.
 inline double nearest_m(const Scan& scan, std::size_t first, std::size_t last) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = first; i < last; ++i)
-    nearest = std::min(nearest, static_cast<double>(scan.ranges_m[i]));
+  for (std::size_t i = first; i < last; ++i) nearest = std::min(nearest, static_cast<double>(scan.ranges_m[i]));
   return nearest;
 }
 

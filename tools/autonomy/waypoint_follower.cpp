@@ -13,9 +13,7 @@ constexpr double progress_m = 0.2;
 }  // namespace
 
 WaypointFollower::WaypointFollower(std::vector<Vector2d> waypoints_W, const Params& params)
-    : params_(params),
-      waypoints_W_(std::move(waypoints_W)),
-      nearest_m_(std::numeric_limits<double>::infinity()) {
+    : params_(params), waypoints_W_(std::move(waypoints_W)), nearest_m_(std::numeric_limits<double>::infinity()) {
   if (waypoints_W_.empty()) throw std::invalid_argument("there must be at least one waypoint");
 }
 

@@ -10,15 +10,13 @@ namespace autonomy {
 class WaypointFollower {
  public:
   struct Params {
-    double reached_m = 1.0;  ///< nearer than this a waypoint counts as reached
-    double give_up_s =
-        30.0;  ///< a waypoint that came no nearer for so long is skipped: something stands on it
+    double reached_m = 1.0;   ///< nearer than this a waypoint counts as reached
+    double give_up_s = 30.0;  ///< a waypoint that came no nearer for so long is skipped: something stands on it
   };
 
   /// Throws std::invalid_argument without waypoints.
   WaypointFollower(std::vector<Vector2d> waypoints_W, const Params& params);
-  explicit WaypointFollower(std::vector<Vector2d> waypoints_W)
-      : WaypointFollower(std::move(waypoints_W), Params()) {}
+  explicit WaypointFollower(std::vector<Vector2d> waypoints_W) : WaypointFollower(std::move(waypoints_W), Params()) {}
 
   /// Where to go now, seen from the rover: in its body frame.  `now_s` only ever grows.
   Vector2d goal_B(const Pose2& pose, double now_s);

@@ -33,8 +33,7 @@ double parse_number(std::string_view text) {
 
 std::vector<double> parse_numbers(std::string_view text, std::size_t count, const char* form) {
   const std::vector<std::string_view> pieces = split(text, ',');
-  if (pieces.size() != count)
-    throw std::invalid_argument("'" + std::string(text) + "' is not of the form " + form);
+  if (pieces.size() != count) throw std::invalid_argument("'" + std::string(text) + "' is not of the form " + form);
   std::vector<double> numbers;
   for (const std::string_view piece : pieces) numbers.push_back(parse_number(piece));
   return numbers;

@@ -3,10 +3,10 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <filesystem>
@@ -53,7 +53,9 @@ std::string describe_status(int status) {
 
 }  // namespace
 
-ProcessGroup::~ProcessGroup() { stop(); }
+ProcessGroup::~ProcessGroup() {
+  stop();
+}
 
 void ProcessGroup::start(const sim::ProcessConfig& config, const std::string& lcm_url,
                          const std::string& log_directory) {
@@ -101,27 +103,36 @@ std::vector<ProcessGroup::Exit> ProcessGroup::reap() {
     int status = 0;
     if (waitpid(process.pid, &status, WNOHANG) != process.pid) return false;
     const bool failed = !WIFEXITED(status) || WEXITSTATUS(status) != 0;
-    exits.push_back({process.config.name, describe_status(status), process.config.client,
-                     process.config.on_exit == "end", failed});
-    kill(-process.pid, SIGTERM);  // children it left behind
+    exits.push_back(
+        {process.config.name, describe_status(status), process.config.client, process.config.on_exit == "end", failed});
+    if (kill(-process.pid, SIGTERM) == 0) left_behind_.push_back(process.pid);  // its children live on
     return true;
   });
+  // The number of a group without members may be given to another one.
+  std::erase_if(left_behind_, [](pid_t group) { return kill(-group, 0) != 0; });
   return exits;
+}
+
+void ProcessGroup::signal_all(int signal) const {
+  for (const Running& process : running_) kill(-process.pid, signal);
+  for (const pid_t group : left_behind_) kill(-group, signal);
 }
 
 void ProcessGroup::stop() {
   using Clock = std::chrono::steady_clock;
-  for (const Running& process : running_) kill(-process.pid, SIGTERM);
+  reap();
+  signal_all(SIGTERM);
   const auto deadline = Clock::now() + std::chrono::seconds(2);
-  while (!running_.empty() && Clock::now() < deadline) {
+  while (!empty() && Clock::now() < deadline) {
     reap();
-    if (!running_.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    if (!empty()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  for (const Running& process : running_) {
-    kill(-process.pid, SIGKILL);
-    waitpid(process.pid, nullptr, 0);
-  }
+  signal_all(SIGKILL);
+  for (const Running& process : running_)
+    while (waitpid(process.pid, nullptr, 0) < 0 && errno == EINTR) {
+    }
   running_.clear();
+  left_behind_.clear();
 }
 
 }  // namespace tools

@@ -32,16 +32,20 @@ class ProcessGroup {
   void start(const sim::ProcessConfig& config, const std::string& lcm_url, const std::string& log_directory);
   /// Programs that ended since the last call.
   std::vector<Exit> reap();
-  /// Asks all to end, and waits.  Exit codes of programs that were asked do not matter.
+  /// Asks all and their children to end, and waits; SIGKILL after 2 s.  Exit codes of programs that were asked do not
+  /// matter.
   void stop();
-  bool empty() const { return running_.empty(); }
+  bool empty() const { return running_.empty() && left_behind_.empty(); }
 
  private:
   struct Running {
     pid_t pid;
     sim::ProcessConfig config;
   };
+  void signal_all(int signal) const;
+
   std::vector<Running> running_;
+  std::vector<pid_t> left_behind_;  ///< process groups that outlive their programs
 };
 
 }  // namespace tools

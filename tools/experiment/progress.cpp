@@ -21,8 +21,7 @@ void Progress::update(sim::Time now, std::uint64_t messages, bool paused) {
   char end[32] = "";
   if (duration_s_ > 0) std::snprintf(end, sizeof end, " / %.0f s", duration_s_);
   std::fprintf(stderr, "%s%8.2f s%s  %7.2f x real time  %8.0f messages/s%s%s", terminal_ ? "\r" : "",
-               sim::to_seconds(now), end, factor, per_second, paused ? "  paused" : "        ",
-               terminal_ ? "" : "\n");
+               sim::to_seconds(now), end, factor, per_second, paused ? "  paused" : "        ", terminal_ ? "" : "\n");
   std::fflush(stderr);
   shown_ = terminal_;
   last_ = wall;

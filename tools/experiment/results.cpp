@@ -1,9 +1,7 @@
 #include "tools/experiment/results.hpp"
 
-#include <spawn.h>
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -13,8 +11,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
-extern char** environ;
+#include "tools/experiment/gnuplot.hpp"
 
 namespace tools {
 
@@ -42,6 +41,16 @@ std::string outline_of(const sim::PartConfig& part, const sim::Pose& X_WB) {
   return text.empty() ? text : text + "\n";
 }
 
+std::runtime_error cannot_write(const std::string& path, const std::string& reason) {
+  return std::runtime_error("cannot write results to '" + path + "': " + reason);
+}
+
+void write_file(const std::string& path, const std::string& text) {
+  std::ofstream out(path, std::ios::binary);
+  out << text << std::flush;
+  if (!out) throw cannot_write(path, std::strerror(errno));
+}
+
 }  // namespace
 
 bool Summary::passed() const {
@@ -66,6 +75,9 @@ std::string Summary::to_json() const {
   json["rules"] = nlohmann::ordered_json::array();
   for (const Scoring::Verdict& verdict : verdicts)
     json["rules"].push_back({{"rule", verdict.rule}, {"passed", verdict.passed}});
+  json["processes"] = nlohmann::ordered_json::array();
+  for (const Process& process : processes)
+    json["processes"].push_back({{"name", process.name}, {"how", process.how}, {"sim_time_s", process.sim_time_s}});
   json["passed"] = passed() && exit_code == 0;
   json["ended"] = ended;
   json["error"] = error;
@@ -84,8 +96,21 @@ std::string Summary::to_text() const {
   for (const auto& [name, value] : metrics) text += fmt::format("  {:<28} {:.4g}\n", name, value);
   for (const Scoring::Verdict& verdict : verdicts)
     text += fmt::format("  {}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.rule);
+  for (const Process& process : processes)
+    text += fmt::format("  process '{}' {} at {:.2f} s\n", process.name, process.how, process.sim_time_s);
   text += fmt::format("  state hash {:016x}\n", state_hash);
   return text;
+}
+
+void write_summary(const std::string& directory, const Summary& summary) {
+  const std::string path = directory + "/summary.json";
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (!error) {
+    write_file(path + ".part", summary.to_json());
+    std::filesystem::rename(path + ".part", path, error);
+  }
+  if (error) throw cannot_write(path, error.message());
 }
 
 Results::Results(const std::string& directory, const sim::World& world) : directory_(directory), world_(world) {
@@ -93,12 +118,13 @@ Results::Results(const std::string& directory, const sim::World& world) : direct
   std::filesystem::create_directories(directory, error);
   const std::string path = directory + "/tracks.csv";
   tracks_ = error ? nullptr : std::fopen(path.c_str(), "w");
-  if (tracks_ == nullptr)
-    throw std::runtime_error("cannot write results to '" + path +
-                             "': " + (error ? error.message() : std::string(std::strerror(errno))));
+  if (tracks_ == nullptr) throw cannot_write(path, error ? error.message() : std::strerror(errno));
+  // Pictures of an earlier run would be taken for this one's.
+  for (const char* picture : {"/tracks.png", "/errors.png"}) std::filesystem::remove(directory + picture, error);
   std::fprintf(tracks_, "time_s,vehicle,x_m,y_m,z_m,yaw_rad\n");
   const double step_s = sim::to_seconds(world.step_time());
   every_steps_ = std::max<std::int64_t>(1, std::llround(1.0 / (world.config().run.track_rate_hz * step_s)));
+  steps_per_second_ = std::max<std::int64_t>(1, std::llround(1.0 / step_s));
   write_outlines();
 }
 
@@ -107,20 +133,20 @@ Results::~Results() {
 }
 
 void Results::after_step() {
+  if (world_.step_number() % steps_per_second_ == 0 && std::fflush(tracks_) != 0 && !error_)
+    error_ = cannot_write(directory_ + "/tracks.csv", std::strerror(errno)).what();
   if (world_.step_number() % every_steps_ != 0) return;
   for (const auto& vehicle : world_.vehicles()) {
     const sim::Pose X_WV = vehicle->X_WV();
     const sim::Vector3d p = X_WV.translation();
-    std::fprintf(tracks_, "%.6f,%s,%.6f,%.6f,%.6f,%.6f\n", sim::to_seconds(world_.now()), vehicle->name().c_str(),
-                 p.x(), p.y(), p.z(), sim::yaw_of(X_WV.linear()));
+    const int written = std::fprintf(tracks_, "%.6f,%s,%.6f,%.6f,%.6f,%.6f\n", sim::to_seconds(world_.now()),
+                                     vehicle->name().c_str(), p.x(), p.y(), p.z(), sim::yaw_of(X_WV.linear()));
+    if (written < 0 && !error_) error_ = cannot_write(directory_ + "/tracks.csv", std::strerror(errno)).what();
   }
 }
 
 void Results::write(const std::string& file, const std::string& text) const {
-  const std::string path = directory_ + "/" + file;
-  std::ofstream out(path, std::ios::binary);
-  out << text << std::flush;
-  if (!out) throw std::runtime_error("cannot write results to '" + path + "': " + std::strerror(errno));
+  write_file(directory_ + "/" + file, text);
 }
 
 void Results::write_outlines() const {
@@ -137,66 +163,90 @@ void Results::write_errors(const Scoring& scoring) const {
   std::string text = "time_s,metric,error_m,estimate_x_m,estimate_y_m,truth_x_m,truth_y_m\n";
   for (const Scoring::Track& track : scoring.tracks())
     for (const Scoring::Sample& sample : track.samples)
-      text += fmt::format("{:.6f},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}\n", sample.time_s, track.metric,
-                          sample.error_m(), sample.estimate_m.x(), sample.estimate_m.y(), sample.truth_m.x(),
-                          sample.truth_m.y());
+      text +=
+          fmt::format("{:.6f},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}\n", sample.time_s, track.metric, sample.error_m(),
+                      sample.estimate_m.x(), sample.estimate_m.y(), sample.truth_m.x(), sample.truth_m.y());
   write("errors.csv", text);
 }
 
-void Results::finish(const Summary& summary, const Scoring& scoring, const sim::ConfigNode& resolved) {
-  const bool tracks_ok = std::fclose(tracks_) == 0;
-  tracks_ = nullptr;
-  if (!tracks_ok) throw std::runtime_error("cannot write results to '" + directory_ + "/tracks.csv'");
-  write("summary.json", summary.to_json());
-  std::string metrics = "metric,value\n";
-  for (const auto& [name, value] : summary.metrics) metrics += fmt::format("{},{:.9g}\n", name, value);
-  write("metrics.csv", metrics);
-  write_errors(scoring);
-  write("world.yaml", sim::to_yaml(resolved));
-  plot(scoring);
+void Results::write_metrics(const Summary& summary) const {
+  std::string text = "metric,value\n";
+  for (const auto& [name, value] : summary.metrics) text += fmt::format("{},{:.9g}\n", name, value);
+  write("metrics.csv", text);
 }
 
-void Results::plot(const Scoring& scoring) const {
-  const auto tracks = scoring.tracks();
+void Results::close_tracks() {
+  const bool bad = std::ferror(tracks_) != 0;
+  const bool closed = std::fclose(std::exchange(tracks_, nullptr)) == 0;
+  if (bad || !closed)
+    throw std::runtime_error(error_.value_or(
+        cannot_write(directory_ + "/tracks.csv", closed ? "an earlier write failed" : std::strerror(errno)).what()));
+}
+
+void Results::finish(const Summary& summary, const Scoring& scoring, const sim::ConfigNode& resolved,
+                     const std::function<bool()>& give_up) {
+  std::optional<std::string> first_error;
+  const auto attempt = [&](const auto& write_it) {
+    try {
+      write_it();
+    } catch (const std::exception& error) {
+      if (!first_error) first_error = error.what();
+    }
+  };
+  attempt([&] { write_summary(directory_, summary); });
+  attempt([&] { close_tracks(); });
+  attempt([&] { write_metrics(summary); });
+  attempt([&] { write_errors(scoring); });
+  attempt([&] { write("world.yaml", sim::to_yaml(resolved)); });
+  attempt([&] { plot(summary, scoring, give_up); });
+  if (first_error) throw std::runtime_error(*first_error);
+}
+
+std::string Results::plot_script(const Scoring& scoring) const {
+  auto tracks = scoring.tracks();
+  // gnuplot fails on a plot without a point.
+  std::erase_if(tracks, [](const Scoring::Track& track) { return track.samples.empty(); });
   std::string script =
       // The vehicles' rows alternate: without `missing` each row of another one would break the line.
       "set datafile separator ','\nset datafile missing NaN\n"
       "set terminal pngcairo size 1000,1080\nset output 'tracks.png'\n"
       "set size ratio -1\nset xlabel 'east (m)'\nset ylabel 'north (m)'\nset grid\nset key below\n"
-      "set title '" + world_.config().name + "' noenhanced\n"
+      "set title " +
+      gnuplot_text(world_.config().name) +
+      " noenhanced\n"
       "plot 'outlines.dat' using (real(word(strcol(1),1))):(real(word(strcol(1),2))) with lines lc 'gray40' notitle";
   if (world_.vehicles().size() > most_named_tracks) {
     script += ", 'tracks.csv' every ::1 using 3:4 with dots lc 'blue' title 'vehicles'";
   } else {
     for (const auto& vehicle : world_.vehicles())
-      script += fmt::format(", 'tracks.csv' every ::1 using (strcol(2) eq '{0}' ? $3 : NaN):4 with lines lw 2 "
-                            "title '{0}' noenhanced",
-                            vehicle->name());
+      script += fmt::format(
+          ", 'tracks.csv' every ::1 using (strcol(2) eq {0} ? $3 : NaN):4 with lines lw 2 "
+          "title {0} noenhanced",
+          gnuplot_text(vehicle->name()));
   }
   for (const Scoring::Track& track : tracks)
-    script += fmt::format(", 'errors.csv' every ::1 using (strcol(2) eq '{0}' ? $4 : NaN):5 with lines dt 2 title "
-                          "'{0} estimate of {1}' noenhanced",
-                          track.metric, track.vehicle);
+    script += fmt::format(
+        ", 'errors.csv' every ::1 using (strcol(2) eq {} ? $4 : NaN):5 with lines dt 2 title "
+        "{} noenhanced",
+        gnuplot_text(track.metric), gnuplot_text(track.metric + " estimate of " + track.vehicle));
   script += "\n";
-  if (!tracks.empty()) {
-    script += "set output 'errors.png'\nset size noratio\nset xlabel 'time (s)'\nset ylabel 'position error (m)'\nplot ";
-    for (std::size_t i = 0; i < tracks.size(); ++i)
-      script += fmt::format("{0}'errors.csv' every ::1 using (strcol(2) eq '{1}' ? $1 : NaN):3 with lines lw 2 title "
-                            "'{1}' noenhanced",
-                            i > 0 ? ", " : "", tracks[i].metric);
-    script += "\n";
-  }
-  write("plot.gp", script);
+  if (tracks.empty()) return script;
+  script += "set output 'errors.png'\nset size noratio\nset xlabel 'time (s)'\nset ylabel 'position error (m)'\nplot ";
+  for (std::size_t i = 0; i < tracks.size(); ++i)
+    script += fmt::format(
+        "{0}'errors.csv' every ::1 using (strcol(2) eq {1} ? $1 : NaN):3 with lines lw 2 title "
+        "{1} noenhanced",
+        i > 0 ? ", " : "", gnuplot_text(tracks[i].metric));
+  return script + "\n";
+}
+
+void Results::plot(const Summary& summary, const Scoring& scoring, const std::function<bool()>& give_up) const {
+  if (summary.steps == 0 || error_) return;
   // The script names its files without a directory, so that the folder can be moved and plotted again.
-  std::string command = "cd \"$0\" && exec gnuplot plot.gp > plot.log 2>&1";
-  std::string shell = "sh";
-  std::string option = "-c";
-  std::string directory = directory_;
-  char* arguments[] = {shell.data(), option.data(), command.data(), directory.data(), nullptr};
-  pid_t pid = 0;
-  int status = -1;
-  if (posix_spawnp(&pid, "sh", nullptr, nullptr, arguments, environ) == 0) waitpid(pid, &status, 0);
-  if (status != 0) spdlog::warn("no pictures: gnuplot failed, see {}/plot.log", directory_);
+  write("plot.gp", plot_script(scoring));
+  const bool plotted = run_gnuplot(directory_, "plot.gp", std::chrono::seconds(30), give_up);
+  if (!plotted && !give_up() && summary.ended != "signal")
+    spdlog::warn("no pictures: gnuplot failed, see {}/plot.log", directory_);
 }
 
 }  // namespace tools

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,13 @@ namespace tools {
 
 /// What a run came to: the same keys for every world.
 struct Summary {
+  /// A program that ended before the run did.
+  struct Process {
+    std::string name;
+    std::string how;  ///< `exited with code 1`
+    double sim_time_s = 0;
+  };
+
   std::string world;
   std::int64_t seed = 0;
   std::int64_t steps = 0;
@@ -26,7 +35,8 @@ struct Summary {
   std::int64_t quick_steps = 0;
   std::map<std::string, double> metrics;
   std::vector<Scoring::Verdict> verdicts;
-  std::string ended = "duration";  ///< duration, quit, signal, fault, bus, timeout, process
+  std::vector<Process> processes;
+  std::string ended = "duration";  ///< duration, quit, signal, fault, bus, timeout, process, configuration, error
   std::string error;               ///< why it ended early, empty when it did not
   int exit_code = 0;
 
@@ -37,6 +47,10 @@ struct Summary {
   std::string to_text() const;
 };
 
+/// Writes DIRECTORY/summary.json; a reader finds it whole or not at all.  Makes the directory.  Throws
+/// std::runtime_error.
+void write_summary(const std::string& directory, const Summary& summary);
+
 /// Writes the results directory: tracks while the run goes, the rest at its end.
 class Results {
  public:
@@ -46,19 +60,28 @@ class Results {
   const std::string& directory() const { return directory_; }
   /// Adds a sample of every vehicle's true pose when one is due.
   void after_step();
-  /// summary.json, metrics.csv, errors.csv, world.yaml, tracks.png, errors.png.  Throws std::runtime_error.
-  void finish(const Summary& summary, const Scoring& scoring, const sim::ConfigNode& resolved);
+  /// Why tracks cannot be written; looked at once a simulated second.
+  std::optional<std::string> error() const { return error_; }
+  /// summary.json, metrics.csv, errors.csv, world.yaml, tracks.png, errors.png.  Plotting ends once `give_up` says so.
+  /// What cannot be written does not keep the rest from being written.  Throws std::runtime_error about the first.
+  void finish(const Summary& summary, const Scoring& scoring, const sim::ConfigNode& resolved,
+              const std::function<bool()>& give_up);
 
  private:
   void write_outlines() const;
   void write_errors(const Scoring& scoring) const;
-  void plot(const Scoring& scoring) const;
+  void write_metrics(const Summary& summary) const;
+  void close_tracks();
+  std::string plot_script(const Scoring& scoring) const;
+  void plot(const Summary& summary, const Scoring& scoring, const std::function<bool()>& give_up) const;
   void write(const std::string& file, const std::string& text) const;
 
   std::string directory_;
   const sim::World& world_;
   std::FILE* tracks_ = nullptr;
   std::int64_t every_steps_ = 1;
+  std::int64_t steps_per_second_ = 1;
+  std::optional<std::string> error_;
 };
 
 }  // namespace tools

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <thread>
 
 #include "bridges/lcm/bus_error.hpp"
@@ -24,7 +25,12 @@ using Clock = std::chrono::steady_clock;
 
 std::atomic<int> signal_caught{0};
 
-void on_signal(int signal) { signal_caught = signal; }
+std::atomic<int> signals_caught{0};
+
+void on_signal(int signal) {
+  signal_caught = signal;
+  ++signals_caught;
+}
 
 /// An error that ends the run, with its exit code.
 struct RunError : std::runtime_error {
@@ -95,6 +101,15 @@ class Pacer {
   Clock::time_point wall_start_;
 };
 
+/// When there is a worse error to tell of already.
+void try_to_write_summary(const std::string& directory, const Summary& summary) {
+  try {
+    write_summary(directory, summary);
+  } catch (const std::exception& error) {
+    spdlog::debug("{}", error.what());
+  }
+}
+
 class Run {
  public:
   Run(const sim::LoadedWorld& loaded, const RunOptions& options)
@@ -102,7 +117,8 @@ class Run {
         options_(options),
         buses_(open_buses(loaded, options)),
         world_(loaded.config, buses_.outer(), bridges::open_serial_port),
-        service_(buses_.outer(), *buses_.network, world_, control_, lockstep_, {sim::to_yaml(loaded.resolved), version_text()}),
+        service_(buses_.outer(), *buses_.network, world_, control_, lockstep_,
+                 {sim::to_yaml(loaded.resolved), version_text()}),
         scoring_(world_, buses_.outer()),
         duration_s_(options.duration_s.value_or(loaded.config.run.duration_s)),
         progress_(duration_s_, options.quiet) {
@@ -125,6 +141,8 @@ class Run {
       fail(summary, 3, "fault", error.what());
     } catch (const bridges::LockstepTimeout& error) {
       fail(summary, 5, "timeout", error.what());
+    } catch (const std::exception& error) {
+      fail(summary, 4, "error", error.what());
     }
     progress_.clear();
     summary.wall_s = std::chrono::duration<double>(Clock::now() - begin).count();
@@ -148,9 +166,15 @@ class Run {
 
   void start_clients() {
     std::vector<std::string> awaited = options_.await;
+    const bool takes_clients = !awaited.empty() || (options_.launch && !loaded_.config.processes.empty());
+    if (takes_clients && buses_.lcm != nullptr &&
+        service_.hears_another_simulator([this](std::chrono::milliseconds time) { buses_.wait(time); })) {
+      alone_ = false;
+      throw RunError(4, "bus",
+                     "another simulator publishes on " + buses_.lcm->url() +
+                         "; their clients would mix: choose another port with --lcm-url");
+    }
     if (options_.launch) {
-      if (buses_.lcm == nullptr && !loaded_.config.processes.empty())
-        throw RunError(2, "configuration", "--launch needs the LCM bus: processes cannot attach to --bus none");
       for (const sim::ProcessConfig& process : loaded_.config.processes) {
         try {
           processes_.start(process, buses_.lcm->url(), options_.results);
@@ -166,18 +190,26 @@ class Run {
   }
 
   void await(const std::vector<std::string>& clients) {
-    const auto deadline =
-        Clock::now() + std::chrono::duration<double>(loaded_.config.lockstep.join_timeout_s);
-    for (const std::string& client : clients)
+    const auto begin = Clock::now();
+    const auto deadline = begin + std::chrono::duration<double>(loaded_.config.lockstep.join_timeout_s);
+    for (const std::string& client : clients) {
+      bool said = false;
       while (!lockstep_.has(client) && wanted()) {
         service_.handle_requests();
         check_processes();
+        check_bus();
         if (gone_.count(client) > 0) break;
         if (Clock::now() > deadline)
-          throw RunError(5, "timeout", "lockstep: client '" + client + "' has not joined within " +
-                                           std::to_string(loaded_.config.lockstep.join_timeout_s) + " s");
+          throw RunError(5, "timeout",
+                         "lockstep: client '" + client + "' has not joined within " +
+                             std::to_string(loaded_.config.lockstep.join_timeout_s) + " s");
+        if (!said && Clock::now() - begin > std::chrono::seconds(1)) {
+          spdlog::info("waiting for '{}' to join the lockstep", client);
+          said = true;
+        }
         buses_.wait(std::chrono::milliseconds(20));
       }
+    }
   }
 
   void loop() {
@@ -190,6 +222,7 @@ class Run {
       if (!control_.may_step()) {
         progress_.update(world_.now(), messages(), true);
         check_processes();
+        check_bus();
         buses_.wait(std::chrono::milliseconds(20));
         continue;
       }
@@ -210,6 +243,9 @@ class Run {
     synchronize();
     if (buses_.recorder)
       if (const auto error = buses_.recorder->error()) throw RunError(4, "bus", *error);
+    if (results_)
+      if (const auto error = results_->error()) throw RunError(4, "bus", *error);
+    if (world_.step_number() % 100 == 0) check_bus();
     // Looking for dead children costs a system call; ten times a simulated second will do.
     if (world_.step_number() % 10 == 0) check_processes();
     progress_.update(world_.now(), messages(), false);
@@ -220,6 +256,7 @@ class Run {
         loaded_.config.lockstep.timeout_s, [this](std::chrono::milliseconds time) { buses_.wait(time); },
         [this] {
           check_processes();
+          check_bus();
           return signal_caught == 0;
         });
   }
@@ -239,11 +276,17 @@ class Run {
     }
   }
 
+  void check_bus() const {
+    if (buses_.lcm != nullptr && !buses_.lcm->connected())
+      throw RunError(4, "bus", "the connection to " + buses_.lcm->url() + " was lost");
+  }
+
   void check_processes() {
     if (processes_.empty()) return;
     for (const ProcessGroup::Exit& exit : processes_.reap()) {
       progress_.clear();
       const std::string text = "process '" + exit.name + "' " + exit.how;
+      ended_processes_.push_back({exit.name, exit.how, sim::to_seconds(world_.now())});
       if (exit.ends_run) throw RunError(1, "process", text + "; the world says the run ends with it");
       if (exit.failed)
         spdlog::error("{}; the run goes on without it", text);
@@ -260,12 +303,11 @@ class Run {
   }
 
   void finish(Summary& summary) {
-    service_.publish_end();
+    if (alone_) service_.publish_end();  // else it would end the other simulator's clients
     processes_.stop();
     if (buses_.recorder) {
       buses_.recorder->close();
-      if (const auto error = buses_.recorder->error(); error && summary.exit_code == 0)
-        fail(summary, 4, "bus", *error);
+      if (const auto error = buses_.recorder->error(); error && summary.exit_code == 0) fail(summary, 4, "bus", *error);
     }
     const sim::BusCounts counts = buses_.network->counts();
     summary.world = loaded_.config.name;
@@ -279,19 +321,31 @@ class Run {
     summary.quick_steps = world_.physics().quick_steps();
     summary.metrics = scoring_.figures();
     summary.verdicts = scoring_.verdicts();
+    summary.processes = ended_processes_;
     // Without the programs that a world names there is nothing to judge.
     const bool judged = loaded_.config.processes.empty() || options_.launch || !options_.await.empty();
     if (!judged) summary.verdicts.clear();
     if (summary.exit_code == 0 && !summary.passed()) summary.exit_code = 1;
+    note_signal(summary);
     if (results_) write_results(summary);
   }
 
+  /// One that came while the run was ending counts as well.
+  static void note_signal(Summary& summary) {
+    if (signal_caught != 0 && summary.exit_code <= 1 && summary.error.empty())
+      fail(summary, 128 + signal_caught, "signal", "");
+  }
+
   void write_results(Summary& summary) {
+    const int exit_code = summary.exit_code;
+    const int signals = signals_caught;
     try {
-      results_->finish(summary, scoring_, loaded_.resolved);
-    } catch (const std::runtime_error& error) {
-      if (summary.exit_code == 0) fail(summary, 4, "bus", error.what());
+      results_->finish(summary, scoring_, loaded_.resolved, [&] { return signals_caught != signals; });
+    } catch (const std::exception& error) {
+      if (summary.exit_code <= 1 && summary.error.empty()) fail(summary, 4, "bus", error.what());
     }
+    note_signal(summary);
+    if (summary.exit_code != exit_code) try_to_write_summary(options_.results, summary);
   }
 
   const sim::LoadedWorld& loaded_;
@@ -306,6 +360,8 @@ class Run {
   Progress progress_;
   Pacer pacer_;
   ProcessGroup processes_;
+  std::vector<Summary::Process> ended_processes_;
+  bool alone_ = true;  ///< no other simulator was heard at the start
   std::map<std::string, bool> gone_;
   std::unique_ptr<Results> results_;
 };
@@ -315,29 +371,46 @@ class Run {
 Summary run_world(const sim::LoadedWorld& loaded, const RunOptions& options) {
   Summary summary;
   summary.world = loaded.config.name;
+  summary.seed = loaded.config.run.seed;
+  const auto fail = [&](int exit_code, const std::string& ended, const char* error) {
+    summary.exit_code = exit_code;
+    summary.ended = ended;
+    summary.error = error;
+    if (!options.results.empty()) try_to_write_summary(options.results, summary);
+  };
+  // An old summary would be taken for this run's if this one were killed.
+  std::error_code ignored;
+  if (!options.results.empty()) std::filesystem::remove(options.results + "/summary.json", ignored);
   try {
+    if (options.launch && options.bus == "none")
+      throw RunError(2, "configuration", "--launch needs the LCM bus: processes cannot attach to --bus none");
     return Run(loaded, options).go();
-  } catch (const sim::ConfigError&) {
+  } catch (const sim::ConfigError& error) {
+    fail(2, "configuration", error.what());
     throw;
   } catch (const RunError& error) {
-    summary.exit_code = error.exit_code;
-    summary.error = error.what();
-  } catch (const std::runtime_error& error) {  // bus, record, serial port or results could not be opened
-    summary.exit_code = 4;
-    summary.error = error.what();
+    fail(error.exit_code, error.ended, error.what());
+  } catch (const std::exception& error) {  // bus, record, serial port or results could not be opened
+    fail(4, "bus", error.what());
   }
-  summary.ended = "bus";
   return summary;
 }
 
-void catch_signals() {
+void catch_signals(bool ignore_pipe) {
   struct sigaction action {};
   action.sa_handler = on_signal;
   sigemptyset(&action.sa_mask);
-  for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
-  ::signal(SIGPIPE, SIG_IGN);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    if (signal == SIGHUP && before.sa_handler == SIG_IGN) continue;  // nohup
+    sigaction(signal, &action, nullptr);
+  }
+  if (ignore_pipe) ::signal(SIGPIPE, SIG_IGN);
 }
 
-int caught_signal() { return signal_caught; }
+int caught_signal() {
+  return signal_caught;
+}
 
 }  // namespace tools

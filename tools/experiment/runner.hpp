@@ -11,16 +11,16 @@ namespace tools {
 
 /// What the command line asks of a run.
 struct RunOptions {
-  std::optional<double> duration_s;    ///< instead of the world's
-  std::optional<double> speed;         ///< instead of the world's; 0: as fast as possible
-  std::string bus = "lcm";             ///< lcm, none
-  std::string lcm_url;                 ///< empty: LCM_DEFAULT_URL, then the default
-  std::string record;                  ///< file for the LCM event log; empty: none
-  bool overwrite = false;              ///< of the record
-  std::string results;                 ///< directory; empty: none
+  std::optional<double> duration_s;  ///< instead of the world's
+  std::optional<double> speed;       ///< instead of the world's; 0: as fast as possible
+  std::string bus = "lcm";           ///< lcm, none
+  std::string lcm_url;               ///< empty: LCM_DEFAULT_URL, then the default
+  std::string record;                ///< file for the LCM event log; empty: none
+  bool overwrite = false;            ///< of the record
+  std::string results;               ///< directory; empty: none
   bool paused = false;
   bool launch = false;
-  std::vector<std::string> await;      ///< lockstep clients, started by hand, to wait for
+  std::vector<std::string> await;  ///< lockstep clients, started by hand, to wait for
   bool quiet = false;
 };
 
@@ -29,8 +29,9 @@ struct RunOptions {
 /// thrown but ConfigError.
 Summary run_world(const sim::LoadedWorld& loaded, const RunOptions& options);
 
-/// SIGINT and SIGTERM end the run at the next step, once this was called.
-void catch_signals();
+/// SIGINT, SIGTERM and SIGHUP end the run at the next step, once this was called.  SIGPIPE ends the program unless it
+/// is ignored.
+void catch_signals(bool ignore_pipe);
 /// The signal that came, or 0.
 int caught_signal();
 

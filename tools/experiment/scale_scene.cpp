@@ -77,8 +77,7 @@ std::string boxes(const Grid& grid, int count) {
     for (int column = margin; column <= grid.columns - margin; ++column) corners.emplace_back(column, row);
   for (int i = 0; i < count; ++i) {
     const auto rest = static_cast<std::uint32_t>(corners.size()) - static_cast<std::uint32_t>(i);
-    std::swap(corners[static_cast<std::size_t>(i)],
-              corners[static_cast<std::size_t>(i) + random.integer_below(rest)]);
+    std::swap(corners[static_cast<std::size_t>(i)], corners[static_cast<std::size_t>(i) + random.integer_below(rest)]);
     const auto [column, row] = corners[static_cast<std::size_t>(i)];
     text += fmt::format(
         "  - {{name: box{}, fixed: true, position_m: [{}, {}, 0.25], rpy_deg: [0, 0, {:.3f}], "
@@ -131,8 +130,8 @@ std::string scale_scene_text(int robots, bool one_entry_each) {
   return "shoal: 1\nname: scale\nphysics: {step_s: 0.01}\nobjects:\n"
          "  - {name: ground, fixed: true, parts: [{shape: plane}]}\n" +
          wall("east", x / 2 + 0.05, 0, 0.1, y + 0.2) + wall("west", -x / 2 - 0.05, 0, 0.1, y + 0.2) +
-         wall("north", 0, y / 2 + 0.05, x, 0.1) + wall("south", 0, -y / 2 - 0.05, x, 0.1) +
-         boxes(grid, robots / 4) + "vehicles:\n" + rovers(grid, robots, one_entry_each);
+         wall("north", 0, y / 2 + 0.05, x, 0.1) + wall("south", 0, -y / 2 - 0.05, x, 0.1) + boxes(grid, robots / 4) +
+         "vehicles:\n" + rovers(grid, robots, one_entry_each);
 }
 
 /// A rover's brain, attached to the bus as a program outside would be.

@@ -23,8 +23,11 @@ Scoring::Scoring(const sim::World& world, sim::Bus& bus) : world_(world) {
   const auto steps = static_cast<std::size_t>(truth_memory_s / sim::to_seconds(world.step_time())) + 1;
   for (const sim::MetricConfig& config : world.config().metrics) {
     const sim::Vehicle* vehicle = world.find_vehicle(config.vehicle);
-    metrics_.push_back({&config, vehicle, bus.open_mailbox(config.channel),
-                        std::vector<sim::Vector3d>(steps, vehicle->X_WV().translation()), {}});
+    metrics_.push_back({&config,
+                        vehicle,
+                        bus.open_mailbox(config.channel),
+                        std::vector<sim::Vector3d>(steps, vehicle->X_WV().translation()),
+                        {}});
   }
 }
 
@@ -83,8 +86,8 @@ std::vector<Scoring::Verdict> Scoring::verdicts() const {
   for (const sim::PassRule& rule : world_.config().pass) {
     const double value = all.at(rule.metric);
     const double limit = rule.below ? *rule.below : rule.factor * all.at(rule.below_metric);
-    const std::string right =
-        rule.below ? fmt::format("{}", *rule.below) : fmt::format("{} * {} ({:.3f})", rule.factor, rule.below_metric, limit);
+    const std::string right = rule.below ? fmt::format("{}", *rule.below)
+                                         : fmt::format("{} * {} ({:.3f})", rule.factor, rule.below_metric, limit);
     // NaN (no estimate came) fails.
     verdicts.push_back({fmt::format("{} ({:.3f}) < {}", rule.metric, value, right), value < limit});
   }
@@ -93,8 +96,7 @@ std::vector<Scoring::Verdict> Scoring::verdicts() const {
 
 std::vector<Scoring::Track> Scoring::tracks() const {
   std::vector<Track> tracks;
-  for (const Metric& metric : metrics_)
-    tracks.push_back({metric.config->name, metric.config->vehicle, metric.samples});
+  for (const Metric& metric : metrics_) tracks.push_back({metric.config->name, metric.config->vehicle, metric.samples});
   return tracks;
 }
 

@@ -12,8 +12,8 @@ std::string version_text() {
       "ODE: {}\n"
       "LCM {}, Eigen {}.{}.{}, fmt {}\n"
       "compiler: {}\n",
-      SHOAL_VERSION, SHOAL_GIT_HASH, dGetConfiguration(), bridges::lcm_version(),
-      EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, FMT_VERSION, __VERSION__);
+      SHOAL_VERSION, SHOAL_GIT_HASH, dGetConfiguration(), bridges::lcm_version(), EIGEN_WORLD_VERSION,
+      EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, FMT_VERSION, __VERSION__);
 }
 
 }  // namespace tools

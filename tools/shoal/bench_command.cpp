@@ -37,8 +37,8 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       ->delimiter(',')
       ->check(CLI::Range(1, 100000));
   command->add_option("--warm-up", arguments->warm_up_s, "simulated seconds before the measurement")
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--measure", arguments->measure_s, "simulated seconds measured")->check(CLI::PositiveNumber);
+      ->check(number_from(0, 1e9));
+  command->add_option("--measure", arguments->measure_s, "simulated seconds measured")->check(number_from(0.001, 1e9));
   command->footer("Examples:\n  shoal bench\n  shoal bench --robots 100 --measure 60");
   command->callback([arguments, &exit_code] {
     bench(*arguments);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spdlog/fmt/fmt.h>
+
 #include <CLI/CLI.hpp>
 
 namespace tools {
@@ -7,12 +9,22 @@ namespace tools {
 /// Exit codes of the shoal program.
 enum ExitCode {
   exit_ok = 0,
-  exit_failed = 1,      ///< the experiment's own rule
-  exit_usage = 2,       ///< command line or configuration
+  exit_failed = 1,  ///< the experiment's own rule
+  exit_usage = 2,   ///< command line or configuration
   exit_physics = 3,
-  exit_bus = 4,         ///< bus or file trouble
+  exit_bus = 4,  ///< bus or file trouble
   exit_timeout = 5
 };
+
+/// Refuses what is no number, or none in this range: CLI::Range and its kin let nan and inf pass.
+inline CLI::Validator number_from(double low, double high) {
+  const auto check = [low, high](const std::string& text) -> std::string {
+    double number = 0;
+    if (CLI::detail::lexical_cast(text, number) && number >= low && number <= high) return "";
+    return fmt::format("must be from {:g} to {:g}, got '{}'", low, high, text);
+  };
+  return CLI::Validator(check, fmt::format("FLOAT in [{:g} - {:g}]", low, high));
+}
 
 /// Each adds its sub-command.  When chosen, the command sets `exit_code`.
 void add_run_command(CLI::App& app, int& exit_code);

@@ -12,7 +12,8 @@ void add_describe_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("describe", "Say what a device, a message or a file's keys are");
   const auto name = std::make_shared<std::string>();
   const auto page = std::make_shared<std::string>();
-  CLI::Option* name_option = command->add_option("NAME", *name, "a device type, a message type, device, noise, world or vehicle");
+  CLI::Option* name_option =
+      command->add_option("NAME", *name, "a device type, a message type, device, noise, world or vehicle");
   CLI::Option* page_option = command->add_option("--page", *page, "print a whole page of docs/ in Markdown")
                                  ->check(CLI::IsMember({"devices", "messages", "world_format"}));
   name_option->excludes(page_option);
@@ -52,9 +53,7 @@ void list(const std::string& what) {
 void add_list_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("list", "List device types or message types");
   const auto what = std::make_shared<std::string>();
-  command->add_option("WHAT", *what, "devices or messages")
-      ->required()
-      ->check(CLI::IsMember({"devices", "messages"}));
+  command->add_option("WHAT", *what, "devices or messages")->required()->check(CLI::IsMember({"devices", "messages"}));
   command->footer("Example:\n  shoal list devices");
   command->callback([what, &exit_code] {
     list(*what);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -10,9 +11,12 @@ namespace {
 
 const char* word(bridges::Finding::Verdict verdict) {
   switch (verdict) {
-    case bridges::Finding::Verdict::ok: return "ok      ";
-    case bridges::Finding::Verdict::warning: return "warning ";
-    default: return "BAD     ";
+    case bridges::Finding::Verdict::ok:
+      return "ok      ";
+    case bridges::Finding::Verdict::warning:
+      return "warning ";
+    default:
+      return "BAD     ";
   }
 }
 
@@ -22,7 +26,8 @@ int examine(const std::string& url) {
   for (const bridges::Finding& finding : bridges::check_network(url)) {
     std::cout << word(finding.verdict) << finding.name << ": " << finding.text << '\n';
     usable = usable && finding.verdict != bridges::Finding::Verdict::bad;
-    commands.insert(commands.end(), finding.commands.begin(), finding.commands.end());
+    for (const std::string& each : finding.commands)
+      if (std::find(commands.begin(), commands.end(), each) == commands.end()) commands.push_back(each);
   }
   if (!commands.empty()) std::cout << "\nTo mend it, type as root:\n";
   for (const std::string& command : commands) std::cout << "  " << command << '\n';

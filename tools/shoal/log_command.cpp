@@ -100,20 +100,20 @@ int csv(const std::string& path, const std::string& channel, const shoal::Messag
     const shoal::MessageSchema* schema = types.find(static_cast<std::uint64_t>(shoal::fingerprint(event->payload)));
     std::string names = "log_utime";
     std::string row = std::to_string(event->utime);
-    const auto error = schema == nullptr
-                           ? std::optional<std::string>("is of an unknown type; give its .lcm file with --types")
-                           : shoal::visit_fields(*schema, event->payload,
-                                                 [&](std::string_view name, const shoal::FieldValue& value) {
-                                                   if (!header) names += "," + std::string(name);
-                                                   row += "," + csv_value(value);
-                                                 });
+    const auto error =
+        schema == nullptr
+            ? std::optional<std::string>("is of an unknown type; give its .lcm file with --types")
+            : shoal::visit_fields(*schema, event->payload, [&](std::string_view name, const shoal::FieldValue& value) {
+                if (!header) names += "," + std::string(name);
+                row += "," + csv_value(value);
+              });
     if (error) {
       if (bad++ == 0) std::cerr << path << ": byte " << event->offset << ": " << channel << ": " << *error << '\n';
       continue;
     }
     if (!header) std::cout << names << '\n';
     header = true;
-    std::cout << row << '\n';
+    if (!(std::cout << row << '\n')) break;  // main() tells of it
     ++rows;
   }
   if (bad > 1) std::cerr << bad << " events of " << channel << " could not be decoded\n";
@@ -139,9 +139,8 @@ void add_log_command(CLI::App& app, int& exit_code) {
   }
   csv_command->add_option("CHANNEL", arguments->channel, "such as rover1.odometry")->required();
   command->footer("Examples:\n  shoal log info run.lcm\n  shoal log csv run.lcm rover1.odometry > odometry.csv");
-  info_command->callback([arguments, &exit_code] {
-    exit_code = info(arguments->path, shoal::types_with(arguments->lcm_files));
-  });
+  info_command->callback(
+      [arguments, &exit_code] { exit_code = info(arguments->path, shoal::types_with(arguments->lcm_files)); });
   csv_command->callback([arguments, &exit_code] {
     exit_code = csv(arguments->path, arguments->channel, shoal::types_with(arguments->lcm_files));
   });

@@ -1,6 +1,9 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <iostream>
 
 #include "bridges/lcm/bus_error.hpp"
@@ -22,7 +25,7 @@ int run(int argc, char** argv) {
       "  shoal describe lidar\n"
       "`shoal COMMAND --help` tells more.\n"
       "Exit codes: 0 ok, 1 a pass rule of the world failed, 2 usage or configuration, 3 physics fault,\n"
-      "4 bus or file trouble, 5 time-out, 130 SIGINT, 143 SIGTERM.");
+      "4 bus or file trouble, 5 time-out, 129 SIGHUP, 130 SIGINT, 143 SIGTERM.");
   int exit_code = tools::exit_ok;
   tools::add_run_command(app, exit_code);
   tools::add_check_command(app, exit_code);
@@ -47,6 +50,15 @@ int run(int argc, char** argv) {
   return exit_code;
 }
 
+/// A full disk shows at the latest now.  What failed before is the more important code.
+int flush_output(int exit_code) {
+  const bool flushed = std::fflush(stdout) == 0;
+  const int error = flushed ? EIO : errno;
+  if (flushed && std::cout && std::ferror(stdout) == 0) return exit_code;
+  std::cerr << "shoal: cannot write to stdout: " << std::strerror(error) << '\n';
+  return exit_code == tools::exit_ok ? tools::exit_bus : exit_code;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -54,7 +66,7 @@ int main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("shoal"));
   spdlog::set_pattern("%^%l%$: %v");
   try {
-    return run(argc, argv);
+    return flush_output(run(argc, argv));
   } catch (const std::exception& error) {
     std::cerr << "shoal: " << error.what() << '\n';
     return tools::exit_bus;

@@ -47,8 +47,7 @@ std::string traffic_of(const sim::DeviceType& type) {
   if (!type.report_message.empty())
     text += fmt::format("Reports `{}` on `VEHICLE.DEVICE`, by default {}. ", type.report_message,
                         rate_text(type.default_rate_hz));
-  if (!type.command_messages.empty())
-    text += fmt::format("Takes `{}` on `VEHICLE.DEVICE.cmd`.", type.command_messages);
+  if (!type.command_messages.empty()) text += fmt::format("Takes `{}` on `VEHICLE.DEVICE.cmd`.", type.command_messages);
   return text + "\n";
 }
 
@@ -138,8 +137,8 @@ std::string describe_text(const std::string& name) {
   if (name == "world") return "Keys of a world file.\n\n" + sim::text_table(params_of<sim::WorldConfig>());
   if (name == "vehicle") return "Keys of a vehicle file.\n\n" + sim::text_table(params_of<sim::VehicleConfig>());
   if (const sim::DeviceType* type = sim::DeviceRegistry::instance().find(name))
-    return type->name + ": " + type->meaning + "\n" + traffic_of(*type) + "\n" +
-           sim::text_table(params_of(*type)) + "\nBeside these, the keys of every device: shoal describe device\n";
+    return type->name + ": " + type->meaning + "\n" + traffic_of(*type) + "\n" + sim::text_table(params_of(*type)) +
+           "\nBeside these, the keys of every device: shoal describe device\n";
   const shoal::MessageTypes& types = shoal::embedded_types();
   for (const std::string& full : {name, "shoal." + name})
     if (const shoal::MessageSchema* schema = types.find(std::string_view(full))) return message_text(*schema);

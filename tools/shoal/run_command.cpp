@@ -1,5 +1,6 @@
 #include <spdlog/spdlog.h>
 
+#include <charconv>
 #include <iostream>
 #include <memory>
 
@@ -19,24 +20,25 @@ struct RunArguments {
   std::string log_level = "info";
 };
 
-/// `max` or a number above 0.
+/// `max` or a number.
 std::optional<double> parse_speed(const std::string& text) {
   if (text.empty()) return std::nullopt;
   if (text == "max") return 0.0;
   try {
     std::size_t used = 0;
     const double speed = std::stod(text, &used);
-    if (used == text.size() && speed > 0 && speed <= 1e6) return speed;
+    if (used == text.size() && speed >= 0.001 && speed <= 1e6) return speed;
   } catch (const std::exception&) {
   }
-  throw CLI::ValidationError("--speed", "must be 'max' or a number > 0, got '" + text + "'");
+  throw CLI::ValidationError("--speed", "must be 'max' or from 0.001 to 1e6, got '" + text + "'");
 }
 
-/// CLI::Range lets nan pass.
-std::string check_duration(const std::string& text) {
-  double duration_s = 0;
-  const bool good = CLI::detail::lexical_cast(text, duration_s) && duration_s >= 0 && duration_s <= 1e9;
-  return good ? "" : "must be from 0 to 1e9, got '" + text + "'";
+std::string check_seed(const std::string& text) {
+  std::int64_t seed = 0;
+  const char* end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, seed);
+  const bool good = error == std::errc{} && at == end && seed >= 0;
+  return good ? "" : "must be a whole number from 0 to 9223372036854775807, got '" + text + "'";
 }
 
 int run(RunArguments& arguments) {
@@ -44,7 +46,7 @@ int run(RunArguments& arguments) {
   arguments.run.speed = parse_speed(arguments.speed);
   arguments.run.duration_s = arguments.duration_s;
   const sim::LoadedWorld loaded = sim::load_world(arguments.world, arguments.load);
-  catch_signals();
+  catch_signals(true);
   const Summary summary = run_world(loaded, arguments.run);
   if (!summary.error.empty()) std::cerr << "shoal: " << summary.error << '\n';
   if (summary.steps > 0 && !arguments.run.quiet) std::cout << summary.to_text();
@@ -60,9 +62,9 @@ void add_run_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<RunArguments>();
   command->add_option("WORLD", arguments->world, "world file")->required();
   command->add_option("--duration", arguments->duration_s, "simulated seconds; 0: until told to quit")
-      ->check(check_duration);
-  command->add_option("--speed", arguments->speed, "times real time, or max");
-  command->add_option("--seed", arguments->load.seed, "of every random stream")->check(CLI::NonNegativeNumber);
+      ->check(number_from(0, 1e9));
+  command->add_option("--speed", arguments->speed, "times real time, from 0.001 to 1e6, or max");
+  command->add_option("--seed", arguments->load.seed, "of every random stream")->check(check_seed);
   command->add_option("--set", arguments->load.sets, "path=value: change a value of the world file")
       ->type_size(1)
       ->allow_extra_args(false);

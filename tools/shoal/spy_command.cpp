@@ -1,3 +1,4 @@
+#include <poll.h>
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
@@ -34,7 +35,7 @@ struct Seen {
 /// The start of a text on one line.
 std::string one_line(std::string_view text) {
   std::string line;
-  for (const char c : text.substr(0, 200)) line += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  for (const char c : text.substr(0, 200)) line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
   return line + (text.size() > 200 ? "..." : "");
 }
 
@@ -69,12 +70,18 @@ void print_table(std::map<std::string, Seen>& channels, const shoal::MessageType
   for (auto& [channel, seen] : channels) {
     const double rate_hz = static_cast<double>(seen.messages - seen.messages_before) / since_s;
     seen.messages_before = seen.messages;
-    std::string line = fmt::format("{:<32} {:>9} {:>9.1f} {:>9}  {}", channel, seen.messages, rate_hz,
+    std::string line = fmt::format("{:<32} {:>9} {:>9.1f} {:>9}  {}", one_line(channel), seen.messages, rate_hz,
                                    seen.last.size(), decoded(types, seen.last, 6, " "));
     if (terminal && line.size() > 150) line = line.substr(0, 147) + "...";
     std::cout << line << '\n';
   }
   std::cout << std::flush;
+}
+
+/// True once nobody can read what is printed: the next write would end us, but there may be none for long.
+bool output_closed() {
+  pollfd output{STDOUT_FILENO, 0, 0};
+  return !std::cout || (poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0);
 }
 
 int spy(const SpyArguments& arguments) {
@@ -84,13 +91,13 @@ int spy(const SpyArguments& arguments) {
     listener.listen_to_all();
   else
     listener.listen(arguments.channel);
-  catch_signals();
+  catch_signals(false);
   const bool terminal = isatty(STDOUT_FILENO) != 0;
   std::map<std::string, Seen> channels;
   const Clock::time_point begin = Clock::now();
   Clock::time_point shown = begin;
   const auto over = [&] {
-    return caught_signal() != 0 ||
+    return caught_signal() != 0 || output_closed() ||
            (arguments.duration_s > 0 && Clock::now() - begin > std::chrono::duration<double>(arguments.duration_s));
   };
   while (!over()) {
@@ -120,8 +127,7 @@ void add_spy_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("spy", "Watch the live channels: rates and decoded fields");
   const auto arguments = std::make_shared<SpyArguments>();
   command->add_option("CHANNEL", arguments->channel, "show every message of this channel in full");
-  command->add_option("--duration", arguments->duration_s, "wall seconds; 0: until Ctrl-C")
-      ->check(CLI::NonNegativeNumber);
+  command->add_option("--duration", arguments->duration_s, "wall seconds; 0: until Ctrl-C")->check(number_from(0, 1e9));
   command->add_option("--lcm-url", arguments->lcm_url, "instead of LCM_DEFAULT_URL and the default");
   command->add_option("--types", arguments->lcm_files, ".lcm files of types that are not Shoal's");
   command->footer("Examples:\n  shoal spy\n  shoal spy rover1.odometry\n  shoal spy --duration 5 > channels.txt");

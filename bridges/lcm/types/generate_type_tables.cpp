@@ -25,8 +25,7 @@ void write_embedded(std::ostream& out, const std::vector<LcmSource>& sources) {
          "std::span<const LcmSource> embedded_lcm_sources() {\n  static const std::vector<LcmSource> "
          "sources{\n";
   for (const LcmSource& source : sources)
-    out << "{\"" << source.file.substr(source.file.rfind('/') + 1) << "\", R\"lcm(" << source.text
-        << ")lcm\"},\n";
+    out << "{\"" << source.file.substr(source.file.rfind('/') + 1) << "\", R\"lcm(" << source.text << ")lcm\"},\n";
   out << "  };\n  return sources;\n}\n\n}  // namespace shoal\n";
 }
 
@@ -47,8 +46,8 @@ void write_member_check(std::ostream& out, const MessageSchema& schema, const Me
   for (std::size_t d = 0; d < member.dimensions.size(); ++d) {
     const std::string length = length_of(schema, member.dimensions[d]);
     if (vectors)
-      out << indent << "require_length(" << element << ".size(), " << length << ", \"" << schema.name
-          << "\", \"" << member.name << "\");\n";
+      out << indent << "require_length(" << element << ".size(), " << length << ", \"" << schema.name << "\", \""
+          << member.name << "\");\n";
     const bool goes_deeper = d + 1 < member.dimensions.size() || member.compound != nullptr;
     if (!goes_deeper) break;
     const std::string inner = "e" + std::to_string(d);
@@ -64,8 +63,7 @@ void write_member_check(std::ostream& out, const MessageSchema& schema, const Me
 void write_length_checks(std::ostream& out, const MessageTypes& types) {
   out << "// Generated from the .lcm files.\n#pragma once\n\n#include <cstddef>\n#include <string>\n\n"
          "#include \"shoal/message_schema.hpp\"\n";
-  for (const auto& [name, schema] : types.all())
-    out << "#include \"" << replaced(name, ".", "/") << ".hpp\"\n";
+  for (const auto& [name, schema] : types.all()) out << "#include \"" << replaced(name, ".", "/") << ".hpp\"\n";
   out << "\nnamespace shoal {\n\n"
          "template <class Length>\n"
          "void require_length(std::size_t size, Length length, const char* type, const char* member) {\n"
@@ -75,8 +73,7 @@ void write_length_checks(std::ostream& out, const MessageTypes& types) {
   for (const auto& [name, schema] : types.all())
     out << "inline void check_array_lengths(const " << replaced(name, ".", "::") << "& m);\n";
   for (const auto& [name, schema] : types.all()) {
-    out << "\ninline void check_array_lengths([[maybe_unused]] const " << replaced(name, ".", "::")
-        << "& m) {\n";
+    out << "\ninline void check_array_lengths([[maybe_unused]] const " << replaced(name, ".", "::") << "& m) {\n";
     for (const Member& member : schema.members)
       if (member.is_variable() || member.compound != nullptr) write_member_check(out, schema, member);
     out << "}\n";

@@ -45,8 +45,7 @@ TEST(LcmUrl, HasTheLargeBufferUnlessTheUserChoseOne) {
   EXPECT_EQ(resolve_lcm_url(""), "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304");
   EXPECT_EQ(resolve_lcm_url("udpm://"), "udpm://?recv_buf_size=4194304");
   EXPECT_EQ(resolve_lcm_url("udpm://:7668?ttl=1"), "udpm://:7668?ttl=1&recv_buf_size=4194304");
-  EXPECT_EQ(resolve_lcm_url("udpm://239.1.1.1:7668?recv_buf_size=100"),
-            "udpm://239.1.1.1:7668?recv_buf_size=100");
+  EXPECT_EQ(resolve_lcm_url("udpm://239.1.1.1:7668?recv_buf_size=100"), "udpm://239.1.1.1:7668?recv_buf_size=100");
   EXPECT_EQ(resolve_lcm_url("memq://"), "memq://");
   const Environment environment("udpm://239.255.76.67:7700?ttl=0");
   EXPECT_EQ(resolve_lcm_url(""), "udpm://239.255.76.67:7700?ttl=0&recv_buf_size=4194304");
@@ -55,11 +54,9 @@ TEST(LcmUrl, HasTheLargeBufferUnlessTheUserChoseOne) {
 
 TEST(LcmUrl, ErrorsSayWhatIsWrong) {
   EXPECT_EQ(url_error("7667"), "LCM URL '7667': must look like udpm://239.255.76.67:7667?ttl=0");
-  EXPECT_EQ(url_error("upd://"),
-            "LCM URL 'upd://': unknown kind 'upd'; known kinds: memq, mpudpm, tcpq, udpm");
-  EXPECT_EQ(
-      url_error("udpm://10.0.0.1:7667"),
-      "LCM URL 'udpm://10.0.0.1:7667': '10.0.0.1' is no multicast address (224.0.0.0 to 239.255.255.255)");
+  EXPECT_EQ(url_error("upd://"), "LCM URL 'upd://': unknown kind 'upd'; known kinds: memq, mpudpm, tcpq, udpm");
+  EXPECT_EQ(url_error("udpm://10.0.0.1:7667"),
+            "LCM URL 'udpm://10.0.0.1:7667': '10.0.0.1' is no multicast address (224.0.0.0 to 239.255.255.255)");
   EXPECT_EQ(url_error("udpm://239.1.1.1:70000"),
             "LCM URL 'udpm://239.1.1.1:70000': the port must be 1 to 65535, got '70000'");
   EXPECT_EQ(url_error("udpm://?tll=1"),
@@ -72,8 +69,7 @@ TEST(LcmUrl, NoTcpServerIsSaidAtOnce) {
     LcmBus bus("tcpq://127.0.0.1:9");
     FAIL();
   } catch (const BusError& error) {
-    EXPECT_NE(std::string(error.what()).find("no LCM server at 127.0.0.1:9"), std::string::npos)
-        << error.what();
+    EXPECT_NE(std::string(error.what()).find("no LCM server at 127.0.0.1:9"), std::string::npos) << error.what();
   }
 }
 

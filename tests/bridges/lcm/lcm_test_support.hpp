@@ -82,8 +82,7 @@ class PayloadBuilder {
 
  private:
   void append(std::uint64_t value, int size) {
-    for (int shift = 8 * (size - 1); shift >= 0; shift -= 8)
-      payload_.push_back(static_cast<std::byte>(value >> shift));
+    for (int shift = 8 * (size - 1); shift >= 0; shift -= 8) payload_.push_back(static_cast<std::byte>(value >> shift));
   }
 
   void add_members(const shoal::MessageSchema& schema, int depth) {
@@ -91,8 +90,8 @@ class PayloadBuilder {
     for (const shoal::Member& member : schema.members) {
       std::int64_t count = 1;
       for (const shoal::Dimension& dimension : member.dimensions)
-        count *= dimension.is_variable() ? lengths[static_cast<std::size_t>(dimension.length_slot)]
-                                         : dimension.constant;
+        count *=
+            dimension.is_variable() ? lengths[static_cast<std::size_t>(dimension.length_slot)] : dimension.constant;
       for (std::int64_t i = 0; i < count; ++i) add_value(member, lengths, depth);
     }
   }

@@ -32,9 +32,7 @@ class FakeSimulator {
     bus_.end_of_step();
   }
 
-  shoal::sim_control_request_t await_request() {
-    return await_message<shoal::sim_control_request_t>(*requests_);
-  }
+  shoal::sim_control_request_t await_request() { return await_message<shoal::sim_control_request_t>(*requests_); }
   shoal::sim_ack_t await_ack() { return await_message<shoal::sim_ack_t>(*acks_); }
 
   void reply(const shoal::sim_control_request_t& request, bool ok, const std::string& text) {

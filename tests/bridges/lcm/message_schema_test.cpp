@@ -32,8 +32,7 @@ std::string error_of(const MessageSchema& schema, const sim::Bytes& payload, Fin
 /// A payload from fingerprint and the bytes behind it.
 sim::Bytes payload_of(const MessageSchema& schema, std::initializer_list<int> rest) {
   sim::Bytes payload;
-  for (int shift = 56; shift >= 0; shift -= 8)
-    payload.push_back(static_cast<std::byte>(schema.fingerprint >> shift));
+  for (int shift = 56; shift >= 0; shift -= 8) payload.push_back(static_cast<std::byte>(schema.fingerprint >> shift));
   for (const int byte : rest) payload.push_back(static_cast<std::byte>(byte));
   return payload;
 }
@@ -95,8 +94,7 @@ TEST(MessageSchema, ErrorsOfLcmFilesSayWhere) {
   EXPECT_EQ(parse_error("struct b_t { double x[0]; }"),
             "test.lcm:1:23: array size must be between 1 and 16777216, got 0");
   EXPECT_EQ(parse_error("struct b_t { /* double x; }"), "test.lcm:1:12: comment without end");
-  EXPECT_EQ(parse_error("class b_t { }"),
-            "test.lcm:1:1: expected 'package', 'struct' or 'enum', got 'class'");
+  EXPECT_EQ(parse_error("class b_t { }"), "test.lcm:1:1: expected 'package', 'struct' or 'enum', got 'class'");
   EXPECT_NE(parse_error("struct b_t {"), "no error");
   EXPECT_NE(parse_error("struct b_t { const int32_t A = "), "no error");
   EXPECT_NE(parse_error("enum b_t { A"), "no error");
@@ -105,8 +103,7 @@ TEST(MessageSchema, ErrorsOfLcmFilesSayWhere) {
 
 TEST(MessageSchema, ReadsLcmFilesOfTheUser) {
   const lcm_test::ScratchFolder folder;
-  std::ofstream(folder.file("own.lcm"))
-      << "package own;\nstruct dvl_t { shoal.pose_t pose; double btv[4]; }\n";
+  std::ofstream(folder.file("own.lcm")) << "package own;\nstruct dvl_t { shoal.pose_t pose; double btv[4]; }\n";
   const MessageTypes types = types_with({folder.file("own.lcm")});
   ASSERT_NE(types.find("own.dvl_t"), nullptr);
   EXPECT_EQ(types.find("own.dvl_t")->members[0].compound, types.find("shoal.pose_t"));
@@ -159,13 +156,11 @@ TEST(PayloadWalker, RefusesNanAndInfinityWhereFiniteIsRequired) {
 TEST(PayloadWalker, RefusesBadArrayLengths) {
   const MessageTypes types = types_of("struct b_t { int32_t n; double x[n]; int8_t k; byte y[k][n]; }");
   const MessageSchema& schema = *types.find("b_t");
-  EXPECT_EQ(error_of(schema, payload_of(schema, {0xff, 0xff, 0xff, 0xff})),
-            "field 'x' has the negative size -1 ('n')");
+  EXPECT_EQ(error_of(schema, payload_of(schema, {0xff, 0xff, 0xff, 0xff})), "field 'x' has the negative size -1 ('n')");
   EXPECT_EQ(error_of(schema, payload_of(schema, {0x7f, 0xff, 0xff, 0xff})),
             "payload of 12 bytes is too short for b_t: field 'x' needs 17179869176 more bytes");
   EXPECT_EQ(error_of(schema, payload_of(schema, {0, 0, 0, 0, 0})), "");
-  EXPECT_EQ(error_of(schema, payload_of(schema, {0, 0, 0, 0, 0x80})),
-            "field 'y' has the negative size -128 ('k')");
+  EXPECT_EQ(error_of(schema, payload_of(schema, {0, 0, 0, 0, 0x80})), "field 'y' has the negative size -128 ('k')");
 }
 
 // A decoder makes the outer vectors before it looks at the inner size: 2^31 of them for a message of 16
@@ -177,13 +172,11 @@ TEST(PayloadWalker, RefusesArraysThatAreLargeWithoutAnyBytes) {
       "struct empties_t { int32_t n; empty_t x[n]; }\n"
       "struct cube_t { int64_t a; int64_t b; double x[a][b][a][b]; }\n");
   const MessageSchema& rows = *types.find("rows_t");
-  EXPECT_EQ(error_of(rows, payload_of(rows, {0x7f, 0, 0, 0, 0, 0, 0, 0})),
-            "field 'x' has 2130706432 empty rows");
+  EXPECT_EQ(error_of(rows, payload_of(rows, {0x7f, 0, 0, 0, 0, 0, 0, 0})), "field 'x' has 2130706432 empty rows");
   EXPECT_EQ(error_of(rows, payload_of(rows, {0, 0, 1, 0, 0, 0, 0, 0})), "");
   EXPECT_EQ(error_of(rows, payload_of(rows, {0, 0, 0, 0, 0x7f, 0, 0, 0})), "");  // no row at all
   const MessageSchema& empties = *types.find("empties_t");
-  EXPECT_EQ(error_of(empties, payload_of(empties, {0x7f, 0, 0, 0})),
-            "field 'x' has 2130706432 empty elements");
+  EXPECT_EQ(error_of(empties, payload_of(empties, {0x7f, 0, 0, 0})), "field 'x' has 2130706432 empty elements");
   const MessageSchema& cube = *types.find("cube_t");
   EXPECT_NE(error_of(cube, payload_of(cube, {0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0})), "");
 }
@@ -207,8 +200,7 @@ TEST(PayloadWalker, StopsAtTypesThatNestWithoutEnd) {
   const MessageSchema& schema = *types.find("rec_t");
   sim::Bytes payload = payload_of(schema, {});
   payload.resize(8 + 1'000'000, std::byte{1});
-  EXPECT_NE(error_of(schema, payload).find("is nested deeper than 32"), std::string::npos)
-      << error_of(schema, payload);
+  EXPECT_NE(error_of(schema, payload).find("is nested deeper than 32"), std::string::npos) << error_of(schema, payload);
   EXPECT_EQ(error_of(schema, payload_of(schema, {1, 1, 0})), "");
 }
 
@@ -217,8 +209,7 @@ TEST(PayloadWalker, ShowsEveryFieldWithItsIndices) {
       "struct in_t { string key; boolean on; }\n"
       "struct b_t { int16_t n; in_t a[n]; float f[2]; byte raw[n]; byte one; }\n");
   const MessageSchema& schema = *types.find("b_t");
-  const sim::Bytes payload =
-      payload_of(schema, {0, 1, 0, 0, 0, 2, 'k', 0, 1, 0x3f, 0x80, 0, 0, 0xc0, 0, 0, 0, 7, 200});
+  const sim::Bytes payload = payload_of(schema, {0, 1, 0, 0, 0, 2, 'k', 0, 1, 0x3f, 0x80, 0, 0, 0xc0, 0, 0, 0, 7, 200});
   std::string shown;
   const auto error = visit_fields(schema, payload, [&](std::string_view name, const FieldValue& value) {
     shown += std::string(name) + "=";
@@ -226,8 +217,7 @@ TEST(PayloadWalker, ShowsEveryFieldWithItsIndices) {
     if (const auto* i = std::get_if<std::int64_t>(&value)) shown += std::to_string(*i);
     if (const auto* d = std::get_if<double>(&value)) shown += std::to_string(static_cast<int>(*d)) + ".";
     if (const auto* s = std::get_if<std::string_view>(&value)) shown += "'" + std::string(*s) + "'";
-    if (const auto* x = std::get_if<std::span<const std::byte>>(&value))
-      shown += std::to_string(x->size()) + " bytes";
+    if (const auto* x = std::get_if<std::span<const std::byte>>(&value)) shown += std::to_string(x->size()) + " bytes";
     shown += " ";
   });
   EXPECT_EQ(error.value_or(""), "");

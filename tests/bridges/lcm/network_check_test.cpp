@@ -23,8 +23,7 @@ using lcm_test::own_url;
 using Verdict = Finding::Verdict;
 
 const Finding& named(const std::vector<Finding>& findings, const std::string& name) {
-  const auto found =
-      std::find_if(findings.begin(), findings.end(), [&](const Finding& f) { return f.name == name; });
+  const auto found = std::find_if(findings.begin(), findings.end(), [&](const Finding& f) { return f.name == name; });
   if (found == findings.end()) throw std::runtime_error("no finding '" + name + "'");
   return *found;
 }
@@ -117,8 +116,7 @@ TEST(NetworkCheck, SaysHowToMendANetworkWithoutRoute) {
     const auto findings = check_network("udpm://239.255.76.67:7667");
     const Finding& route = named(findings, "multicast route");
     return route.verdict == Verdict::bad && has_command(route, "ip link set lo up") &&
-           has_command(route, "ip link set lo multicast on") &&
-           has_command(route, "ip route add 224.0.0.0/4 dev lo") &&
+           has_command(route, "ip link set lo multicast on") && has_command(route, "ip route add 224.0.0.0/4 dev lo") &&
            named(findings, "round trip").verdict == Verdict::bad;
   });
   if (result == not_permitted) GTEST_SKIP() << "user and network namespaces are not permitted here";
@@ -131,8 +129,7 @@ TEST(NetworkCheck, TheCommandsItNamesMendTheNetwork) {
     for (const std::string& command : named(before, "multicast route").commands)
       if (std::system(command.c_str()) != 0) return false;
     const auto after = check_network("udpm://239.255.76.67:7667");
-    return named(after, "multicast route").verdict == Verdict::ok &&
-           named(after, "round trip").verdict == Verdict::ok;
+    return named(after, "multicast route").verdict == Verdict::ok && named(after, "round trip").verdict == Verdict::ok;
   });
   if (result == not_permitted) GTEST_SKIP() << "user and network namespaces are not permitted here";
   EXPECT_EQ(result, 0);

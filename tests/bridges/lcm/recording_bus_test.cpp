@@ -210,9 +210,8 @@ TEST(EventLog, ATruncatedLastEventEndsTheReading) {
     EventLogReader reader(folder.file("cut"));
     EXPECT_EQ(read_all(reader).size(), 999u);  // the last one has 28 + 3 + 49 bytes
     ASSERT_EQ(reader.problems().size(), 1u);
-    EXPECT_EQ(reader.problems()[0], "byte " + std::to_string(whole.size() - 80) +
-                                        ": the last event is cut off (" + std::to_string(80 - cut) +
-                                        " bytes)");
+    EXPECT_EQ(reader.problems()[0], "byte " + std::to_string(whole.size() - 80) + ": the last event is cut off (" +
+                                        std::to_string(80 - cut) + " bytes)");
   }
 }
 
@@ -250,8 +249,7 @@ TEST(EventLog, SurvivesFlippedBits) {
   std::mt19937 random(1);
   for (int i = 0; i < 500; ++i) {
     std::string log = whole;
-    for (int flips = 0; flips < 5; ++flips)
-      log[random() % log.size()] ^= static_cast<char>(1 << random() % 8);
+    for (int flips = 0; flips < 5; ++flips) log[random() % log.size()] ^= static_cast<char>(1 << random() % 8);
     write(folder.file("bad"), log);
     EventLogReader reader(folder.file("bad"));
     EXPECT_LE(read_all(reader).size(), 80u);

@@ -105,8 +105,7 @@ TEST(SerialPort, FifoCarriesEveryByteBothWays) {
 
 TEST(SerialPort, NothingToReadIsNoWait) {
   const ScratchFolder folder;
-  for (const char* kind : {"pty", "fifo"})
-    EXPECT_TRUE(open_serial_port(kind, folder.file("modem"))->read().empty());
+  for (const char* kind : {"pty", "fifo"}) EXPECT_TRUE(open_serial_port(kind, folder.file("modem"))->read().empty());
 }
 
 TEST(SerialPort, LeavesNothingBehind) {

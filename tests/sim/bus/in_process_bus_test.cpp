@@ -26,9 +26,7 @@ std::string text_of(const std::optional<sim::Message>& message) {
 
 class InProcessBusTest : public testing::Test {
  protected:
-  void publish(const std::string& channel, const std::string& text) {
-    bus.publish(channel, bytes(text), Time{0});
-  }
+  void publish(const std::string& channel, const std::string& text) { bus.publish(channel, bytes(text), Time{0}); }
 
   InProcessBus bus;
 };

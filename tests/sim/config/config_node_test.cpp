@@ -69,16 +69,13 @@ TEST(SetConfigPath, WhatItMakesPointsToItsPlace) {
 TEST(SetConfigPath, ReportsAnItemThatDoesNotExist) {
   EXPECT_EQ(set(world, "vehicles.rover2.file", "x").errors,
             Lines{"--set vehicles.rover2.file: 'vehicles' has no item 'rover2'; items: rover1"});
-  EXPECT_EQ(set(world, "numbers.4", "x").errors,
-            Lines{"--set numbers.4: 'numbers' has no item '4'; items: 1 to 3"});
-  EXPECT_EQ(set(world, "numbers.0", "x").errors,
-            Lines{"--set numbers.0: 'numbers' has no item '0'; items: 1 to 3"});
+  EXPECT_EQ(set(world, "numbers.4", "x").errors, Lines{"--set numbers.4: 'numbers' has no item '4'; items: 1 to 3"});
+  EXPECT_EQ(set(world, "numbers.0", "x").errors, Lines{"--set numbers.0: 'numbers' has no item '0'; items: 1 to 3"});
   EXPECT_EQ(set("a: []\n", "a.b", "x").errors, Lines{"--set a.b: 'a' has no item 'b'; items: none"});
 }
 
 TEST(SetConfigPath, ReportsAPathThroughAScalar) {
-  EXPECT_EQ(set(world, "run.speed.x", "1").errors,
-            Lines{"--set run.speed.x: no 'x' in 'speed', which is '1'"});
+  EXPECT_EQ(set(world, "run.speed.x", "1").errors, Lines{"--set run.speed.x: no 'x' in 'speed', which is '1'"});
 }
 
 TEST(SetConfigPath, ReportsABadPath) {
@@ -107,8 +104,7 @@ TEST(SubstituteParameters, AWholeScalarTakesTheNode) {
 
 TEST(SubstituteParameters, PartsOfATextAreReplaced) {
   const Parameters parameters = {{"index", parse("3")}, {"side", parse("left")}};
-  EXPECT_EQ(substitute("a: ${side}_wheel${index}\nb: $5 {x}\n", parameters).yaml,
-            "a: left_wheel3\nb: $5 {x}\n");
+  EXPECT_EQ(substitute("a: ${side}_wheel${index}\nb: $5 {x}\n", parameters).yaml, "a: left_wheel3\nb: $5 {x}\n");
 }
 
 TEST(SubstituteParameters, AValueKeepsThePlaceItWasWrittenAt) {
@@ -133,8 +129,7 @@ TEST(SubstituteParameters, ReportsUnknownNames) {
 }
 
 TEST(SubstituteParameters, ReportsAMissingBrace) {
-  EXPECT_EQ(substitute("a: 1${x\n", {}).errors,
-            Lines{"w.yaml:1:4: vehicle 'r1': '${' without '}' in '1${x'"});
+  EXPECT_EQ(substitute("a: 1${x\n", {}).errors, Lines{"w.yaml:1:4: vehicle 'r1': '${' without '}' in '1${x'"});
 }
 
 TEST(SubstituteParameters, ReportsAListInsideOfText) {

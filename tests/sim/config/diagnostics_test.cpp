@@ -27,8 +27,7 @@ TEST(Diagnostics, ALineIsPlaceWhoAndText) {
   diagnostics.error(place, "vehicle 'auv1'", "is lost");
   diagnostics.error(place, "", "is late");
   diagnostics.error({}, "", "is lost");
-  EXPECT_EQ(diagnostics.lines(),
-            (Lines{"w.yaml:2:3: vehicle 'auv1': is lost", "w.yaml:2:3: is late", "is lost"}));
+  EXPECT_EQ(diagnostics.lines(), (Lines{"w.yaml:2:3: vehicle 'auv1': is lost", "w.yaml:2:3: is late", "is lost"}));
 }
 
 TEST(Diagnostics, AMistakeAtOnePlaceIsKeptOnceForAllWhoMakeIt) {

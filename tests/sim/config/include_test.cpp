@@ -114,10 +114,8 @@ TEST_F(IncludeTest, OneFileMayBeIncludedOnTwoWays) {
 
 TEST_F(IncludeTest, ReportsAMissingFileWhereItIsNamed) {
   write("w.yaml", "a: 1\ninclude: common/nothing.yaml\n");
-  EXPECT_EQ(errors_of("w.yaml"),
-            Lines{"w.yaml:2:10: cannot read 'common/nothing.yaml': No such file or directory"});
-  EXPECT_EQ(errors_of("nothing.yaml"),
-            Lines{"nothing.yaml: cannot read the file: No such file or directory"});
+  EXPECT_EQ(errors_of("w.yaml"), Lines{"w.yaml:2:10: cannot read 'common/nothing.yaml': No such file or directory"});
+  EXPECT_EQ(errors_of("nothing.yaml"), Lines{"nothing.yaml: cannot read the file: No such file or directory"});
 }
 
 TEST_F(IncludeTest, ReportsADirectory) {

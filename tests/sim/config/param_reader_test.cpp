@@ -28,8 +28,7 @@ Lines errors_of(const std::string& yaml, const std::function<void(ParamReader&)>
   for (const std::string& line : diagnostics.lines()) {
     const std::string start = ": device 'lidar': ";
     const std::size_t at = line.find(start);
-    lines.push_back(at == std::string::npos ? line
-                                            : line.substr(7, at - 7) + " " + line.substr(at + start.size()));
+    lines.push_back(at == std::string::npos ? line : line.substr(7, at - 7) + " " + line.substr(at + start.size()));
   }
   return lines;
 }
@@ -37,8 +36,7 @@ Lines errors_of(const std::string& yaml, const std::function<void(ParamReader&)>
 /// Reads `x: <yaml>` into `value`; gives the only error, or nothing.
 template <typename T, typename... Rest>
 std::string error_of(T& value, const std::string& yaml, const Rest&... rest) {
-  const Lines lines =
-      errors_of("x: " + yaml + "\n", [&](ParamReader& in) { in.read("x", value, rest..., "a test"); });
+  const Lines lines = errors_of("x: " + yaml + "\n", [&](ParamReader& in) { in.read("x", value, rest..., "a test"); });
   EXPECT_LE(lines.size(), 1u);
   return lines.empty() ? "" : lines[0];
 }
@@ -90,17 +88,14 @@ TEST(ParamReader, ReportsWhatIsNoNumber) {
   EXPECT_EQ(error_of(value, "{a: 1}", sim::any_number()), "1:4 'x' must be a number, got {a: 1}");
   EXPECT_EQ(error_of(value, "~", sim::any_number()), "1:4 'x' must be a number, got nothing");
   for (const char* text : {"1_000", "0x10", "1,5", "1.5m", "--1", "+-1", "+", ".", "1e", "e5", "١"})
-    EXPECT_EQ(error_of(value, text, sim::any_number()),
-              std::string("1:4 'x' must be a number, got '") + text + "'");
+    EXPECT_EQ(error_of(value, text, sim::any_number()), std::string("1:4 'x' must be a number, got '") + text + "'");
   EXPECT_EQ(value, -7);
 }
 
 TEST(ParamReader, ReportsNumbersThatAreNotFinite) {
   double value = -7;
-  for (const char* text :
-       {".nan", ".NaN", ".inf", "-.inf", "+.INF", "nan", "inf", "-infinity", "1e999", "-1e999"})
-    EXPECT_EQ(error_of(value, text, sim::any_number()),
-              std::string("1:4 'x' must be finite, got '") + text + "'");
+  for (const char* text : {".nan", ".NaN", ".inf", "-.inf", "+.INF", "nan", "inf", "-infinity", "1e999", "-1e999"})
+    EXPECT_EQ(error_of(value, text, sim::any_number()), std::string("1:4 'x' must be finite, got '") + text + "'");
   int whole = -7;
   EXPECT_EQ(error_of(whole, ".nan", sim::any_number()), "1:4 'x' must be finite, got '.nan'");
   EXPECT_EQ(value, -7);
@@ -131,10 +126,8 @@ TEST(ParamReader, ReportsWhatIsNoWholeNumber) {
   EXPECT_EQ(error_of(value, "many", sim::any_number()), "1:4 'x' must be a whole number, got 'many'");
   EXPECT_EQ(error_of(value, "'5'", sim::any_number()), "1:4 'x' must be a whole number, got the text '5'");
   EXPECT_EQ(error_of(value, "0", sim::at_least(1)), "1:4 'x' must be >= 1, got 0");
-  EXPECT_EQ(error_of(value, "2147483648", sim::any_number()),
-            "1:4 'x' must be <= 2147483647, got 2147483648");
-  EXPECT_EQ(error_of(value, "-2147483649", sim::any_number()),
-            "1:4 'x' must be >= -2147483648, got -2147483649");
+  EXPECT_EQ(error_of(value, "2147483648", sim::any_number()), "1:4 'x' must be <= 2147483647, got 2147483648");
+  EXPECT_EQ(error_of(value, "-2147483649", sim::any_number()), "1:4 'x' must be >= -2147483648, got -2147483649");
   std::int64_t large = -7;
   EXPECT_EQ(error_of(large, "9223372036854775808", sim::any_number()),
             "1:4 'x' must be a whole number of at most 63 bits, got '9223372036854775808'");
@@ -185,8 +178,7 @@ TEST(ParamReader, AVectorIsAListOfThreeNumbers) {
 
 TEST(ParamReader, ListsHoldNumbersOrText) {
   std::vector<double> numbers = {7};
-  EXPECT_EQ(error_of(numbers, "[1, .inf]", sim::any_number()),
-            "1:8 item 2 of 'x' must be finite, got '.inf'");
+  EXPECT_EQ(error_of(numbers, "[1, .inf]", sim::any_number()), "1:8 item 2 of 'x' must be finite, got '.inf'");
   EXPECT_EQ(error_of(numbers, "1", sim::any_number()), "1:4 'x' must be a list of numbers, got '1'");
   EXPECT_EQ(numbers, std::vector<double>{7});
   EXPECT_EQ(error_of(numbers, "[1, 2]", sim::any_number()), "");
@@ -227,8 +219,7 @@ TEST(ParamReader, AChoiceIsOneOfItsWords) {
   EXPECT_EQ(word, "b");
   EXPECT_EQ(color, Color::green);
   EXPECT_EQ(errors_of("mode: c\ncolor: [red]\n", read),
-            (Lines{"1:7 'mode' must be one of: a, b; got 'c'",
-                   "2:8 'color' must be one of: red, green; got [red]"}));
+            (Lines{"1:7 'mode' must be one of: a, b; got 'c'", "2:8 'color' must be one of: red, green; got [red]"}));
   EXPECT_EQ(word, "b");
   EXPECT_EQ(color, Color::green);
 }
@@ -435,9 +426,8 @@ TEST(ParamReader, WithoutWhoAMessageStartsWithTheKey) {
 
 TEST(ParamReader, ReportsANameThatNobodyHas) {
   Outer outer;
-  EXPECT_EQ(
-      outer_errors("joints: [{name: right}, {name: left}]\ninner: {joint: lft}\n", outer),
-      Lines{"w.yaml:2:16: vehicle 'auv1': inner: 'joint' names no joint 'lft'; known joints: left, right"});
+  EXPECT_EQ(outer_errors("joints: [{name: right}, {name: left}]\ninner: {joint: lft}\n", outer),
+            Lines{"w.yaml:2:16: vehicle 'auv1': inner: 'joint' names no joint 'lft'; known joints: left, right"});
   Outer without_joints;
   EXPECT_EQ(outer_errors("inner: {joint: lft}\n", without_joints),
             Lines{"w.yaml:1:16: vehicle 'auv1': inner: 'joint' names no joint 'lft'; known joints: none"});
@@ -461,8 +451,7 @@ TEST(ParamReader, ListsOfReferencesAreCheckedItemByItem) {
 
 TEST(ParamReader, ReportsADuplicateNameWhereItIsWritten) {
   Outer outer;
-  EXPECT_EQ(outer_errors("joints:\n  - name: left\n  - name: right\n  - name: left\ncategories: [a, b, a]\n",
-                         outer),
+  EXPECT_EQ(outer_errors("joints:\n  - name: left\n  - name: right\n  - name: left\ncategories: [a, b, a]\n", outer),
             (Lines{"w.yaml:5:20: vehicle 'auv1': duplicate category 'a'",
                    "w.yaml:4:11: vehicle 'auv1': duplicate joint 'left'"}));
 }

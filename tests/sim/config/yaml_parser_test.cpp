@@ -88,9 +88,8 @@ TEST(YamlParser, ReportsADuplicateKey) {
 }
 
 TEST(YamlParser, ReportsEveryDuplicateKey) {
-  EXPECT_EQ(
-      errors_of("x: 1\nx: 3\nm: {y: 1, y: 2}\n"),
-      "w.yaml:2:1: duplicate key 'x', first at line 1\nw.yaml:3:11: duplicate key 'y', first at line 3");
+  EXPECT_EQ(errors_of("x: 1\nx: 3\nm: {y: 1, y: 2}\n"),
+            "w.yaml:2:1: duplicate key 'x', first at line 1\nw.yaml:3:11: duplicate key 'y', first at line 3");
 }
 
 TEST(YamlParser, RefusesMergeKeys) {
@@ -120,15 +119,13 @@ TEST(YamlParser, RefusesAnAliasInsideItself) {
 }
 
 TEST(YamlParser, ReportsASyntaxErrorWithItsPlace) {
-  EXPECT_EQ(errors_of("a: 1\nb: [1, 2\nc: 3\n"),
-            "w.yaml:3:2: not valid YAML: end of sequence flow not found");
+  EXPECT_EQ(errors_of("a: 1\nb: [1, 2\nc: 3\n"), "w.yaml:3:2: not valid YAML: end of sequence flow not found");
   EXPECT_EQ(errors_of("a: b: c\n"), "w.yaml:1:5: not valid YAML: illegal map value");
   EXPECT_EQ(errors_of("a: *nowhere\n"), "w.yaml:1:4: not valid YAML: the referenced anchor is not defined");
 }
 
 TEST(YamlParser, RefusesBytesThatAreNoText) {
-  EXPECT_EQ(errors_of(std::string("a: b\nc: \0d\n", 11)),
-            "w.yaml:2:4: control character 0x00; is this a text file?");
+  EXPECT_EQ(errors_of(std::string("a: b\nc: \0d\n", 11)), "w.yaml:2:4: control character 0x00; is this a text file?");
   EXPECT_EQ(errors_of("a: \x04\n"), "w.yaml:1:4: control character 0x04; is this a text file?");
   // A lone continuation byte, a cut character, the overlong slash, a surrogate, beyond U+10FFFF.
   for (const char* bad : {"\x80", "\xe2\x82", "\xc0\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xff\xfe"})
@@ -183,8 +180,7 @@ TEST(YamlParser, AnAliasBombEndsInOneErrorSoon) {
   const auto start = std::chrono::steady_clock::now();
   const std::string errors = errors_of(alias_bomb(20));
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  EXPECT_NE(errors.find("more than 2000000 values or 256 MB of text, aliases expanded"), std::string::npos)
-      << errors;
+  EXPECT_NE(errors.find("more than 2000000 values or 256 MB of text, aliases expanded"), std::string::npos) << errors;
   EXPECT_EQ(errors.find('\n'), std::string::npos);
   EXPECT_LT(took.count(), 10.0);  // 0.1 s alone; a sanitizer on a loaded machine is some 50 times slower
 }

@@ -76,8 +76,7 @@ TEST(Body, SpeaksOfItsOwnFrameNotOfTheCentreOfMass) {
   EXPECT_TRUE(hull.v_WB_W().isApprox(Vector3d(1, 0, 0), 1e-15));
   // v + w x r for the point at +y of the body.
   const Vector3d r_W = X_WB.linear() * Vector3d(0, 1, 0);
-  EXPECT_TRUE(
-      hull.velocity_at_W({0, 1, 0}).isApprox(Vector3d(1, 0, 0) + Vector3d(0, 0, 2).cross(r_W), 1e-14));
+  EXPECT_TRUE(hull.velocity_at_W({0, 1, 0}).isApprox(Vector3d(1, 0, 0) + Vector3d(0, 0, 2).cross(r_W), 1e-14));
 }
 
 TEST(Body, FixedBodyKeepsItsPlace) {
@@ -122,13 +121,12 @@ ShapeCase capsule_case(double r, double l) {
   return {round("capsule", r, l, 1), v, {across, across, along}};
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, ShapeMass,
-                         testing::Values(ShapeCase{box({1, 2, 3}, 1), 6, {13.0 / 12, 10.0 / 12, 5.0 / 12}},
-                                         ShapeCase{sphere(0.5, 1), pi / 6, {0.1, 0.1, 0.1}},  // 2/5 r^2
-                                         ShapeCase{round("cylinder", 0.5, 2, 1),
-                                                   pi / 2,
-                                                   {0.25 / 4 + 4.0 / 12, 0.25 / 4 + 4.0 / 12, 0.125}},
-                                         capsule_case(0.5, 2)));
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, ShapeMass,
+    testing::Values(ShapeCase{box({1, 2, 3}, 1), 6, {13.0 / 12, 10.0 / 12, 5.0 / 12}},
+                    ShapeCase{sphere(0.5, 1), pi / 6, {0.1, 0.1, 0.1}},  // 2/5 r^2
+                    ShapeCase{round("cylinder", 0.5, 2, 1), pi / 2, {0.25 / 4 + 4.0 / 12, 0.25 / 4 + 4.0 / 12, 0.125}},
+                    capsule_case(0.5, 2)));
 
 TEST(CompositeBody, AddsMassesCentresAndInertias) {
   const auto world = make_world();
@@ -138,8 +136,8 @@ TEST(CompositeBody, AddsMassesCentresAndInertias) {
   EXPECT_NEAR(dumb_bell.mass_kg(), 4, 1e-14);
   EXPECT_TRUE(dumb_bell.p_BC().isApprox(Vector3d(3, 0, 0), 1e-14));
   // Steiner: m1 m2 / (m1 + m2) d^2 = 3/4 16 = 12 across, on top of m / 6 each.
-  EXPECT_TRUE(dumb_bell.inertia_C_B().isApprox(
-      Matrix3d(Vector3d(4.0 / 6, 12 + 4.0 / 6, 12 + 4.0 / 6).asDiagonal()), 1e-13));
+  EXPECT_TRUE(
+      dumb_bell.inertia_C_B().isApprox(Matrix3d(Vector3d(4.0 / 6, 12 + 4.0 / 6, 12 + 4.0 / 6).asDiagonal()), 1e-13));
 }
 
 TEST(CompositeBody, TurnsTheInertiaOfATurnedPart) {
@@ -166,8 +164,7 @@ TEST(CompositeBody, WithoutMassIsAConfigError) {
     world->add_body(group, body("hull", {part}), Pose::Identity());
     FAIL();
   } catch (const sim::ConfigError& error) {
-    EXPECT_STREQ(error.what(),
-                 "ghost.yaml:3:5: body 'ghost/hull': has no mass: give a part mass_kg or density_kgpm3");
+    EXPECT_STREQ(error.what(), "ghost.yaml:3:5: body 'ghost/hull': has no mass: give a part mass_kg or density_kgpm3");
   }
 }
 
@@ -203,9 +200,7 @@ TEST(Gyroscopic, TumblingBodyKeepsItsEnergyAndMomentum) {
   sim::Body& brick = add(*world, body("brick", {box({0.1, 0.4, 1}, 5)}), Pose::Identity());
   brick.set_velocity_W(Vector3d::Zero(), {1, 10, 1});  // about the middle axis: it tumbles
   const Matrix3d& I = brick.inertia_C_B();
-  const auto momentum = [&]() -> Vector3d {
-    return I * (brick.X_WB().linear().transpose() * brick.w_WB_W());
-  };
+  const auto momentum = [&]() -> Vector3d { return I * (brick.X_WB().linear().transpose() * brick.w_WB_W()); };
   const auto energy = [&] { return momentum().dot(brick.X_WB().linear().transpose() * brick.w_WB_W()) / 2; };
   const double momentum0 = momentum().norm(), energy0 = energy();
   run(*world, 10);

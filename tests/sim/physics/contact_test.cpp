@@ -48,8 +48,7 @@ TEST_P(Incline, BoxSlidesAsCoulombSays) {
 TEST_P(Incline, BoxStartsToSlideAtTheAngleOfFriction) {
   // atan(0.5) = 26.565 deg, half a degree either way.
   EXPECT_LT(slip_acceleration(0.5, 26.065, GetParam()), 0.005);
-  EXPECT_GT(slip_acceleration(0.5, 27.065, GetParam()),
-            0.5 * g * (std::sin(0.47237) - 0.5 * std::cos(0.47237)));
+  EXPECT_GT(slip_acceleration(0.5, 27.065, GetParam()), 0.5 * g * (std::sin(0.47237) - 0.5 * std::cos(0.47237)));
 }
 
 INSTANTIATE_TEST_SUITE_P(Azimuths, Incline, testing::Values(0.0, 0.3, std::numbers::pi / 4, 1.2, 2.5));

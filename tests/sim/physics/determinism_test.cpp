@@ -19,17 +19,15 @@ std::unique_ptr<PhysicsWorld> pile_and_fleet(const std::string& space, const std
   auto world = make_world(config, {slippery()});
   add_ground(*world);
   for (int i = 0; i < 4; ++i)
-    add(*world, body("wall" + std::to_string(i), {box({6, 0.2, 1}, 0)}), translation(2, 1.5 * i - 2, 0.5),
-        true);
+    add(*world, body("wall" + std::to_string(i), {box({6, 0.2, 1}, 0)}), translation(2, 1.5 * i - 2, 0.5), true);
   for (int i = 0; i < 24; ++i) {
-    const double x = -4 + 0.35 * (i % 3) + 0.01 * i, y = 0.35 * (i / 3 % 3) - 0.013 * i,
-                 z = 0.3 + 0.5 * (i / 9);
+    const double x = -4 + 0.35 * (i % 3) + 0.01 * i, y = 0.35 * (i / 3 % 3) - 0.013 * i, z = 0.3 + 0.5 * (i / 9);
     const PartConfig part = i % 4 == 3 ? sphere(0.2, 1) : box({0.4, 0.4, 0.4}, 1);
     add(*world, body("crate" + std::to_string(i), {part}), sim::make_pose({x, y, z}, {0.1 * i, 0, 0.2 * i}));
   }
   for (int i = 0; i < 9; ++i) {
-    Rover rover = add_rover(*world, "rover" + std::to_string(i),
-                            translation(0.7 * (i % 3) - 2, 1.5 * (i / 3) - 1.3, 0));
+    Rover rover =
+        add_rover(*world, "rover" + std::to_string(i), translation(0.7 * (i % 3) - 2, 1.5 * (i / 3) - 1.3, 0));
     rover.left->set_motor(5 + i % 2, 5);
     rover.right->set_motor(6 - i % 3, 5);
   }
@@ -59,8 +57,7 @@ INSTANTIATE_TEST_SUITE_P(Spaces, EachSpace, testing::Values("sap", "quadtree", "
 
 TEST(Determinism, SecondRunInOneProcessGivesTheSameBits) {
   for (const char* solver : {"step", "quick"})
-    EXPECT_EQ(hashes(*pile_and_fleet("sap", solver), 200), hashes(*pile_and_fleet("sap", solver), 200))
-        << solver;
+    EXPECT_EQ(hashes(*pile_and_fleet("sap", solver), 200), hashes(*pile_and_fleet("sap", solver), 200)) << solver;
 }
 
 TEST(Determinism, WorldsInFourThreadsGiveTheBitsOfOne) {
@@ -68,8 +65,7 @@ TEST(Determinism, WorldsInFourThreadsGiveTheBitsOfOne) {
   const std::vector<std::uint64_t> expected = hashes(*pile_and_fleet("sap", "quick"), 200);
   std::vector<std::vector<std::uint64_t>> found(4);
   std::vector<std::thread> threads;
-  for (auto& result : found)
-    threads.emplace_back([&result] { result = hashes(*pile_and_fleet("sap", "quick"), 200); });
+  for (auto& result : found) threads.emplace_back([&result] { result = hashes(*pile_and_fleet("sap", "quick"), 200); });
   for (std::thread& thread : threads) thread.join();
   for (const auto& result : found) EXPECT_EQ(result, expected);
 }
@@ -110,8 +106,7 @@ TEST(QuickFallback, IsTakenForLargeIslandsOnlyAndCounted) {
   EXPECT_EQ(world->quick_steps(), 0);
   // One stack of 8: at least 4 contacts, so 12 rows, under each.
   for (int i = 0; i < 8; ++i)
-    add(*world, body("stacked" + std::to_string(i), {box({0.5, 0.5, 0.5}, 1)}),
-        translation(0, 5, 0.2495 + 0.4995 * i));
+    add(*world, body("stacked" + std::to_string(i), {box({0.5, 0.5, 0.5}, 1)}), translation(0, 5, 0.2495 + 0.4995 * i));
   for (int i = 10; i < 20; ++i) world->step(i);
   EXPECT_GE(world->last_step().largest_island_rows, 96);
   EXPECT_TRUE(world->last_step().quick);

@@ -100,8 +100,7 @@ TEST(HingeJoint, ToTheWorldCountsTheMovingBody) {
   const auto world = make_world(weightless());
   const int group = world->add_group("rig");
   sim::Body& fan = world->add_body(group, body("fan", {box({1, 1, 0.1}, 1)}), Pose::Identity());
-  sim::Joint& axle =
-      world->add_joint(group, joint("axle", "hinge", {0, 0, 0}), fan, nullptr, Pose::Identity());
+  sim::Joint& axle = world->add_joint(group, joint("axle", "hinge", {0, 0, 0}), fan, nullptr, Pose::Identity());
   world->close_group(group);
   axle.set_motor(3, 1000);
   for (int i = 0; i < 100; ++i) world->step(i);
@@ -204,8 +203,7 @@ TEST(BallJoint, KeepsThePointTogetherAndLeavesTheRotationFree) {
   EXPECT_EQ(rig.joint->axes(), 0);
   rig.arm->add_torque_W({0.1, 0.2, 0.3});
   rig.run(200);
-  const Vector3d on_base = rig.base->X_WB() * Vector3d(0.9, 0, 0),
-                 on_arm = rig.arm->X_WB() * Vector3d(-0.1, 0, 0);
+  const Vector3d on_base = rig.base->X_WB() * Vector3d(0.9, 0, 0), on_arm = rig.arm->X_WB() * Vector3d(-0.1, 0, 0);
   EXPECT_LT((on_base - on_arm).norm(), 1e-3);
   EXPECT_GT(rig.arm->w_WB_W().norm(), 0.1);
 }

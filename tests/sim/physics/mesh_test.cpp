@@ -19,8 +19,7 @@ using sim::MeshError;
 Mesh box_mesh(const Vector3d& size, const Vector3d& c) {
   Mesh mesh;
   for (int i = 0; i < 8; ++i)
-    mesh.vertices_m.push_back(
-        c + 0.5 * size.cwiseProduct(Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
+    mesh.vertices_m.push_back(c + 0.5 * size.cwiseProduct(Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
   mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
   return mesh;
@@ -31,8 +30,8 @@ std::string obj_of(const Mesh& mesh) {
   for (const Vector3d& p : mesh.vertices_m)
     text += "v " + std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) + "\n";
   for (const auto& t : mesh.triangles)
-    text += "f " + std::to_string(t[0] + 1) + "/1/1 " + std::to_string(t[1] + 1) + "//1 " +
-            std::to_string(t[2] + 1) + "\n";
+    text +=
+        "f " + std::to_string(t[0] + 1) + "/1/1 " + std::to_string(t[1] + 1) + "//1 " + std::to_string(t[2] + 1) + "\n";
   return text;
 }
 
@@ -42,8 +41,7 @@ std::string ascii_stl_of(const Mesh& mesh) {
     text += " facet normal 0 0 0\n  outer loop\n";
     for (const auto corner : t) {
       const Vector3d& p = mesh.vertices_m[corner];
-      text += "   vertex " + std::to_string(p.x()) + " " + std::to_string(p.y()) + " " +
-              std::to_string(p.z()) + "\n";
+      text += "   vertex " + std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) + "\n";
     }
     text += "  endloop\n endfacet\n";
   }
@@ -52,9 +50,7 @@ std::string ascii_stl_of(const Mesh& mesh) {
 
 std::string binary_stl_of(const Mesh& mesh) {
   std::string bytes(80, ' ');
-  const auto put = [&](const auto& value) {
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-  };
+  const auto put = [&](const auto& value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
   put(static_cast<std::uint32_t>(mesh.triangles.size()));
   for (const auto& t : mesh.triangles) {
     for (int i = 0; i < 3; ++i) put(0.0f);
@@ -145,8 +141,7 @@ TEST(Mesh, ErrorsSayWhatIsWrong) {
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"); }),
             "has index 4, but 3 vertices so far");
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nf 0 1 1\n"); }), "has index 0, but 1 vertices so far");
-  EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nf 1e99 1 1\n"); }),
-            "has index 1e99, but 1 vertices so far");
+  EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nf 1e99 1 1\n"); }), "has index 1e99, but 1 vertices so far");
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 inf\n"); }), "has a vertex that is not finite");
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\n"); }), "has no triangles");
   EXPECT_EQ(error_of([] { sim::parse_obj(""); }), "has no triangles");
@@ -187,8 +182,8 @@ TEST(MeshPart, OpenSurfaceCannotGiveMassButCanStandFixed) {
   const TemporaryFile file("square.obj", "v -5 -5 0\nv 5 -5 0\nv 5 5 0\nv -5 5 0\nf 1 2 3 4\n");
   const auto world = make_world();
   const int group = world->add_group("boat");
-  const std::string error = error_of(
-      [&] { world->add_body(group, body("hull", {mesh_part(file.path(), 500)}), Pose::Identity()); });
+  const std::string error =
+      error_of([&] { world->add_body(group, body("hull", {mesh_part(file.path(), 500)}), Pose::Identity()); });
   EXPECT_NE(error.find("boat.yaml:7:3: body 'boat/hull': part 1: mesh '"), std::string::npos) << error;
   EXPECT_NE(error.find("has an open surface"), std::string::npos) << error;
   add(*world, body("deck", {mesh_part(file.path(), 0)}), Pose::Identity(), true);

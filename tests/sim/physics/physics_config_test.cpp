@@ -54,8 +54,7 @@ TEST(PhysicsConfig, StepIsAWholeNumberOfMicroseconds) {
 }
 
 TEST(PartConfig, KnowsWhereItWasWritten) {
-  const auto part =
-      read<sim::PartConfig>("shape: sphere\nradius_m: 0.2\nrpy_deg: [90, 0, 0]\nmaterial: rubber\n");
+  const auto part = read<sim::PartConfig>("shape: sphere\nradius_m: 0.2\nrpy_deg: [90, 0, 0]\nmaterial: rubber\n");
   EXPECT_EQ(part.place.line, 1);
   EXPECT_EQ(part.directory, "worlds");
   EXPECT_NEAR(part.rpy_rad.x(), std::numbers::pi / 2, 1e-15);
@@ -73,8 +72,7 @@ TEST(PartConfig, ContradictionsAreErrors) {
             "worlds/test.yaml:1:25: 'mass_kg' is not for shape plane");
   EXPECT_NE(error_of<sim::PartConfig>("{shape: mesh}").find("a part of shape mesh needs the key 'mesh'"),
             std::string::npos);
-  EXPECT_NE(error_of<sim::PartConfig>("{color: red}").find("'color' must look like #rrggbb"),
-            std::string::npos);
+  EXPECT_NE(error_of<sim::PartConfig>("{color: red}").find("'color' must look like #rrggbb"), std::string::npos);
   EXPECT_NE(error_of<sim::PartConfig>("{material: rubbre}"), "no error");
 }
 
@@ -100,11 +98,9 @@ TEST(JointConfig, MistakesAreErrors) {
     return error_of<sim::JointConfig>("{name: left, bodies: [chassis, wheel], " + rest + "}");
   };
   EXPECT_NE(error("axis: [0, 0, 0]").find("'axis' must not be zero"), std::string::npos);
-  EXPECT_NE(error("low_stop: 1, high_stop: 0").find("'low_stop' must not be above 'high_stop'"),
-            std::string::npos);
+  EXPECT_NE(error("low_stop: 1, high_stop: 0").find("'low_stop' must not be above 'high_stop'"), std::string::npos);
   EXPECT_NE(error("low_stop: -4").find("between -pi and pi"), std::string::npos);
-  EXPECT_NE(error("type: universal, axis2: {axis: [0, 0, -1]}").find("must not be parallel"),
-            std::string::npos);
+  EXPECT_NE(error("type: universal, axis2: {axis: [0, 0, -1]}").find("must not be parallel"), std::string::npos);
   EXPECT_NE(error("axis2: {axis: [0, 1, 0]}").find("has no second axis"), std::string::npos);
   EXPECT_NE(error_of<sim::JointConfig>("{name: left, bodies: [wheel]}").find("must name two bodies, got 1"),
             std::string::npos);

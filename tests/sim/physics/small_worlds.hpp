@@ -50,8 +50,7 @@ inline PartConfig plane() {
   return part;
 }
 
-inline PartConfig at(PartConfig part, const Vector3d& position_m,
-                     const Vector3d& rpy_rad = Vector3d::Zero()) {
+inline PartConfig at(PartConfig part, const Vector3d& position_m, const Vector3d& rpy_rad = Vector3d::Zero()) {
   part.position_m = position_m;
   part.rpy_rad = rpy_rad;
   return part;
@@ -123,17 +122,15 @@ inline Rover add_rover(PhysicsWorld& world, const std::string& name, const Pose&
   PartConfig caster = at(sphere(0.05, 0), {-0.2, 0, -0.1});
   caster.material = "slippery";
   const int group = world.add_group(name);
-  sim::Body& chassis = world.add_body(
-      group, body("chassis", {at(box({0.5, 0.3, 0.1}, 5), {-0.05, 0, 0}), caster}, {0, 0, 0.15}), X_WV);
-  sim::Body& left_wheel =
-      world.add_body(group, body("left_wheel", {sphere(Rover::wheel_radius_m, 0.5)}, axle), X_WV);
+  sim::Body& chassis =
+      world.add_body(group, body("chassis", {at(box({0.5, 0.3, 0.1}, 5), {-0.05, 0, 0}), caster}, {0, 0, 0.15}), X_WV);
+  sim::Body& left_wheel = world.add_body(group, body("left_wheel", {sphere(Rover::wheel_radius_m, 0.5)}, axle), X_WV);
   sim::Body& right_wheel =
       world.add_body(group, body("right_wheel", {sphere(Rover::wheel_radius_m, 0.5)}, mirrored), X_WV);
   Rover rover{&chassis, nullptr, nullptr};
-  rover.left =
-      &world.add_joint(group, joint("left", "hinge", axle, Vector3d::UnitY()), chassis, &left_wheel, X_WV);
-  rover.right = &world.add_joint(group, joint("right", "hinge", mirrored, Vector3d::UnitY()), chassis,
-                                 &right_wheel, X_WV);
+  rover.left = &world.add_joint(group, joint("left", "hinge", axle, Vector3d::UnitY()), chassis, &left_wheel, X_WV);
+  rover.right =
+      &world.add_joint(group, joint("right", "hinge", mirrored, Vector3d::UnitY()), chassis, &right_wheel, X_WV);
   world.close_group(group);
   return rover;
 }

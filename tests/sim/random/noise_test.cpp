@@ -22,14 +22,12 @@ Moments moments_of(const std::vector<double>& samples) {
   Moments moments;
   for (const double sample : samples) moments.mean += sample / static_cast<double>(samples.size());
   for (const double sample : samples)
-    moments.variance +=
-        (sample - moments.mean) * (sample - moments.mean) / static_cast<double>(samples.size());
+    moments.variance += (sample - moments.mean) * (sample - moments.mean) / static_cast<double>(samples.size());
   return moments;
 }
 
 /// What becomes of `truth` at each of `n` steps of `dt_s`.
-std::vector<double> series(const NoiseParams& params, double truth, int n, double dt_s,
-                           const char* name = "test") {
+std::vector<double> series(const NoiseParams& params, double truth, int n, double dt_s, const char* name = "test") {
   Random random(1, name);
   Noise noise(params, 1, Random(1, std::string(name) + "/bias"));
   std::vector<double> samples;

@@ -35,9 +35,7 @@ TEST(BoxGrid, BoxesInOnePlaceAreAllFound) {
 
 TEST(BoxGrid, FindsWhatALoopOverAllBoxesFinds) {
   std::mt19937 random(1);
-  const auto uniform = [&](double low, double high) {
-    return low + (high - low) * (random() / 4294967296.0);
-  };
+  const auto uniform = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
   const auto box = [&](double spread, double size) {
     const Vector3d low(uniform(-spread, spread), uniform(-spread, spread), uniform(-spread, spread));
     return AlignedBox{low, low + Vector3d(uniform(0, size), uniform(0, size), uniform(0, size))};

@@ -63,8 +63,7 @@ TEST(Ray, HitsTheSideAndTheEndOfACylinder) {
   expect_hit(look_at(cylinder, {5.5, 0, 10}, {0, 0, -1}), {8, {0, 0, 1}});
   EXPECT_FALSE(look_at(cylinder, {0, 0, 2.1}, {1, 0, 0}).has_value());
   // Lying along y.
-  expect_hit(look_at(at(cylinder, {0, 0, 0}, {pi / 2, 0, 0}), {0, 1.9, 0.6}, {1, 0, 0}),
-             {5 - 0.8, {-0.8, 0, 0.6}});
+  expect_hit(look_at(at(cylinder, {0, 0, 0}, {pi / 2, 0, 0}), {0, 1.9, 0.6}, {1, 0, 0}), {5 - 0.8, {-0.8, 0, 0.6}});
 }
 
 TEST(Ray, HitsAPlaneAtAnAngle) {
@@ -95,8 +94,7 @@ TEST(Ray, HitsTheNearestOfMany) {
 
 TEST(Ray, OfTwoPartsInOnePlaceHitsTheLowerNumber) {
   const auto world = make_world();
-  for (const char* name : {"a", "b"})
-    add(*world, body(name, {box({2, 2, 2}, 0)}), translation(5, 0, 0), true);
+  for (const char* name : {"a", "b"}) add(*world, body(name, {box({2, 2, 2}, 0)}), translation(5, 0, 0), true);
   EXPECT_EQ(world->scene().cast({0, 0, 0}, {1, 0, 0}, 100, {})->part, 0);
 }
 
@@ -194,9 +192,7 @@ TEST(Fan, TiltedDownSeesTheGround) {
 
 /// Parts of every shape in a heap, fixed and moving, some close together, some around the sensor.
 std::unique_ptr<PhysicsWorld> random_scene(std::mt19937& random) {
-  const auto uniform = [&](double low, double high) {
-    return low + (high - low) * (random() / 4294967296.0);
-  };
+  const auto uniform = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
   PhysicsConfig config;
   config.gravity_mps2 = 0;
   auto world = make_world(config);
@@ -205,15 +201,13 @@ std::unique_ptr<PhysicsWorld> random_scene(std::mt19937& random) {
     std::vector<PartConfig> parts;
     for (unsigned k = 0; k <= random() % 3; ++k) {
       const PartConfig shapes[] = {box({uniform(0.1, 2), uniform(0.1, 4), uniform(0.1, 2)}, 1),
-                                   sphere(uniform(0.1, 1), 1),
-                                   round("capsule", uniform(0.1, 0.5), uniform(0.1, 3), 1),
+                                   sphere(uniform(0.1, 1), 1), round("capsule", uniform(0.1, 0.5), uniform(0.1, 3), 1),
                                    round("cylinder", uniform(0.1, 1), uniform(0.1, 3), 1)};
       parts.push_back(at(shapes[random() % 4], {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)},
                          {uniform(-3, 3), uniform(-1.5, 1.5), uniform(-3, 3)}));
     }
     add(*world, body("b" + std::to_string(i), parts),
-        sim::make_pose({uniform(-15, 15), uniform(-15, 15), uniform(-2, 2)},
-                       {uniform(-3, 3), 0, uniform(-3, 3)}),
+        sim::make_pose({uniform(-15, 15), uniform(-15, 15), uniform(-2, 2)}, {uniform(-3, 3), 0, uniform(-3, 3)}),
         i % 2 == 0);
   }
   return world;
@@ -221,9 +215,7 @@ std::unique_ptr<PhysicsWorld> random_scene(std::mt19937& random) {
 
 TEST(Fan, EqualsSingleCastsInRandomScenes) {
   std::mt19937 random(1);
-  const auto uniform = [&](double low, double high) {
-    return low + (high - low) * (random() / 4294967296.0);
-  };
+  const auto uniform = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
   int hits = 0;
   for (int scene = 0; scene < 10; ++scene) {
     const auto world = random_scene(random);
@@ -255,9 +247,7 @@ TEST(Fan, EqualsSingleCastsInRandomScenes) {
 
 TEST(Cast, EqualsLookingAtEveryPart) {
   std::mt19937 random(2);
-  const auto uniform = [&](double low, double high) {
-    return low + (high - low) * (random() / 4294967296.0);
-  };
+  const auto uniform = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
   const auto world = random_scene(random);
   const int parts = static_cast<int>(world->parts().size());
   for (int k = 0; k < 500; ++k) {

@@ -39,6 +39,43 @@ TEST(LoadWorld, SetChangesTheWorldFromTheCommandLine) {
   EXPECT_EQ(loaded.config.vehicles[0].X_WV.translation(), sim::Vector3d(1, 2, 3));
 }
 
+TEST(LoadWorld, SetReachesIntoAVehiclesFile) {
+  const auto loaded = sim::load_world_text(lidar_world(""), "test.yaml", {{"vehicles.r1.devices.lidar.rate_hz=7"}, {}});
+  EXPECT_EQ(loaded.config.vehicles[0].config->devices[0].rate_hz, 7);
+  EXPECT_THAT(errors_of(lidar_world(""), {{"vehicles.r1.devices.lidar.rate=7"}, {}}),
+              HasSubstr("--set vehicles.r1.devices.lidar.rate=7: vehicle 'r1': device 'lidar': unknown key 'rate'"));
+}
+
+TEST(LoadWorld, TheResolvedWorldKeepsTheSeedOfTheCommandLine) {
+  const auto loaded = sim::load_world_text(lidar_world(""), "test.yaml", {{}, 42});
+  EXPECT_EQ(sim::load_world_text(sim::to_yaml(loaded.resolved), "again.yaml").config.run.seed, 42);
+}
+
+TEST(LoadWorld, VehiclesOfOneKindKeepTheContactsEachBrings) {
+  const std::string world =
+      "shoal: 1\nvehicles:\n"
+      "  - {name: a, model: {shoal: 1, vehicle: x, materials: [{name: m1}], bodies: [{name: b, parts: [{shape: box, "
+      "mass_kg: 1, material: m1}]}]}}\n"
+      "  - {name: b, model: {shoal: 1, vehicle: x, materials: [{name: m2}], contacts: [{between: [m2, any], friction: "
+      "0}], "
+      "bodies: [{name: b, parts: [{shape: box, mass_kg: 1, material: m2}]}]}}\n";
+  const auto loaded = sim::load_world_text(world, "test.yaml");
+  EXPECT_EQ(loaded.config.materials.size(), 2u);
+  EXPECT_EQ(loaded.config.contacts.size(), 1u);
+}
+
+TEST(LoadWorld, RefusesRatesThatNoStepCanFollow) {
+  EXPECT_THAT(errors_of(test::rover_world("        - {name: l, type: lidar, rate_hz: 1e15}\n")),
+              HasSubstr("'rate_hz' must be >= 0 and <= 1000000"));
+  EXPECT_THAT(errors_of(test::rover_world("        - {name: l, type: lidar, rate_hz: 1e-300}\n")),
+              HasSubstr("'rate_hz' must be 0 or >= 1e-6"));
+}
+
+TEST(LoadWorld, RefusesTheSimulatorsOwnChannels) {
+  EXPECT_THAT(errors_of(test::rover_world("        - {name: l, type: lidar, channel: sim.control}\n")),
+              HasSubstr("channel 'sim.control' belongs to the simulator"));
+}
+
 TEST(LoadWorld, SetNamesWhatItCannotSet) {
   EXPECT_THAT(errors_of(lidar_world(""), {{"run.durration_s=7"}, {}}),
               HasSubstr("--set run.durration_s=7: run: unknown key 'durration_s'"));
@@ -121,7 +158,8 @@ TEST(LoadWorld, ReportsEveryErrorNotOnlyTheFirst) {
 
 TEST(LoadWorld, AMistakeInAVehicleFileIsReportedOnceForAllItsInstances) {
   try {
-    sim::load_world_text(test::rover_world("        - {name: l, type: lidar, beams: 0}\n", "", "    count: 50\n"), "w.yaml");
+    sim::load_world_text(test::rover_world("        - {name: l, type: lidar, beams: 0}\n", "", "    count: 50\n"),
+                         "w.yaml");
     FAIL();
   } catch (const sim::ConfigError& error) {
     EXPECT_EQ(error.lines().size(), 1u) << error.what();

@@ -12,7 +12,8 @@ std::string lidar(const std::string& more) {
   return "        - {name: lidar, type: lidar, position_m: [0, 0, 0.3], beams: 3" + more + "}\n";
 }
 
-std::vector<std::int64_t> report_times_us(const std::string& keys, double time_s, const std::string& channel = "r1.lidar") {
+std::vector<std::int64_t> report_times_us(const std::string& keys, double time_s,
+                                          const std::string& channel = "r1.lidar") {
   TestWorld test(test::rover_world(lidar(keys)));
   Listener<shoal::planar_lidar_t> scans(test, channel);
   test.run_for(time_s);
@@ -37,16 +38,20 @@ TEST(Schedule, ARateThatDoesNotDivideTheStepIsRightOnAverage) {
   }
 }
 
-TEST(Schedule, RateZeroSamplesEveryStep) { EXPECT_EQ(report_times_us(", rate_hz: 0", 0.1).size(), 100u); }
+TEST(Schedule, ARateAboveTheStepsSamplesEveryStep) {
+  EXPECT_EQ(report_times_us(", rate_hz: 1e6", 0.1).size(), 100u);
+}
+
+TEST(Schedule, RateZeroSamplesEveryStep) {
+  EXPECT_EQ(report_times_us(", rate_hz: 0", 0.1).size(), 100u);
+}
 
 TEST(Schedule, PhasesOfManyVehiclesSpreadOverThePeriod) {
-  TestWorld test(test::rover_world(lidar(", rate_hz: 10"), "",
-                                   "    count: 100\n    placement: {spacing_m: 2}\n"));
+  TestWorld test(test::rover_world(lidar(", rate_hz: 10"), "", "    count: 100\n    placement: {spacing_m: 2}\n"));
   std::map<std::int64_t, int> reports_at;
   std::vector<std::unique_ptr<Listener<shoal::planar_lidar_t>>> listeners;
   for (int i = 1; i <= 100; ++i)
-    listeners.push_back(
-        std::make_unique<Listener<shoal::planar_lidar_t>>(test, "r1" + std::to_string(i) + ".lidar"));
+    listeners.push_back(std::make_unique<Listener<shoal::planar_lidar_t>>(test, "r1" + std::to_string(i) + ".lidar"));
   test.run_for(0.1);
   int reports = 0;
   for (const auto& listener : listeners)

@@ -71,8 +71,7 @@ const CoopRover::Outgoing* find(const Outgoing& out, const std::string& channel)
 }
 
 double forward_mps(const Outgoing& out) {
-  return shoal::decode<shoal::twist_command_t>(find(out, "rover1.drive.cmd")->payload,
-                                               shoal::Finite::required)
+  return shoal::decode<shoal::twist_command_t>(find(out, "rover1.drive.cmd")->payload, shoal::Finite::required)
       .forward_mps;
 }
 
@@ -123,8 +122,7 @@ TEST(CoopRover, TellsNothingWithoutAFix) {
 
 /// Takes what rover1 gave its modem to the modem of another.
 std::vector<std::byte> arrived(const Outgoing& out, std::int64_t utime) {
-  const auto sent =
-      shoal::decode<shoal::modem_send_t>(find(out, "rover1.modem.cmd")->payload, shoal::Finite::any);
+  const auto sent = shoal::decode<shoal::modem_send_t>(find(out, "rover1.modem.cmd")->payload, shoal::Finite::any);
   shoal::modem_received_t packet{};
   packet.utime = utime;
   packet.source = "rover1";

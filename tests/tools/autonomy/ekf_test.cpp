@@ -30,8 +30,7 @@ Increment arc(double length_m, double turn_rad) {
 TEST(Odometer, GivesMovesInTheBodyFrame) {
   autonomy::Odometer odometer({{10, 0}, pi / 2});
   odometer.update({0, 0}, pi / 2);
-  const Increment move =
-      odometer.update({0, 3}, pi / 2);  // it looks along y of its start frame and drives there
+  const Increment move = odometer.update({0, 3}, pi / 2);  // it looks along y of its start frame and drives there
   EXPECT_NEAR(move.forward_m, 3, 1e-12);
   EXPECT_NEAR(move.left_m, 0, 1e-12);
   EXPECT_NEAR(move.turn_rad, 0, 1e-12);
@@ -67,8 +66,7 @@ TEST(Ekf, UncertaintyOfAStraightFollowsTheClosedForm) {
   // instead is off by the order of 1 / steps.
   const double rounding = 10.0 / steps;
   EXPECT_NEAR(ekf.covariance()(0, 0), 0.01 + along * length_m, 1e-9);
-  EXPECT_NEAR(ekf.covariance()(1, 1) / (0.01 + across * length_m + yaw * std::pow(length_m, 3) / 3), 1,
-              rounding);
+  EXPECT_NEAR(ekf.covariance()(1, 1) / (0.01 + across * length_m + yaw * std::pow(length_m, 3) / 3), 1, rounding);
   EXPECT_NEAR(ekf.covariance()(2, 2), yaw * length_m, 1e-9);
 }
 
@@ -141,9 +139,8 @@ double nees_of_run(std::uint64_t seed) {
   Pose2 truth{{0, 0}, 0};
   const double start_std_m = 0.2;
   const double start_std_rad = 0.05;
-  Ekf ekf(
-      {{start_std_m * random.gaussian(), start_std_m * random.gaussian()}, start_std_rad * random.gaussian()},
-      start_std_m, start_std_rad, params);
+  Ekf ekf({{start_std_m * random.gaussian(), start_std_m * random.gaussian()}, start_std_rad * random.gaussian()},
+          start_std_m, start_std_rad, params);
   const Vector2d neighbour_W(15, 5);
   for (int i = 1; i <= 600; ++i) {
     const Increment told = arc(0.05, i % 200 < 100 ? 0.01 : -0.005);

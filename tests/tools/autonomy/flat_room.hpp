@@ -47,8 +47,7 @@ inline Scan scan(const std::vector<Wall>& walls, const Pose2& pose, double range
   scan.step_rad = std::numbers::pi / 179;
   for (int i = 0; i < 180; ++i) {
     const double angle = pose.yaw_rad + scan.first_angle_rad + i * scan.step_rad;
-    scan.ranges_m.push_back(
-        static_cast<float>(cast(walls, pose.p_W, {std::cos(angle), std::sin(angle)}, range_max_m)));
+    scan.ranges_m.push_back(static_cast<float>(cast(walls, pose.p_W, {std::cos(angle), std::sin(angle)}, range_max_m)));
   }
   return scan;
 }
@@ -68,14 +67,12 @@ inline double distance_m(const std::vector<Wall>& walls, const Vector2d& p) {
 /// Drives on for a while at constant speeds (at the mean heading: second order in the turn).
 inline Pose2 driven(const Pose2& pose, const Twist& twist, double dt_s) {
   const double half_turn = 0.5 * twist.turn_radps * dt_s;
-  return {pose.p_W + turned({twist.forward_mps * dt_s, 0}, pose.yaw_rad + half_turn),
-          pose.yaw_rad + 2 * half_turn};
+  return {pose.p_W + turned({twist.forward_mps * dt_s, 0}, pose.yaw_rad + half_turn), pose.yaw_rad + 2 * half_turn};
 }
 
 /// The four walls of a box about the origin.
 inline std::vector<Wall> box(double half_x_m, double half_y_m) {
-  const Vector2d p[4] = {
-      {half_x_m, -half_y_m}, {half_x_m, half_y_m}, {-half_x_m, half_y_m}, {-half_x_m, -half_y_m}};
+  const Vector2d p[4] = {{half_x_m, -half_y_m}, {half_x_m, half_y_m}, {-half_x_m, half_y_m}, {-half_x_m, -half_y_m}};
   return {{p[0], p[1]}, {p[1], p[2]}, {p[2], p[3]}, {p[3], p[0]}};
 }
 

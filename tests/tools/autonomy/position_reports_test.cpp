@@ -23,8 +23,7 @@ shoal::position_report_t report_at(std::int64_t utime) {
 }
 
 /// What the modem of a receiver publishes 20 ms after the report was made.
-shoal::modem_received_t over_the_modem(const shoal::position_report_t& report,
-                                       const std::string& source = "rover1") {
+shoal::modem_received_t over_the_modem(const shoal::position_report_t& report, const std::string& source = "rover1") {
   const shoal::modem_send_t sent = autonomy::broadcast(report);
   shoal::modem_received_t packet;
   packet.utime = report.utime + 20'000;

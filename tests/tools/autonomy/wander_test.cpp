@@ -70,8 +70,7 @@ TEST(Wander, GoesTheSameWayEveryTime) {
   const auto turns = [](const char* name) {
     Wander wander(7, name);
     std::vector<bool> turning;
-    for (int i = 0; i < 500; ++i)
-      turning.push_back(wander.step(i % 40 == 0 ? blocked_scan : free_scan).turn_radps > 0);
+    for (int i = 0; i < 500; ++i) turning.push_back(wander.step(i % 40 == 0 ? blocked_scan : free_scan).turn_radps > 0);
     return turning;
   };
   EXPECT_EQ(turns("rover1"), turns("rover1"));

@@ -60,8 +60,7 @@ TEST(WaypointFollower, ReachesAllWaypointsInAFreeField) {
   const double dt_s = 0.1;
   double t_s = 0;
   for (; t_s < 1000 && follower.reached() < 4; t_s += dt_s)
-    pose =
-        flat_room::driven(pose, avoidance.steer(follower.goal_B(pose, t_s), flat_room::scan({}, pose)), dt_s);
+    pose = flat_room::driven(pose, avoidance.steer(follower.goal_B(pose, t_s), flat_room::scan({}, pose)), dt_s);
   EXPECT_EQ(follower.reached(), 4);
   // Half a turn at 1 rad/s at each of five corners at the most, on top of the way.
   EXPECT_LT(t_s, length_m / 0.8 + 5 * 3.2);

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <thread>
 
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 
@@ -136,14 +137,41 @@ TEST(ProcessGroup, EndsChildrenThatAProgramLeftBehind) {
   EXPECT_TRUE(await([&] { return !is_running(child); }));
 }
 
+TEST(ProcessGroup, KillsChildrenThatDoNotListen) {
+  const ScratchFolder folder;
+  tools::ProcessGroup group;
+  group.start(shell("(trap '' TERM; exec sleep 1000) & echo $! > " + folder.file("child") + "; sleep 1001"), "memq://",
+              "");
+  const pid_t child = std::stoi(await_line(folder.file("child")));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // for the trap
+  const auto begin = std::chrono::steady_clock::now();
+  group.stop();
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));  // it was asked first
+  EXPECT_TRUE(await([&] { return !is_running(child); }));
+  EXPECT_TRUE(group.empty());
+}
+
+TEST(ProcessGroup, KillsDeafChildrenOfAProgramThatIsLongGone) {
+  const ScratchFolder folder;
+  tools::ProcessGroup group;
+  group.start(shell("(trap '' TERM; exec sleep 1000) & echo $! > " + folder.file("child") + "; sleep 0.2"), "memq://",
+              "");
+  const pid_t child = std::stoi(await_line(folder.file("child")));
+  await_exit(group);
+  EXPECT_TRUE(is_running(child));
+  EXPECT_FALSE(group.empty());
+  group.stop();
+  EXPECT_TRUE(await([&] { return !is_running(child); }));
+}
+
 TEST(ProcessGroup, KillsWhatDoesNotListen) {
   const ScratchFolder folder;
   pid_t pid = 0;
   const auto begin = std::chrono::steady_clock::now();
   {
     tools::ProcessGroup group;
-    group.start(shell("trap '' TERM; echo $$ > " + folder.file("pid") + "; while true; do sleep 0.1; done"),
-                "memq://", "");
+    group.start(shell("trap '' TERM; echo $$ > " + folder.file("pid") + "; while true; do sleep 0.1; done"), "memq://",
+                "");
     pid = std::stoi(await_line(folder.file("pid")));
   }
   EXPECT_FALSE(is_running(pid));

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -13,6 +14,8 @@
 #include "tools/experiment/runner.hpp"
 
 namespace {
+
+namespace fs = std::filesystem;
 
 using lcm_test::ScratchFolder;
 
@@ -49,13 +52,13 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   summary.state_hash = 0x0123456789abcdef;
   summary.metrics["position.rms_m"] = 0.25;
   summary.verdicts = {{"position.rms_m (0.250) < 1", true}};
+  summary.processes = {{"pilot", "exited with code 1", 2.5}};
   const auto json = nlohmann::ordered_json::parse(summary.to_json());
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(
-      keys, testing::ElementsAre("world", "seed", "steps", "sim_time_s", "wall_s", "real_time_factor",
-                                 "state_hash", "messages", "dropped_messages", "bad_messages", "quick_steps",
-                                 "metrics", "rules", "passed", "ended", "error", "exit_code"));
+  EXPECT_THAT(keys, testing::ElementsAre("world", "seed", "steps", "sim_time_s", "wall_s", "real_time_factor",
+                                         "state_hash", "messages", "dropped_messages", "bad_messages", "quick_steps",
+                                         "metrics", "rules", "processes", "passed", "ended", "error", "exit_code"));
   EXPECT_EQ(json["world"], "harbor");
   EXPECT_EQ(json["seed"], 3);
   EXPECT_EQ(json["steps"], 1000);
@@ -63,7 +66,11 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   EXPECT_EQ(json["state_hash"], "0123456789abcdef");
   EXPECT_EQ(json["metrics"]["position.rms_m"], 0.25);
   EXPECT_EQ(json["rules"][0]["passed"], true);
+  EXPECT_EQ(json["processes"][0]["name"], "pilot");
+  EXPECT_EQ(json["processes"][0]["how"], "exited with code 1");
+  EXPECT_EQ(json["processes"][0]["sim_time_s"], 2.5);
   EXPECT_EQ(json["passed"], true);
+  EXPECT_THAT(summary.to_text(), testing::HasSubstr("process 'pilot' exited with code 1 at 2.50 s"));
 }
 
 TEST(Summary, AFigureThatIsNoNumberIsNull) {
@@ -128,6 +135,75 @@ TEST(Results, NameWhatCannotBeWritten) {
   const tools::Summary summary = tools::run_world(loaded, options);
   EXPECT_EQ(summary.exit_code, 4);
   EXPECT_THAT(summary.error, testing::HasSubstr("cannot write results to '/proc/nowhere"));
+}
+
+TEST(Results, NamesInAWorldAreNoCommands) {
+  const ScratchFolder folder;
+  const std::string made = folder.file("made");
+  auto loaded = small_world();
+  loaded.config.name = "x'; system \"touch " + made + "\"; set title '\n!touch " + made + "\n`touch " + made + "`";
+  auto options = quiet_run();
+  options.results = folder.file("results");
+  EXPECT_EQ(tools::run_world(loaded, options).exit_code, 0);
+  EXPECT_FALSE(fs::exists(made));
+  EXPECT_THAT(text_of_file(options.results + "/tracks.png"), testing::StartsWith("\x89PNG"));
+}
+
+TEST(Results, TellOfARunThatCouldNotBeBuilt) {
+  const ScratchFolder folder;
+  const auto loaded = small_world();
+  auto options = quiet_run();
+  options.results = folder.file("results");
+  options.record = folder.file("no/such/folder.lcm");
+  EXPECT_EQ(tools::run_world(loaded, options).exit_code, 4);
+  const auto json = nlohmann::json::parse(text_of_file(options.results + "/summary.json"));
+  EXPECT_EQ(json["passed"], false);
+  EXPECT_EQ(json["exit_code"], 4);
+  EXPECT_THAT(json["error"], testing::HasSubstr("folder.lcm"));
+}
+
+TEST(Results, ReplaceThoseOfAnEarlierRun) {
+  const ScratchFolder folder;
+  const auto loaded = small_world();
+  auto options = quiet_run();
+  options.results = folder.file("results");
+  EXPECT_EQ(tools::run_world(loaded, options).exit_code, 0);
+  options.launch = true;
+  EXPECT_EQ(tools::run_world(loaded, options).exit_code, 2);
+  const auto json = nlohmann::json::parse(text_of_file(options.results + "/summary.json"));
+  EXPECT_EQ(json["ended"], "configuration");
+  EXPECT_EQ(json["steps"], 0);
+}
+
+TEST(Results, AFullDiskEndsTheRunAndTheRestIsWritten) {
+  const ScratchFolder folder;
+  auto loaded = small_world();
+  loaded.config.run.duration_s = 20;
+  auto options = quiet_run();
+  options.results = folder.file("results");
+  fs::create_directory(options.results);
+  fs::create_symlink("/dev/full", options.results + "/tracks.csv");
+  const tools::Summary summary = tools::run_world(loaded, options);
+  EXPECT_EQ(summary.exit_code, 4);
+  EXPECT_EQ(summary.steps, 1000);  // the first look
+  EXPECT_THAT(summary.error, testing::HasSubstr("tracks.csv': No space left on device"));
+  EXPECT_EQ(text_of_file(options.results + "/summary.json"), summary.to_json());
+  EXPECT_THAT(text_of_file(options.results + "/metrics.csv"), testing::StartsWith("metric,value\n"));
+  EXPECT_TRUE(fs::exists(options.results + "/world.yaml"));
+}
+
+TEST(Results, OneFileThatCannotBeWrittenDoesNotLoseTheOthers) {
+  const ScratchFolder folder;
+  const auto loaded = small_world();
+  auto options = quiet_run();
+  options.results = folder.file("results");
+  fs::create_directories(options.results + "/metrics.csv");
+  const tools::Summary summary = tools::run_world(loaded, options);
+  EXPECT_EQ(summary.exit_code, 4);
+  EXPECT_THAT(summary.error, testing::HasSubstr("metrics.csv"));
+  EXPECT_EQ(text_of_file(options.results + "/summary.json"), summary.to_json());
+  EXPECT_TRUE(fs::exists(options.results + "/world.yaml"));
+  EXPECT_TRUE(fs::exists(options.results + "/tracks.png"));
 }
 
 TEST(Results, DoNotChangeTheRun) {

@@ -17,8 +17,8 @@ TEST(ReferencePages, InDocsAreUpToDate) {
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     // Not EXPECT_EQ: nobody wants to read two whole pages.
     EXPECT_TRUE(text == tools::reference_page(name))
-        << "docs/" << name << ".md is stale; type\n  build/bin/shoal describe --page " << name << " > docs/"
-        << name << ".md";
+        << "docs/" << name << ".md is stale; type\n  build/bin/shoal describe --page " << name << " > docs/" << name
+        << ".md";
   }
 }
 
@@ -48,8 +48,7 @@ TEST(ReferencePages, NoDeviceTakesAKeyThatAllDevicesHave) {
     std::vector<sim::ParamInfo> table;
     sim::ParamReader in(table);
     type->make_params()->read(in);
-    for (const sim::ParamInfo& info : table)
-      EXPECT_FALSE(common.contains(info.key)) << type->name << ": " << info.key;
+    for (const sim::ParamInfo& info : table) EXPECT_FALSE(common.contains(info.key)) << type->name << ": " << info.key;
   }
 }
 

@@ -40,8 +40,7 @@ constexpr std::array primitives{
 };
 
 bool is_integer(WireType type) {
-  return type == WireType::int8 || type == WireType::int16 || type == WireType::int32 ||
-         type == WireType::int64;
+  return type == WireType::int8 || type == WireType::int16 || type == WireType::int32 || type == WireType::int64;
 }
 
 class Parser {
@@ -70,8 +69,7 @@ class Parser {
   using Constants = std::map<std::string, std::int64_t>;
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw MessageError(file_ + ":" + std::to_string(token_.line) + ":" + std::to_string(token_.column) +
-                       ": " + what);
+    throw MessageError(file_ + ":" + std::to_string(token_.line) + ":" + std::to_string(token_.column) + ": " + what);
   }
 
   void advance() {
@@ -128,8 +126,7 @@ class Parser {
   }
 
   std::string word(const std::string& what) {
-    if (token_.text.empty() || !is_word(token_.text[0]) ||
-        std::isdigit(static_cast<unsigned char>(token_.text[0])))
+    if (token_.text.empty() || !is_word(token_.text[0]) || std::isdigit(static_cast<unsigned char>(token_.text[0])))
       fail("expected " + what + ", got '" + token_.text + "'");
     std::string text = token_.text;
     advance();

@@ -8,8 +8,7 @@ namespace {
 // The hash of lcm-gen: signed 64-bit arithmetic with wrap-around, done on unsigned.
 std::uint64_t hash_char(std::uint64_t v, char c) {
   const auto shifted = static_cast<std::uint64_t>(static_cast<std::int64_t>(v) >> 55);
-  return ((v << 8) ^ shifted) +
-         static_cast<std::uint64_t>(static_cast<std::int64_t>(static_cast<signed char>(c)));
+  return ((v << 8) ^ shifted) + static_cast<std::uint64_t>(static_cast<std::int64_t>(static_cast<signed char>(c)));
 }
 
 std::uint64_t hash_string(std::uint64_t v, std::string_view s) {
@@ -110,8 +109,7 @@ void MessageTypes::resolve() {
       if (member.type != WireType::compound) continue;
       member.compound = find(member.type_name);
       if (member.compound == nullptr)
-        throw MessageError("type " + name + ": member '" + member.name + "' has the unknown type " +
-                           member.type_name);
+        throw MessageError("type " + name + ": member '" + member.name + "' has the unknown type " + member.type_name);
     }
   std::vector<const MessageSchema*> parents;
   for (auto& [name, schema] : by_name_) schema.min_size = compute_min_size(schema, parents);

@@ -93,8 +93,7 @@ enum class Finite { required, any };
 
 /// What is wrong with an encoded message of this type, or nothing.  Never reads outside the payload, and
 /// takes time in proportion to it, whatever the bytes are.
-std::optional<std::string> validate(const MessageSchema& schema, std::span<const std::byte> payload,
-                                    Finite finite);
+std::optional<std::string> validate(const MessageSchema& schema, std::span<const std::byte> payload, Finite finite);
 
 /// A `boolean`; any integer; float or double; string; a one-dimensional array of `byte`.
 using FieldValue = std::variant<bool, std::int64_t, double, std::string_view, std::span<const std::byte>>;

@@ -10,9 +10,8 @@
 namespace shoal {
 namespace {
 
-constexpr int max_depth = 32;  // types that contain themselves; also the depth of our recursion
-constexpr std::uint64_t max_empty_rows =
-    65536;  // arrays may be large only where they have bytes to show for it
+constexpr int max_depth = 32;                    // types that contain themselves; also the depth of our recursion
+constexpr std::uint64_t max_empty_rows = 65536;  // arrays may be large only where they have bytes to show for it
 
 template <class T>
 T big_endian(const std::byte* at) {
@@ -63,8 +62,7 @@ class Walker {
 
   bool walk(const MessageSchema& schema, int depth = 0) {
     if (depth > max_depth) return fail("", "is nested deeper than " + std::to_string(max_depth));
-    std::array<std::int64_t, 64>
-        lengths;  // of this type's arrays; not initialised, every slot is set before use
+    std::array<std::int64_t, 64> lengths;  // of this type's arrays; not initialised, every slot is set before use
     for (const Member& member : schema.members)
       if (!walk_member(member, lengths, depth)) return false;
     return true;
@@ -74,8 +72,8 @@ class Walker {
 
   std::string error(const MessageSchema& schema) const {
     if (too_short_by_ > 0)
-      return "payload of " + std::to_string(end_ - begin_) + " bytes is too short for " + schema.name +
-             ": field '" + error_field_ + "' needs " + std::to_string(too_short_by_) + " more bytes";
+      return "payload of " + std::to_string(end_ - begin_) + " bytes is too short for " + schema.name + ": field '" +
+             error_field_ + "' needs " + std::to_string(too_short_by_) + " more bytes";
     return "field '" + error_field_ + "' " + error_text_;
   }
 
@@ -104,8 +102,7 @@ class Walker {
     if (count * size > remaining()) return fail_short(member.name, count * size);
     if (member.length_slot >= 0) {
       lengths[static_cast<std::size_t>(member.length_slot)] = read_integer(member.type, at_);
-    } else if (finite_ == Finite::required &&
-               (member.type == WireType::float32 || member.type == WireType::float64)) {
+    } else if (finite_ == Finite::required && (member.type == WireType::float32 || member.type == WireType::float64)) {
       if (!check_finite(member, lengths, count, size)) return false;
     }
     if (visitor_ != nullptr) show_primitives(member, lengths, count, size);
@@ -115,17 +112,14 @@ class Walker {
 
   /// The product of the dimensions, kept within what the payload can hold.
   bool element_count(const Member& member, const Lengths& lengths, std::uint64_t& count) {
-    const std::size_t element =
-        member.compound != nullptr ? member.compound->min_size : wire_size(member.type);
+    const std::size_t element = member.compound != nullptr ? member.compound->min_size : wire_size(member.type);
     bool empty = false;
     std::uint64_t rows = 1;  // vectors that a decoder makes even when the array has no element
     for (const Dimension& dimension : member.dimensions) {
-      const std::int64_t size = dimension.is_variable()
-                                    ? lengths[static_cast<std::size_t>(dimension.length_slot)]
-                                    : dimension.constant;
+      const std::int64_t size =
+          dimension.is_variable() ? lengths[static_cast<std::size_t>(dimension.length_slot)] : dimension.constant;
       if (size < 0)
-        return fail(member.name,
-                    "has the negative size " + std::to_string(size) + " ('" + dimension.text + "')");
+        return fail(member.name, "has the negative size " + std::to_string(size) + " ('" + dimension.text + "')");
       if (size == 0) empty = true;
       if (__builtin_mul_overflow(count, static_cast<std::uint64_t>(size), &count) || count > (1ull << 58))
         return fail(member.name, "is too large ('" + dimension.text + "' is " + std::to_string(size) + ")");
@@ -136,8 +130,7 @@ class Walker {
       return true;
     }
     if (element == 0) {
-      if (count > max_empty_rows)
-        return fail(member.name, "has " + std::to_string(count) + " empty elements");
+      if (count > max_empty_rows) return fail(member.name, "has " + std::to_string(count) + " empty elements");
       return true;
     }
     if (count > remaining() / element) {
@@ -185,8 +178,7 @@ class Walker {
   bool check_finite(const Member& member, const Lengths& lengths, std::uint64_t count, std::size_t size) {
     for (std::uint64_t i = 0; i < count; ++i) {
       const double value = read_real(member.type, at_ + i * size);
-      if (!std::isfinite(value))
-        return fail(element_name(member, lengths, i), "must be finite, got " + text_of(value));
+      if (!std::isfinite(value)) return fail(element_name(member, lengths, i), "must be finite, got " + text_of(value));
     }
     return true;
   }
@@ -246,8 +238,8 @@ std::int64_t fingerprint(std::span<const std::byte> payload) {
 
 namespace {
 
-std::optional<std::string> walk_all(const MessageSchema& schema, std::span<const std::byte> payload,
-                                    Finite finite, const FieldVisitor* visitor) {
+std::optional<std::string> walk_all(const MessageSchema& schema, std::span<const std::byte> payload, Finite finite,
+                                    const FieldVisitor* visitor) {
   const std::string bytes = "payload of " + std::to_string(payload.size()) + " bytes is too ";
   if (payload.size() < sizeof(std::uint64_t)) return bytes + "short for any message";
   const auto got = static_cast<std::uint64_t>(fingerprint(payload));
@@ -263,8 +255,7 @@ std::optional<std::string> walk_all(const MessageSchema& schema, std::span<const
 
 }  // namespace
 
-std::optional<std::string> validate(const MessageSchema& schema, std::span<const std::byte> payload,
-                                    Finite finite) {
+std::optional<std::string> validate(const MessageSchema& schema, std::span<const std::byte> payload, Finite finite) {
   return walk_all(schema, payload, finite, nullptr);
 }
 

@@ -1,0 +1,119 @@
+#include "bridges/lcm/sim_service.hpp"
+
+#include <gmock/gmock.h>
+
+#include "shoal/sim_ack_t.hpp"
+#include "shoal/sim_control_reply_t.hpp"
+#include "shoal/sim_state_t.hpp"
+#include "shoal/sim_tick_t.hpp"
+#include "tests/devices/world_fixture.hpp"
+
+namespace {
+
+/// A world with one box, and its service on the same in-process bus.
+struct Service {
+  Service() = default;
+
+  shoal::sim_control_reply_t ask(const std::string& command, double value, const std::string& client = "pilot") {
+    shoal::sim_control_request_t request{};
+    request.id = ++id;
+    request.client = client;
+    request.command = command;
+    request.value = value;
+    test.send("sim.control", request);
+    service.handle_requests();
+    return replies.last();
+  }
+  void acknowledge(std::int64_t step, const std::string& client = "pilot") {
+    shoal::sim_ack_t ack{};
+    ack.step = step;
+    ack.client = client;
+    test.send("sim.ack", ack);
+  }
+  /// Waits for nobody longer than a moment.
+  void synchronize() {
+    service.synchronize(0.02, [](std::chrono::milliseconds) {}, [] { return true; });
+  }
+
+  test::TestWorld test{
+      "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nvehicles: [{name: a, model: {shoal: 1, bodies: [{name: b, "
+      "parts: [{shape: box, mass_kg: 1}]}]}}]\n"};
+  test::Listener<shoal::sim_control_reply_t> replies{test, "sim.control.reply"};
+  test::Listener<shoal::sim_tick_t> ticks{test, "sim.tick"};
+  sim::RunControl control;
+  sim::Lockstep lockstep;
+  bridges::SimService service{test.bus, test.bus, test.world, control, lockstep, {"{}", "test"}};
+  std::int32_t id = 0;
+};
+
+TEST(SimService, AnswersEachRequestWithItsNumber) {
+  Service s;
+  const auto reply = s.ask("pause", 0);
+  EXPECT_EQ(reply.id, 1);
+  EXPECT_EQ(reply.client, "pilot");
+  EXPECT_TRUE(reply.ok);
+  EXPECT_TRUE(s.control.paused);
+  EXPECT_TRUE(s.ask("resume", 0).ok);
+  EXPECT_FALSE(s.control.paused);
+  EXPECT_TRUE(s.ask("speed", 10).ok);
+  EXPECT_EQ(s.control.speed, 10);
+}
+
+TEST(SimService, SaysWhyItRefuses) {
+  Service s;
+  EXPECT_THAT(s.ask("fly", 0).text, testing::HasSubstr("unknown command 'fly'; known commands: join, leave, pause"));
+  EXPECT_THAT(s.ask("speed", -1).text, testing::HasSubstr("'speed' must be 0"));
+  EXPECT_THAT(s.ask("speed", 5e-324).text, testing::HasSubstr("'speed' must be 0"));
+  EXPECT_THAT(s.ask("join", 0.015).text, testing::HasSubstr("a multiple of the step"));
+  EXPECT_THAT(s.ask("leave", 0).text, testing::HasSubstr("no client of the name 'pilot'"));
+  EXPECT_EQ(s.service.bad_messages(), 5);
+}
+
+TEST(SimService, WaitsForTheClientsThatAreDueAndNamesTheMissing) {
+  Service s;
+  ASSERT_TRUE(s.ask("join", 0.01).ok);
+  try {
+    s.synchronize();
+    FAIL();
+  } catch (const bridges::LockstepTimeout& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("no acknowledgement from 'pilot' for step 0"));
+  }
+  EXPECT_EQ(s.ticks.last().client, std::vector<std::string>{"pilot"});
+  s.acknowledge(0);
+  EXPECT_NO_THROW(s.synchronize());
+}
+
+TEST(SimService, AnAcknowledgementOfAStepToComeIsRefusedAndCounted) {
+  Service s;
+  ASSERT_TRUE(s.ask("join", 0.01).ok);
+  s.acknowledge(1000000);
+  EXPECT_THROW(s.synchronize(), bridges::LockstepTimeout);
+  EXPECT_EQ(s.service.bad_messages(), 1);
+}
+
+TEST(SimService, HearsAnotherSimulatorOnItsBus) {
+  Service s;
+  EXPECT_FALSE(s.service.hears_another_simulator([](std::chrono::milliseconds) {}));
+  bool published = false;
+  EXPECT_TRUE(s.service.hears_another_simulator([&](std::chrono::milliseconds) {
+    if (!published) s.test.send("sim.tick", shoal::sim_tick_t{});
+    published = true;
+  }));
+}
+
+TEST(SimService, PublishesTheStateAtItsRate) {
+  Service s;
+  test::Listener<shoal::sim_state_t> states(s.test, "sim.state");
+  s.service.publish_step();
+  for (int i = 0; i < 100; ++i) {
+    s.test.world.step();
+    s.service.publish_step();
+  }
+  const auto all = states.take_all();
+  ASSERT_EQ(all.size(), 11u);  // 10 Hz for 1 s, and the start
+  EXPECT_EQ(all.back().step, 100);
+  EXPECT_EQ(all.back().vehicle, std::vector<std::string>{"a"});
+  EXPECT_EQ(all.back().orientation[0], (std::vector<double>{1, 0, 0, 0}));
+}
+
+}  // namespace
