@@ -164,6 +164,16 @@ TEST_F(LiveRun, WaitsForAClientThatJoinsLate) {
   quit();
 }
 
+TEST_F(LiveRun, ASecondSimulatorWithClientsLeavesTheBusToTheFirst) {
+  start();
+  const Ended second =
+      run_shoal({"run", source("worlds/minimal.yaml"), "--lcm-url", own_url(), "--await", "pilot", "--duration", "1"});
+  EXPECT_EQ(second.exit_code, 4);
+  EXPECT_THAT(second.errors, HasSubstr("another simulator publishes on"));
+  await_steps(5);  // the first goes on
+  quit();
+}
+
 TEST_F(LiveRun, GoesOnWithoutAProcessThatDied) {
   start("processes: [{name: pilot, command: [sh, -c, exit 3]}]\n", {"--launch"});
   EXPECT_TRUE(await([&] { return shoal_->errors().find("the run goes on without it") != std::string::npos; }));
