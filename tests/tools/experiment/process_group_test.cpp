@@ -137,13 +137,16 @@ TEST(ProcessGroup, EndsChildrenThatAProgramLeftBehind) {
   EXPECT_TRUE(await([&] { return !is_running(child); }));
 }
 
+/// A child that ignores SIGTERM and then writes its number to a file, and what its parent does after.
+std::string deaf_child(const std::string& file, const std::string& then) {
+  return "sh -c \"trap '' TERM; echo \\$\\$ > " + file + "; exec sleep 1000\" & " + then;
+}
+
 TEST(ProcessGroup, KillsChildrenThatDoNotListen) {
   const ScratchFolder folder;
   tools::ProcessGroup group;
-  group.start(shell("(trap '' TERM; exec sleep 1000) & echo $! > " + folder.file("child") + "; sleep 1001"), "memq://",
-              "");
+  group.start(shell(deaf_child(folder.file("child"), "sleep 1001")), "memq://", "");
   const pid_t child = std::stoi(await_line(folder.file("child")));
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // for the trap
   const auto begin = std::chrono::steady_clock::now();
   group.stop();
   EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));  // it was asked first
@@ -154,9 +157,10 @@ TEST(ProcessGroup, KillsChildrenThatDoNotListen) {
 TEST(ProcessGroup, KillsDeafChildrenOfAProgramThatIsLongGone) {
   const ScratchFolder folder;
   tools::ProcessGroup group;
-  group.start(shell("(trap '' TERM; exec sleep 1000) & echo $! > " + folder.file("child") + "; sleep 0.2"), "memq://",
-              "");
-  const pid_t child = std::stoi(await_line(folder.file("child")));
+  const std::string file = folder.file("child");
+  // The parent goes when the child has said its number: from then on it is deaf.
+  group.start(shell(deaf_child(file, "until [ -s " + file + " ]; do sleep 0.01; done")), "memq://", "");
+  const pid_t child = std::stoi(await_line(file));
   await_exit(group);
   EXPECT_TRUE(is_running(child));
   EXPECT_FALSE(group.empty());
