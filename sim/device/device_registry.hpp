@@ -76,46 +76,6 @@ std::unique_ptr<Model> make_model(const DeviceParams& params, const DeviceContex
     return std::make_unique<Model>(own);
 }
 
-template <typename Model>
-DeviceType type_of(const char* name) {
-  DeviceType type;
-  type.name = name;
-  type.meaning = Model::meaning;
-  if constexpr (requires { Model::default_rate_hz; }) type.default_rate_hz = Model::default_rate_hz;
-  type.make_params = [] { return std::make_shared<ParamsOf<typename Model::Params>>(); };
-  return type;
-}
-
-template <typename Model, typename ReporterType>
-bool add_sensor(const char* name) {
-  DeviceType type = type_of<Model>(name);
-  type.report_message = ReporterType::report_message;
-  type.build = [](const DeviceParams& params, const DeviceContext& context) {
-    BuiltDevice built;
-    auto model = make_model<Model>(params, context);
-    built.reporter = std::make_unique<ReporterType>(*model);
-    built.sensor = std::move(model);
-    return built;
-  };
-  DeviceRegistry::instance().add(std::move(type));
-  return true;
-}
-
-template <typename Model, typename ControllerType>
-bool add_actuator(const char* name) {
-  DeviceType type = type_of<Model>(name);
-  type.command_messages = ControllerType::command_messages;
-  type.build = [](const DeviceParams& params, const DeviceContext& context) {
-    BuiltDevice built;
-    auto model = make_model<Model>(params, context);
-    built.controller = std::make_unique<ControllerType>(*model);
-    built.actuator = std::move(model);
-    return built;
-  };
-  DeviceRegistry::instance().add(std::move(type));
-  return true;
-}
-
 /// Hands a device that is sensor and actuator at once to its two owners.
 template <typename Model>
 class ActuatorSide final : public Actuator {
@@ -128,33 +88,45 @@ class ActuatorSide final : public Actuator {
   Model& model_;
 };
 
+/// ReporterType or ControllerType void: the device has none.
 template <typename Model, typename ReporterType, typename ControllerType>
-bool add_transceiver(const char* name) {
-  DeviceType type = type_of<Model>(name);
-  type.report_message = ReporterType::report_message;
-  type.command_messages = ControllerType::command_messages;
-  type.build = [](const DeviceParams& params, const DeviceContext& context) {
-    BuiltDevice built;
-    auto model = make_model<Model>(params, context);
-    built.reporter = std::make_unique<ReporterType>(*model);
-    built.controller = std::make_unique<ControllerType>(*model);
-    built.actuator = std::make_unique<ActuatorSide<Model>>(*model);
+BuiltDevice build_device(const DeviceParams& params, const DeviceContext& context) {
+  BuiltDevice built;
+  auto model = make_model<Model>(params, context);
+  if constexpr (!std::is_void_v<ReporterType>) built.reporter = std::make_unique<ReporterType>(*model);
+  if constexpr (!std::is_void_v<ControllerType>) built.controller = std::make_unique<ControllerType>(*model);
+  if constexpr (std::is_base_of_v<Actuator, Model>) {
+    built.actuator = std::move(model);
+  } else {
+    if constexpr (!std::is_void_v<ControllerType>) built.actuator = std::make_unique<ActuatorSide<Model>>(*model);
     built.sensor = std::move(model);
-    return built;
-  };
+  }
+  return built;
+}
+
+template <typename Model, typename ReporterType, typename ControllerType>
+bool add_device(const char* name) {
+  DeviceType type;
+  type.name = name;
+  type.meaning = Model::meaning;
+  if constexpr (requires { Model::default_rate_hz; }) type.default_rate_hz = Model::default_rate_hz;
+  if constexpr (!std::is_void_v<ReporterType>) type.report_message = ReporterType::report_message;
+  if constexpr (!std::is_void_v<ControllerType>) type.command_messages = ControllerType::command_messages;
+  type.make_params = [] { return std::make_shared<ParamsOf<typename Model::Params>>(); };
+  type.build = build_device<Model, ReporterType, ControllerType>;
   DeviceRegistry::instance().add(std::move(type));
   return true;
 }
 
 }  // namespace detail
 
-#define SHOAL_SENSOR(name, Model, ReporterType) \
-  [[maybe_unused]] static const bool registered_##Model = ::sim::detail::add_sensor<Model, ReporterType>(name)
-#define SHOAL_ACTUATOR(name, Model, ControllerType) \
-  [[maybe_unused]] static const bool registered_##Model = ::sim::detail::add_actuator<Model, ControllerType>(name)
+#define SHOAL_DEVICE(name, Model, ReporterType, ControllerType) \
+  [[maybe_unused]] static const bool registered_##Model =       \
+      ::sim::detail::add_device<Model, ReporterType, ControllerType>(name)
+#define SHOAL_SENSOR(name, Model, ReporterType) SHOAL_DEVICE(name, Model, ReporterType, void)
+#define SHOAL_ACTUATOR(name, Model, ControllerType) SHOAL_DEVICE(name, Model, void, ControllerType)
 /// For a device that is both: its model is a Sensor that also has act().
 #define SHOAL_TRANSCEIVER(name, Model, ReporterType, ControllerType) \
-  [[maybe_unused]] static const bool registered_##Model =            \
-      ::sim::detail::add_transceiver<Model, ReporterType, ControllerType>(name)
+  SHOAL_DEVICE(name, Model, ReporterType, ControllerType)
 
 }  // namespace sim

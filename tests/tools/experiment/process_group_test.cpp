@@ -6,7 +6,6 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
-#include <thread>
 
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 
