@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "sim/config/message_text.hpp"
+#include "sim/script/script.hpp"
 
 namespace sim {
 
@@ -22,12 +23,14 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port)
   add_objects();
   for (const VehicleInstance& instance : config.vehicles) build_vehicle(instance);
   sort_devices();
+  script_ = std::make_unique<Script>(*this);
 }
 
 World::~World() = default;
 
 void World::add_objects() {
   for (const ObjectConfig& object : config_.objects) {
+    if (!object.present) continue;
     const Pose X_WE = make_pose(object.position_m, object.rpy_rad);
     const std::vector<Pose> poses = object.count == 1
                                         ? std::vector<Pose>{X_WE}
@@ -95,6 +98,7 @@ void World::sort_devices() {
 void World::step() {
   for (MountedDevice* device : listening_) device->take_mail(now(), step_number_);
   for (MountedDevice* device : acting_) device->act(now(), step_s_);
+  script_->step();
   physics_->step(step_number_);
   ++step_number_;
   run_due_events();
@@ -157,6 +161,20 @@ void World::complain(const std::string& who, const std::string& text) {
   spdlog::warn("{} (ignored, at {:.3f} s)", line, to_seconds(now()));
 }
 
+const Zones& World::zones() const {
+  return script_->zones();
+}
+
+const std::map<std::string, ZoneRecord>& World::zone_records() const {
+  return script_->zone_records();
+}
+
+void World::run_action(const ConfigNode& action) {
+  Diagnostics diagnostics;
+  script_->run_now(action, diagnostics);
+  diagnostics.throw_if_any();
+}
+
 std::uint64_t World::state_hash() const {
   StateHash hash;
   hash.add(step_number_);
@@ -165,6 +183,7 @@ std::uint64_t World::state_hash() const {
   for (const auto& device : devices_)
     if (device) device->hash_state(hash);
   events_.hash_state(hash);
+  if (!script_->empty()) script_->hash_state(hash);
   return hash.value();
 }
 

@@ -27,6 +27,9 @@ struct WorldCounts {
   std::int64_t bad_messages = 0;
 };
 
+class Script;
+struct ZoneRecord;
+
 enum class ChannelKind { report, command, truth };
 
 /// A thing without devices, as built.
@@ -103,6 +106,10 @@ class World {
   /// Throw WorldError when there is no such device, or the fault does not fit it.
   void set_fault(const std::string& device, const FaultConfig& fault);
   void clear_faults(const std::string& device);
+  /// Gives a device other values while it runs.  False: `diagnostics` say why, and nothing has changed.
+  bool change_device(const std::string& full_name, const ConfigNode& values, Diagnostics& diagnostics);
+  /// Carries out one action (a map) or several (a list of maps) as an event would.  Throws ConfigError.
+  void run_action(const ConfigNode& action);
   /// Sends a message on the world's bus, as a script does.
   void publish(const std::string& channel, std::span<const std::byte> payload);
   /// The run ends after this step; the first call counts.
@@ -125,6 +132,9 @@ class World {
   /// The channel of a device by the world's templates.
   std::string channel_of(const std::string& vehicle, const DeviceConfig& device, ChannelKind kind) const;
 
+  const Zones& zones() const;
+  /// By vehicle, when the world has zones with a speed limit or a finish.
+  const std::map<std::string, ZoneRecord>& zone_records() const;
   const WorldCounts& counts() const { return counts_; }
   /// A hash over bodies, joints, devices, their random streams and the event queue.
   std::uint64_t state_hash() const;
@@ -167,6 +177,7 @@ class World {
   std::vector<std::unique_ptr<MountedDevice>> devices_;
   // The devices each stage visits, in device order.
   std::vector<MountedDevice*> listening_, acting_, sensing_;
+  std::unique_ptr<Script> script_;
 };
 
 }  // namespace sim
