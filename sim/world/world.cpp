@@ -45,7 +45,7 @@ void World::add_objects() {
       BodyConfig body;
       body.parts = object.parts;
       body.name = "body";
-      physics_->add_body(group, body, poses[static_cast<std::size_t>(i)], object.fixed);
+      physics_->add_body(group, body, poses[static_cast<std::size_t>(i)], object.fixed ? Motion::fixed : Motion::free);
       physics_->close_group(group);
     }
   }
