@@ -203,9 +203,10 @@ void BM_KinematicBodies(benchmark::State& state) {
   add_ground(*world);
   std::vector<sim::Body*> walkers;
   const PartConfig torso = at(round("capsule", 0.2, 1, 0), {0, 0, 0.9}), head = at(sphere(0.15, 0), {0, 0, 1.7});
-  for (int i = 0; i < actors; ++i)
-    walkers.push_back(
-        &add(*world, body("walker" + std::to_string(i), {torso, head}), Pose::Identity(), Motion::kinematic));
+  for (int i = 0; i < actors; ++i) {
+    const Pose X_WB = sim::make_pose(cell(i, actors), Vector3d::Zero());
+    walkers.push_back(&add(*world, body("walker" + std::to_string(i), {torso, head}), X_WB, Motion::kinematic));
+  }
   std::int64_t step_number = 0;
   for (auto _ : state) {
     const double away_m = std::sin(0.01 * static_cast<double>(step_number));
