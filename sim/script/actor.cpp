@@ -129,14 +129,18 @@ void Actor::find_body(World& world) {
 
 void Actor::place(World& world) {
   find_body(world);
-  if (body_ != nullptr) body_->set_pose(pose_at(Time{0}));
+  X_WB_ = pose_at(Time{0});
+  if (body_ != nullptr) body_->set_pose(X_WB_);
 }
 
 void Actor::step(World& world, Time now) {
   find_body(world);
   if (body_ == nullptr) return;  // removed; it is in its place again when it comes back
+  // Someone put it elsewhere, or it is new: it jumps back, for a way in one step would hit others like a bullet.
+  if ((body_->X_WB().translation() - X_WB_.translation()).squaredNorm() > 1e-12) body_->set_pose(pose_at(now));
   const Time end = now + world.step_time();
-  body_->set_pose(pose_at(end));
+  X_WB_ = pose_at(end);
+  body_->move_to(X_WB_, to_seconds(world.step_time()));
 }
 
 void Actor::hash_state(StateHash& hash) const {

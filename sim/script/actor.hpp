@@ -72,6 +72,7 @@ class Actor {
   bool moving_ = true;
   // The object by its name, looked up again when something came or went.
   Body* body_ = nullptr;
+  Pose X_WB_ = Pose::Identity();  ///< where it was sent last
   std::uint64_t generation_ = ~std::uint64_t{0};
 };
 

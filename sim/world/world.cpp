@@ -47,8 +47,9 @@ const WorldObject& World::build_object(const ObjectConfig& config, const std::st
   BodyConfig body;
   body.parts = config.parts;
   body.name = "body";
+  const Motion motion = config.kinematic ? Motion::kinematic : config.fixed ? Motion::fixed : Motion::free;
   try {
-    object.body = &physics_->add_body(object.group, body, X_WE, config.fixed ? Motion::fixed : Motion::free);
+    object.body = &physics_->add_body(object.group, body, X_WE, motion);
   } catch (...) {
     physics_->remove_group(object.group);
     throw;
