@@ -45,7 +45,7 @@ const WorldObject& World::build_object(const ObjectConfig& config, const std::st
   body.parts = config.parts;
   body.name = "body";
   try {
-    object.body = &physics_->add_body(object.group, body, X_WE, config.fixed);
+    object.body = &physics_->add_body(object.group, body, X_WE, config.fixed ? Motion::fixed : Motion::free);
   } catch (...) {
     physics_->remove_group(object.group);
     throw;
