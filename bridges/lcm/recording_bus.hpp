@@ -58,8 +58,8 @@ class RecordingBus final : public sim::Bus {
   void fail(int error_number);
 
   std::unique_ptr<sim::Bus> owned_;
-  RecordingBus* first_ = nullptr;  // whose log is used; null: our own
   sim::Bus& inner_;
+  RecordingBus* first_ = nullptr;  // whose log is used; null: our own
   std::string path_;
   std::int64_t epoch_utime_ = 0;
   std::int64_t utime_ = 0;      // of the last event; never goes back

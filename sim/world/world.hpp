@@ -121,6 +121,8 @@ class World {
   /// The run ends after this step; the first call counts.
   void end(const EndOfRun& end);
   const std::optional<EndOfRun>& ended() const { return ended_; }
+  /// Carries out one action, as in `events:`.  Throws ConfigError.
+  void run_action(const ConfigNode& action);
   /// Warns of something that went wrong in the world and counts it; the same line is told once.
   void complain(const std::string& who, const std::string& text);
 
