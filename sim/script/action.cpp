@@ -11,14 +11,19 @@ namespace sim {
 
 namespace {
 
-const std::vector<std::pair<std::string, ActionKind>> action_words = {
-    {"move", ActionKind::move},       {"add", ActionKind::add},
-    {"remove", ActionKind::remove},   {"one_of", ActionKind::one_of},
-    {"fault", ActionKind::fault},     {"clear_fault", ActionKind::clear_fault},
-    {"set", ActionKind::set},         {"publish", ActionKind::publish},
-    {"actor", ActionKind::actor},     {"trigger", ActionKind::trigger},
-    {"gravity_mps2", ActionKind::gravity}, {"log", ActionKind::log},
-    {"end", ActionKind::end}};
+const std::vector<std::pair<std::string, ActionKind>> action_words = {{"move", ActionKind::move},
+                                                                      {"add", ActionKind::add},
+                                                                      {"remove", ActionKind::remove},
+                                                                      {"one_of", ActionKind::one_of},
+                                                                      {"fault", ActionKind::fault},
+                                                                      {"clear_fault", ActionKind::clear_fault},
+                                                                      {"set", ActionKind::set},
+                                                                      {"publish", ActionKind::publish},
+                                                                      {"actor", ActionKind::actor},
+                                                                      {"trigger", ActionKind::trigger},
+                                                                      {"gravity_mps2", ActionKind::gravity},
+                                                                      {"log", ActionKind::log},
+                                                                      {"end", ActionKind::end}};
 
 /// `move: {one_of: [a, b]}`
 struct OneOfNames {

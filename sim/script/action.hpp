@@ -25,8 +25,8 @@ using EncodeMessage = std::function<Bytes(const std::string& type, const ConfigN
 struct PlaceChoice {
   std::optional<Vector3d> position_m;
   std::optional<Vector3d> rpy_rad;
-  std::vector<Vector3d> places_m;            ///< one of them, at random
-  Vector3d area_m = Vector3d::Zero();        ///< size of the box around the position that places are drawn from
+  std::vector<Vector3d> places_m;      ///< one of them, at random
+  Vector3d area_m = Vector3d::Zero();  ///< size of the box around the position that places are drawn from
   bool random_yaw = false;
 
   void read(ParamReader& in);
@@ -54,9 +54,9 @@ enum class ActionKind {
 struct Action {
   ActionKind kind = ActionKind::log;
   SourcePlace place;
-  std::string who;                   ///< for messages, such as `event 'night': action 2`
-  std::vector<std::string> targets;  ///< move, remove: one of them, at random; else the one name
-  PlaceChoice where;                 ///< move, add
+  std::string who;                             ///< for messages, such as `event 'night': action 2`
+  std::vector<std::string> targets;            ///< move, remove: one of them, at random; else the one name
+  PlaceChoice where;                           ///< move, add
   std::shared_ptr<const ObjectConfig> object;  ///< add: when it is written in the action
   std::vector<std::vector<Action>> choices;    ///< one_of
   std::vector<double> weights;                 ///< one_of; empty: all alike
@@ -64,8 +64,8 @@ struct Action {
   ConfigNode values;    ///< set: key: value.  publish: of the message
   std::string channel;  ///< publish
   std::string message_type;
-  Bytes payload;              ///< publish: encoded by check_actions()
-  bool stamp_utime = false;   ///< publish: its first member is a time stamp that was not given
+  Bytes payload;             ///< publish: encoded by check_actions()
+  bool stamp_utime = false;  ///< publish: its first member is a time stamp that was not given
   ActorCommand command = ActorCommand::start;
   double gravity_mps2 = 0;
   std::string text;  ///< log, end

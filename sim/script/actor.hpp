@@ -65,9 +65,9 @@ class Actor {
 
   const ActorConfig& config_;
   Path path_;
-  double rate_;         ///< of the path's parameter, per second
-  Time since_{0};       ///< when the last command came
-  double from_ = 0;     ///< progress then; bounce: up to twice the length, there and back
+  double rate_;      ///< of the path's parameter, per second
+  Time since_{0};    ///< when the last command came
+  double from_ = 0;  ///< progress then; bounce: up to twice the length, there and back
   int direction_ = 1;
   bool moving_ = true;
   // The object by its name, looked up again when something came or went.

@@ -1,7 +1,7 @@
 #include "sim/script/condition_watch.hpp"
 
-#include "sim/script/zone.hpp"
 #include "sim/script/touch_watch.hpp"
+#include "sim/script/zone.hpp"
 #include "sim/world/world.hpp"
 
 namespace sim {

@@ -12,7 +12,7 @@ namespace sim {
 struct Condition {
   enum class Kind {
     none,
-    enters,   ///< subject: vehicle or any; object: zone
+    enters,  ///< subject: vehicle or any; object: zone
     leaves,
     inside,   ///< as enters, and a vehicle that is inside at the start counts
     touches,  ///< vehicles or objects

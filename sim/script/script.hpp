@@ -17,8 +17,8 @@ class World;
 
 /// How a vehicle did in zones with rules.
 struct ZoneRecord {
-  std::optional<double> finish_s;    ///< when it first was in a finish zone
-  std::int64_t speeding_steps = 0;   ///< steps above the limit of a zone it was in
+  std::optional<double> finish_s;   ///< when it first was in a finish zone
+  std::int64_t speeding_steps = 0;  ///< steps above the limit of a zone it was in
   double speeding_s = 0;
 };
 
@@ -43,8 +43,8 @@ class Script {
   struct EventState {
     explicit EventState(const EventConfig& config, std::uint64_t seed);
     const EventConfig& config;
-    Random random;                   ///< of its choices; begun anew in each step
-    Random jitter;                   ///< of its times; one draw for each planned firing
+    Random random;  ///< of its choices; begun anew in each step
+    Random jitter;  ///< of its times; one draw for each planned firing
     std::int64_t random_step = -1;
     std::int64_t fired = 0;
     std::int64_t planned = 0;        ///< how many of its times have come
@@ -87,7 +87,7 @@ class Script {
   std::map<std::string, ZoneRecord> records_;
   std::vector<Actor> actors_;
   std::vector<EventState> events_;
-  std::vector<std::unique_ptr<ConditionWatch>> watches_;  ///< by event; null: it waits for nothing
+  std::vector<std::unique_ptr<ConditionWatch>> watches_;           ///< by event; null: it waits for nothing
   std::map<std::pair<Time, std::uint64_t>, std::size_t> delayed_;  ///< due, order of scheduling: event
   std::uint64_t next_delayed_ = 0;
   int firings_ = 0;  ///< in this step

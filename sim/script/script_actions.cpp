@@ -100,8 +100,7 @@ void Script::make_catalogue() {
       catalogue_[object.name] = {&object, X_WE};
       continue;
     }
-    const std::vector<Pose> poses =
-        place_instances(object.placement, object.count, X_WE, world_.seed(), object.name);
+    const std::vector<Pose> poses = place_instances(object.placement, object.count, X_WE, world_.seed(), object.name);
     for (std::size_t i = 0; i < poses.size(); ++i)
       catalogue_[object.name + std::to_string(i + 1)] = {&object, poses[i]};
   }

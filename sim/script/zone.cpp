@@ -58,8 +58,7 @@ void ZoneConfig::read(ParamReader& in) {
   if (low_m >= high_m) in.error("high_m", "'high_m' must be above 'low_m'");
 }
 
-Zone::Zone(const ZoneConfig& config)
-    : config_(config), X_ZW_(make_pose(config.position_m, config.rpy_rad).inverse()) {}
+Zone::Zone(const ZoneConfig& config) : config_(config), X_ZW_(make_pose(config.position_m, config.rpy_rad).inverse()) {}
 
 bool Zone::contains(const Vector3d& p_W) const {
   const Vector3d p_Z = X_ZW_ * p_W;

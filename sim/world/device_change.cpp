@@ -94,8 +94,7 @@ bool World::change_device(const std::string& full_name, const ConfigNode& values
     diagnostics.error(values.place, who, "there is no such device; devices are named VEHICLE/DEVICE");
     return false;
   }
-  const auto changed =
-      changed_device(device->config(), device->vehicle().config(), config_, values, who, diagnostics);
+  const auto changed = changed_device(device->config(), device->vehicle().config(), config_, values, who, diagnostics);
   if (changed) device->change(*changed, now());
   return changed.has_value();
 }

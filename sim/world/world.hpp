@@ -114,14 +114,12 @@ class World {
   void clear_faults(const std::string& device);
   /// Gives a device other values while it runs.  False: `diagnostics` say why, and nothing has changed.
   bool change_device(const std::string& full_name, const ConfigNode& values, Diagnostics& diagnostics);
-  /// Carries out one action (a map) or several (a list of maps) as an event would.  Throws ConfigError.
-  void run_action(const ConfigNode& action);
   /// Sends a message on the world's bus, as a script does.
   void publish(const std::string& channel, std::span<const std::byte> payload);
   /// The run ends after this step; the first call counts.
   void end(const EndOfRun& end);
   const std::optional<EndOfRun>& ended() const { return ended_; }
-  /// Carries out one action, as in `events:`.  Throws ConfigError.
+  /// Carries out one action (a map) or several (a list of maps), as in `events:`.  Throws ConfigError.
   void run_action(const ConfigNode& action);
   /// Warns of something that went wrong in the world and counts it; the same line is told once.
   void complain(const std::string& who, const std::string& text);

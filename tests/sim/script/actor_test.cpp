@@ -12,8 +12,8 @@ physics: {step_s: 0.01}
 objects:
   - {name: ground, fixed: true, parts: [{shape: plane}]}
   - {name: cart, position_m: [50, 50, 1], parts: [{shape: box, size_m: [1, 1, 1], mass_kg: 10}]}
-)" + more + "actors:\n  - {name: ride, object: cart, " +
-         actor + "}\n";
+)" + more +
+         "actors:\n  - {name: ride, object: cart, " + actor + "}\n";
 }
 
 sim::Pose cart(const test::TestWorld& test) {
@@ -21,7 +21,8 @@ sim::Pose cart(const test::TestWorld& test) {
 }
 
 TEST(Actor, IsOnItsPathAtEachOfTenThousandSteps) {
-  test::TestWorld test(actor_world("path: spline, points: [[0, 0, 1], [6, 0, 1], [6, 6, 2], [0, 5, 1]], speed_mps: 1.7"));
+  test::TestWorld test(
+      actor_world("path: spline, points: [[0, 0, 1], [6, 0, 1], [6, 6, 2], [0, 5, 1]], speed_mps: 1.7"));
   const sim::ActorConfig& config = test.loaded.config.actors[0];
   const sim::Path path = config.make_path();
   for (int i = 0; i < 10000; ++i) {

@@ -91,34 +91,38 @@ TEST(Events, ChooseAtRandomByTheirOwnNameWhateverElseHappens) {
 }
 
 TEST(Events, OfWeightZeroAreNeverChosen) {
-  test::TestWorld test(event_world("  - name: a\n    every: 0.01\n    do:\n      - one_of: [[{publish: tick, type: "
-                                   "shoal.utime_t}], [{end: no}]]\n        weights: [1, 0]\n"));
+  test::TestWorld test(
+      event_world("  - name: a\n    every: 0.01\n    do:\n      - one_of: [[{publish: tick, type: "
+                  "shoal.utime_t}], [{end: no}]]\n        weights: [1, 0]\n"));
   EXPECT_EQ(ticks(test, 1.005).size(), 100u);
   EXPECT_FALSE(test.world.ended());
 }
 
 TEST(Events, TriggerEachOtherInTheSameStep) {
-  test::TestWorld test(event_world("  - {name: a, at: 0.1, do: [{trigger: b}]}\n  - {name: b, do: [{log: b}]}\n"
-                                   "  - {name: c, when: event b fires, " +
-                                   tick));
+  test::TestWorld test(
+      event_world("  - {name: a, at: 0.1, do: [{trigger: b}]}\n  - {name: b, do: [{log: b}]}\n"
+                  "  - {name: c, when: event b fires, " +
+                  tick));
   EXPECT_THAT(ticks(test, 1), ElementsAre(10));
 }
 
 TEST(Events, ThatTriggerEachOtherForEverAreCutAndTheRunGoesOn) {
-  test::TestWorld test(event_world("  - {name: a, at: 0.1, do: [{trigger: b}]}\n"
-                                   "  - {name: b, do: [{trigger: a}, {trigger: b}, {trigger: b}]}\n"
-                                   "  - {name: late, at: 0.2, " +
-                                   tick));
+  test::TestWorld test(
+      event_world("  - {name: a, at: 0.1, do: [{trigger: b}]}\n"
+                  "  - {name: b, do: [{trigger: a}, {trigger: b}, {trigger: b}]}\n"
+                  "  - {name: late, at: 0.2, " +
+                  tick));
   // `a` has fired its one time; `b` fires itself twice: 100 deep, and no more than 1000 in all.
   EXPECT_THAT(ticks(test, 1), ElementsAre(20));
   EXPECT_EQ(test.world.counts().bad_messages, 1);
 }
 
 TEST(Events, AddMoveAndRemoveObjects) {
-  test::TestWorld test(event_world("  - {name: a, at: 0.1, do: [{add: crate}, {add: {name: barrel, position_m: [1, 1, 1], "
-                                   "parts: [{shape: sphere, mass_kg: 2}]}}]}\n"
-                                   "  - {name: b, at: 0.2, do: [{move: crate, position_m: [4, 4, 4]}, {remove: barrel}, "
-                                   "{remove: barrel}, {add: crate}]}\n"));
+  test::TestWorld test(
+      event_world("  - {name: a, at: 0.1, do: [{add: crate}, {add: {name: barrel, position_m: [1, 1, 1], "
+                  "parts: [{shape: sphere, mass_kg: 2}]}}]}\n"
+                  "  - {name: b, at: 0.2, do: [{move: crate, position_m: [4, 4, 4]}, {remove: barrel}, "
+                  "{remove: barrel}, {add: crate}]}\n"));
   EXPECT_EQ(test.world.find_object("crate"), nullptr);
   test.run_for(0.15);
   ASSERT_NE(test.world.find_object("crate"), nullptr);
@@ -149,9 +153,9 @@ TEST(Events, HearMessagesAndSeeTouches) {
   EXPECT_TRUE(mailbox->take());
 
   // The ball is 0.1 m above the table and falls: sqrt(2 * 0.1 / 9.80665) = 0.1428 s.
-  test::TestWorld touch(event_world(
-      "  - {name: g, at: 0, do: [{gravity_mps2: 9.80665}]}\n  - {name: a, when: ball touches any, " + tick,
-      "  - {name: table, fixed: true, position_m: [0, 0, 4.3], parts: [{shape: box}]}\n"));
+  test::TestWorld touch(
+      event_world("  - {name: g, at: 0, do: [{gravity_mps2: 9.80665}]}\n  - {name: a, when: ball touches any, " + tick,
+                  "  - {name: table, fixed: true, position_m: [0, 0, 4.3], parts: [{shape: box}]}\n"));
   const auto steps = ticks(touch, 1);
   ASSERT_FALSE(steps.empty());
   EXPECT_NEAR(static_cast<double>(steps.front()), 15, 1.5);
@@ -171,8 +175,9 @@ const std::string drive =
     "        - {name: drive, type: differential_drive, left_joint: left, right_joint: right,\n"
     "           wheel_radius_m: 0.1, track_m: 0.5, max_torque_Nm: 20}\n";
 
-const std::string go = "  - {name: go, at: 0, do: [{publish: r1.drive.cmd, type: shoal.twist_command_t, "
-                       "value: {forward_mps: 1}}]}\n";
+const std::string go =
+    "  - {name: go, at: 0, do: [{publish: r1.drive.cmd, type: shoal.twist_command_t, "
+    "value: {forward_mps: 1}}]}\n";
 
 TEST(Events, DriveARoverThroughAZoneWithARecord) {
   test::TestWorld test(test::rover_world(drive) +
@@ -193,9 +198,10 @@ TEST(Events, DriveARoverThroughAZoneWithARecord) {
 }
 
 TEST(Events, PublishWithTheTimeWhenNoneIsGiven) {
-  test::TestWorld test(event_world("  - {name: a, at: 0.25, do: [{publish: cmd, type: shoal.twist_command_t, value: "
-                                   "{forward_mps: 1.5, turn_radps: -0.5}}, {publish: cmd, type: shoal.twist_command_t, "
-                                   "value: {utime: 7}}]}\n"));
+  test::TestWorld test(
+      event_world("  - {name: a, at: 0.25, do: [{publish: cmd, type: shoal.twist_command_t, value: "
+                  "{forward_mps: 1.5, turn_radps: -0.5}}, {publish: cmd, type: shoal.twist_command_t, "
+                  "value: {utime: 7}}]}\n"));
   test::Listener<shoal::twist_command_t> commands(test, "cmd");
   test.run_for(1);
   const auto all = commands.take_all();
@@ -252,8 +258,9 @@ TEST(Zones, DenyGpsUntilItHasBeenAcquiredAgain) {
 }
 
 TEST(Zones, DenyRadioToSenderAndReceiver) {
-  const std::string model = "    model: {shoal: 1, vehicle: v, bodies: [{name: b, parts: [{shape: sphere, radius_m: 0.1, "
-                            "mass_kg: 1}]}], devices: [{name: modem, type: modem, rate_hz: 100}]}\n";
+  const std::string model =
+      "    model: {shoal: 1, vehicle: v, bodies: [{name: b, parts: [{shape: sphere, radius_m: 0.1, "
+      "mass_kg: 1}]}], devices: [{name: modem, type: modem, rate_hz: 100}]}\n";
   for (const double zone_x : {0.0, 5.0, 20.0}) {
     test::TestWorld test("shoal: 1\nphysics: {gravity_mps2: 0}\nvehicles:\n  - name: a\n" + model +
                          "  - name: b\n    position_m: [5, 0, 0]\n" + model +
@@ -303,7 +310,8 @@ TEST(RunAction, SaysWhatIsWrongInOneLine) {
   EXPECT_EQ(failure(test.world, "{fault: r1/drve, kind: dead}"),
             "request:1:2: action 1: there is no device 'r1/drve'; devices are named VEHICLE/DEVICE; vehicle 'r1' has: "
             "drive");
-  EXPECT_THAT(failure(test.world, "{dance: r1}"), testing::HasSubstr("unknown action 'dance'; known actions: move, add"));
+  EXPECT_THAT(failure(test.world, "{dance: r1}"),
+              testing::HasSubstr("unknown action 'dance'; known actions: move, add"));
   EXPECT_THAT(failure(test.world, "{set: r1/drive, values: {body: x}}"),
               testing::HasSubstr("'body' cannot change while the device runs"));
   EXPECT_THAT(failure(test.world, "{publish: x, type: shoal.twist_command_t, value: {forward: 1}}"),
@@ -312,16 +320,18 @@ TEST(RunAction, SaysWhatIsWrongInOneLine) {
 
 TEST(World, WithEverythingOnHasTheSameHashesTwice) {
   const std::string text =
-      test::rover_world(drive + "        - {name: gps, type: gps, rate_hz: 10}\n",
-                        "  - {name: cart, parts: [{shape: box, size_m: [1, 1, 1]}]}\n"
-                        "  - {name: crate, present: false, position_m: [0, 4, 1], parts: [{shape: box, mass_kg: 1}]}\n") +
+      test::rover_world(
+          drive + "        - {name: gps, type: gps, rate_hz: 10}\n",
+          "  - {name: cart, parts: [{shape: box, size_m: [1, 1, 1]}]}\n"
+          "  - {name: crate, present: false, position_m: [0, 4, 1], parts: [{shape: box, mass_kg: 1}]}\n") +
       R"(
 zones:
   - {name: slow, shape: cylinder, position_m: [1, 0, 0], radius_m: 1, height_m: 3, speed_limit_mps: 0.2, gps_denied: true}
 actors:
   - {name: ride, object: cart, path: spline, points: [[0, 3, 0.6], [4, 3, 0.6], [4, 6, 0.6]], speed_mps: 2}
 events:
-)" + go + R"(
+)" + go +
+      R"(
   - {name: come, every: 0.5, jitter_s: 0.2, probability: 0.6, do: [{add: crate, area_m: [1, 1, 0], random_yaw: true}]}
   - {name: pass, every: 0.7, delay_s: 0.1, do: [{remove: crate}]}
   - {name: hit, when: cart touches any, do: [{log: hit}]}

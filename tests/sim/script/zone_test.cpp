@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
-
 #include "sim/script/zone.hpp"
+
+#include <gtest/gtest.h>
 
 namespace {
 

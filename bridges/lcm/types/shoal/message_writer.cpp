@@ -102,22 +102,22 @@ class Writer {
     sim::ParamReader in(map, who, diagnostics_);
     in.read(member.name.c_str(), said, sim::at_least(0), "");
     if (said != length)
-      in.error(member.name.c_str(), "'" + member.name + "' follows from its array, which has " +
-                                        std::to_string(length) + " elements");
+      in.error(member.name.c_str(),
+               "'" + member.name + "' follows from its array, which has " + std::to_string(length) + " elements");
   }
 
   void write_dimension(const Member& member, const ConfigNode& value, Spot spot) {
     if (spot.dimension == member.dimensions.size()) return write_value(member, value, spot);
     const Dimension& dimension = member.dimensions[spot.dimension++];
-    const std::int64_t size = dimension.is_variable() ? spot.lengths[static_cast<std::size_t>(dimension.length_slot)]
-                                                      : dimension.constant;
+    const std::int64_t size =
+        dimension.is_variable() ? spot.lengths[static_cast<std::size_t>(dimension.length_slot)] : dimension.constant;
     const bool last = spot.dimension == member.dimensions.size();
-    if (last && member.type == WireType::byte && value.kind == Kind::scalar)
-      return write_text_bytes(value, size, spot);
+    if (last && member.type == WireType::byte && value.kind == Kind::scalar) return write_text_bytes(value, size, spot);
     const auto given = static_cast<std::int64_t>(value.items.size());
     if (value.kind != Kind::null && (value.kind != Kind::list || given != size)) {
-      diagnostics_.error(value.place, spot.who,
-                         "'" + spot.name + "' must be a list of " + std::to_string(size) + ", got " + sim::shown(value));
+      diagnostics_.error(
+          value.place, spot.who,
+          "'" + spot.name + "' must be a list of " + std::to_string(size) + ", got " + sim::shown(value));
       return;
     }
     const std::string name = spot.name;
@@ -129,16 +129,15 @@ class Writer {
 
   void write_text_bytes(const ConfigNode& value, std::int64_t size, const Spot& spot) {
     if (static_cast<std::int64_t>(value.scalar.size()) != size)
-      diagnostics_.error(value.place, spot.who,
-                         "'" + spot.name + "' must be " + std::to_string(size) + " bytes, got " +
-                             std::to_string(value.scalar.size()));
+      diagnostics_.error(
+          value.place, spot.who,
+          "'" + spot.name + "' must be " + std::to_string(size) + " bytes, got " + std::to_string(value.scalar.size()));
     for (const char c : value.scalar) bytes_.push_back(static_cast<std::byte>(c));
   }
 
   void write_value(const Member& member, const ConfigNode& value, const Spot& spot) {
     if (member.type == WireType::compound)
-      return write(*member.compound, value, spot.who.empty() ? spot.name : spot.who + ": " + spot.name,
-                   spot.depth + 1);
+      return write(*member.compound, value, spot.who.empty() ? spot.name : spot.who + ": " + spot.name, spot.depth + 1);
     // What is missing is 0.
     const ConfigNode map = value.kind == Kind::null ? ConfigNode{} : map_of(spot.name, value);
     sim::ParamReader in(map, spot.who, diagnostics_);
@@ -195,9 +194,9 @@ std::vector<std::byte> encode_message(const MessageTypes& types, const std::stri
     std::vector<std::string> known;
     for (const auto& [name, each] : types.all()) known.push_back(name);
     const std::string meant = sim::closest_name(type, known);
-    diagnostics.error(value.place, "", "unknown message type '" + sim::shortened(sim::printable(type)) + "'" +
-                                           (meant.empty() ? "; `shoal list messages` shows them"
-                                                          : "; did you mean '" + meant + "'?"));
+    diagnostics.error(value.place, "",
+                      "unknown message type '" + sim::shortened(sim::printable(type)) + "'" +
+                          (meant.empty() ? "; `shoal list messages` shows them" : "; did you mean '" + meant + "'?"));
     return {};
   }
   const std::size_t errors_before = diagnostics.lines().size();
