@@ -4,6 +4,7 @@
 #include "shoal/message_schema.hpp"
 #include "sim/device/device_registry.hpp"
 #include "tools/shoal/commands.hpp"
+#include "tools/shoal/json_schema.hpp"
 #include "tools/shoal/reference_pages.hpp"
 
 namespace tools {
@@ -12,15 +13,21 @@ void add_describe_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("describe", "Say what a device, a message or a file's keys are");
   const auto name = std::make_shared<std::string>();
   const auto page = std::make_shared<std::string>();
+  const auto schema = std::make_shared<std::string>();
   CLI::Option* name_option =
       command->add_option("NAME", *name, "a device type, a message type, device, noise, world or vehicle");
   CLI::Option* page_option = command->add_option("--page", *page, "print a whole page of docs/ in Markdown")
                                  ->check(CLI::IsMember({"devices", "messages", "world_format"}));
-  name_option->excludes(page_option);
-  command->footer("Examples:\n  shoal describe lidar\n  shoal describe world\n  shoal describe pose_t");
-  command->callback([name, page, &exit_code] {
-    if (!page->empty()) {
-      std::cout << reference_page(*page);
+  CLI::Option* schema_option = command->add_option("--schema", *schema, "print the JSON Schema of a file's keys")
+                                   ->check(CLI::IsMember({"world", "vehicle"}));
+  name_option->excludes(page_option)->excludes(schema_option);
+  page_option->excludes(schema_option);
+  command->footer(
+      "Examples:\n  shoal describe lidar\n  shoal describe world\n  shoal describe pose_t\n"
+      "  shoal describe --schema world > world.schema.json");
+  command->callback([name, page, schema, &exit_code] {
+    if (!page->empty() || !schema->empty()) {
+      std::cout << (page->empty() ? json_schema(*schema) : reference_page(*page));
       return;
     }
     const std::string text = describe_text(*name);

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/config/param_reader.hpp"
+#include "sim/device/device_registry.hpp"
+
+namespace tools {
+
+/// The keys that a struct reads.
+template <typename Config>
+std::vector<sim::ParamInfo> params_of() {
+  std::vector<sim::ParamInfo> table;
+  sim::ParamReader in(table);
+  Config config;
+  config.read(in);
+  return table;
+}
+
+/// The keys of every device.
+inline std::vector<sim::ParamInfo> common_params() {
+  std::vector<sim::ParamInfo> table;
+  sim::ParamReader in(table);
+  sim::DeviceConfig config;
+  config.read_common(in);
+  return table;
+}
+
+/// The keys of one device type, beside those of every device.
+inline std::vector<sim::ParamInfo> params_of(const sim::DeviceType& type) {
+  std::vector<sim::ParamInfo> table;
+  sim::ParamReader in(table);
+  type.make_params()->read(in);
+  return table;
+}
+
+}  // namespace tools
