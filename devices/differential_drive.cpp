@@ -26,20 +26,28 @@ void DifferentialDrive::Params::read(sim::ParamReader& in) {
 DifferentialDrive::DifferentialDrive(const Params& params, const sim::DeviceContext& context)
     : params_(params), left_(context.joint(params.left_joint)), right_(context.joint(params.right_joint)) {}
 
-void DifferentialDrive::act(sim::Time, double step_s) {
-  const double change = params_.max_acceleration_mps2 / params_.wheel_radius_m * step_s;
+void DifferentialDrive::act(const sim::ActContext& context) {
+  const double change = params_.max_acceleration_mps2 / params_.wheel_radius_m * context.step_s;
   for (int side = 0; side < 2; ++side)
     current_radps_[side] += std::clamp(target_radps_[side] - current_radps_[side], -change, change);
-  left_.set_motor(current_radps_[0], params_.max_torque_Nm);
-  right_.set_motor(current_radps_[1], params_.max_torque_Nm);
+  const double torque_Nm = coasting_ ? 0 : context.effectiveness * params_.max_torque_Nm;
+  left_.set_motor(current_radps_[0], torque_Nm);
+  right_.set_motor(current_radps_[1], torque_Nm);
+}
+
+void DifferentialDrive::make_safe(sim::SafeState safe) {
+  set_wheel_speeds(0, 0);
+  coasting_ = safe == sim::SafeState::coast;
 }
 
 void DifferentialDrive::hash_state(sim::StateHash& hash) const {
   hash.add(std::span<const double>(target_radps_));
   hash.add(std::span<const double>(current_radps_));
+  hash.add(coasting_);
 }
 
 void DifferentialDrive::set_wheel_speeds(double left_radps, double right_radps) {
+  coasting_ = false;
   const double most = params_.max_speed_mps / params_.wheel_radius_m;
   target_radps_[0] = std::clamp(left_radps, -most, most);
   target_radps_[1] = std::clamp(right_radps, -most, most);

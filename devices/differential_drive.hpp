@@ -10,6 +10,7 @@ class DifferentialDrive final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
       "Two driven wheels, commanded by wheel speeds, by forward speed and turn rate, or by thrust and rudder.";
+  static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::coast};
   struct Params {
     std::string left_joint;
     std::string right_joint;
@@ -23,7 +24,10 @@ class DifferentialDrive final : public sim::Actuator {
   };
 
   DifferentialDrive(const Params& params, const sim::DeviceContext& context);
-  void act(sim::Time now, double step_s) override;
+  void act(const sim::ActContext& context) override;
+  /// stop: the wheels brake; coast: they turn freely.
+  void make_safe(sim::SafeState safe) override;
+  void change(const Params& params) { params_ = params; }
   void hash_state(sim::StateHash& hash) const override;
 
   void set_wheel_speeds(double left_radps, double right_radps);
@@ -38,6 +42,7 @@ class DifferentialDrive final : public sim::Actuator {
   sim::Joint& right_;
   double target_radps_[2] = {0, 0};
   double current_radps_[2] = {0, 0};
+  bool coasting_ = false;
 };
 
 /// Takes shoal.wheel_speeds_command_t, shoal.twist_command_t or shoal.thrust_rudder_command_t, told apart by their

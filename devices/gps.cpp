@@ -21,10 +21,16 @@ void Gps::Params::read(sim::ParamReader& in) {
 Gps::Gps(const Params& params, const sim::DeviceContext& context)
     : params_(params),
       geodesy_(context.world.geodesy()),
-      horizontal_noise_(params.horizontal_noise, 2,
-                        sim::Random(context.world.seed(), context.full_name() + "#horizontal")),
-      vertical_noise_(params.vertical_noise, 1, sim::Random(context.world.seed(), context.full_name() + "#vertical")),
-      velocity_noise_(params.velocity_noise, 3, sim::Random(context.world.seed(), context.full_name() + "#velocity")) {}
+      horizontal_noise_(context.noise(params.horizontal_noise, 2, "horizontal_noise")),
+      vertical_noise_(context.noise(params.vertical_noise, 1, "vertical_noise")),
+      velocity_noise_(context.noise(params.velocity_noise, 3, "velocity_noise")) {}
+
+void Gps::change(const Params& params) {
+  params_ = params;
+  horizontal_noise_.change(params.horizontal_noise);
+  vertical_noise_.change(params.vertical_noise);
+  velocity_noise_.change(params.velocity_noise);
+}
 
 void Gps::measure(const sim::SenseContext& context) {
   reading_.p_W = context.X_WS.translation();

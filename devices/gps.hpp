@@ -30,6 +30,7 @@ class Gps final : public sim::Sensor {
   };
 
   Gps(const Params& params, const sim::DeviceContext& context);
+  void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void hash_state(sim::StateHash& hash) const override;

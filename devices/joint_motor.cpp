@@ -17,11 +17,17 @@ void JointMotor::Params::read(sim::ParamReader& in) {
 JointMotor::JointMotor(const Params& params, const sim::DeviceContext& context)
     : params_(params), joint_(context.joint(params.joint)) {}
 
-void JointMotor::act(sim::Time, double) {
-  joint_.set_motor(velocity_, params_.max_force);
+void JointMotor::act(const sim::ActContext& context) {
+  joint_.set_motor(velocity_, coasting_ ? 0 : context.effectiveness * params_.max_force);
+}
+
+void JointMotor::make_safe(sim::SafeState safe) {
+  velocity_ = 0;
+  coasting_ = safe == sim::SafeState::coast;
 }
 
 void JointMotor::set_velocity(double velocity) {
+  coasting_ = false;
   velocity_ = std::clamp(velocity, -params_.max_velocity, params_.max_velocity);
 }
 

@@ -9,6 +9,7 @@ namespace devices {
 class JointMotor final : public sim::Actuator {
  public:
   static constexpr const char* meaning = "Motor on one hinge or slider, commanded by velocity.";
+  static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::coast};
   struct Params {
     std::string joint;
     double max_velocity = 10;  ///< rad/s, or m/s of a slider
@@ -17,8 +18,14 @@ class JointMotor final : public sim::Actuator {
   };
 
   JointMotor(const Params& params, const sim::DeviceContext& context);
-  void act(sim::Time now, double step_s) override;
-  void hash_state(sim::StateHash& hash) const override { hash.add(velocity_); }
+  void act(const sim::ActContext& context) override;
+  /// stop: it brakes; coast: it turns freely.
+  void make_safe(sim::SafeState safe) override;
+  void change(const Params& params) { params_ = params; }
+  void hash_state(sim::StateHash& hash) const override {
+    hash.add(velocity_);
+    hash.add(coasting_);
+  }
   /// Beyond the limit it is cut.
   void set_velocity(double velocity);
   double velocity() const { return velocity_; }
@@ -27,6 +34,7 @@ class JointMotor final : public sim::Actuator {
   Params params_;
   sim::Joint& joint_;
   double velocity_ = 0;
+  bool coasting_ = false;
 };
 
 /// Takes shoal.joint_command_t.

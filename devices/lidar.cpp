@@ -22,10 +22,17 @@ void Lidar::Params::read(sim::ParamReader& in) {
 }
 
 Lidar::Lidar(const Params& params, const sim::DeviceContext& context)
-    : params_(params),
-      noise_(params.noise, 1, sim::Random(context.world.seed(), context.full_name() + "#bias")),
-      ranges_m_(static_cast<std::size_t>(params.beams), params.range_max_m),
-      hit_(static_cast<std::size_t>(params.beams), false) {
+    : physics_(context.world.physics()),
+      own_group_(context.vehicle.group()),
+      noise_(context.noise(params.noise, 1, "noise")) {
+  change(params);
+}
+
+void Lidar::change(const Params& params) {
+  params_ = params;
+  noise_.change(params.noise);
+  ranges_m_.assign(static_cast<std::size_t>(params.beams), params.range_max_m);
+  hit_.assign(ranges_m_.size(), false);
   fan_.count = params.beams;
   fan_.range_max_m = params.range_max_m;
   fan_.first_angle_rad = params.beams == 1 ? 0.0 : -0.5 * params.fov_rad;
@@ -33,9 +40,9 @@ Lidar::Lidar(const Params& params, const sim::DeviceContext& context)
   const bool full_circle = params.fov_rad >= 2 * std::numbers::pi - 1e-9;
   const int gaps = full_circle ? params.beams : params.beams - 1;
   fan_.step_rad = gaps > 0 ? params.fov_rad / gaps : 0.0;
-  for (const std::string& category : params.see_through)
-    filter_.categories &= ~context.world.physics().category_bit(category);
-  if (!params.sees_own_vehicle) filter_.exclude_group = context.vehicle.group();
+  filter_ = {};
+  for (const std::string& category : params.see_through) filter_.categories &= ~physics_.category_bit(category);
+  if (!params.sees_own_vehicle) filter_.exclude_group = own_group_;
 }
 
 void Lidar::measure(const sim::SenseContext& context) {

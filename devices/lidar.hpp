@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "sim/device/device_registry.hpp"
+#include "sim/physics/physics_world.hpp"
 #include "sim/random/noise.hpp"
 #include "sim/scene/scene.hpp"
 
@@ -27,6 +28,7 @@ class Lidar final : public sim::Sensor {
   };
 
   Lidar(const Params& params, const sim::DeviceContext& context);
+  void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void hash_state(sim::StateHash& hash) const override;
@@ -37,6 +39,8 @@ class Lidar final : public sim::Sensor {
   double step_rad() const { return fan_.step_rad; }
 
  private:
+  const sim::PhysicsWorld& physics_;
+  int own_group_;
   Params params_;
   sim::Fan fan_;
   sim::RayFilter filter_;

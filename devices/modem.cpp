@@ -18,6 +18,7 @@ class Modem::Network {
     members_.push_back(&modem);
     world_ = &world;
   }
+  void leave(Modem& modem) { std::erase(members_, &modem); }
   const std::vector<Modem*>& members() const { return members_; }
   sim::World& world() const { return *world_; }
 
@@ -50,14 +51,16 @@ Modem::Modem(const Params& params, const sim::DeviceContext& context)
       vehicle_(context.vehicle.name()),
       full_name_(context.full_name()),
       seed_(context.world.seed()),
-      device_(context.world.next_device_number()),
+      device_(context.number),
       body_(context.body),
       p_BS_(context.config.position_m) {
   network_.join(*this, context.world);
   if (params.serial) open_serial(context);
 }
 
-Modem::~Modem() = default;
+Modem::~Modem() {
+  network_.leave(*this);
+}
 
 sim::Vector3d Modem::p_WS() const {
   return body_.X_WB() * p_BS_;
@@ -83,10 +86,11 @@ void Modem::send(sim::Time, std::string destination, sim::Bytes data) {
   queue_.push_back({std::move(destination), std::move(data)});
 }
 
-void Modem::act(sim::Time now, double step_s) {
+void Modem::act(const sim::ActContext& context) {
+  const sim::Time now = context.now;
   if (serial_) read_serial(now);
   // Short messages go out several in a step, each when the one before has ended.
-  const sim::Time end = now + sim::from_seconds(step_s);
+  const sim::Time end = now + sim::from_seconds(context.step_s);
   for (sim::Time start = std::max(now, busy_until_); !queue_.empty() && start < end; start = busy_until_) {
     const Outgoing message = std::move(queue_.front());
     queue_.pop_front();

@@ -47,7 +47,7 @@ class Modem final : public sim::Sensor {
   /// Throws std::runtime_error when the message is empty or too long, or the destination has no modem here.
   void send(sim::Time now, std::string destination, sim::Bytes data);
   /// Begins the next transmission when the last one has ended.
-  void act(sim::Time now, double step_s);
+  void act(const sim::ActContext& context);
 
   void measure(const sim::SenseContext& context) override;
   void disturb(double, sim::Random&) override {}

@@ -23,7 +23,7 @@ Odometry::Odometry(const Params& params, const sim::DeviceContext& context)
     : params_(params),
       left_(context.joint(params.left_joint)),
       right_(context.joint(params.right_joint)),
-      noise_(params.noise, 2, sim::Random(context.world.seed(), context.full_name() + "#bias")),
+      noise_(context.noise(params.noise, 2, "noise")),
       X_W0_(context.vehicle.X_WV()) {}
 
 void Odometry::measure(const sim::SenseContext& context) {

@@ -18,7 +18,11 @@ void SwarmPosition::Params::read(sim::ParamReader& in) {
 }
 
 SwarmPosition::SwarmPosition(const Params& params, const sim::DeviceContext& context)
-    : params_(params), seed_(context.world.seed()), full_name_(context.full_name()) {
+    : params_(params),
+      seed_(context.world.seed()),
+      full_name_(context.full_name()),
+      relative_fault_(context.faults.noise_of("relative")),
+      absolute_fault_(context.faults.noise_of("absolute")) {
   for (const std::string& category : params.see_through) categories_ &= ~context.world.physics().category_bit(category);
 }
 
@@ -53,11 +57,11 @@ SwarmPosition::Errors& SwarmPosition::errors_of(const Sighting& sighting) {
   if (number >= errors_index_.size()) errors_index_.resize(number + 1, -1);
   if (errors_index_[number] >= 0) return errors_[static_cast<std::size_t>(errors_index_[number])];
   errors_index_[number] = static_cast<int>(errors_.size());
-  const auto noise = [&](const sim::NoiseParams& params, const char* what) {
-    return sim::Noise(params, 3, sim::Random(seed_, full_name_ + what + sighting.name));
+  const auto noise = [&](const sim::NoiseParams& params, const char* what, const sim::NoiseFault& fault) {
+    return sim::Noise(params, 3, sim::Random(seed_, full_name_ + what + sighting.name), &fault);
   };
-  errors_.push_back({sighting.vehicle, noise(params_.relative_noise, "#relative/"),
-                     noise(params_.absolute_noise, "#absolute/"), now_s_});
+  errors_.push_back({sighting.vehicle, noise(params_.relative_noise, "#relative/", relative_fault_),
+                     noise(params_.absolute_noise, "#absolute/", absolute_fault_), now_s_});
   return errors_.back();
 }
 

@@ -50,6 +50,8 @@ class SwarmPosition final : public sim::Sensor {
   std::uint32_t categories_ = ~0u;
   std::uint64_t seed_;
   std::string full_name_;
+  const sim::NoiseFault& relative_fault_;
+  const sim::NoiseFault& absolute_fault_;
   std::vector<Sighting> sightings_;
   std::vector<Errors> errors_;     ///< of each vehicle seen so far, in the order of first sight
   std::vector<int> errors_index_;  ///< by vehicle number; -1: not seen yet

@@ -65,12 +65,32 @@ class Reporter {
   virtual void report(Time sampled_at, Publisher& out) const = 0;
 };
 
+/// What an actuator works with in a step.
+struct ActContext {
+  Time now;              ///< at the start of the step
+  double step_s;         ///< length of the step
+  double effectiveness;  ///< the share of its effort it can give: 1 sound, 0 dead or without power
+};
+
+/// What an actuator does when nobody tells it anything: at an emergency stop, when its commands stop coming, when the
+/// power fails.
+enum class SafeState {
+  stop,   ///< the command that stands for rest: no speed, no thrust, rudder amidships
+  coast,  ///< no effort at all
+  hold,   ///< the position of this moment is kept
+  park,   ///< it goes to a position of its own, see the device
+};
+
 /// The model of an actuator: acts on physics, knows no message.
 class Actuator {
  public:
   virtual ~Actuator() = default;
-  /// Called before each physics step of `step_s`.  `now`: the time at the start of the step.
-  virtual void act(Time now, double step_s) = 0;
+  /// Called before each physics step.
+  virtual void act(const ActContext& context) = 0;
+  /// Takes the place of a command, until the next one comes.
+  virtual void make_safe(SafeState safe) = 0;
+  /// What it takes from the battery now, beside the device's `power_W`.
+  virtual double power_W() const { return 0; }
   virtual void hash_state(StateHash& hash) const = 0;
 };
 

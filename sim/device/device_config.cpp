@@ -1,5 +1,7 @@
 #include "sim/device/device_config.hpp"
 
+#include <algorithm>
+
 #include "sim/device/device_registry.hpp"
 
 namespace sim {
@@ -20,11 +22,25 @@ void DeviceConfig::read_common(ParamReader& in) {
   in.read("jitter_s", jitter_s, between(0, 1e6), "added to the latency, uniform between 0 and this");
   in.read("dropout", dropout, between(0, 1), "probability that a report or a command is lost");
   in.read("truth", truth, "publish the reading without its errors on CHANNEL.truth");
+  in.read("power_W", power_W, at_least(0), "taken from the vehicle's battery all the time");
   in.read("channel", channel, "channel of the reports; unset: by the world's template");
 }
 
+void DeviceConfig::read_actuator(ParamReader& in, const DeviceType& of) {
+  in.read("watchdog_s", watchdog_s, between(0, 1e6), "a last command older than this is stale; 0: it never is");
+  std::vector<std::pair<std::string, SafeState>> known;
+  for (const auto& word : safe_state_words())
+    if (std::find(of.safe_states.begin(), of.safe_states.end(), word.second) != of.safe_states.end())
+      known.push_back(word);
+  safe = of.safe_states.front();
+  in.read_choice("safe", safe, known, "where it goes when commands are stale, at an emergency stop, without power");
+}
+
 void DeviceConfig::read(ParamReader& in) {
-  if (in.node() != nullptr) place = in.node()->place;
+  if (in.node() != nullptr) {
+    place = in.node()->place;
+    source = std::make_shared<const ConfigNode>(*in.node());
+  }
   if (const ConfigNode* node = in.child("type"); node != nullptr) {
     device_type = DeviceRegistry::instance().find(node->scalar);
     if (device_type == nullptr) {
@@ -40,6 +56,7 @@ void DeviceConfig::read(ParamReader& in) {
   }
   read_common(in);
   if (device_type == nullptr) return;
+  if (device_type->is_actuator()) read_actuator(in, *device_type);
   const std::shared_ptr<DeviceParams> own = device_type->make_params();
   own->read(in);
   params = own;

@@ -10,6 +10,7 @@
 namespace sim {
 
 struct DeviceType;
+enum class SafeState;
 
 /// The parameters of one device type, read from YAML.
 class DeviceParams {
@@ -31,15 +32,21 @@ struct DeviceConfig {
   double jitter_s = 0;            ///< added to the latency, uniform in [0, jitter)
   double dropout = 0;             ///< probability that a report or a command is lost
   bool truth = false;             ///< publish the reading without errors beside the report
+  double power_W = 0;             ///< taken from the vehicle's battery all the time
   std::string channel;            ///< of the reports; empty: by the world's template
+  double watchdog_s = 0;          ///< actuator: a command older than this is stale; 0: never
+  SafeState safe{};               ///< actuator: where it goes then
 
   const DeviceType* device_type = nullptr;
   std::shared_ptr<const DeviceParams> params;
-  SourcePlace place;  ///< where the device was written, for errors found later
+  SourcePlace place;                         ///< where the device was written, for errors found later
+  std::shared_ptr<const ConfigNode> source;  ///< as it was written, for changes while it runs
 
   void read(ParamReader& in);
   /// The keys common to all devices, for `shoal describe` and the docs.
   void read_common(ParamReader& in);
+  /// The keys of every actuator, with the safe states that the type knows.
+  void read_actuator(ParamReader& in, const DeviceType& of);
   Pose X_BS() const { return make_pose(position_m, rpy_rad); }
 };
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "sim/config/message_text.hpp"
 #include "sim/world/vehicle.hpp"
+#include "sim/world/world.hpp"
 
 namespace sim {
 
@@ -13,6 +15,45 @@ Joint& DeviceContext::joint(const std::string& name) const {
 
 std::string DeviceContext::full_name() const {
   return vehicle.name() + "/" + config.name;
+}
+
+Noise DeviceContext::noise(const NoiseParams& params, int values, const std::string& key) const {
+  const std::string quantity = quantity_of(key);
+  return {params, values, Random(world.seed(), full_name() + "#" + quantity), &faults.noise_of(quantity)};
+}
+
+std::string quantity_of(const std::string& noise_key) {
+  constexpr std::string_view suffix = "_noise";
+  return noise_key.ends_with(suffix) ? noise_key.substr(0, noise_key.size() - suffix.size()) : noise_key;
+}
+
+std::vector<std::string> DeviceType::quantities() const {
+  std::vector<ParamInfo> table;
+  ParamReader in(table);
+  make_params()->read(in);
+  std::vector<std::string> names;
+  for (const ParamInfo& info : table)
+    if (std::any_of(info.children.begin(), info.children.end(),
+                    [](const ParamInfo& child) { return child.key == "gaussian_std"; }))
+      names.push_back(quantity_of(info.key));
+  return names;
+}
+
+std::string fault_misfit(const DeviceType& type, const FaultConfig& fault) {
+  const bool of_actuator = fault.kind == FaultKind::partial || fault.kind == FaultKind::dead;
+  if (of_actuator && !type.is_actuator()) return "a " + type.name + " is no actuator: it cannot be dead or partial";
+  const bool of_quantity = fault.kind == FaultKind::biased || !fault.quantity.empty();
+  if (!of_quantity) return {};
+  const std::vector<std::string> known = type.quantities();
+  if (known.empty()) return "a " + type.name + " has no quantity with an error that could be biased or degraded";
+  if (fault.quantity.empty() || std::find(known.begin(), known.end(), fault.quantity) != known.end()) return {};
+  return "a " + type.name + " has no quantity '" + fault.quantity + "'; known quantities: " + list_text(known);
+}
+
+const std::vector<std::pair<std::string, SafeState>>& safe_state_words() {
+  static const std::vector<std::pair<std::string, SafeState>> words = {
+      {"stop", SafeState::stop}, {"coast", SafeState::coast}, {"hold", SafeState::hold}, {"park", SafeState::park}};
+  return words;
 }
 
 DeviceRegistry& DeviceRegistry::instance() {

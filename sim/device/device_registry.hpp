@@ -8,6 +8,7 @@
 
 #include "sim/device/device.hpp"
 #include "sim/device/device_config.hpp"
+#include "sim/device/fault.hpp"
 
 namespace sim {
 
@@ -19,11 +20,19 @@ struct DeviceContext {
   Vehicle& vehicle;
   const DeviceConfig& config;
   Body& body;  ///< that the device is mounted on
+  int number;  ///< of the device in the world, for World::schedule_arrival
+  DeviceFaults& faults;
 
   /// Throws std::out_of_range: names were checked when the file was read.
   Joint& joint(const std::string& name) const;
   std::string full_name() const;  ///< such as `rover1/lidar`
+  /// The error of a quantity, with a random stream of its own, which faults can reach.  `key`: its key in YAML, such
+  /// as `gyro_noise`.  `values`: how many have slow parts of their own (axes of a vector).
+  Noise noise(const NoiseParams& params, int values, const std::string& key) const;
 };
+
+/// The name of a quantity for faults: the key of its noise without `_noise`.
+std::string quantity_of(const std::string& noise_key);
 
 /// A device as built.  A sensor has a reporter, an actuator a controller; some devices have all four.
 struct BuiltDevice {
@@ -31,6 +40,8 @@ struct BuiltDevice {
   std::unique_ptr<Reporter> reporter;
   std::unique_ptr<Actuator> actuator;
   std::unique_ptr<Controller> controller;
+  /// Takes other parameters while it runs; empty: it cannot.
+  std::function<void(const DeviceParams&)> change;
 };
 
 /// A device type by its YAML name.
@@ -38,11 +49,26 @@ struct DeviceType {
   std::string name;
   std::string meaning;  ///< one sentence
   double default_rate_hz = 0;
-  std::string report_message;    ///< such as `shoal.pose_t`; empty: does not report
-  std::string command_messages;  ///< comma separated; empty: takes no commands
+  std::string report_message;          ///< such as `shoal.pose_t`; empty: does not report
+  std::string command_messages;        ///< comma separated; empty: takes no commands
+  std::vector<SafeState> safe_states;  ///< of an actuator, the default first; empty: no actuator
+  bool changeable = false;             ///< its own keys can change while it runs
+  bool always_on = false;              ///< works without power and at an emergency stop
   std::function<std::shared_ptr<DeviceParams>()> make_params;
   std::function<BuiltDevice(const DeviceParams&, const DeviceContext&)> build;
+
+  bool reports() const { return !report_message.empty(); }
+  bool takes_commands() const { return !command_messages.empty(); }
+  bool is_actuator() const { return !safe_states.empty(); }
+  /// The quantities whose error YAML describes, for faults.
+  std::vector<std::string> quantities() const;
 };
+
+/// Why a fault makes no sense for a type of device; empty: it does.
+std::string fault_misfit(const DeviceType& type, const FaultConfig& fault);
+
+/// The words of YAML for the safe states.
+const std::vector<std::pair<std::string, SafeState>>& safe_state_words();
 
 /// All device types, filled before main by the SHOAL_ macros.
 class DeviceRegistry {
@@ -81,11 +107,25 @@ template <typename Model>
 class ActuatorSide final : public Actuator {
  public:
   explicit ActuatorSide(Model& model) : model_(model) {}
-  void act(Time now, double step_s) override { model_.act(now, step_s); }
+  void act(const ActContext& context) override { model_.act(context); }
+  void make_safe(SafeState safe) override {
+    if constexpr (requires { model_.make_safe(safe); }) model_.make_safe(safe);
+  }
+  double power_W() const override {
+    if constexpr (requires { model_.power_W(); })
+      return model_.power_W();
+    else
+      return 0;
+  }
   void hash_state(StateHash&) const override {}  // the sensor side hashes the whole model
 
  private:
   Model& model_;
+};
+
+template <typename Model>
+concept Acts = requires(Model& model, const ActContext& context) {
+  model.act(context);
 };
 
 /// ReporterType or ControllerType void: the device has none.
@@ -95,10 +135,14 @@ BuiltDevice build_device(const DeviceParams& params, const DeviceContext& contex
   auto model = make_model<Model>(params, context);
   if constexpr (!std::is_void_v<ReporterType>) built.reporter = std::make_unique<ReporterType>(*model);
   if constexpr (!std::is_void_v<ControllerType>) built.controller = std::make_unique<ControllerType>(*model);
+  if constexpr (requires(const typename Model::Params& changed) { model->change(changed); })
+    built.change = [raw = model.get()](const DeviceParams& changed) {
+      raw->change(static_cast<const ParamsOf<typename Model::Params>&>(changed).params);
+    };
   if constexpr (std::is_base_of_v<Actuator, Model>) {
     built.actuator = std::move(model);
   } else {
-    if constexpr (!std::is_void_v<ControllerType>) built.actuator = std::make_unique<ActuatorSide<Model>>(*model);
+    if constexpr (Acts<Model>) built.actuator = std::make_unique<ActuatorSide<Model>>(*model);
     built.sensor = std::move(model);
   }
   return built;
@@ -112,6 +156,14 @@ bool add_device(const char* name) {
   if constexpr (requires { Model::default_rate_hz; }) type.default_rate_hz = Model::default_rate_hz;
   if constexpr (!std::is_void_v<ReporterType>) type.report_message = ReporterType::report_message;
   if constexpr (!std::is_void_v<ControllerType>) type.command_messages = ControllerType::command_messages;
+  if constexpr (requires { Model::safe_states; })
+    type.safe_states.assign(std::begin(Model::safe_states), std::end(Model::safe_states));
+  else if constexpr (std::is_base_of_v<Actuator, Model>)
+    type.safe_states = {SafeState::stop};
+  type.changeable = requires(Model & model, const typename Model::Params& changed) {
+    model.change(changed);
+  };
+  if constexpr (requires { Model::always_on; }) type.always_on = Model::always_on;
   type.make_params = [] { return std::make_shared<ParamsOf<typename Model::Params>>(); };
   type.build = build_device<Model, ReporterType, ControllerType>;
   DeviceRegistry::instance().add(std::move(type));
@@ -125,7 +177,7 @@ bool add_device(const char* name) {
       ::sim::detail::add_device<Model, ReporterType, ControllerType>(name)
 #define SHOAL_SENSOR(name, Model, ReporterType) SHOAL_DEVICE(name, Model, ReporterType, void)
 #define SHOAL_ACTUATOR(name, Model, ControllerType) SHOAL_DEVICE(name, Model, void, ControllerType)
-/// For a device that is both: its model is a Sensor that also has act().
+/// For a device that is both: its model is a Sensor that may also have act(), make_safe() and power_W().
 #define SHOAL_TRANSCEIVER(name, Model, ReporterType, ControllerType) \
   SHOAL_DEVICE(name, Model, ReporterType, ControllerType)
 

@@ -29,29 +29,35 @@ bool NoiseParams::any() const {
   return offsets || slow || white || quantization > 0 || saturation.has_value();
 }
 
-Noise::Noise(const NoiseParams& params, int values, Random bias_source)
-    : params_(params), slow_(static_cast<std::size_t>(std::max(values, 1))) {
+Noise::Noise(const NoiseParams& params, int values, Random bias_source, const NoiseFault* fault)
+    : params_(params), fault_(fault), slow_(static_cast<std::size_t>(std::max(values, 1))) {
   assert(values >= 1);
   for (Slow& slow : slow_) slow.bias = params_.bias + params_.bias_std * bias_source.gaussian();
+}
+
+void Noise::change(const NoiseParams& params) {
+  for (Slow& slow : slow_) slow.bias += params.bias - params_.bias;
+  params_ = params;
 }
 
 void Noise::apply(std::span<double> values, double dt_s, Random& random) {
   advance(dt_s, random);
   const NoiseParams& p = params_;
+  const NoiseFault fault = fault_ ? *fault_ : NoiseFault{};
   std::size_t state = 0;
   for (double& value : values) {
     const Slow& slow = slow_[state];
     if (++state == slow_.size()) state = 0;
-    value = value * (1 + p.scale_error) + slow.bias + slow.walk + slow.gauss_markov;
+    value = value * (1 + p.scale_error) + slow.bias + slow.walk + fault.factor * slow.gauss_markov + fault.bias;
   }
   // One loop for each part: a scan of hundreds of beams asks for each part once, not once for each beam.
   if (p.gaussian_std > 0)
-    for (double& value : values) value += p.gaussian_std * random.gaussian();
+    for (double& value : values) value += fault.factor * p.gaussian_std * random.gaussian();
   if (p.uniform_half_width > 0)
-    for (double& value : values) value += p.uniform_half_width * (2 * random.uniform() - 1);
+    for (double& value : values) value += fault.factor * p.uniform_half_width * (2 * random.uniform() - 1);
   if (p.outlier_probability > 0 && p.outlier_std > 0)
     for (double& value : values)
-      if (random.uniform() < p.outlier_probability) value += p.outlier_std * random.gaussian();
+      if (random.uniform() < p.outlier_probability) value += fault.factor * p.outlier_std * random.gaussian();
   if (p.quantization > 0)
     for (double& value : values) value = p.quantization * std::round(value / p.quantization);
   if (p.saturation)
@@ -65,7 +71,7 @@ void Noise::apply(double& value, double dt_s, Random& random) {
 void Noise::advance(double dt_s, Random& random) {
   const NoiseParams& p = params_;
   if (p.random_walk_std > 0 && started_) {
-    const double step_std = p.random_walk_std * std::sqrt(dt_s);
+    const double step_std = (fault_ ? fault_->factor : 1) * p.random_walk_std * std::sqrt(dt_s);
     for (Slow& slow : slow_) slow.walk += step_std * random.gaussian();
   }
   if (p.gauss_markov_std > 0) {

@@ -31,17 +31,27 @@ struct NoiseParams {
   bool any() const;
 };
 
+/// What a fault does to the error of a quantity; the random draws stay the same, so that a fault which is cleared
+/// leaves no trace.
+struct NoiseFault {
+  double bias = 0;    ///< added
+  double factor = 1;  ///< of the random parts: random walk, Gauss-Markov, gaussian, uniform, outliers
+};
+
 /// The state of the error of a few values of one quantity (one for a range scanner's beams: only white parts differ
 /// by value; one per axis for a vector).  The slow parts (bias, random walk, Gauss-Markov) are one per value.
 class Noise {
  public:
-  /// `values`: how many values have a slow state of their own.
-  Noise(const NoiseParams& params, int values, Random bias_source);
+  /// `values`: how many values have a slow state of their own.  `fault` must outlive the noise; null: it has none.
+  /// Devices get theirs by DeviceContext::noise().
+  Noise(const NoiseParams& params, int values, Random bias_source, const NoiseFault* fault = nullptr);
 
   /// Disturbs `values` in place.  values.size() may be larger than the number of slow states: value i then uses
   /// state i % states.  `dt_s`: time since the last call (exact discretisation of the slow parts); 0 at the first.
   void apply(std::span<double> values, double dt_s, Random& random);
   void apply(double& value, double dt_s, Random& random);
+  /// Other parameters from now on; biases drawn and drifts so far stay.
+  void change(const NoiseParams& params);
 
   void hash_state(StateHash& hash) const;
 
@@ -55,6 +65,7 @@ class Noise {
   void advance(double dt_s, Random& random);
 
   NoiseParams params_;
+  const NoiseFault* fault_;
   std::vector<Slow> slow_;
   bool started_ = false;
 };

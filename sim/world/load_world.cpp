@@ -63,7 +63,7 @@ class VehicleLoader {
     for (int i = 0; i < entry.count; ++i) {
       const std::string name = entry.count == 1 ? entry.name : entry.name + std::to_string(i + 1);
       if (!shared || !alike) shared = instance(entry, *model, name, i + 1);
-      world_.vehicles.push_back({name, poses[static_cast<std::size_t>(i)], shared});
+      world_.vehicles.push_back({entry.place, name, poses[static_cast<std::size_t>(i)], shared});
     }
   }
 

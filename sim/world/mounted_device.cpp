@@ -19,9 +19,13 @@ class MountedDevice::Outlet final : public Publisher {
     latency_ = latency;
   }
 
+  /// Keeps what is published from now on in `copies` too; null: no longer.
+  void copy_to(std::vector<Bytes>* copies) { copies_ = copies; }
+
   void publish(std::span<const std::byte> payload) override {
+    if (copies_) copies_->emplace_back(payload.begin(), payload.end());
     if (latency_.count() == 0) {
-      device_.host_.bus.publish(channel_, payload, now_);
+      device_.bus_.publish(channel_, payload, now_);
       return;
     }
     Event event;
@@ -39,27 +43,36 @@ class MountedDevice::Outlet final : public Publisher {
   const std::string& channel_;
   Time now_{0};
   Time latency_{0};
+  std::vector<Bytes>* copies_ = nullptr;
 };
 
-MountedDevice::MountedDevice(const DeviceContext& context, const WorldConfig& world_config, DeviceHost& host,
+MountedDevice::MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig& config, DeviceHost& host, Bus& bus,
                              int number)
-    : config_(context.config),
+    : config_(config),
+      type_(*config.device_type),
       host_(host),
-      vehicle_(context.vehicle),
-      body_(context.body),
+      bus_(bus),
+      vehicle_(vehicle),
+      body_(config.body.empty() ? vehicle.base() : vehicle.body(config.body)),
       number_(number),
-      full_name_(context.full_name()),
-      report_channel_(channel_name(config_.channel.empty() ? world_config.channels.report : config_.channel,
-                                   vehicle_.name(), config_.name)),
-      truth_channel_(channel_name(world_config.channels.truth, vehicle_.name(), config_.name)),
-      command_channel_(channel_name(world_config.channels.command, vehicle_.name(), config_.name)),
+      full_name_(vehicle.name() + "/" + config.name),
+      report_channel_(world.channel_of(vehicle.name(), config, ChannelKind::report)),
+      truth_channel_(world.channel_of(vehicle.name(), config, ChannelKind::truth)),
+      command_channel_(world.channel_of(vehicle.name(), config, ChannelKind::command)),
       X_BS_(config_.X_BS()),
-      built_(config_.device_type->build(*config_.params, context)),
+      built_(type_.build(*config_.params, {world, vehicle, config_,
+                                           config.body.empty() ? vehicle.body(vehicle.config().bodies.front().name)
+                                                               : vehicle.body(config.body),
+                                           number, faults_})),
       noise_random_(host.seed, full_name_),
       link_random_(host.seed, full_name_ + "#link") {
-  if (built_.controller) mailbox_ = host.bus.open_mailbox(command_channel_, Bus::default_mailbox_capacity);
+  if (built_.controller) mailbox_ = bus.open_mailbox(command_channel_, Bus::default_mailbox_capacity);
   report_outlet_ = std::make_unique<Outlet>(*this, report_event, report_channel_);
   truth_outlet_ = std::make_unique<Outlet>(*this, truth_event, truth_channel_);
+  plan_schedule();
+}
+
+void MountedDevice::plan_schedule() {
   if (config_.rate_hz > 0) {
     period_us_ = 1e6 / config_.rate_hz;
     // The top 32 bits of the name's hash as a fraction of the period.
@@ -105,7 +118,9 @@ void MountedDevice::take_mail(Time now, std::int64_t step_number) {
     if (first) link_random_.begin_step(step_number);
     first = false;
     if (config_.dropout > 0 && link_random_.uniform() < config_.dropout) continue;
-    const Time latency = next_latency();
+    if (faults_.dropout() > 0 && link_random_.uniform() < faults_.dropout()) continue;
+    Time latency = next_latency();
+    if (type_.is_actuator()) latency += from_seconds(vehicle_.config().actuator_latency_s);
     // A sensor's latency delays its reports, not what it is told (a modem is both).
     if (latency.count() == 0 || built_.sensor) {
       receive(now, message->payload);
@@ -115,21 +130,48 @@ void MountedDevice::take_mail(Time now, std::int64_t step_number) {
   }
 }
 
+bool MountedDevice::works() const {
+  return type_.always_on || vehicle_.systems().powered;
+}
+
 void MountedDevice::receive(Time now, std::span<const std::byte> payload) {
+  if (!works() || faults_.silent()) return;
+  if (type_.is_actuator() && (vehicle_.systems().estopped || faults_.stuck())) return;
   try {
     built_.controller->receive(now, payload);
+    last_command_ = now;
+    safe_ = false;
   } catch (const std::runtime_error& error) {
     host_.complain({command_channel_, error.what()});
   }
 }
 
+void MountedDevice::make_safe() {
+  if (safe_) return;
+  built_.actuator->make_safe(config_.safe);
+  safe_ = true;
+}
+
+void MountedDevice::act(Time now, double step_s) {
+  const VehicleSystems& systems = vehicle_.systems();
+  if (type_.is_actuator()) {
+    const bool stale = config_.watchdog_s > 0 && last_command_.count() >= 0 && !faults_.stuck() &&
+                       now - last_command_ > from_seconds(config_.watchdog_s);
+    if (stale || systems.estopped || !works()) make_safe();
+  }
+  built_.actuator->act({now, step_s, works() ? faults_.effectiveness() : 0.0});
+  if (systems.metered && works()) vehicle_.systems().drawn_J += built_.actuator->power_W() * step_s;
+}
+
 void MountedDevice::sample(const World& world, Time now, std::int64_t step_number) {
+  plan_next_sample();
+  if (!works()) return;
   const double dt_s = last_sample_.count() < 0 ? 0.0 : to_seconds(now - last_sample_);
   last_sample_ = now;
   const Pose X_WB = body_.X_WB();
   const SenseContext context{world, vehicle_, now, dt_s, X_WB * X_BS_, body_.velocity_at_W(X_BS_.translation())};
-  plan_next_sample();
   built_.sensor->measure(context);
+  if (!built_.reporter) return;
   if (config_.truth) {
     truth_outlet_->set(now, Time{0});
     built_.reporter->report(now, *truth_outlet_);
@@ -138,14 +180,43 @@ void MountedDevice::sample(const World& world, Time now, std::int64_t step_numbe
   built_.sensor->disturb(dt_s, noise_random_);
   link_random_.begin_step(-step_number);  // apart from the draws of take_mail in the same step
   if (config_.dropout > 0 && link_random_.uniform() < config_.dropout) return;
-  report_outlet_->set(now, next_latency());
-  built_.reporter->report(now, *report_outlet_);
+  const Time latency = next_latency();
+  if (faults_.silent()) return;
+  if (faults_.dropout() > 0 && link_random_.uniform() < faults_.dropout()) return;
+  report_outlet_->set(now, latency);
+  report(now);
+}
+
+void MountedDevice::report(Time now) {
+  if (!faults_.stuck()) {
+    built_.reporter->report(now, *report_outlet_);
+    return;
+  }
+  if (!frozen_) {  // the first report after the fault is the one that is repeated
+    frozen_.emplace();
+    frozen_utime_ = host_.epoch_us + now.count();
+    report_outlet_->copy_to(&*frozen_);
+    built_.reporter->report(now, *report_outlet_);
+    report_outlet_->copy_to(nullptr);
+    return;
+  }
+  // Only the time stamp goes on: messages begin with their fingerprint and `utime`, big-endian.
+  for (Bytes& payload : *frozen_) {
+    std::int64_t utime = 0;
+    for (std::size_t i = 8; i < std::min<std::size_t>(16, payload.size()); ++i)
+      utime = utime << 8 | std::to_integer<std::int64_t>(payload[i]);
+    const std::int64_t stamp = host_.epoch_us + now.count();
+    if (payload.size() >= 16 && utime == frozen_utime_)
+      for (std::size_t i = 0; i < 8; ++i) payload[8 + i] = static_cast<std::byte>(stamp >> (56 - 8 * i) & 0xff);
+    report_outlet_->publish(payload);
+  }
+  frozen_utime_ = host_.epoch_us + now.count();
 }
 
 void MountedDevice::handle(const Event& event) {
   switch (event.kind) {
     case report_event:
-      host_.bus.publish(report_channel_, event.payload, event.due);
+      bus_.publish(report_channel_, event.payload, event.due);
       break;
     case command_event:
       receive(event.due, event.payload);
@@ -158,10 +229,49 @@ void MountedDevice::handle(const Event& event) {
   }
 }
 
+void MountedDevice::set_fault(const FaultConfig& fault) {
+  faults_.set(fault);
+}
+
+void MountedDevice::clear_faults() {
+  faults_.clear();
+  frozen_.reset();
+}
+
+void MountedDevice::clear_faults(FaultKind kind) {
+  faults_.clear(kind);
+  if (!faults_.stuck()) frozen_.reset();
+}
+
+void MountedDevice::change(const DeviceConfig& changed, Time now) {
+  const bool other_rate = changed.rate_hz != config_.rate_hz || changed.phase_s != config_.phase_s;
+  config_.rate_hz = changed.rate_hz;
+  config_.phase_s = changed.phase_s;
+  config_.latency_s = changed.latency_s;
+  config_.jitter_s = changed.jitter_s;
+  config_.dropout = changed.dropout;
+  config_.power_W = changed.power_W;
+  config_.watchdog_s = changed.watchdog_s;
+  config_.safe = changed.safe;
+  config_.truth = changed.truth;
+  config_.params = changed.params;
+  if (built_.change) built_.change(*changed.params);
+  if (!other_rate) return;
+  // The new rate counts from time 0 as the old one did; the next sample is the first one after now.
+  samples_planned_ = 1;
+  next_sample_step_ = now / host_.step;
+  plan_schedule();
+}
+
 void MountedDevice::hash_state(StateHash& hash) const {
   hash.add(samples_planned_);
   hash.add(next_sample_step_);
   hash.add(static_cast<std::int64_t>(last_sample_.count()));
+  hash.add(static_cast<std::int64_t>(last_command_.count()));
+  hash.add(safe_);
+  faults_.hash_state(hash);
+  if (frozen_)
+    for (const Bytes& payload : *frozen_) hash.add_bytes(payload.data(), payload.size());
   if (built_.sensor) built_.sensor->hash_state(hash);
   if (built_.actuator) built_.actuator->hash_state(hash);
 }

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "sim/bus/bus.hpp"
 #include "sim/device/device_registry.hpp"
+#include "sim/device/fault.hpp"
 #include "sim/world/event_queue.hpp"
 #include "sim/world/world_config.hpp"
 
@@ -18,7 +21,6 @@ struct BadMessage {
 
 /// What the mounted devices of a world have in common.
 struct DeviceHost {
-  Bus& bus;
   EventQueue& events;
   std::int64_t epoch_us;
   Time step;
@@ -27,28 +29,39 @@ struct DeviceHost {
 };
 
 /// A device in its vehicle, with what the framework puts around every device: the schedule of samples, latency,
-/// jitter, dropout, the truth channel, the mailbox.
+/// jitter, dropout, the truth channel, the mailbox, faults, the watchdog, power and emergency stop.
 class MountedDevice {
  public:
-  MountedDevice(const DeviceContext& context, const WorldConfig& world_config, DeviceHost& host, int number);
+  /// `bus`: of the vehicle.  `config` must outlive the device (the vehicle keeps it).
+  MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig& config, DeviceHost& host, Bus& bus, int number);
   ~MountedDevice();
   MountedDevice(const MountedDevice&) = delete;
   MountedDevice& operator=(const MountedDevice&) = delete;
 
   /// Hands the controller the messages that have come; with a latency they become events.
   void take_mail(Time now, std::int64_t step_number);
-  void act(Time now, double step_s) {
-    if (built_.actuator) built_.actuator->act(now, step_s);
-  }
+  void act(Time now, double step_s);
   bool sample_is_due(std::int64_t step_number) const { return step_number >= next_sample_step_; }
   /// Samples, and publishes or schedules the report.
   void sample(const World& world, Time now, std::int64_t step_number);
   /// An event of this device is due.
   void handle(const Event& event);
 
+  /// From now on; a fault of the same kind (and quantity) is replaced.
+  void set_fault(const FaultConfig& fault);
+  void clear_faults();
+  void clear_faults(FaultKind kind);
+  const DeviceFaults& faults() const { return faults_; }
+  /// Takes the values of `changed` that may change while it runs: rate, latency, jitter, dropout, power, watchdog, and
+  /// the type's own keys when the type allows it (see can_change).  Name, mounting and channels stay.
+  void change(const DeviceConfig& changed, Time now);
+  /// Its own keys can change while it runs.
+  bool can_change() const { return static_cast<bool>(built_.change); }
+
   bool senses() const { return built_.sensor != nullptr; }
   bool acts() const { return built_.actuator != nullptr; }
   bool has_mailbox() const { return mailbox_ != nullptr; }
+  int number() const { return number_; }
   const std::string& full_name() const { return full_name_; }
   const std::string& report_channel() const { return report_channel_; }
   const std::string& command_channel() const { return command_channel_; }
@@ -56,6 +69,7 @@ class MountedDevice {
   const Vehicle& vehicle() const { return vehicle_; }
   /// For tests and tools.
   const Sensor* sensor() const { return built_.sensor.get(); }
+  const Actuator* actuator() const { return built_.actuator.get(); }
   void hash_state(StateHash& hash) const;
 
  private:
@@ -64,17 +78,24 @@ class MountedDevice {
   friend class World;
 
   void receive(Time now, std::span<const std::byte> payload);
+  void report(Time now);
+  void make_safe();
+  bool works() const;
   Time next_latency();
+  void plan_schedule();
   void plan_next_sample();
 
-  const DeviceConfig& config_;
+  DeviceConfig config_;
+  const DeviceType& type_;
   DeviceHost& host_;
-  const Vehicle& vehicle_;
+  Bus& bus_;
+  Vehicle& vehicle_;
   const Body& body_;
   int number_;
   std::string full_name_;
   std::string report_channel_, truth_channel_, command_channel_;
   Pose X_BS_;
+  DeviceFaults faults_;
   BuiltDevice built_;
   std::unique_ptr<Mailbox> mailbox_;
   std::unique_ptr<Outlet> report_outlet_, truth_outlet_;
@@ -84,6 +105,11 @@ class MountedDevice {
   std::int64_t samples_planned_ = 0;
   std::int64_t next_sample_step_ = 1;
   Time last_sample_{-1};
+  Time last_command_{-1};  ///< the last one that was good; -1: none yet
+  bool safe_ = false;      ///< the actuator was made safe, and no command came since
+  /// What a stuck sensor repeats, and the time stamp in it.
+  std::optional<std::vector<Bytes>> frozen_;
+  std::int64_t frozen_utime_ = 0;
 };
 
 }  // namespace sim

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "sim/world/mounted_device.hpp"
+
 namespace sim {
 
 namespace {
@@ -14,6 +16,19 @@ Part& find_named(const std::vector<std::pair<std::string, Part*>>& all, const st
 }
 
 }  // namespace
+
+Vehicle::Vehicle(std::string name, int number, int group, std::shared_ptr<const VehicleConfig> config)
+    : name_(std::move(name)),
+      number_(number),
+      group_(group),
+      config_(std::move(config)),
+      X_BV_(make_pose(config_->bodies.front().position_m, config_->bodies.front().rpy_rad).inverse()) {}
+
+MountedDevice* Vehicle::find_device(const std::string& name) const {
+  for (MountedDevice* device : devices_)
+    if (device->config().name == name) return device;
+  return nullptr;
+}
 
 Body& Vehicle::body(const std::string& name) const {
   return find_named(bodies_, name);

@@ -1,24 +1,43 @@
 #pragma once
 
-#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "sim/math.hpp"
 #include "sim/physics/body.hpp"
 #include "sim/physics/joint.hpp"
+#include "sim/state_hash.hpp"
+#include "sim/world/vehicle_config.hpp"
 
 namespace sim {
 
-/// A vehicle in the world: its bodies and joints by name.
+class MountedDevice;
+
+/// What the devices of a vehicle share.
+struct VehicleSystems {
+  bool estopped = false;  ///< actuators are in their safe states and take no commands
+  bool powered = true;    ///< false: the battery is empty; only devices that need no power work
+  bool metered = false;   ///< there is a battery to drain
+  double drawn_J = 0;     ///< taken since the battery last looked
+
+  void hash_state(StateHash& hash) const {
+    hash.add(estopped);
+    hash.add(powered);
+    hash.add(drawn_J);
+  }
+};
+
+/// A vehicle in the world: its bodies, joints and devices by name.
 class Vehicle {
  public:
-  Vehicle(std::string name, int number, int group, const Pose& X_BV)
-      : name_(std::move(name)), number_(number), group_(group), X_BV_(X_BV) {}
+  Vehicle(std::string name, int number, int group, std::shared_ptr<const VehicleConfig> config);
 
   const std::string& name() const { return name_; }
+  /// Grows from vehicle to vehicle, and is not used again when one is removed.
   int number() const { return number_; }
   int group() const { return group_; }
+  const VehicleConfig& config() const { return *config_; }
   /// The first body, which carries the vehicle frame.
   const Body& base() const { return *bodies_.front().second; }
   Pose X_WV() const { return base().X_WB() * X_BV_; }
@@ -26,19 +45,29 @@ class Vehicle {
   /// By the name in the vehicle file.  Throws std::out_of_range.
   Body& body(const std::string& name) const;
   Joint& joint(const std::string& name) const;
+  /// Null when there is none.
+  MountedDevice* find_device(const std::string& name) const;
   const std::vector<std::pair<std::string, Body*>>& bodies() const { return bodies_; }
   const std::vector<std::pair<std::string, Joint*>>& joints() const { return joints_; }
+  const std::vector<MountedDevice*>& devices() const { return devices_; }
+
+  VehicleSystems& systems() { return systems_; }
+  const VehicleSystems& systems() const { return systems_; }
 
   void add_body(const std::string& name, Body& body) { bodies_.emplace_back(name, &body); }
   void add_joint(const std::string& name, Joint& joint) { joints_.emplace_back(name, &joint); }
+  void add_device(MountedDevice& device) { devices_.push_back(&device); }
 
  private:
   std::string name_;
   int number_;
   int group_;
+  std::shared_ptr<const VehicleConfig> config_;
   Pose X_BV_;
   std::vector<std::pair<std::string, Body*>> bodies_;
   std::vector<std::pair<std::string, Joint*>> joints_;
+  std::vector<MountedDevice*> devices_;
+  VehicleSystems systems_;
 };
 
 }  // namespace sim

@@ -14,10 +14,16 @@ void VehicleConfig::read(ParamReader& in) {
   in.read("categories", categories, "categories of parts this vehicle brings");
   for (const std::string& category : categories) in.declare("category", category);
   in.read("self_collision", self_collision, "parts of this vehicle collide with each other");
+  in.read("actuator_latency_s", actuator_latency_s, between(0, 1e6),
+          "from command to effect, added to the latency of each actuator");
   in.require("bodies");
   in.read_list("bodies", bodies, "body", "parts that move as one; the first carries the vehicle frame");
   if (in.has("bodies") && bodies.empty()) in.error("bodies", "'bodies' must have at least one body");
-  for (const BodyConfig& body : bodies) in.declare("body", body.name);
+  for (const BodyConfig& body : bodies) {
+    in.declare("body", body.name);
+    for (const PartConfig& part : body.parts)
+      if (!part.name.empty()) in.declare("part", body.name + "/" + part.name);
+  }
   in.declare("body", "world");
   in.read_list("joints", joints, "joint", "what ties bodies together");
   for (const JointConfig& joint : joints) in.declare("joint", joint.name);

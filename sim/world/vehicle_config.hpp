@@ -18,6 +18,7 @@ struct VehicleConfig {
   std::vector<ContactConfig> contacts;
   std::vector<std::string> categories;
   bool self_collision = false;
+  double actuator_latency_s = 0;   ///< from command to effect, added to each actuator's own
   std::vector<BodyConfig> bodies;  ///< the first one carries the vehicle frame
   std::vector<JointConfig> joints;
   std::vector<DeviceConfig> devices;

@@ -10,25 +10,18 @@ namespace sim {
 
 World::World(const WorldConfig& config, Bus& bus, PortOpener open_port)
     : config_(config),
+      bus_(bus),
       open_port_(std::move(open_port)),
       step_us_(from_seconds(config.physics.step_s).count()),
       step_s_(config.physics.step_s),
       geodesy_(config.origin.position),
-      host_{bus,
-            events_,
-            config.epoch_us,
-            Time{step_us_},
-            static_cast<std::uint64_t>(config.run.seed),
-            [this](const BadMessage& bad) { complain(bad); }},
+      host_{events_, config.epoch_us, Time{step_us_}, static_cast<std::uint64_t>(config.run.seed),
+            [this](const BadMessage& bad) { complain(bad.channel, bad.text); }},
       physics_(std::make_unique<PhysicsWorld>(config.physics, config.materials, config.contacts, config.categories,
                                               static_cast<std::uint64_t>(config.run.seed))) {
   add_objects();
-  for (const VehicleInstance& instance : config.vehicles) add_vehicle(instance);
-  for (const auto& device : devices_) {
-    if (device->has_mailbox()) listening_.push_back(device.get());
-    if (device->acts()) acting_.push_back(device.get());
-    if (device->senses()) sensing_.push_back(device.get());
-  }
+  for (const VehicleInstance& instance : config.vehicles) build_vehicle(instance);
+  sort_devices();
 }
 
 World::~World() = default;
@@ -39,39 +32,64 @@ void World::add_objects() {
     const std::vector<Pose> poses = object.count == 1
                                         ? std::vector<Pose>{X_WE}
                                         : place_instances(object.placement, object.count, X_WE, seed(), object.name);
-    for (int i = 0; i < object.count; ++i) {
-      const std::string name = object.count == 1 ? object.name : object.name + std::to_string(i + 1);
-      const int group = physics_->add_group(name);
-      BodyConfig body;
-      body.parts = object.parts;
-      body.name = "body";
-      physics_->add_body(group, body, poses[static_cast<std::size_t>(i)], object.fixed);
-      physics_->close_group(group);
-    }
+    for (int i = 0; i < object.count; ++i)
+      build_object(object, object.count == 1 ? object.name : object.name + std::to_string(i + 1),
+                   poses[static_cast<std::size_t>(i)]);
   }
 }
 
-void World::add_vehicle(const VehicleInstance& instance) {
+const WorldObject& World::build_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE) {
+  WorldObject object{name, physics_->add_group(name), nullptr, config};
+  BodyConfig body;
+  body.parts = config.parts;
+  body.name = "body";
+  object.body = &physics_->add_body(object.group, body, X_WE, config.fixed);
+  physics_->close_group(object.group);
+  ++generation_;
+  return objects_.insert_or_assign(name, std::move(object)).first->second;
+}
+
+Vehicle& World::build_vehicle(const VehicleInstance& instance) {
   const VehicleConfig& config = *instance.config;
   const int group = physics_->add_group(instance.name, config.self_collision);
-  const BodyConfig& base = config.bodies.front();
-  auto vehicle = std::make_unique<Vehicle>(instance.name, static_cast<int>(vehicles_.size()), group,
-                                           make_pose(base.position_m, base.rpy_rad).inverse());
+  auto owned = std::make_unique<Vehicle>(instance.name, next_vehicle_number_++, group, instance.config);
+  Vehicle& vehicle = *owned;
   for (const BodyConfig& body : config.bodies)
-    vehicle->add_body(body.name, physics_->add_body(group, body, instance.X_WV));
+    vehicle.add_body(body.name, physics_->add_body(group, body, instance.X_WV));
   for (const JointConfig& joint : config.joints) {
-    Body* second = joint.bodies[1] == "world" ? nullptr : &vehicle->body(joint.bodies[1]);
-    vehicle->add_joint(joint.name,
-                       physics_->add_joint(group, joint, vehicle->body(joint.bodies[0]), second, instance.X_WV));
+    Body* second = joint.bodies[1] == "world" ? nullptr : &vehicle.body(joint.bodies[1]);
+    vehicle.add_joint(joint.name,
+                      physics_->add_joint(group, joint, vehicle.body(joint.bodies[0]), second, instance.X_WV));
   }
   physics_->close_group(group);
-  for (const DeviceConfig& device : config.devices) {
-    Body& body = vehicle->body(device.body.empty() ? base.name : device.body);
-    const DeviceContext context{*this, *vehicle, device, body};
-    devices_.push_back(std::make_unique<MountedDevice>(context, config_, host_, next_device_number()));
+  vehicles_.push_back(std::move(owned));
+  vehicles_by_name_.emplace(instance.name, &vehicle);
+  for (const DeviceConfig& device : config.devices) add_device(vehicle, device, bus_);
+  ++generation_;
+  return vehicle;
+}
+
+void World::add_device(Vehicle& vehicle, const DeviceConfig& config, Bus& bus) {
+  const auto free = std::find(devices_.begin(), devices_.end(), nullptr);
+  const auto number = static_cast<int>(free - devices_.begin());
+  if (free == devices_.end()) devices_.emplace_back();
+  auto device = std::make_unique<MountedDevice>(*this, vehicle, config, host_, bus, number);
+  vehicle.add_device(*device);
+  for (const ChannelKind kind : {ChannelKind::report, ChannelKind::command, ChannelKind::truth})
+    channels_.insert(channel_of(vehicle.name(), config, kind));
+  devices_[static_cast<std::size_t>(number)] = std::move(device);
+}
+
+void World::sort_devices() {
+  listening_.clear();
+  acting_.clear();
+  sensing_.clear();
+  for (const auto& device : devices_) {
+    if (!device) continue;
+    if (device->has_mailbox()) listening_.push_back(device.get());
+    if (device->acts()) acting_.push_back(device.get());
+    if (device->senses()) sensing_.push_back(device.get());
   }
-  vehicle_numbers_.emplace(instance.name, vehicle->number());
-  vehicles_.push_back(std::move(vehicle));
 }
 
 void World::step() {
@@ -79,7 +97,7 @@ void World::step() {
   for (MountedDevice* device : acting_) device->act(now(), step_s_);
   physics_->step(step_number_);
   ++step_number_;
-  for (Event event; events_.take_due(now(), event);) devices_[static_cast<std::size_t>(event.device)]->handle(event);
+  run_due_events();
   for (MountedDevice* device : sensing_) {
     if (!device->sample_is_due(step_number_)) continue;
     device->sample(*this, now(), step_number_);
@@ -87,20 +105,52 @@ void World::step() {
   }
 }
 
+void World::run_due_events() {
+  for (Event event; events_.take_due(now(), event);)
+    if (const auto& device = devices_[static_cast<std::size_t>(event.device)]) device->handle(event);
+}
+
 const Vehicle* World::find_vehicle(const std::string& name) const {
-  const auto found = vehicle_numbers_.find(name);
-  return found == vehicle_numbers_.end() ? nullptr : vehicles_[static_cast<std::size_t>(found->second)].get();
+  const auto found = vehicles_by_name_.find(name);
+  return found == vehicles_by_name_.end() ? nullptr : found->second;
+}
+
+MountedDevice* World::find_device(const std::string& full_name) const {
+  const std::size_t slash = full_name.find('/');
+  if (slash == std::string::npos) return nullptr;
+  const Vehicle* vehicle = find_vehicle(full_name.substr(0, slash));
+  return vehicle ? vehicle->find_device(full_name.substr(slash + 1)) : nullptr;
+}
+
+const WorldObject* World::find_object(const std::string& name) const {
+  const auto found = objects_.find(name);
+  return found == objects_.end() ? nullptr : &found->second;
+}
+
+std::string World::channel_of(const std::string& vehicle, const DeviceConfig& device, ChannelKind kind) const {
+  const ChannelConfig& channels = config_.channels;
+  if (kind == ChannelKind::command) return channel_name(channels.command, vehicle, device.name);
+  if (kind == ChannelKind::truth) return channel_name(channels.truth, vehicle, device.name);
+  return channel_name(device.channel.empty() ? channels.report : device.channel, vehicle, device.name);
 }
 
 void World::schedule_arrival(int device, Time due, Bytes payload) {
   events_.schedule({due, 0, device, MountedDevice::arrival_event, now(), std::move(payload)});
 }
 
-void World::complain(const BadMessage& bad) {
+void World::publish(const std::string& channel, std::span<const std::byte> payload) {
+  bus_.publish(channel, payload, now());
+}
+
+void World::end(const EndOfRun& end) {
+  if (!ended_) ended_ = end;
+}
+
+void World::complain(const std::string& who, const std::string& text) {
   ++counts_.bad_messages;
   // One line for each kind of mistake: a flood of bad messages must not become a flood of lines.
   constexpr std::size_t most_lines = 100;
-  const std::string line = bad.channel + ": " + shortened(printable(bad.text), 300);
+  const std::string line = who + ": " + shortened(printable(text), 300);
   if (complaints_.size() >= most_lines || std::find(complaints_.begin(), complaints_.end(), line) != complaints_.end())
     return;
   complaints_.push_back(line);
@@ -111,7 +161,9 @@ std::uint64_t World::state_hash() const {
   StateHash hash;
   hash.add(step_number_);
   physics_->hash_state(hash);
-  for (const auto& device : devices_) device->hash_state(hash);
+  for (const auto& vehicle : vehicles_) vehicle->systems().hash_state(hash);
+  for (const auto& device : devices_)
+    if (device) device->hash_state(hash);
   events_.hash_state(hash);
   return hash.value();
 }

@@ -2,7 +2,10 @@
 
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <typeindex>
 #include <vector>
@@ -24,6 +27,28 @@ struct WorldCounts {
   std::int64_t bad_messages = 0;
 };
 
+enum class ChannelKind { report, command, truth };
+
+/// A thing without devices, as built.
+struct WorldObject {
+  std::string name;
+  int group = -1;
+  Body* body = nullptr;
+  ObjectConfig config;
+};
+
+/// Why and how the world itself ends the run.
+struct EndOfRun {
+  std::string text;
+  bool passed = true;
+};
+
+/// Something that cannot be done to the world as it is now.  what() is one line that says who, rule and value.
+class WorldError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// A world as built: bodies, vehicles, devices and the events between them.  Steps when told to; knows no clock.
 class World {
  public:
@@ -34,7 +59,7 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// Stages 1 to 7 of a step: mail, act, medium, actors, physics, sense, report.  Throws PhysicsFault.
+  /// Stages 1 to 7 of a step: mail, act, medium, script, physics, sense, report.  Throws PhysicsFault.
   void step();
 
   std::int64_t step_number() const { return step_number_; }
@@ -50,12 +75,44 @@ class World {
   const Geodesy& geodesy() const { return geodesy_; }
   std::span<const std::unique_ptr<Vehicle>> vehicles() const { return vehicles_; }
   const Vehicle* find_vehicle(const std::string& name) const;
+  /// In the order of their numbers; null where a device was removed.
   std::span<const std::unique_ptr<MountedDevice>> devices() const { return devices_; }
+  /// By vehicle and device, such as `auv1/imu`.  Null when there is none.
+  MountedDevice* find_device(const std::string& full_name) const;
+  const WorldObject* find_object(const std::string& name) const;
+  /// By name.
+  const std::map<std::string, WorldObject, std::less<>>& objects() const { return objects_; }
+  /// Grows with every vehicle or object that comes or goes: who holds pointers to them asks again then.
+  std::uint64_t generation() const { return generation_; }
+
+  // What changes a world while it runs.  Call between steps, or from a script in stage 4.
+
+  /// Adds a vehicle.  Throws ConfigError (names and channels that are taken, meshes, masses, limits), and leaves the
+  /// world as it was then.
+  const Vehicle& add_vehicle(const VehicleInstance& instance);
+  /// Throws WorldError when there is none, or when a metric scores it.
+  void remove_vehicle(const std::string& name);
+  /// Moves all bodies of a vehicle so that its frame stands at X_WV, at rest.  Throws WorldError.
+  void move_vehicle(const std::string& name, const Pose& X_WV);
+  /// Adds one object (config.count is not looked at).  Throws ConfigError as add_vehicle does.
+  const WorldObject& add_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE);
+  /// Throws WorldError when there is none.
+  void remove_object(const std::string& name);
+  /// Puts an object's frame at a pose, at rest.  Throws WorldError.
+  void move_object(const std::string& name, const Pose& X_WE);
+  /// Throw WorldError when there is no such device, or the fault does not fit it.
+  void set_fault(const std::string& device, const FaultConfig& fault);
+  void clear_faults(const std::string& device);
+  /// Sends a message on the world's bus, as a script does.
+  void publish(const std::string& channel, std::span<const std::byte> payload);
+  /// The run ends after this step; the first call counts.
+  void end(const EndOfRun& end);
+  const std::optional<EndOfRun>& ended() const { return ended_; }
+  /// Warns of something that went wrong in the world and counts it; the same line is told once.
+  void complain(const std::string& who, const std::string& text);
 
   /// Something sent now to a device arrives there at a simulated time: its sensor's arrive() is called.
   void schedule_arrival(int device, Time due, Bytes payload);
-  /// The number the device that is being built will have.
-  int next_device_number() const { return static_cast<int>(devices_.size()); }
   /// What the devices of one kind share (the channel between modems).  Made at the first call.
   template <typename T>
   T& shared() {
@@ -64,6 +121,9 @@ class World {
     return *static_cast<T*>(slot.get());
   }
   const PortOpener& open_port() const { return open_port_; }
+  Bus& bus() { return bus_; }
+  /// The channel of a device by the world's templates.
+  std::string channel_of(const std::string& vehicle, const DeviceConfig& device, ChannelKind kind) const;
 
   const WorldCounts& counts() const { return counts_; }
   /// A hash over bodies, joints, devices, their random streams and the event queue.
@@ -71,10 +131,20 @@ class World {
 
  private:
   void add_objects();
-  void add_vehicle(const VehicleInstance& instance);
-  void complain(const BadMessage& bad);
+  const WorldObject& build_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE);
+  Vehicle& build_vehicle(const VehicleInstance& instance);
+  void add_device(Vehicle& vehicle, const DeviceConfig& config, Bus& bus);
+  void remove_device(MountedDevice& device);
+  Vehicle& vehicle_named(const std::string& name) const;
+  const WorldObject& object_named(const std::string& name) const;
+  MountedDevice& device_named(const std::string& name) const;
+  void check_new_vehicle(const VehicleInstance& instance) const;
+  void check_new_name(const std::string& name, const SourcePlace& place, const std::string& who) const;
+  void sort_devices();
+  void run_due_events();
 
   const WorldConfig& config_;
+  Bus& bus_;
   PortOpener open_port_;
   std::int64_t step_us_;
   double step_s_;
@@ -88,7 +158,12 @@ class World {
   std::map<std::type_index, std::shared_ptr<void>> shared_;
   std::unique_ptr<PhysicsWorld> physics_;
   std::vector<std::unique_ptr<Vehicle>> vehicles_;
-  std::map<std::string, int, std::less<>> vehicle_numbers_;
+  std::map<std::string, Vehicle*, std::less<>> vehicles_by_name_;
+  std::map<std::string, WorldObject, std::less<>> objects_;
+  std::set<std::string, std::less<>> channels_;  // those that are taken
+  int next_vehicle_number_ = 0;
+  std::uint64_t generation_ = 0;
+  std::optional<EndOfRun> ended_;
   std::vector<std::unique_ptr<MountedDevice>> devices_;
   // The devices each stage visits, in device order.
   std::vector<MountedDevice*> listening_, acting_, sensing_;

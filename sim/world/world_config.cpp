@@ -73,6 +73,14 @@ void LockstepConfig::read(ParamReader& in) {
   in.read("join_timeout_s", join_timeout_s, between(0.001, 1e6), "wall time to wait for launched clients to join");
 }
 
+void LimitsConfig::read(ParamReader& in) {
+  in.read("vehicles", vehicles, between(0, 1000000), "vehicles at any one time, when clients bring more");
+  in.read("objects", objects, between(0, 10000000), "objects at any one time, when scripts or clients bring more");
+  in.read("bodies_per_vehicle", bodies_per_vehicle, between(1, 100000), "of a vehicle that a client brings");
+  in.read("devices_per_vehicle", devices_per_vehicle, between(0, 100000), "of a vehicle that a client brings");
+  in.read("parts", parts, between(1, 100000), "of one vehicle or object that comes while the world runs");
+}
+
 void MetricConfig::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "name of the metric; gives NAME.rms_m, NAME.final_m, NAME.max_m, NAME.samples");
@@ -158,6 +166,7 @@ void WorldConfig::read(ParamReader& in) {
   in.read_list("processes", processes, "process", "external programs, started only with --launch");
   for (const ProcessConfig& process : processes) in.declare("process", process.name);
   in.read("lockstep", lockstep, "waiting for clients");
+  in.read("limits", limits, "what may come while the world runs");
   in.read_list("metrics", metrics, "metric", "figures that score the run");
   for (const MetricConfig& metric : metrics) in.declare("metric", metric.name);
   declare_figures(in, metrics);

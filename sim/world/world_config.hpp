@@ -66,6 +66,7 @@ struct VehicleEntry {
 
 /// A vehicle as it will stand in the world.
 struct VehicleInstance {
+  SourcePlace place;
   std::string name;
   Pose X_WV = Pose::Identity();
   std::shared_ptr<const VehicleConfig> config;  ///< shared by instances that are alike
@@ -104,6 +105,16 @@ struct PassRule {
   void read(ParamReader& in);
 };
 
+/// What may come while the world runs.
+struct LimitsConfig {
+  int vehicles = 2000;  ///< at any one time, those of the world file included
+  int objects = 20000;
+  int bodies_per_vehicle = 100;
+  int devices_per_vehicle = 100;
+  int parts = 200;  ///< of one vehicle or object
+  void read(ParamReader& in);
+};
+
 /// Everything a world file says.
 struct WorldConfig {
   int shoal = 1;
@@ -125,6 +136,7 @@ struct WorldConfig {
   LockstepConfig lockstep;
   std::vector<MetricConfig> metrics;
   std::vector<PassRule> pass;
+  LimitsConfig limits;
   double state_rate_hz = 10;  ///< of sim.state and sim.clock
 
   void read(ParamReader& in);

@@ -1,0 +1,87 @@
+#include "sim/device/fault.hpp"
+
+#include <algorithm>
+
+namespace sim {
+
+const std::vector<std::pair<std::string, FaultKind>>& fault_kinds() {
+  static const std::vector<std::pair<std::string, FaultKind>> kinds = {
+      {"stuck", FaultKind::stuck},       {"silent", FaultKind::silent},   {"biased", FaultKind::biased},
+      {"degraded", FaultKind::degraded}, {"partial", FaultKind::partial}, {"dead", FaultKind::dead}};
+  return kinds;
+}
+
+void FaultConfig::read(ParamReader& in) {
+  in.require("kind");
+  in.read_choice("kind", kind, fault_kinds(), "what is wrong with the device");
+  in.read("quantity", quantity, "biased, degraded: key of its noise without '_noise'; unset: every quantity");
+  in.read("bias", bias, any_number(), "biased: added to the quantity, in its unit");
+  in.read("noise_factor", noise_factor, between(0, 1e6), "degraded: the random errors are this many times as large");
+  in.read("dropout", dropout, between(0, 1), "degraded: probability that a report or a command is lost");
+  in.read("effectiveness", effectiveness, between(0, 1), "partial: the share of its effort that the actuator gives");
+  const auto belongs_to = [&](const char* key, std::initializer_list<FaultKind> kinds) {
+    if (in.has(key) && in.has("kind") && std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+      in.error(key, std::string("'") + key + "' does not belong to a fault of this kind");
+  };
+  belongs_to("quantity", {FaultKind::biased, FaultKind::degraded});
+  belongs_to("bias", {FaultKind::biased});
+  belongs_to("noise_factor", {FaultKind::degraded});
+  belongs_to("dropout", {FaultKind::degraded});
+  belongs_to("effectiveness", {FaultKind::partial});
+}
+
+void DeviceFaults::set(const FaultConfig& fault) {
+  std::erase_if(active_,
+                [&](const FaultConfig& other) { return other.kind == fault.kind && other.quantity == fault.quantity; });
+  active_.push_back(fault);
+  update();
+}
+
+void DeviceFaults::clear() {
+  active_.clear();
+  update();
+}
+
+void DeviceFaults::clear(FaultKind kind) {
+  std::erase_if(active_, [&](const FaultConfig& fault) { return fault.kind == kind; });
+  update();
+}
+
+const NoiseFault& DeviceFaults::noise_of(const std::string& name) {
+  for (const auto& quantity : quantities_)
+    if (quantity->name == name) return quantity->fault;
+  quantities_.push_back(std::make_unique<Quantity>(Quantity{name, {}}));
+  update();
+  return quantities_.back()->fault;
+}
+
+void DeviceFaults::update() {
+  stuck_ = silent_ = false;
+  double heard = 1;
+  effectiveness_ = 1;
+  for (const auto& quantity : quantities_) quantity->fault = {};
+  for (const FaultConfig& fault : active_) {
+    stuck_ |= fault.kind == FaultKind::stuck;
+    silent_ |= fault.kind == FaultKind::silent;
+    if (fault.kind == FaultKind::degraded) heard *= 1 - fault.dropout;
+    if (fault.kind == FaultKind::dead) effectiveness_ = 0;
+    if (fault.kind == FaultKind::partial) effectiveness_ *= fault.effectiveness;
+    for (const auto& quantity : quantities_) {
+      if (!fault.quantity.empty() && fault.quantity != quantity->name) continue;
+      if (fault.kind == FaultKind::biased) quantity->fault.bias += fault.bias;
+      if (fault.kind == FaultKind::degraded) quantity->fault.factor *= fault.noise_factor;
+    }
+  }
+  dropout_ = 1 - heard;
+}
+
+void DeviceFaults::hash_state(StateHash& hash) const {
+  hash.add(static_cast<std::uint64_t>(active_.size()));
+  for (const FaultConfig& fault : active_) {
+    hash.add(static_cast<int>(fault.kind));
+    hash.add_bytes(reinterpret_cast<const std::byte*>(fault.quantity.data()), fault.quantity.size());
+    for (const double value : {fault.bias, fault.noise_factor, fault.dropout, fault.effectiveness}) hash.add(value);
+  }
+}
+
+}  // namespace sim

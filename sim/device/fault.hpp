@@ -1,0 +1,73 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/config/param_reader.hpp"
+#include "sim/random/noise.hpp"
+#include "sim/state_hash.hpp"
+
+namespace sim {
+
+enum class FaultKind {
+  stuck,     ///< a sensor repeats its last report, an actuator keeps its last command
+  silent,    ///< no report goes out, no command comes in
+  biased,    ///< `bias` is added to a quantity
+  degraded,  ///< the random errors of a quantity are `noise_factor` times as large; `dropout` more is lost
+  partial,   ///< an actuator gives `effectiveness` of its effort
+  dead,      ///< an actuator gives none
+};
+
+/// The words of YAML for the kinds of fault.
+const std::vector<std::pair<std::string, FaultKind>>& fault_kinds();
+
+/// What is wrong with a device, as YAML says it.
+struct FaultConfig {
+  FaultKind kind = FaultKind::silent;
+  std::string quantity;      ///< biased, degraded: the key of its noise without `_noise`; empty: every quantity
+  double bias = 0;           ///< biased: in the unit of the quantity
+  double noise_factor = 1;   ///< degraded
+  double dropout = 0;        ///< degraded: probability that a report or command is lost, beside the device's own
+  double effectiveness = 1;  ///< partial: 0 to 1
+
+  void read(ParamReader& in);
+  bool operator==(const FaultConfig&) const = default;
+};
+
+/// The faults of one device.  Of each kind (and quantity) there is at most one: the last one set.
+class DeviceFaults {
+ public:
+  void set(const FaultConfig& fault);
+  /// Every fault, or those of a kind.
+  void clear();
+  void clear(FaultKind kind);
+
+  /// Where the Noise of a quantity finds what a fault does to it; made at the first call, stays where it is.
+  const NoiseFault& noise_of(const std::string& quantity);
+
+  const std::vector<FaultConfig>& active() const { return active_; }
+  bool stuck() const { return stuck_; }
+  bool silent() const { return silent_; }
+  double dropout() const { return dropout_; }
+  double effectiveness() const { return effectiveness_; }
+  void hash_state(StateHash& hash) const;
+
+ private:
+  struct Quantity {
+    std::string name;
+    NoiseFault fault;
+  };
+  /// Works out what the active faults come to.
+  void update();
+
+  std::vector<FaultConfig> active_;
+  std::vector<std::unique_ptr<Quantity>> quantities_;
+  bool stuck_ = false;
+  bool silent_ = false;
+  double dropout_ = 0;
+  double effectiveness_ = 1;
+};
+
+}  // namespace sim
