@@ -8,6 +8,7 @@
 #include "sim/bus/bus.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
+#include "sim/device/plugin.hpp"
 
 namespace sim {
 
@@ -246,6 +247,31 @@ void apply_sets(ConfigNode& root, const LoadOptions& options, Diagnostics& diagn
   }
 }
 
+/// Loads what `plugins:` names, before any device is read.  From then on the tree names them by their whole paths.
+void load_plugins(ConfigNode& root, const LoadOptions& options, Diagnostics& diagnostics) {
+  ConfigNode* plugins = root.find("plugins");
+  if (plugins == nullptr) return;
+  for (ConfigNode& item : plugins->items) {
+    const std::string who = "plugin '" + shortened(item.scalar) + "'";
+    if (is_loaded_plugin(item.scalar)) continue;
+    const fs::path file = item.place.file != nullptr ? *item.place.file : "";
+    const std::string path = find_plugin(item.scalar, file.parent_path().string());
+    if (path.empty()) {
+      diagnostics.error(item.place, who,
+                        "is neither beside this file nor in SHOAL_PLUGIN_PATH nor in lib/shoal/plugins");
+      continue;
+    }
+    if (!options.allow_plugins && !is_loaded_plugin(path)) {
+      diagnostics.error(item.place, who,
+                        "a world file may run code only with --launch, or name the plugin with --plugin " + path);
+      continue;
+    }
+    load_plugin(path, item.place, who, diagnostics);
+    std::error_code error;
+    if (const fs::path whole = fs::absolute(path, error); !error) item.scalar = whole.lexically_normal().string();
+  }
+}
+
 /// The resolved world may be written anywhere: mesh files are named by their whole path.
 void make_mesh_paths_absolute(ConfigNode& node) {
   for (ConfigNode& item : node.items) make_mesh_paths_absolute(item);
@@ -268,6 +294,7 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   ParamReader in(root, "", diagnostics);
   loaded.config.read(in);
   in.finish();
+  load_plugins(root, options, diagnostics);
   if (options.seed) loaded.config.run.seed = *options.seed;
   if (loaded.config.name.empty() && file.file != nullptr) loaded.config.name = fs::path(*file.file).stem().string();
   VehicleLoader vehicles(loaded.config, diagnostics);

@@ -22,9 +22,11 @@ void add_describe_command(CLI::App& app, int& exit_code) {
                                    ->check(CLI::IsMember({"world", "vehicle"}));
   name_option->excludes(page_option)->excludes(schema_option);
   page_option->excludes(schema_option);
+  add_plugin_option(*command);
   command->footer(
       "Examples:\n  shoal describe lidar\n  shoal describe world\n  shoal describe pose_t\n"
-      "  shoal describe --schema world > world.schema.json");
+      "  shoal describe --schema world > world.schema.json\n"
+      "  shoal describe thermometer --plugin build/thermometer.so");
   command->callback([name, page, schema, &exit_code] {
     if (!page->empty() || !schema->empty()) {
       std::cout << (page->empty() ? json_schema(*schema) : reference_page(*page));
@@ -61,6 +63,7 @@ void add_list_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("list", "List device types or message types");
   const auto what = std::make_shared<std::string>();
   command->add_option("WHAT", *what, "devices or messages")->required()->check(CLI::IsMember({"devices", "messages"}));
+  add_plugin_option(*command);
   command->footer("Example:\n  shoal list devices");
   command->callback([what, &exit_code] {
     list(*what);

@@ -26,10 +26,12 @@ inline std::vector<sim::ParamInfo> common_params() {
   return table;
 }
 
-/// The keys of one device type, beside those of every device.
+/// The keys of one device type, and of actuators if it is one, beside those of every device.
 inline std::vector<sim::ParamInfo> params_of(const sim::DeviceType& type) {
   std::vector<sim::ParamInfo> table;
   sim::ParamReader in(table);
+  sim::DeviceConfig config;
+  if (type.is_actuator()) config.read_actuator(in, type);
   type.make_params()->read(in);
   return table;
 }
