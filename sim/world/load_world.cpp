@@ -247,29 +247,32 @@ void apply_sets(ConfigNode& root, const LoadOptions& options, Diagnostics& diagn
   }
 }
 
+/// Why a plugin that a world names was not loaded; empty: it was, or `load_plugin` has said why not.
+std::string plugin_problem(ConfigNode& item, const std::string& who, const LoadOptions& options,
+                           Diagnostics& diagnostics) {
+  const fs::path file = item.place.file != nullptr ? *item.place.file : "";
+  const std::string path = find_plugin(item.scalar, file.parent_path().string());
+  if (path.empty()) return "is neither beside this file nor in SHOAL_PLUGIN_PATH nor in lib/shoal/plugins";
+  if (!options.allow_plugins && !is_loaded_plugin(path))
+    return "a world file may run code only with --launch, or name the plugin with --plugin " + path;
+  load_plugin(path, item.place, who, diagnostics);
+  std::error_code error;
+  if (const fs::path whole = fs::absolute(path, error); !error) item.scalar = whole.lexically_normal().string();
+  return {};
+}
+
 /// Loads what `plugins:` names, before any device is read.  From then on the tree names them by their whole paths.
-void load_plugins(ConfigNode& root, const LoadOptions& options, Diagnostics& diagnostics) {
+bool load_plugins(ConfigNode& root, const LoadOptions& options, Diagnostics& diagnostics) {
+  const std::size_t before = diagnostics.lines().size();
   ConfigNode* plugins = root.find("plugins");
-  if (plugins == nullptr) return;
+  if (plugins == nullptr) return true;
   for (ConfigNode& item : plugins->items) {
+    if (item.kind != ConfigNode::Kind::scalar || is_loaded_plugin(item.scalar)) continue;
     const std::string who = "plugin '" + shortened(item.scalar) + "'";
-    if (is_loaded_plugin(item.scalar)) continue;
-    const fs::path file = item.place.file != nullptr ? *item.place.file : "";
-    const std::string path = find_plugin(item.scalar, file.parent_path().string());
-    if (path.empty()) {
-      diagnostics.error(item.place, who,
-                        "is neither beside this file nor in SHOAL_PLUGIN_PATH nor in lib/shoal/plugins");
-      continue;
-    }
-    if (!options.allow_plugins && !is_loaded_plugin(path)) {
-      diagnostics.error(item.place, who,
-                        "a world file may run code only with --launch, or name the plugin with --plugin " + path);
-      continue;
-    }
-    load_plugin(path, item.place, who, diagnostics);
-    std::error_code error;
-    if (const fs::path whole = fs::absolute(path, error); !error) item.scalar = whole.lexically_normal().string();
+    const std::string problem = plugin_problem(item, who, options, diagnostics);
+    if (!problem.empty()) diagnostics.error(item.place, who, problem);
   }
+  return diagnostics.lines().size() == before;
 }
 
 /// The resolved world may be written anywhere: mesh files are named by their whole path.
@@ -294,7 +297,8 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   ParamReader in(root, "", diagnostics);
   loaded.config.read(in);
   in.finish();
-  load_plugins(root, options, diagnostics);
+  // Its devices would all be of unknown types, which would bury the mistake.
+  if (!load_plugins(root, options, diagnostics)) diagnostics.throw_if_any();
   if (options.seed) loaded.config.run.seed = *options.seed;
   if (loaded.config.name.empty() && file.file != nullptr) loaded.config.name = fs::path(*file.file).stem().string();
   VehicleLoader vehicles(loaded.config, diagnostics);

@@ -48,17 +48,28 @@ class Plugin : public testing::Test {
     ASSERT_EQ(built.exit_code, 0) << built.output << built.errors;
   }
 
+  /// NAME/build/NAME.so out of one source and perhaps a message type.
+  static void build_plugin(const std::string& name, const std::string& source_text, const std::string& more = "",
+                           const std::string& lcm = "") {
+    fs::create_directories(path(name));
+    write_file(path(name + "/" + name + ".cpp"), source_text);
+    write_file(path(name + "/scan_t.lcm"), lcm);
+    write_file(path(name + "/CMakeLists.txt"),
+               "cmake_minimum_required(VERSION 3.25)\nproject(own LANGUAGES CXX)\nfind_package(Shoal REQUIRED)\n"
+               "shoal_add_device(" +
+                   name + " SOURCES " + name + ".cpp " + more + ")\n");
+    build(path(name));
+  }
+
   static Ended shoal(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), path("prefix/bin/shoal"));
     return run(std::move(arguments));
   }
 
-  /// A library of this text, compiled without a build system; `-include` of nothing of Shoal.
-  static std::string library(const std::string& name, const std::string& text, std::vector<std::string> options = {}) {
+  /// A library of this text, compiled without anything of Shoal.
+  static std::string library(const std::string& name, const std::string& text) {
     write_file(path(name + ".cpp"), text);
-    std::vector<std::string> command = {"c++", "-shared", "-fPIC", path(name + ".cpp"), "-o", path(name + ".so")};
-    command.insert(command.end(), options.begin(), options.end());
-    const Ended compiled = run(command);
+    const Ended compiled = run({"c++", "-shared", "-fPIC", path(name + ".cpp"), "-o", path(name + ".so")});
     EXPECT_EQ(compiled.exit_code, 0) << compiled.errors;
     return path(name + ".so");
   }
@@ -121,7 +132,7 @@ TEST_F(Plugin, OfAWorldNeedsAWordFromTheUser) {
   const Ended ended = shoal({"check", world});
   EXPECT_EQ(ended.exit_code, 2);
   EXPECT_EQ(ended.errors, world +
-                              ":7:11: plugin 'build/thermometer.so': a world file may run code only with --launch, "
+                              ":6:11: plugin 'build/thermometer.so': a world file may run code only with --launch, "
                               "or name the plugin with --plugin " +
                               example() + "\n");
   EXPECT_EQ(shoal({"check", world, "--plugin", example()}).exit_code, 0);
@@ -137,6 +148,31 @@ TEST_F(Plugin, IsFoundAmongTheInstalledOnes) {
   fs::create_directories(path("prefix/lib/shoal/plugins"));
   fs::copy_file(example(), path("prefix/lib/shoal/plugins/installed.so"), fs::copy_options::overwrite_existing);
   EXPECT_THAT(shoal({"list", "devices", "--plugin", "installed.so"}).output, HasSubstr("\nthermometer "));
+}
+
+TEST_F(Plugin, IsFoundByAPathOfTheEnvironment) {
+  const Ended ended = run({"env", "SHOAL_PLUGIN_PATH=/nowhere:" + path("example/build"), path("prefix/bin/shoal"),
+                           "list", "devices", "--plugin", "thermometer.so"});
+  EXPECT_THAT(ended.output, HasSubstr("\nthermometer "));
+}
+
+TEST_F(Plugin, MayHaveMessagesThatHoldArraysAndShoalsOwn) {
+  const std::string initialiser =
+      "#include <stdexcept>\n#include \"arrays/array_lengths.hpp\"\n#include \"shoal/message_codec.hpp\"\n"
+      "#include \"sim/device/plugin.hpp\"\n"
+      "static bool refuses_a_wrong_length() {\n"
+      "  arrays::scan_t message;\n  message.count = 1;\n  std::vector<std::byte> out;\n"
+      "  try { shoal::encode_into(message, out); } catch (const shoal::MessageError&) {\n"
+      "    message.values.resize(1);\n    message.poses.resize(1);\n"
+      "    shoal::encode_into(message, out);\n    return true;\n  }\n"
+      "  throw std::runtime_error(\"not refused\");\n}\n"
+      "static const bool refused = refuses_a_wrong_length();\n"
+      "SHOAL_PLUGIN(\"arrays\", \"1.0\");\n";
+  build_plugin("arrays", initialiser, "LCM scan_t.lcm",
+               "package arrays;\nstruct scan_t { int32_t count; double values[count]; shoal.pose_t poses[count]; }\n");
+  const Ended ended = shoal({"describe", "arrays.scan_t", "--plugin", path("arrays/build/arrays.so")});
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr("shoal.pose_t"));
 }
 
 TEST_F(Plugin, ThatIsNoneSaysWhy) {
@@ -171,12 +207,7 @@ TEST_F(Plugin, WithATypeThatExistsIsRefused) {
       "#include \"sim/device/device_registry.hpp\"\n#include \"sim/device/plugin.hpp\"\n"
       "static const bool added = (sim::DeviceRegistry::instance().add({.name = \"lidar\"}), true);\n"
       "SHOAL_PLUGIN(\"copy\", \"1.0\");\n";
-  fs::create_directories(path("clash"));
-  write_file(path("clash/clash.cpp"), text);
-  write_file(path("clash/CMakeLists.txt"),
-             "cmake_minimum_required(VERSION 3.25)\nproject(clash LANGUAGES CXX)\nfind_package(Shoal REQUIRED)\n"
-             "shoal_add_device(clash SOURCES clash.cpp)\n");
-  build(path("clash"));
+  build_plugin("clash", text);
   expect_refused(path("clash/build/clash.so"), "device type 'lidar' exists twice\n");
 }
 
