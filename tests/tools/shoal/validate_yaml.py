@@ -15,9 +15,9 @@ import yaml
 
 # What a schema can say, as the first line of a file in tests/bad_worlds/ words it.
 EXPRESSIBLE = [
-    r"unknown key", r"unknown device type", r"missing key", r"must be one of:", r"must be (>|<|1,)", r"must be a number",
-    r"must be a whole number, ", r"must be a map", r"must be a list", r"must be true or false", r"must be finite",
-    r"a name must be made of",
+    r"unknown key", r"unknown device type", r"missing key", r"must be one of:", r"must be (>|<|1,)",
+    r"must be a number", r"must be a whole number, ", r"must be a map", r"must be a list", r"must be true or false",
+    r"must be finite", r"a name must be made of",
 ]
 # Files whose message fits although no schema of the world file can find the mistake.
 SKIPPED = {
