@@ -39,6 +39,7 @@ function(lcm_generate_plugin_tables sources)
     message(FATAL_ERROR "${first}: the package shoal is Shoal's own; the types of a plugin need another one")
   endif()
   string(REPLACE "." "/" package_dir "${package}")
+  file(MAKE_DIRECTORY ${ARG_CPP_DIR}/${package_dir})
   set(texts ${ARG_CPP_DIR}/${package_dir}_texts.cpp)
   set(lengths ${ARG_CPP_DIR}/${package_dir}/array_lengths.hpp)
   add_custom_command(OUTPUT ${texts} ${lengths}

@@ -41,8 +41,8 @@ class Plugin : public testing::Test {
   static std::string example() { return path("example/build/thermometer.so"); }
 
   static void build(const std::string& directory) {
-    const Ended configured = run(
-        {"cmake", "-G", "Ninja", "-S", directory, "-B", directory + "/build", "-DCMAKE_PREFIX_PATH=" + path("prefix")});
+    const Ended configured =
+        run({"cmake", "-S", directory, "-B", directory + "/build", "-DCMAKE_PREFIX_PATH=" + path("prefix")});
     ASSERT_EQ(configured.exit_code, 0) << configured.output << configured.errors;
     const Ended built = run({"cmake", "--build", directory + "/build"});
     ASSERT_EQ(built.exit_code, 0) << built.output << built.errors;
