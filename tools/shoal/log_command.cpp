@@ -136,6 +136,7 @@ void add_log_command(CLI::App& app, int& exit_code) {
   for (CLI::App* each : {info_command, csv_command}) {
     each->add_option("LOG", arguments->path, "LCM event log")->required();
     each->add_option("--types", arguments->lcm_files, ".lcm files of types that are not Shoal's");
+    add_plugin_option(*each);
   }
   csv_command->add_option("CHANNEL", arguments->channel, "such as rover1.odometry")->required();
   command->footer("Examples:\n  shoal log info run.lcm\n  shoal log csv run.lcm rover1.odometry > odometry.csv");
