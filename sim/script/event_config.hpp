@@ -36,7 +36,7 @@ struct EventConfig {
   double jitter_s = 0;
   Condition when;
   double delay_s = 0;
-  std::int64_t times = std::numeric_limits<std::int64_t>::max();
+  std::int64_t times = 0;  ///< it fires at most so often; 0: no limit
   double probability = 1;
   std::vector<Action> actions;
   SourcePlace place;

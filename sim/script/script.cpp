@@ -106,7 +106,7 @@ int Script::due_times(EventState& event, Time now) {
 
 void Script::attempt(std::size_t i, int depth) {
   EventState& event = events_[i];
-  if (event.fired >= event.config.times) return;
+  if (event.config.times > 0 && event.fired >= event.config.times) return;
   if (firings_ >= most_firings_per_step) return cut(event, "more than 1000 events fired in a step");
   if (depth > most_depth) return cut(event, "events fire each other more than 100 deep");
   if (event.random_step != world_.step_number()) {

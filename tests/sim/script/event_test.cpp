@@ -5,6 +5,7 @@
 #include "shoal/modem_send_t.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "shoal/twist_command_t.hpp"
+#include "sim/script/script.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
