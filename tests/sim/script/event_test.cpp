@@ -309,7 +309,7 @@ TEST(RunAction, SaysWhatIsWrongInOneLine) {
   EXPECT_EQ(failure(test.world, "{move: r2, position_m: [0, 0, 0]}"),
             "request:1:8: action 1: 'move' names no vehicle or object 'r2'; known vehicle or objects: ground, r1");
   EXPECT_EQ(failure(test.world, "{fault: r1/drve, kind: dead}"),
-            "request:1:2: action 1: there is no device 'r1/drve'; devices are named VEHICLE/DEVICE; vehicle 'r1' has: "
+            "request:1:1: action 1: there is no device 'r1/drve'; devices are named VEHICLE/DEVICE; vehicle 'r1' has: "
             "drive");
   EXPECT_THAT(failure(test.world, "{dance: r1}"),
               testing::HasSubstr("unknown action 'dance'; known actions: move, add"));

