@@ -15,7 +15,7 @@ std::string boxes(int count, const std::string& devices) {
   return "shoal: 1\nphysics: {step_s: 0.005, gravity_mps2: 0}\nvehicles:\n"
          "  - name: v\n    count: " +
          std::to_string(count) +
-         "\n    placement: {kind: grid, spacing_m: 5}\n    model: {shoal: 1, vehicle: box, bodies: [{name: hull, "
+         "\n    placement: {pattern: grid, spacing_m: 5}\n    model: {shoal: 1, vehicle: box, bodies: [{name: hull, "
          "parts: "
          "[{shape: box, mass_kg: 1}]}], devices: [" +
          devices + "]}\n";
