@@ -104,6 +104,7 @@ struct LcmBus::Threads {
   Threads(const std::string& url, const LcmBusOptions& chosen)
       : options(chosen), connection(url), outgoing(options.outgoing), stop_fd(eventfd(0, EFD_CLOEXEC)) {
     if (stop_fd < 0) throw BusError("no file descriptor is left for the bus");
+    if (!options.arrivals) options.arrivals = std::make_shared<Arrivals>();
     sender = std::thread([this] { send_all(); });
     receiver = std::thread([this] { receive_all(); });
   }
@@ -148,13 +149,6 @@ struct LcmBus::Threads {
     }
   }
 
-  void arrived() {
-    arrivals.fetch_add(1);
-    if (waiters.load() == 0) return;
-    { const std::lock_guard lock(arrival_mutex); }  // the waiter is asleep, or will see the new count
-    arrival.notify_all();
-  }
-
   LcmBusOptions options;
   std::map<std::string, std::unique_ptr<Channel>, std::less<>> channels;  // outlives the connection's handlers
   LcmConnection connection;
@@ -167,11 +161,6 @@ struct LcmBus::Threads {
   std::atomic<bool> warned_of_size = false;
   std::atomic<std::uint64_t> published = 0;
   std::atomic<std::uint64_t> refused = 0;
-  std::atomic<std::uint64_t> arrivals = 0;
-  std::uint64_t seen_arrivals = 0;
-  std::atomic<int> waiters = 0;
-  std::mutex arrival_mutex;
-  std::condition_variable arrival;
   std::thread sender;
   std::thread receiver;
 };
@@ -201,7 +190,8 @@ std::unique_ptr<sim::Mailbox> LcmBus::open_mailbox(const std::string& channel, s
   const std::lock_guard lock(threads_->channels_mutex);
   auto found = threads_->channels.find(channel);
   if (found == threads_->channels.end()) {
-    auto added = std::make_unique<Channel>(channel, [threads = threads_.get()] { threads->arrived(); });
+    auto added =
+        std::make_unique<Channel>(channel, [arrivals = threads_->options.arrivals.get()] { arrivals->arrived(); });
     Channel& subscribed = *added;
     found = threads_->channels.emplace(channel, std::move(added)).first;
     const std::lock_guard transmit(threads_->transmit_mutex);
@@ -227,13 +217,7 @@ sim::BusCounts LcmBus::counts() const {
 }
 
 bool LcmBus::wait_for_message(std::chrono::milliseconds timeout) {
-  Threads& t = *threads_;
-  t.waiters.fetch_add(1);
-  std::unique_lock lock(t.arrival_mutex);
-  const bool arrived = t.arrival.wait_for(lock, timeout, [&] { return t.arrivals.load() != t.seen_arrivals; });
-  t.waiters.fetch_sub(1);
-  t.seen_arrivals = t.arrivals.load();
-  return arrived;
+  return threads_->options.arrivals->wait(timeout);
 }
 
 bool LcmBus::flush(std::chrono::milliseconds timeout) {

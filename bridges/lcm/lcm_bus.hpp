@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "bridges/lcm/arrivals.hpp"
 #include "bridges/lcm/lcm_connection.hpp"
 #include "bridges/lcm/outgoing_queue.hpp"
 #include "sim/bus/bus.hpp"
@@ -16,6 +17,7 @@ namespace bridges {
 struct LcmBusOptions {
   OutgoingQueue::Limits outgoing;
   std::size_t max_message_bytes = max_lcm_message_bytes;
+  std::shared_ptr<Arrivals> arrivals;  ///< shared with other buses, to wait for a message on any; null: its own
 };
 
 /// The bus over LCM.  One thread sends, one receives: publish() and take() only move messages, and the
@@ -36,8 +38,8 @@ class LcmBus final : public sim::Bus {
   void end_of_step() override;
   sim::BusCounts counts() const override;
 
-  /// Sleeps until a message arrived after the last call returned; at once if one did already.  Drain the
-  /// mailboxes, then call: nothing is missed.  False on time-out.
+  /// Sleeps until a message arrived (on any bus that shares the arrivals) after the last call returned; at once if one
+  /// did already.  Drain the mailboxes, then call: nothing is missed.  False on time-out.
   bool wait_for_message(std::chrono::milliseconds timeout);
   /// Sends all that is queued.  False on time-out.
   bool flush(std::chrono::milliseconds timeout);

@@ -87,6 +87,8 @@ RecordingBus::RecordingBus(sim::Bus& inner, const std::string& path, std::int64_
       utime_(epoch_utime),
       log_(std::make_unique<Log>(path, existing)) {}
 
+RecordingBus::RecordingBus(sim::Bus& inner, RecordingBus& first) : inner_(inner), first_(&first) {}
+
 RecordingBus::~RecordingBus() {
   close();
 }
@@ -110,6 +112,7 @@ std::unique_ptr<sim::Mailbox> RecordingBus::open_mailbox(const std::string& chan
 }
 
 void RecordingBus::set_time(sim::Time at) {
+  if (first_) return first_->set_time(at);
   utime_ = std::max(utime_, epoch_utime_ + at.count());
 }
 
@@ -124,6 +127,7 @@ void RecordingBus::record_incoming(Channel& channel, const sim::Message& message
 }
 
 void RecordingBus::record(std::string_view channel, std::span<const std::byte> payload) {
+  if (first_) return first_->record(channel, payload);
   if (!log_ || error_) return;
   lcm_eventlog_event_t event{};
   event.timestamp = utime_;

@@ -29,6 +29,8 @@ class RecordingBus final : public sim::Bus {
   /// `inner` must outlive this.
   RecordingBus(sim::Bus& inner, const std::string& path, std::int64_t epoch_utime,
                Existing existing = Existing::refuse);
+  /// A second bus that is recorded into the log of the first, which must outlive this.
+  RecordingBus(sim::Bus& inner, RecordingBus& first);
   ~RecordingBus() override;
 
   void publish(std::string_view channel, std::span<const std::byte> payload, sim::Time at) override;
@@ -57,6 +59,7 @@ class RecordingBus final : public sim::Bus {
 
   std::unique_ptr<sim::Bus> owned_;
   sim::Bus& inner_;
+  RecordingBus* first_ = nullptr;  // whose log is used; null: our own
   std::string path_;
   std::int64_t epoch_utime_ = 0;
   std::int64_t utime_ = 0;      // of the last event; never goes back

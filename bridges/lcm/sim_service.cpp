@@ -30,7 +30,7 @@ std::string joined(const std::vector<std::string>& names) {
 
 }  // namespace
 
-SimService::SimService(sim::Bus& bus, sim::Bus& network, const sim::World& world, sim::RunControl& control,
+SimService::SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim::RunControl& control,
                        sim::Lockstep& lockstep, Info info)
     : bus_(bus),
       network_(network),
@@ -38,8 +38,13 @@ SimService::SimService(sim::Bus& bus, sim::Bus& network, const sim::World& world
       control_(control),
       lockstep_(lockstep),
       info_(std::move(info)),
-      requests_(network.open_mailbox("sim.control")),
-      acknowledgements_(network.open_mailbox("sim.ack")) {}
+      visitors_(world, bus) {
+  serve_vehicles(network);
+}
+
+void SimService::serve_vehicles(sim::Bus& network) {
+  lines_.push_back({&network, network.open_mailbox("sim.control"), network.open_mailbox("sim.ack")});
+}
 
 template <typename Message>
 void SimService::publish(sim::Bus& bus, const std::string& channel, const Message& message) {
@@ -62,6 +67,7 @@ void SimService::publish_step() {
   shoal::utime_t clock;
   clock.utime = world_.epoch_us() + world_.now().count();
   publish(bus_, "sim.clock", clock);
+  for (std::size_t i = 1; i < lines_.size(); ++i) publish(*lines_[i].network, "sim.clock", clock);
   publish_state();
 }
 
@@ -111,7 +117,10 @@ void SimService::publish_tick(const std::vector<std::string>& clients, bool last
   tick.last = last;
   tick.count = static_cast<std::int32_t>(clients.size());
   tick.client = clients;
-  publish(network_, "sim.tick", tick);
+  for (const Line& line : lines_) {
+    publish(*line.network, "sim.tick", tick);
+    line.network->end_of_step();
+  }
 }
 
 bool SimService::hears_another_simulator(const Wait& wait) {
@@ -127,7 +136,6 @@ bool SimService::hears_another_simulator(const Wait& wait) {
 
 void SimService::publish_end() {
   publish_tick({}, true);
-  network_.end_of_step();
 }
 
 void SimService::complain(const std::string& text) {
@@ -135,25 +143,44 @@ void SimService::complain(const std::string& text) {
 }
 
 void SimService::handle_requests() {
-  while (const auto message = requests_->take()) {
-    shoal::sim_control_request_t request;
-    try {
-      request = shoal::decode<shoal::sim_control_request_t>(message->payload, shoal::Finite::required);
-    } catch (const std::runtime_error& error) {
-      complain(std::string("sim.control: ") + error.what());
-      continue;
+  visitors_.remove_silent();
+  // A flood of requests must not keep the world from stepping; the rest waits, and what overflows is counted.
+  constexpr int most_at_once = 50;
+  for (Line& line : lines_)
+    for (int handled = 0; handled < most_at_once; ++handled) {
+      const auto message = line.requests->take();
+      if (!message) break;
+      handle_request(line, *message);
     }
-    const std::string error = obey(request);
-    if (!error.empty()) complain("sim.control: client '" + sim::shortened(request.client) + "': " + error);
-    shoal::sim_control_reply_t reply;
-    reply.utime = world_.epoch_us() + world_.now().count();
-    reply.id = request.id;
-    reply.client = request.client;
-    reply.ok = error.empty();
-    reply.text = error;
-    publish(network_, "sim.control.reply", reply);
-    network_.end_of_step();
+}
+
+void SimService::handle_request(Line& line, const sim::Message& message) {
+  try {
+    answer(line, shoal::decode<shoal::sim_control_request_t>(message.payload, shoal::Finite::required));
+  } catch (const shoal::MessageError& error) {
+    complain(std::string("sim.control: ") + error.what());
   }
+}
+
+void SimService::answer(Line& line, const shoal::sim_control_request_t& request) {
+  shoal::sim_control_reply_t reply;
+  reply.utime = world_.epoch_us() + world_.now().count();
+  reply.id = request.id;
+  reply.client = request.client;
+  reply.ok = true;
+  visitors_.heard_of(request.client);
+  try {
+    const bool of_lockstep = request.command == "join" || request.command == "leave" || request.command == "alive";
+    if (&line != &lines_.front() && !of_lockstep)
+      throw std::runtime_error("only alive, join and leave are served on a vehicle's bus");
+    reply.text = obey(request);
+  } catch (const std::runtime_error& error) {
+    reply.ok = false;
+    reply.text = error.what();
+    complain("sim.control: client '" + sim::shortened(request.client) + "': " + error.what());
+  }
+  publish(*line.network, "sim.control.reply", reply);
+  line.network->end_of_step();
 }
 
 std::string SimService::obey(const shoal::sim_control_request_t& request) {
@@ -162,57 +189,76 @@ std::string SimService::obey(const shoal::sim_control_request_t& request) {
     control_.paused = command == "pause";
     control_.single_steps = 0;
     ++control_.changes;
-    return {};
-  }
-  if (command == "step") {
-    if (!(request.value >= 1 && request.value <= 1e9)) return "'step' needs a value from 1 to 1e9";
+  } else if (command == "step") {
+    if (!(request.value >= 1 && request.value <= 1e9)) throw std::runtime_error("'step' needs a value from 1 to 1e9");
     control_.paused = true;
     control_.single_steps += static_cast<std::int64_t>(request.value);
-    return {};
-  }
-  if (command == "speed") return set_speed(request.value);
-  if (command == "quit") {
+  } else if (command == "speed") {
+    set_speed(request.value);
+  } else if (command == "quit") {
     control_.quit = true;
-    return {};
+  } else if (command == "join") {
+    join(request);
+  } else if (command == "leave") {
+    if (!lockstep_.leave(request.client) && !visitors_.has(request.client))
+      throw std::runtime_error("no client of the name '" + sim::shortened(request.client) + "' has joined");
+    visitors_.remove_those_of(request.client);
+  } else if (command == "spawn") {
+    return visitors_.spawn(request.client, request.text);
+  } else if (command == "remove") {
+    visitors_.remove(request.text);
+  } else if (command == "describe") {
+    return visitors_.describe(request.text);
+  } else if (command == "do") {
+    visitors_.act(request.text);
+  } else if (command != "alive") {
+    throw std::runtime_error("unknown command '" + sim::shortened(sim::printable(command)) +
+                             "'; known commands: alive, describe, do, join, leave, pause, quit, remove, resume, "
+                             "spawn, speed, step");
   }
-  if (command == "join") return join(request);
-  if (command == "leave")
-    return lockstep_.leave(request.client) ? "" : "no client of the name '" + request.client + "' has joined";
-  return "unknown command '" + sim::shortened(sim::printable(command)) +
-         "'; known commands: join, leave, pause, quit, resume, speed, step";
+  return {};
 }
 
-std::string SimService::set_speed(double speed) {
+void SimService::client_gone(const std::string& client) {
+  lockstep_.leave(client);
+  visitors_.remove_those_of(client);
+}
+
+void SimService::set_speed(double speed) {
   if (speed != 0 && !(speed >= 1e-3 && speed <= 1e6))
-    return "'speed' must be 0 (as fast as possible) or from 0.001 to 1e6";
+    throw std::runtime_error("'speed' must be 0 (as fast as possible) or from 0.001 to 1e6");
   control_.speed = speed;
   ++control_.changes;
-  return {};
 }
 
-std::string SimService::join(const shoal::sim_control_request_t& request) {
-  if (request.client.empty() || request.client.size() > 60) return "'join' needs a client name of 1 to 60 characters";
+void SimService::join(const shoal::sim_control_request_t& request) {
+  if (request.client.empty() || request.client.size() > 60)
+    throw std::runtime_error("'join' needs a client name of 1 to 60 characters");
   const double steps = request.value * 1e6 / static_cast<double>(world_.step_time().count());
-  if (!(steps > 0.5 && steps < 1e12)) return "'join' needs a period of at least one step, in seconds";
+  if (!(steps > 0.5 && steps < 1e12))
+    throw std::runtime_error("'join' needs a period of at least one step, in seconds");
   const auto period_steps = static_cast<std::int64_t>(std::llround(steps));
   if (std::abs(steps - static_cast<double>(period_steps)) > 1e-6)
-    return "'join' needs a period that is a multiple of the step of " +
-           std::to_string(sim::to_seconds(world_.step_time())) + " s";
+    throw std::runtime_error("'join' needs a period that is a multiple of the step of " +
+                             std::to_string(sim::to_seconds(world_.step_time())) + " s");
   lockstep_.join(request.client, period_steps, world_.step_number());
-  return {};
 }
 
 void SimService::take_acknowledgements() {
-  while (const auto message = acknowledgements_->take()) {
-    try {
-      const auto ack = shoal::decode<shoal::sim_ack_t>(message->payload, shoal::Finite::any);
-      if (ack.step > world_.step_number())
-        throw shoal::MessageError("client '" + sim::shortened(ack.client) + "' acknowledges step " +
-                                  std::to_string(ack.step) + ", which is still to come");
-      lockstep_.acknowledge(ack.client, ack.step);
-    } catch (const std::runtime_error& error) {
-      complain(std::string("sim.ack: ") + error.what());
-    }
+  for (Line& line : lines_)
+    while (const auto message = line.acknowledgements->take()) take_acknowledgement(*message);
+}
+
+void SimService::take_acknowledgement(const sim::Message& message) {
+  try {
+    const auto ack = shoal::decode<shoal::sim_ack_t>(message.payload, shoal::Finite::any);
+    if (ack.step > world_.step_number())
+      throw shoal::MessageError("client '" + sim::shortened(ack.client) + "' acknowledges step " +
+                                std::to_string(ack.step) + ", which is still to come");
+    lockstep_.acknowledge(ack.client, ack.step);
+    visitors_.heard_of(ack.client);
+  } catch (const std::runtime_error& error) {
+    complain(std::string("sim.ack: ") + error.what());
   }
 }
 
@@ -238,7 +284,6 @@ void SimService::synchronize(double timeout_s, const Wait& wait, const std::func
     const bool newcomer = !std::includes(asked.begin(), asked.end(), missing.begin(), missing.end());
     if (newcomer || now - sent > resend_after) {
       publish_tick(missing, false);
-      network_.end_of_step();
       asked = missing;
       sent = now;
     }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bridges/lcm/visitors.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/run/lockstep.hpp"
@@ -31,13 +32,18 @@ class SimService {
   };
 
   /// `network`: the bus under `bus`; the handshake goes there directly, so that records leave it out.
-  SimService(sim::Bus& bus, sim::Bus& network, const sim::World& world, sim::RunControl& control,
-             sim::Lockstep& lockstep, Info info);
+  SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim::RunControl& control, sim::Lockstep& lockstep,
+             Info info);
 
+  /// A bus that vehicles have to themselves: there the service gives the time and keeps lockstep (sim.clock, sim.tick,
+  /// sim.ack, and join, leave and alive on sim.control), and nothing else.
+  void serve_vehicles(sim::Bus& network);
   /// Publishes what is due after the world's current step: clock, state, info.
   void publish_step();
   /// Answers the requests that have come.
   void handle_requests();
+  /// A client is gone: it leaves the lockstep, and the vehicles that came with it go.
+  void client_gone(const std::string& client);
   /// Tells clients that the run is over.
   void publish_end();
 
@@ -54,13 +60,23 @@ class SimService {
   std::int64_t bad_messages() const { return bad_messages_; }
 
  private:
+  /// Where clients may be.
+  struct Line {
+    sim::Bus* network;
+    std::unique_ptr<sim::Mailbox> requests, acknowledgements;
+  };
+
   void publish_info();
   void publish_state();
   void publish_tick(const std::vector<std::string>& clients, bool last);
   void take_acknowledgements();
+  void take_acknowledgement(const sim::Message& message);
+  void handle_request(Line& line, const sim::Message& message);
+  void answer(Line& line, const shoal::sim_control_request_t& request);
+  /// What came of it.  Throws std::runtime_error that says why it was refused.
   std::string obey(const shoal::sim_control_request_t& request);
-  std::string join(const shoal::sim_control_request_t& request);
-  std::string set_speed(double speed);
+  void join(const shoal::sim_control_request_t& request);
+  void set_speed(double speed);
   void complain(const std::string& text);
   bool due(double rate_hz) const;
   template <typename Message>
@@ -68,11 +84,12 @@ class SimService {
 
   sim::Bus& bus_;
   sim::Bus& network_;
-  const sim::World& world_;
+  sim::World& world_;
   sim::RunControl& control_;
   sim::Lockstep& lockstep_;
   Info info_;
-  std::unique_ptr<sim::Mailbox> requests_, acknowledgements_;
+  Visitors visitors_;
+  std::vector<Line> lines_;  // the world's first
   sim::Bytes buffer_;
   std::int64_t bad_messages_ = 0;
 };

@@ -55,4 +55,10 @@ void Diagnostics::throw_if_any() const {
   if (!ok()) throw ConfigError(lines_);
 }
 
+void throw_config_error(const SourcePlace& place, const std::string& who, const std::string& text) {
+  Diagnostics diagnostics;
+  diagnostics.error(place, who, text);
+  throw ConfigError(diagnostics.lines());
+}
+
 }  // namespace sim

@@ -30,6 +30,9 @@ class ConfigError : public std::runtime_error {
   std::vector<std::string> lines_;
 };
 
+/// Throws ConfigError of one line, as Diagnostics would write it.
+[[noreturn]] void throw_config_error(const SourcePlace& place, const std::string& who, const std::string& text);
+
 /// Collects errors so that all errors of a file are reported, not only the first.
 class Diagnostics {
  public:

@@ -1,5 +1,7 @@
 #include "sim/physics/body.hpp"
 
+#include <cassert>
+
 #include "sim/physics/ode_math.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/scene/ode_scene.hpp"
@@ -7,7 +9,7 @@
 namespace sim {
 
 Pose Body::X_WB() const {
-  if (fixed()) return fixed_X_WB_;
+  if (fixed()) return seat_X_WB_;
   Pose X_WB = Pose::Identity();
   X_WB.linear() = rotation_to_eigen(R_WB_);
   X_WB.translation() = to_eigen(p_WC_) - X_WB.linear() * p_BC_;
@@ -32,13 +34,13 @@ void Body::add_force_W(const Vector3d& force_N, const Vector3d& at_W) {
   // Before ODE sees it: ODE would abort the step later and could not say whose force it was.
   if (!force_N.allFinite() || !at_W.allFinite())
     throw PhysicsFault("body '" + name_ + "': a force on it is not finite");
-  if (fixed()) return;
+  if (!free()) return;
   dBodyAddForceAtPos(ode_.get(), force_N.x(), force_N.y(), force_N.z(), at_W.x(), at_W.y(), at_W.z());
 }
 
 void Body::add_torque_W(const Vector3d& torque_Nm) {
   if (!torque_Nm.allFinite()) throw PhysicsFault("body '" + name_ + "': a torque on it is not finite");
-  if (fixed()) return;
+  if (!free()) return;
   dBodyAddTorque(ode_.get(), torque_Nm.x(), torque_Nm.y(), torque_Nm.z());
 }
 
@@ -46,11 +48,21 @@ void Body::set_pose(const Pose& X_WB) {
   if (!X_WB.matrix().allFinite()) throw PhysicsFault("body '" + name_ + "': its new pose is not finite");
   if (fixed()) {
     ++moves_->fixed;
-    fixed_X_WB_ = X_WB;
+    seat_X_WB_ = X_WB;
     place_fixed_geoms();
     return;
   }
   ++moves_->moving;
+  if (kinematic()) {
+    seat_X_WB_ = X_WB;
+    end_kinematic_step();
+    begin_kinematic_step();
+  } else {
+    place_ode_body(X_WB);
+  }
+}
+
+void Body::place_ode_body(const Pose& X_WB) {
   const Vector3d p_WC = X_WB * p_BC_;
   dQuaternion q;
   to_ode(to_quaternion(X_WB.linear()), q);
@@ -58,22 +70,48 @@ void Body::set_pose(const Pose& X_WB) {
   dBodySetQuaternion(ode_.get(), q);
 }
 
+void Body::move_to(const Pose& X_WB_at_end, double step_s) {
+  if (!X_WB_at_end.matrix().allFinite() || !(step_s > 0))
+    throw PhysicsFault("body '" + name_ + "': the pose it is moved to is not finite");
+  assert(kinematic());
+  const Vector3d v_WB_W = (X_WB_at_end.translation() - to_eigen(p_WC_)) / step_s;
+  const Eigen::AngleAxisd turn_W(to_quaternion(X_WB_at_end.linear() * rotation_to_eigen(R_WB_).transpose()));
+  const Vector3d w_WB_W = turn_W.angle() / step_s * turn_W.axis();
+  dBodySetLinearVel(ode_.get(), v_WB_W.x(), v_WB_W.y(), v_WB_W.z());
+  dBodySetAngularVel(ode_.get(), w_WB_W.x(), w_WB_W.y(), w_WB_W.z());
+  seat_X_WB_ = X_WB_at_end;
+  move_is_due_ = true;
+}
+
+void Body::begin_kinematic_step() {
+  if (move_is_due_) return;
+  dBodySetLinearVel(ode_.get(), 0, 0, 0);
+  dBodySetAngularVel(ode_.get(), 0, 0, 0);
+}
+
+/// ODE arrived there but for rounding, which would add up, also in a body at rest: ODE normalizes the quaternion in
+/// each step, and that is not idempotent.
+void Body::end_kinematic_step() {
+  place_ode_body(seat_X_WB_);
+  move_is_due_ = false;
+}
+
 void Body::set_velocity_W(const Vector3d& v_WB_W, const Vector3d& w_WB_W) {
   if (!v_WB_W.allFinite() || !w_WB_W.allFinite())
     throw PhysicsFault("body '" + name_ + "': its new velocity is not finite");
-  if (fixed()) return;
+  if (!free()) return;
   const Vector3d v_WC_W = v_WB_W + w_WB_W.cross(rotation_to_eigen(R_WB_) * p_BC_);
   dBodySetLinearVel(ode_.get(), v_WC_W.x(), v_WC_W.y(), v_WC_W.z());
   dBodySetAngularVel(ode_.get(), w_WB_W.x(), w_WB_W.y(), w_WB_W.z());
 }
 
 void Body::set_gravity(bool on) {
-  if (!fixed()) dBodySetGravityMode(ode_.get(), on);
+  if (free()) dBodySetGravityMode(ode_.get(), on);
 }
 
 void Body::hash_state(StateHash& hash) const {
   if (fixed()) {
-    hash.add(std::span<const double>(fixed_X_WB_.data(), 16));
+    hash.add(std::span<const double>(seat_X_WB_.data(), 16));
     return;
   }
   hash.add(std::span<const double>(p_WC_, 3));
@@ -85,7 +123,7 @@ void Body::hash_state(StateHash& hash) const {
 
 void Body::place_fixed_geoms() {
   for (const FixedGeom& fixed_geom : fixed_geoms_) {
-    const Pose X_WG = fixed_X_WB_ * fixed_geom.X_BG;
+    const Pose X_WG = seat_X_WB_ * fixed_geom.X_BG;
     const Vector3d p = X_WG.translation();
     if (fixed_geom.plane) {
       const Vector3d normal_W = X_WG.linear().col(2);

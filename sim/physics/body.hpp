@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/math.hpp"
+#include "sim/physics/motion.hpp"
 #include "sim/state_hash.hpp"
 
 namespace sim {
@@ -18,30 +19,38 @@ struct BodyDeleter {
 };
 using BodyHandle = std::unique_ptr<dxBody, BodyDeleter>;
 
-/// One ODE body, or a fixed one without.  ODE's frame sits at the centre of mass; this class speaks of the body
-/// frame B that the vehicle file defines.
+/// One ODE body, free or kinematic, or a fixed one without.  ODE's frame sits at the centre of mass; this class speaks
+/// of the body frame B that the vehicle file defines.
 class Body {
  public:
   const std::string& name() const { return name_; }  ///< such as `rover1/chassis`
   int number() const { return number_; }
   int group() const { return group_; }
-  bool fixed() const { return ode_ == nullptr; }
+  bool fixed() const { return ode_ == nullptr; }  ///< has no ODE body
+  bool kinematic() const { return motion_ == Motion::kinematic; }
 
+  // Mass, centre of mass and inertia are zero for a body that is not free.
   double mass_kg() const { return mass_kg_; }
   const Vector3d& p_BC() const { return p_BC_; }                ///< centre of mass in B
   const Matrix3d& inertia_C_B() const { return inertia_C_B_; }  ///< about the centre of mass, axes of B, kg m^2
 
   Pose X_WB() const;
-  Vector3d v_WB_W() const;  ///< velocity of the origin of B
+  /// Velocity of the origin of B.  A kinematic body keeps that of the last step until the next one.
+  Vector3d v_WB_W() const;
   Vector3d w_WB_W() const;
   /// Velocity of a point of the body given in B.
   Vector3d velocity_at_W(const Vector3d& p_B) const;
 
-  /// Forces last for the next step.  Not finite: PhysicsFault.
+  /// Forces last for the next step, and do nothing to a body that is not free.  Not finite: PhysicsFault.
   void add_force_W(const Vector3d& force_N, const Vector3d& at_W);
   void add_torque_W(const Vector3d& torque_Nm);
-  /// Puts the body frame at a pose.  A fixed body takes its parts along; what it touches sees no velocity.
+  /// Puts the body frame at a pose.  A fixed or kinematic body takes its parts along; what it touches sees no
+  /// velocity.  A free body alone: PhysicsWorld::move_group takes the whole vehicle.
   void set_pose(const Pose& X_WB);
+  /// Moves a kinematic body so that the next step, of `step_s`, ends with its frame at this pose: at one velocity, and
+  /// turning the shorter way.  What it touches sees that velocity.  Without a call it stands still in a step.
+  void move_to(const Pose& X_WB_at_end, double step_s);
+  /// Of a free body; others do not take it.
   void set_velocity_W(const Vector3d& v_WB_W, const Vector3d& w_WB_W);
 
   /// Off: the caller adds weight and the torque -w x I w itself (a model of added mass needs both off).
@@ -58,7 +67,11 @@ class Body {
     bool plane;
   };
   Body() = default;
+  bool free() const { return motion_ == Motion::free; }
   void place_fixed_geoms();
+  void place_ode_body(const Pose& X_WB);
+  void begin_kinematic_step();
+  void end_kinematic_step();
   void add_gyroscopic_torque(double step_s);
 
   // What each step needs, side by side.
@@ -69,6 +82,8 @@ class Body {
   const dReal* w_WB_W_ = nullptr;
   const dReal* R_WB_ = nullptr;
   bool gyroscopic_ = true;
+  Motion motion_ = Motion::free;
+  bool move_is_due_ = false;  // move_to was called for the next step
   int number_ = -1;
   int group_ = -1;
   Matrix3d inertia_C_B_ = Matrix3d::Zero();
@@ -76,7 +91,7 @@ class Body {
   std::string name_;
   double mass_kg_ = 0;
   Vector3d p_BC_ = Vector3d::Zero();
-  Pose fixed_X_WB_ = Pose::Identity();
+  Pose seat_X_WB_ = Pose::Identity();  // where a fixed body is, and where a kinematic one is after the next step
   std::vector<FixedGeom> fixed_geoms_;
   SceneMoves* moves_ = nullptr;  // of the world: the scene looks again when something was moved
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/physics/free_numbers.hpp"
 #include "sim/physics/ode_math.hpp"
 
 namespace sim {
@@ -31,32 +32,40 @@ SpaceHandle make_space(const std::string& kind) {
 Collider::Collider(const PhysicsConfig& config, ContactTable table)
     : table_(std::move(table)),
       step_s_(config.step_s),
-      gravity_mps2_(config.gravity_mps2),
-      still_mps_(std::max(1e-6, 0.01 * config.step_s * std::abs(config.gravity_mps2))),
       space_(make_space(config.space)),
-      touching_(static_cast<std::size_t>(config.max_contacts_per_pair)) {}
+      touching_(static_cast<std::size_t>(config.max_contacts_per_pair)) {
+  set_gravity(config.gravity_mps2);
+}
 
-int Collider::add_group(bool self_collision) {
-  Group& group = groups_.emplace_back();
+void Collider::set_gravity(double gravity_mps2) {
+  gravity_mps2_ = gravity_mps2;
+  still_mps_ = std::max(1e-6, 0.01 * step_s_ * std::abs(gravity_mps2));
+}
+
+void Collider::add_group(int number, bool self_collision) {
+  Group& group = slot(groups_, number);
   group.space = make_space("simple");
   group.self_collision = self_collision;
   dSpaceSetSublevel(group.space.get(), 1);
   dGeomSetCategoryBits(reinterpret_cast<dGeomID>(group.space.get()), 0);
   dGeomSetCollideBits(reinterpret_cast<dGeomID>(group.space.get()), 0);
-  return static_cast<int>(groups_.size()) - 1;
 }
 
-int Collider::add_part(const CollisionPart& part, GeomHandle geom, bool is_moving) {
-  const int number = static_cast<int>(parts_.size());
-  parts_.push_back(part);
-  parts_.back().geom = geom.get();
+void Collider::add_body(int number, const CollisionBody& body) {
+  slot(bodies_, number) = body;
+  slot(joined_, number).clear();
+}
+
+void Collider::add_part(int number, const CollisionPart& part, GeomHandle geom, Motion motion) {
+  slot(parts_, number) = part;
+  parts_[number].geom = geom.get();
   dGeomSetData(geom.get(), reinterpret_cast<void*>(static_cast<std::intptr_t>(number)));
   dGeomSetCategoryBits(geom.get(), part.category);
-  // Fixed parts look for nobody: so the space drops pairs of two fixed parts at once.
-  const unsigned long collides = is_moving ? part.collides_with : 0;
+  // Parts that nothing can push look for nobody: so the space drops pairs of two such parts at once.
+  const unsigned long collides = motion == Motion::free ? part.collides_with : 0;
   dGeomSetCollideBits(geom.get(), collides);
   Group& group = groups_[part.group];
-  if (is_moving) {
+  if (motion != Motion::fixed) {
     const auto as_geom = reinterpret_cast<dGeomID>(group.space.get());
     dGeomSetCategoryBits(as_geom, dGeomGetCategoryBits(as_geom) | part.category);
     dGeomSetCollideBits(as_geom, dGeomGetCollideBits(as_geom) | collides);
@@ -65,8 +74,7 @@ int Collider::add_part(const CollisionPart& part, GeomHandle geom, bool is_movin
     // Straight into the world's space: one box around all of a harbour would keep nothing apart.
     group.fixed.push_back(geom.get());
   }
-  geoms_.push_back(std::move(geom));
-  return number;
+  slot(geoms_, number) = std::move(geom);
 }
 
 void Collider::join(int first, int second) {
@@ -82,16 +90,52 @@ void Collider::close_group(int number) {
   group.fixed.clear();
 }
 
+void Collider::remove_group(int number, std::span<const int> bodies, std::span<const int> parts) {
+  for (const int part : parts) {
+    geoms_[part].reset();  // leaves its space and its body
+    parts_[part] = {};
+  }
+  for (const int body : bodies) {
+    bodies_[body] = {};
+    joined_[body].clear();
+  }
+  watchers_ -= groups_[number].watchers;
+  groups_[number] = {};
+}
+
+void Collider::watch(int group) {
+  ++groups_[group].watchers;
+  ++watchers_;
+}
+
+void Collider::unwatch(int group) {
+  if (groups_[group].watchers == 0) return;
+  --groups_[group].watchers;
+  --watchers_;
+}
+
 int Collider::collide(dWorldID world, dJointGroupID contacts, Islands& islands) {
   pairs_.clear();
   dSpaceCollide(space_.get(), this, &Collider::on_near);
   for (const Group& group : groups_)
     if (group.self_collision) dSpaceCollide(group.space.get(), this, &Collider::on_near);
   sort_pairs();
+  watched_.clear();
   int count = 0;
   for (const std::uint64_t pair : pairs_)
     count += touch(static_cast<int>(pair >> 32), static_cast<int>(pair & 0xffffffff), world, contacts, islands);
+  feedback_.resize(watched_.size());
+  for (std::size_t i = 0; i < watched_.size(); ++i) dJointSetFeedback(watched_[i].joint, &feedback_[i]);
   return count;
+}
+
+void Collider::read_forces(std::vector<ContactReport>& reports) const {
+  reports.clear();
+  for (std::size_t i = 0; i < watched_.size(); ++i) {
+    reports.push_back(watched_[i].report);
+    const Vector3d force_W_N = to_eigen(feedback_[i].f1);
+    reports.back().force_W_N = watched_[i].turned ? Vector3d(-force_W_N) : force_W_N;
+  }
 }
 
 void Collider::on_near(void* self, dGeomID first, dGeomID second) {
@@ -110,7 +154,7 @@ void Collider::add_pair(int first, int second) {
   const CollisionPart& a = parts_[first];
   const CollisionPart& b = parts_[second];
   if (a.body == b.body) return;
-  if (!moving(a) && !moving(b)) return;
+  if (!free(a) && !free(b)) return;
   // Both must want the contact.
   if ((a.category & b.collides_with) == 0 || (b.category & a.collides_with) == 0) return;
   if (a.group == b.group && !groups_[a.group].self_collision) return;
@@ -146,11 +190,19 @@ int Collider::touch(int first, int second, dWorldID world, dJointGroupID contact
   const Surface& surface = table_.of(part_a.material, part_b.material);
   const CollisionBody& a = bodies_[part_a.body];
   const CollisionBody& b = bodies_[part_b.body];
+  const bool note = watchers_ > 0 && watched(part_a, part_b);
   for (int i = 0; i < count; ++i) {
     dContact& contact = touching_[i];
     contact.surface = surface.parameters;
     if (surface.friction) align_friction(contact, a, b);
-    dJointAttach(dJointCreateContact(world, contacts, &contact), a.ode, b.ode);
+    const dJointID joint = dJointCreateContact(world, contacts, &contact);
+    dJointAttach(joint, a.ode, b.ode);
+    if (!note) continue;
+    const dContactGeom& at = contact.geom;
+    // Of a null and a body ODE takes the body first.
+    watched_.push_back({joint,
+                        {{first, second}, to_eigen(at.pos), to_eigen(at.normal), at.depth, Vector3d::Zero()},
+                        a.ode == nullptr});
   }
   islands.add_contact(a.ode ? part_a.body : -1, b.ode ? part_b.body : -1, count * surface.rows);
   return count;

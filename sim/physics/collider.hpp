@@ -3,11 +3,14 @@
 #include <ode/ode.h>
 
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "sim/physics/contact_report.hpp"
 #include "sim/physics/contact_table.hpp"
 #include "sim/physics/islands.hpp"
+#include "sim/physics/motion.hpp"
 #include "sim/physics/ode_library.hpp"
 
 namespace sim {
@@ -24,6 +27,7 @@ struct CollisionPart {
 
 /// The moving state of a body, for the speed of a contact point; all null for a fixed body.
 struct CollisionBody {
+  bool free = false;  ///< neither fixed nor kinematic
   dBodyID ode = nullptr;
   const dReal* position = nullptr;
   const dReal* velocity = nullptr;
@@ -39,13 +43,27 @@ class Collider {
  public:
   Collider(const PhysicsConfig& config, ContactTable table);
 
-  int add_group(bool self_collision);
+  // Numbers of groups, bodies and parts are the caller's, who may use those of removed things again.
+  void add_group(int group, bool self_collision);
   /// Takes the geom into its group's space.  A moving geom must be attached to its body and posed.
-  int add_part(const CollisionPart& part, GeomHandle geom, bool moving);
-  void add_body(const CollisionBody& body) { bodies_.push_back(body), joined_.emplace_back(); }
+  void add_part(int number, const CollisionPart& part, GeomHandle geom, Motion motion);
+  void add_body(int number, const CollisionBody& body);
   /// Bodies joined by a joint do not collide.
   void join(int first, int second);
   void close_group(int group);
+  /// Destroys the geoms of all parts of a group.  To be called before its ODE bodies are destroyed.
+  void remove_group(int group, std::span<const int> bodies, std::span<const int> parts);
+
+  void add_surfaces(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts) {
+    table_.add(materials, contacts);
+  }
+  void set_gravity(double gravity_mps2);
+
+  /// The contacts of watched groups are noted in each step.  Counted: several may watch one group.
+  void watch(int group);
+  void unwatch(int group);
+  /// After the solver, before the contact joints go: forces of the watched contacts of this step.
+  void read_forces(std::vector<ContactReport>& reports) const;
 
   /// Makes the contact joints of a step and counts their rows; returns how many.
   int collide(dWorldID world, dJointGroupID contacts, Islands& islands);
@@ -58,14 +76,24 @@ class Collider {
     SpaceHandle space;
     std::vector<dGeomID> fixed;  // wait for close_group
     bool self_collision = false;
+    int watchers = 0;
+  };
+  /// A contact joint of this step whose force is asked for.
+  struct WatchedContact {
+    dJointID joint;
+    ContactReport report;
+    bool turned;  // ODE's first body is that of the second part
   };
 
   static void on_near(void* self, dGeomID first, dGeomID second);
   void add_pair(int first, int second);
   void sort_pairs();
   int touch(int first, int second, dWorldID world, dJointGroupID contacts, Islands& islands);
+  bool watched(const CollisionPart& a, const CollisionPart& b) const {
+    return groups_[a.group].watchers > 0 || groups_[b.group].watchers > 0;
+  }
   void align_friction(dContact& contact, const CollisionBody& a, const CollisionBody& b) const;
-  bool moving(const CollisionPart& part) const { return bodies_[part.body].ode != nullptr; }
+  bool free(const CollisionPart& part) const { return bodies_[part.body].free; }
 
   ContactTable table_;
   double step_s_;
@@ -80,6 +108,9 @@ class Collider {
   std::vector<std::uint64_t> pairs_, sorted_;
   std::vector<std::uint32_t> starts_;
   std::vector<dContact> touching_;
+  int watchers_ = 0;  // of all groups
+  std::vector<WatchedContact> watched_;
+  std::vector<dJointFeedback> feedback_;  // of watched_; sized once per step, for ODE keeps addresses
 };
 
 }  // namespace sim

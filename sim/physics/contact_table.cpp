@@ -47,14 +47,30 @@ bool names(const std::string& pattern, const std::string& material) {
 
 }  // namespace
 
-ContactTable::ContactTable(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts) {
-  names_.push_back("default");
+ContactTable::ContactTable(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts)
+    : names_{"default"}, contacts_(contacts) {
+  add_names(materials);
+  work_out_surfaces();
+}
+
+void ContactTable::add(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts) {
+  add_names(materials);
+  for (const ContactConfig& contact : contacts)
+    if (std::find(contacts_.begin(), contacts_.end(), contact) == contacts_.end())
+      contacts_.insert(contacts_.begin() + static_cast<std::ptrdiff_t>(added_++), contact);
+  work_out_surfaces();
+}
+
+void ContactTable::add_names(const std::vector<MaterialConfig>& materials) {
   for (const MaterialConfig& material : materials)
     if (std::find(names_.begin(), names_.end(), material.name) == names_.end()) names_.push_back(material.name);
+}
+
+void ContactTable::work_out_surfaces() {
   count_ = static_cast<int>(names_.size());
   surfaces_.assign(names_.size() * names_.size(), make_surface(ContactConfig{}));
   // An entry that names both materials wins over one that says `any`; among equals the last one wins.
-  std::vector<ContactConfig> by_weight = contacts;
+  std::vector<ContactConfig> by_weight = contacts_;
   std::stable_sort(by_weight.begin(), by_weight.end(), [](const ContactConfig& a, const ContactConfig& b) {
     const auto named = [](const ContactConfig& each) {
       return (each.between[0] != "any") + (each.between[1] != "any");

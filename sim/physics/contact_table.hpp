@@ -20,12 +20,19 @@ struct Surface {
 class ContactTable {
  public:
   ContactTable(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts);
+  /// More of them.  Numbers of known materials stay; the contacts given at construction win over later ones.
+  void add(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts);
   const Surface& of(int first, int second) const { return surfaces_[first * count_ + second]; }
   /// Number of a material; `default` is always there.  Throws std::out_of_range.
   int number_of(const std::string& material) const;
 
  private:
+  void add_names(const std::vector<MaterialConfig>& materials);
+  void work_out_surfaces();
+
   std::vector<std::string> names_;
+  std::vector<ContactConfig> contacts_;  // in the order of their weight: the added ones, then those of construction
+  std::size_t added_ = 0;                // how many of them were added
   int count_ = 0;
   std::vector<Surface> surfaces_;
 };

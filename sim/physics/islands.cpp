@@ -3,20 +3,32 @@
 #include <algorithm>
 #include <utility>
 
+#include "sim/physics/free_numbers.hpp"
+
 namespace sim {
 
-void Islands::add_body() {
-  joint_parent_.push_back(static_cast<int>(joint_parent_.size()));
-  joint_rows_.push_back(0);
+void Islands::add_body(int body) {
+  slot(joint_parent_, body) = body;
+  slot(joint_rows_, body) = 0;
 }
 
 void Islands::add_joint(int first, int second, int rows) {
   joint_largest_ = std::max(joint_largest_, join(joint_parent_, joint_rows_, first, second, rows));
-  // Point every body at its root, so that a step starts with paths of length one.
-  for (int body = 0; body < static_cast<int>(joint_parent_.size()); ++body) root(joint_parent_, body);
+  paths_are_short_ = false;
+}
+
+void Islands::remove_bodies(std::span<const int> bodies) {
+  for (const int body : bodies) add_body(body);
+  joint_largest_ = 0;
+  for (std::size_t body = 0; body < joint_parent_.size(); ++body)
+    if (joint_parent_[body] == static_cast<int>(body)) joint_largest_ = std::max(joint_largest_, joint_rows_[body]);
 }
 
 void Islands::begin_step() {
+  // Once for all joints that were added: a step then starts with paths of length one.
+  if (!paths_are_short_)
+    for (int body = 0; body < static_cast<int>(joint_parent_.size()); ++body) root(joint_parent_, body);
+  paths_are_short_ = true;
   parent_ = joint_parent_;
   rows_ = joint_rows_;
   largest_ = joint_largest_;

@@ -31,6 +31,19 @@ int axes_of(dJointType kind) {
   }
 }
 
+/// ODE's frame of a body, at its centre of mass.
+Pose ode_pose(dBodyID body) {
+  Pose X_WC = Pose::Identity();
+  X_WC.linear() = rotation_to_eigen(dBodyGetRotation(body));
+  X_WC.translation() = to_eigen(dBodyGetPosition(body));
+  return X_WC;
+}
+
+void set_ode_pose(dBodyID body, const Vector3d& p_WC, const dQuaternion q_WC) {
+  dBodySetPosition(body, p_WC.x(), p_WC.y(), p_WC.z());
+  dBodySetQuaternion(body, q_WC);
+}
+
 }  // namespace
 
 Joint::Joint(dWorldID world, std::string name, const JointConfig& config, dBodyID first, dBodyID second,
@@ -40,6 +53,10 @@ Joint::Joint(dWorldID world, std::string name, const JointConfig& config, dBodyI
   sign_ = first != nullptr && second != nullptr ? -1 : 1;
   if (first == nullptr) std::swap(first, second);
   create(world, config, X_WV, first, second);
+  loaded_ = second != nullptr ? second : first;
+  const Pose X_WC = ode_pose(loaded_);
+  p_CA_C_ = X_WC.inverse() * (X_WV * config.anchor_m);
+  if (second == nullptr) world_side_ = std::make_unique<WorldSide>(WorldSide{config, X_WV, X_WC});
   if (axes_ > 0) configure_axis(config.axis1, 0);
   if (axes_ > 1) configure_axis(config.axis2, 1);
   for (int axis = 0; axis < axes_; ++axis) wrapped_[axis] = wrapped_position(axis);
@@ -81,12 +98,7 @@ void Joint::configure_axis(const JointAxisConfig& config, int axis) {
   const auto set = [&](int parameter, const std::optional<double>& value) {
     if (value) set_parameter(parameter, *value, axis);
   };
-  // Counted the other way round, the low stop is the high one.
-  const bool turned = sign_ < 0;
-  const std::optional<double>& low = turned ? config.high_stop : config.low_stop;
-  const std::optional<double>& high = turned ? config.low_stop : config.high_stop;
-  if (low) set_parameter(dParamLoStop, sign_ * *low, axis);
-  if (high) set_parameter(dParamHiStop, sign_ * *high, axis);
+  place_stops(config.low_stop, config.high_stop, axis);
   set(dParamBounce, config.bounce);
   set(dParamCFM, config.cfm);
   set(dParamERP, config.erp);
@@ -96,6 +108,20 @@ void Joint::configure_axis(const JointAxisConfig& config, int axis) {
   set(dParamSuspensionERP, config.suspension_erp);
   set(dParamSuspensionCFM, config.suspension_cfm);
   if (config.motor_max_force > 0) set_motor(config.motor_velocity, config.motor_max_force, axis);
+}
+
+void Joint::place_stops(std::optional<double> low, std::optional<double> high, int axis) {
+  // Counted the other way round, the low stop is the high one.
+  if (sign_ < 0) std::swap(low, high);
+  set_parameter(dParamLoStop, low ? sign_ * *low : -dInfinity, axis);
+  set_parameter(dParamHiStop, high ? sign_ * *high : dInfinity, axis);
+}
+
+void Joint::set_stops(std::optional<double> low, std::optional<double> high, int axis) {
+  if (std::isnan(low.value_or(0)) || std::isnan(high.value_or(0)))
+    throw PhysicsFault("joint '" + name_ + "': its stop is not a number");
+  place_stops(low, high, axis);
+  stops_were_set_ = true;
 }
 
 void Joint::set_parameter(int parameter, double value, int axis) {
@@ -186,6 +212,7 @@ void Joint::set_motor(double velocity, double max_force, int axis) {
 
 void Joint::add_effort(double effort, int axis) {
   if (!std::isfinite(effort)) throw PhysicsFault("joint '" + name_ + "': an effort on it is not finite");
+  if (load_) load_->added[axis] += effort;
   const double torque1 = axis == 0 ? sign_ * effort : 0, torque2 = axis == 1 ? sign_ * effort : 0;
   switch (kind_) {
     case dJointTypeHinge:
@@ -201,7 +228,120 @@ void Joint::add_effort(double effort, int axis) {
   }
 }
 
+double Joint::get_parameter(int parameter, int axis) const {
+  parameter += dParamGroup * axis;
+  switch (kind_) {
+    case dJointTypeHinge:
+      return dJointGetHingeParam(ode_.get(), parameter);
+    case dJointTypeSlider:
+      return dJointGetSliderParam(ode_.get(), parameter);
+    case dJointTypeHinge2:
+      return dJointGetHinge2Param(ode_.get(), parameter);
+    case dJointTypeUniversal:
+      return dJointGetUniversalParam(ode_.get(), parameter);
+    default:
+      return 0;
+  }
+}
+
+Vector3d Joint::axis_W(int axis) const {
+  dVector3 out = {0, 0, 0, 0};
+  if (kind_ == dJointTypeHinge)
+    dJointGetHingeAxis(ode_.get(), out);
+  else if (kind_ == dJointTypeSlider)
+    dJointGetSliderAxis(ode_.get(), out);
+  else if (kind_ == dJointTypeHinge2)
+    axis == 0 ? dJointGetHinge2Axis1(ode_.get(), out) : dJointGetHinge2Axis2(ode_.get(), out);
+  else if (kind_ == dJointTypeUniversal)
+    axis == 0 ? dJointGetUniversalAxis1(ode_.get(), out) : dJointGetUniversalAxis2(ode_.get(), out);
+  return to_eigen(out);
+}
+
+void Joint::measure_load() {
+  if (load_) return;
+  load_ = std::make_unique<Load>();
+  dJointSetFeedback(ode_.get(), &load_->feedback);
+  measured_joints_->push_back(this);
+}
+
+void Joint::note_before_step() {
+  const Pose X_WC = ode_pose(loaded_);
+  load_->p_CA_W = X_WC.linear() * p_CA_C_;
+  // ODE lets forces along a slider act half way between the two bodies, so that none of them is turned.
+  const dBodyID other = world_side_ ? loaded_ : dJointGetBody(ode_.get(), 0);
+  load_->p_AM_W = (to_eigen(dBodyGetPosition(other)) - X_WC.translation()) / 2 - load_->p_CA_W;
+  for (int axis = 0; axis < axes_; ++axis) {
+    load_->axis_W[axis] = axis_W(axis);
+    load_->beside[axis] = std::exchange(load_->added[axis], 0.0) + motor_at_stop(axis);
+  }
+}
+
+/// Where an axis is at a stop, ODE gives the row of its motor to the stop and lets the motor act as a force from
+/// outside, so that it is not in the feedback (dxJointLimitMotor::addLimot).
+double Joint::motor_at_stop(int axis) const {
+  const double max_force = get_parameter(dParamFMax, axis);
+  const double low = get_parameter(dParamLoStop, axis), high = get_parameter(dParamHiStop, axis);
+  const double bound = kind_ == dJointTypeSlider ? dInfinity : std::numbers::pi;
+  const bool has_stops = kind_ == dJointTypeSlider ? low > -bound || high < bound : low >= -bound || high <= bound;
+  if (!(max_force > 0) || !has_stops || low >= high || (kind_ == dJointTypeHinge2 && axis == 1)) return 0;
+  const double position = sign_ * wrapped_position(axis), velocity = get_parameter(dParamVel, axis);
+  const bool at_low = position <= low, at_high = !at_low && position >= high;
+  if (!at_low && !at_high) return 0;
+  const bool upwards = velocity > 0 || (velocity == 0 && at_high);
+  const bool away = (at_low && velocity > 0) || (at_high && velocity < 0);
+  return sign_ * (upwards ? max_force : -max_force) * (away ? get_parameter(dParamFudgeFactor, axis) : 1);
+}
+
+void Joint::note_load() {
+  Load& load = *load_;
+  const bool first = world_side_ != nullptr;
+  load.force_W_N = to_eigen(first ? load.feedback.f1 : load.feedback.f2);
+  load.torque_W_Nm = to_eigen(first ? load.feedback.t1 : load.feedback.t2) - load.p_CA_W.cross(load.force_W_N);
+  for (int axis = 0; axis < axes_; ++axis) {
+    const Vector3d beside_W = load.beside[axis] * load.axis_W[axis];
+    if (kind_ == dJointTypeSlider) load.force_W_N += beside_W;
+    load.torque_W_Nm += kind_ == dJointTypeSlider ? Vector3d(load.p_AM_W.cross(beside_W)) : beside_W;
+  }
+  const Vector3d& along = kind_ == dJointTypeSlider ? load.force_W_N : load.torque_W_Nm;
+  const Vector3d &a = load.axis_W[0], &b = load.axis_W[1];
+  load.effort[0] = axes_ > 0 ? along.dot(a) : 0;
+  if (axes_ < 2) return;
+  // The constraint's torque is at right angles to both axes, the axes not always to each other.
+  const double cosine = a.dot(b), scale = 1 / (1 - cosine * cosine);
+  load.effort[0] = scale * (along.dot(a) - cosine * along.dot(b));
+  load.effort[1] = scale * (along.dot(b) - cosine * along.dot(a));
+}
+
+/// ODE keeps the world's side of a joint in the world's frame and counts from the pose at which the joint was made.
+/// So the joint is made anew, with its body moved to where it was then.
+void Joint::move_world_side(const Pose& X_move_W) {
+  if (!world_side_) return;
+  WorldSide& side = *world_side_;
+  side.X_WV = X_move_W * side.X_WV;
+  side.X_WC = X_move_W * side.X_WC;
+  constexpr int kept[] = {dParamLoStop, dParamHiStop, dParamVel, dParamFMax};
+  double values[2][4] = {};
+  for (int axis = 0; axis < axes_; ++axis)
+    for (int i = 0; i < 4; ++i) values[axis][i] = get_parameter(kept[i], axis);
+  const Vector3d p_now = to_eigen(dBodyGetPosition(loaded_));
+  dQuaternion q_now, q_made;
+  dBodyCopyQuaternion(loaded_, q_now);
+  to_ode(to_quaternion(side.X_WC.linear()), q_made);
+  set_ode_pose(loaded_, side.X_WC.translation(), q_made);
+  create(dBodyGetWorld(loaded_), side.config, side.X_WV, loaded_, nullptr);
+  set_ode_pose(loaded_, p_now, q_now);
+  for (int axis = 0; axis < axes_; ++axis) {
+    configure_axis(axis == 0 ? side.config.axis1 : side.config.axis2, axis);
+    for (int i = 0; i < 4; ++i) set_parameter(kept[i], values[axis][i], axis);
+  }
+  if (load_) dJointSetFeedback(ode_.get(), &load_->feedback);
+}
+
 void Joint::hash_state(StateHash& hash) const {
+  for (int axis = 0; stops_were_set_ && axis < axes_; ++axis) {
+    hash.add(get_parameter(dParamLoStop, axis));
+    hash.add(get_parameter(dParamHiStop, axis));
+  }
   for (int axis = 0; axis < axes_; ++axis) {
     hash.add(position_[axis]);
     hash.add(wrapped_[axis]);

@@ -3,8 +3,11 @@
 #include <ode/ode.h>
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "sim/math.hpp"
 #include "sim/physics/physics_config.hpp"
 #include "sim/state_hash.hpp"
 
@@ -35,18 +38,56 @@ class Joint {
   double motor_max_force(int axis = 0) const { return motor_max_force_[axis]; }
   /// Torque (N m) or force (N) about or along an axis, for the next step.
   void add_effort(double effort, int axis = 0);
+  /// Where the axis stops, in the joint's own sign (rad, or m of a slider); nullopt: nowhere.  Low above high: neither
+  /// stop works.  Hinge2's second axis has no stops.
+  void set_stops(std::optional<double> low, std::optional<double> high, int axis = 0);
+
+  /// From the next step on ODE is asked for the load; before, it reads zero.
+  void measure_load();
+  /// What the joint applied in the last step on its second body; where only one body moves, on that one.  All that
+  /// goes through the joint: constraint, motor, stops and efforts.  The torque is about the joint's anchor, which the
+  /// body takes along.
+  Vector3d force_W_N() const { return load_ ? load_->force_W_N : Vector3d(Vector3d::Zero()); }
+  Vector3d torque_W_Nm() const { return load_ ? load_->torque_W_Nm : Vector3d(Vector3d::Zero()); }
+  /// Of that, what motor, stops and add_effort applied about or along an axis, in the joint's sign.
+  double effort(int axis = 0) const { return load_ ? load_->effort[axis] : 0; }
 
   void hash_state(StateHash& hash) const;
 
  private:
   friend class PhysicsWorld;
+  struct Load {
+    dJointFeedback feedback = {};
+    // At the start of the step: the load acts at the poses that the bodies have then.
+    Vector3d p_CA_W = Vector3d::Zero();  // from the centre of mass of the loaded body to the anchor
+    Vector3d p_AM_W = Vector3d::Zero();  // to where ODE lets the added force of a slider act
+    Vector3d axis_W[2] = {Vector3d::Zero(), Vector3d::Zero()};
+    double added[2] = {0, 0};   // by add_effort
+    double beside[2] = {0, 0};  // not by the solver's rows: added, and a motor at a stop
+    Vector3d force_W_N = Vector3d::Zero();
+    Vector3d torque_W_Nm = Vector3d::Zero();
+    double effort[2] = {0, 0};
+  };
+  /// Of a joint to the world: how it was made, so that it can be made again elsewhere.
+  struct WorldSide {
+    JointConfig config;
+    Pose X_WV;
+    Pose X_WC;  // of the body that moves, when the joint was made
+  };
   /// Attaches at the poses the bodies have now.  `second` null: the world.
   Joint(dWorldID world, std::string name, const JointConfig& config, dBodyID first, dBodyID second, const Pose& X_WV);
   void create(dWorldID world, const JointConfig& config, const Pose& X_WV, dBodyID first, dBodyID second);
   void configure_axis(const JointAxisConfig& config, int axis);
+  void place_stops(std::optional<double> low, std::optional<double> high, int axis);
   void set_parameter(int parameter, double value, int axis);
   int max_rows() const;  ///< constraint rows, with motors and stops all at work
   double wrapped_position(int axis) const;
+  double get_parameter(int parameter, int axis) const;
+  Vector3d axis_W(int axis) const;
+  void note_before_step();
+  void note_load();
+  double motor_at_stop(int axis) const;
+  void move_world_side(const Pose& X_move_W);
   void update_position(double step_s);  ///< after each step; integrates differences, for ODE wraps at pi
 
   std::string name_;
@@ -59,6 +100,12 @@ class Joint {
   double wrapped_[2] = {0, 0};
   double motor_velocity_[2] = {0, 0};
   double motor_max_force_[2] = {0, 0};
+  bool stops_were_set_ = false;
+  dBodyID loaded_ = nullptr;                        // whose load is measured
+  Vector3d p_CA_C_ = Vector3d::Zero();              // the anchor in ODE's frame of the loaded body
+  std::unique_ptr<Load> load_;                      // when it is measured
+  std::vector<Joint*>* measured_joints_ = nullptr;  // of the world
+  std::unique_ptr<WorldSide> world_side_;
 };
 
 }  // namespace sim

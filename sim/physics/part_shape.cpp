@@ -7,12 +7,6 @@
 
 namespace sim {
 
-void throw_config_error(const SourcePlace& place, const std::string& who, const std::string& text) {
-  Diagnostics diagnostics;
-  diagnostics.error(place, who, text);
-  throw ConfigError(diagnostics.lines());
-}
-
 CollisionMesh::CollisionMesh(Mesh loaded) : mesh(std::move(loaded)), closed(is_closed(mesh)) {
   if (closed) solid = solid_of(mesh);
   if (solid.volume_m3 < 0) {

@@ -42,6 +42,4 @@ GeomHandle make_geom(const PartConfig& part, const CollisionMesh* mesh);
 /// part has neither mass nor density.  Throws ConfigError at the part for a mesh that encloses no solid.
 dMass part_mass(const PartConfig& part, const CollisionMesh* mesh, const std::string& who);
 
-[[noreturn]] void throw_config_error(const SourcePlace& place, const std::string& who, const std::string& text);
-
 }  // namespace sim

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sim/physics/collider.hpp"
+#include "sim/physics/free_numbers.hpp"
 #include "sim/physics/islands.hpp"
 #include "sim/physics/ode_library.hpp"
 #include "sim/physics/ode_math.hpp"
@@ -18,6 +19,13 @@ namespace sim {
 
 // Members are destroyed from the last to the first: joints and bodies before their world.
 struct PhysicsWorld::Impl {
+  /// What belongs to a group, by number.
+  struct Group {
+    std::string name;
+    bool in_use = false;
+    std::vector<int> bodies, parts, joints;
+  };
+
   Impl(const PhysicsConfig& config_, ContactTable table, std::uint64_t seed_)
       : config(config_), seed(seed_), collider(config_, std::move(table)) {}
 
@@ -31,12 +39,18 @@ struct PhysicsWorld::Impl {
   JointGroupHandle contacts{dJointGroupCreate(0)};
   Collider collider;
   Islands islands;
-  std::vector<std::string> groups;
+  std::vector<Group> groups;
   std::vector<PartInfo> parts;
   std::vector<std::unique_ptr<Body>> bodies;
-  std::vector<Body*> moving;
   std::vector<std::unique_ptr<Joint>> joints;
+  FreeNumbers group_numbers, part_numbers, body_numbers, joint_numbers;
+  // What a step goes through, in order of groups.
+  std::vector<Body*> moving;                             // free and kinematic
   std::vector<std::pair<int, Joint*>> joints_with_axes;  // with their groups
+  std::vector<Body*> kinematic;
+  std::vector<Joint*> measured_joints;
+  std::vector<ContactReport> contact_reports;
+  double gravity_mps2 = config.gravity_mps2;
   SceneMoves moves;
   std::unique_ptr<OdeScene> scene;
   StepCounts counts;
@@ -45,7 +59,11 @@ struct PhysicsWorld::Impl {
 
   std::uint32_t category_bit(const std::string& name) const;
   std::uint32_t category_bits(const std::vector<std::string>& names) const;
-  void add_parts(Body& body, const BodyConfig& config, bool fixed);
+  Group& group(int number);
+  void attach_ode_body(Body& body);
+  void add_parts(Body& body, const BodyConfig& config);
+  void add_part(Body& body, const BodyConfig& config, std::size_t index, GeomHandle geom);
+  void forget_in_lists(int group_number);
   void set_mass(Body& body, const BodyConfig& config, const dMass& total);
   void collide();
   void solve(std::int64_t step_number);
@@ -100,40 +118,63 @@ PhysicsWorld::~PhysicsWorld() {
 }
 
 int PhysicsWorld::add_group(const std::string& name, bool self_collision) {
-  impl_->groups.push_back(name);
-  impl_->scene->add_group();
-  return impl_->collider.add_group(self_collision);
+  const int number = impl_->group_numbers.take();
+  slot(impl_->groups, number) = {name, true, {}, {}, {}};
+  impl_->scene->add_group(number);
+  impl_->collider.add_group(number, self_collision);
+  return number;
 }
 
-Body& PhysicsWorld::add_body(int group, const BodyConfig& config, const Pose& X_WV, bool fixed) {
+PhysicsWorld::Impl::Group& PhysicsWorld::Impl::group(int number) {
+  if (number < 0 || number >= static_cast<int>(groups.size()) || !groups[number].in_use)
+    throw std::out_of_range("no group " + std::to_string(number));
+  return groups[number];
+}
+
+Body& PhysicsWorld::add_body(int group, const BodyConfig& config, const Pose& X_WV, Motion motion) {
+  Impl::Group& owner = impl_->group(group);
   std::unique_ptr<Body> owned(new Body);
   Body& body = *owned;
-  body.name_ = impl_->groups[group] + "/" + config.name;
-  body.number_ = static_cast<int>(impl_->bodies.size());
+  body.name_ = owner.name + "/" + config.name;
+  body.number_ = impl_->body_numbers.next();  // taken when all went well
   body.group_ = group;
+  body.motion_ = motion;
   body.moves_ = &impl_->moves;
-  const Pose X_WB = X_WV * make_pose(config.position_m, config.rpy_rad);
-  body.fixed_X_WB_ = X_WB;
-  if (!fixed) {
-    body.ode_.reset(dBodyCreate(impl_->world.get()));
-    body.p_WC_ = dBodyGetPosition(body.ode_.get());
-    body.R_WB_ = dBodyGetRotation(body.ode_.get());
-    body.v_WC_W_ = dBodyGetLinearVel(body.ode_.get());
-    body.w_WB_W_ = dBodyGetAngularVel(body.ode_.get());
-    // Our own gyroscopic torque, see Body::add_gyroscopic_torque.
-    dBodySetGyroscopicMode(body.ode_.get(), 0);
-  }
-  impl_->add_parts(body, config, fixed);
-  impl_->collider.add_body(
-      {body.ode_.get(), body.p_WC_, body.v_WC_W_, body.w_WB_W_, body.mass_kg_ > 0 ? 1 / body.mass_kg_ : 0});
-  impl_->islands.add_body();
-  if (!fixed) impl_->moving.push_back(&body);
-  body.set_pose(X_WB);
-  impl_->bodies.push_back(std::move(owned));
+  if (motion != Motion::fixed) impl_->attach_ode_body(body);
+  impl_->add_parts(body, config);
+  impl_->collider.add_body(body.number_, {body.free(), body.ode_.get(), body.p_WC_, body.v_WC_W_, body.w_WB_W_,
+                                          body.mass_kg_ > 0 ? 1 / body.mass_kg_ : 0});
+  impl_->islands.add_body(body.number_);
+  const auto by_group = [](int number, const Body* other) { return number < other->group_; };
+  const auto keep_order = [&](std::vector<Body*>& bodies) {
+    bodies.insert(std::upper_bound(bodies.begin(), bodies.end(), group, by_group), &body);
+  };
+  if (motion != Motion::fixed) keep_order(impl_->moving);
+  if (motion == Motion::kinematic) keep_order(impl_->kinematic);
+  body.set_pose(X_WV * make_pose(config.position_m, config.rpy_rad));
+  owner.bodies.push_back(impl_->body_numbers.take());
+  slot(impl_->bodies, body.number_) = std::move(owned);
   return body;
 }
 
-void PhysicsWorld::Impl::add_parts(Body& body, const BodyConfig& config_, bool fixed) {
+void PhysicsWorld::Impl::attach_ode_body(Body& body) {
+  const dBodyID ode = dBodyCreate(world.get());
+  body.ode_.reset(ode);
+  body.p_WC_ = dBodyGetPosition(ode);
+  body.R_WB_ = dBodyGetRotation(ode);
+  body.v_WC_W_ = dBodyGetLinearVel(ode);
+  body.w_WB_W_ = dBodyGetAngularVel(ode);
+  // Our own gyroscopic torque, see Body::add_gyroscopic_torque.
+  dBodySetGyroscopicMode(ode, 0);
+  if (!body.kinematic()) return;
+  body.gyroscopic_ = false;
+  dBodySetKinematic(ode);
+  dBodySetGravityMode(ode, 0);
+  // A step then turns it by exactly its angular velocity.
+  dBodySetFiniteRotationMode(ode, 1);
+}
+
+void PhysicsWorld::Impl::add_parts(Body& body, const BodyConfig& config_) {
   // Checked and made first, added after: an exception leaves no half body behind.
   std::vector<GeomHandle> geoms;
   dMass total;
@@ -142,40 +183,45 @@ void PhysicsWorld::Impl::add_parts(Body& body, const BodyConfig& config_, bool f
     const PartConfig& part = config_.parts[i];
     const std::string who =
         "body '" + body.name() + "': part " + (part.name.empty() ? std::to_string(i + 1) : "'" + part.name + "'");
-    if (part.shape == "plane" && !fixed)
+    if (part.shape == "plane" && !body.fixed())
       throw_config_error(part.place, who, "a plane can only be part of a fixed body");
     const CollisionMesh* mesh = part.shape == "mesh" ? &meshes.get(part, who) : nullptr;
     geoms.push_back(make_geom(part, mesh));
-    if (fixed) continue;
+    if (!body.free()) continue;
     const dMass mass = part_mass(part, mesh, who);
     if (mass.mass > 0) dMassAdd(&total, &mass);
   }
-  if (!fixed) set_mass(body, config_, total);
-  for (std::size_t i = 0; i < geoms.size(); ++i) {
-    const PartConfig& part = config_.parts[i];
-    const dGeomID geom = geoms[i].get();
-    const Pose X_BG = make_pose(part.position_m, part.rpy_rad);
-    if (fixed) {
-      body.fixed_geoms_.push_back({geom, X_BG, part.shape == "plane"});
-    } else {
-      // An offset of nothing would still cost a product of matrices in each step.
-      const Vector3d p_CG = X_BG.translation() - body.p_BC_;
-      dGeomSetBody(geom, body.ode_.get());
-      if (!p_CG.isZero(0)) dGeomSetOffsetPosition(geom, p_CG.x(), p_CG.y(), p_CG.z());
-      dQuaternion q;
-      to_ode(to_quaternion(X_BG.linear()), q);
-      if (!part.rpy_rad.isZero(0)) dGeomSetOffsetQuaternion(geom, q);
-    }
-    const CollisionPart collision{geom,
-                                  body.number_,
-                                  body.group_,
-                                  collider.table().number_of(part.material),
-                                  category_bit(part.category),
-                                  category_bits(part.collides_with)};
-    parts.push_back({part_name(body, part, i), body.group_, body.number_, collision.material, collision.category});
-    scene->add_part(geom, body.group_, collision.category, !fixed);
-    collider.add_part(collision, std::move(geoms[i]), !fixed);
+  if (body.free()) set_mass(body, config_, total);
+  for (std::size_t i = 0; i < geoms.size(); ++i) add_part(body, config_, i, std::move(geoms[i]));
+}
+
+void PhysicsWorld::Impl::add_part(Body& body, const BodyConfig& config_, std::size_t index, GeomHandle owned) {
+  const PartConfig& part = config_.parts[index];
+  const dGeomID geom = owned.get();
+  const Pose X_BG = make_pose(part.position_m, part.rpy_rad);
+  if (body.fixed()) {
+    body.fixed_geoms_.push_back({geom, X_BG, part.shape == "plane"});
+  } else {
+    // An offset of nothing would still cost a product of matrices in each step.
+    const Vector3d p_CG = X_BG.translation() - body.p_BC_;
+    dGeomSetBody(geom, body.ode_.get());
+    if (!p_CG.isZero(0)) dGeomSetOffsetPosition(geom, p_CG.x(), p_CG.y(), p_CG.z());
+    dQuaternion q;
+    to_ode(to_quaternion(X_BG.linear()), q);
+    if (!part.rpy_rad.isZero(0)) dGeomSetOffsetQuaternion(geom, q);
   }
+  const CollisionPart collision{geom,
+                                body.number_,
+                                body.group_,
+                                collider.table().number_of(part.material),
+                                category_bit(part.category),
+                                category_bits(part.collides_with)};
+  const int number = part_numbers.take();
+  groups[body.group_].parts.push_back(number);
+  slot(parts, number) = {part_name(body, part, index), body.group_, body.number_, collision.material,
+                         collision.category};
+  scene->add_part(number, geom, body.group_, collision.category, !body.fixed());
+  collider.add_part(number, collision, std::move(owned), body.motion_);
 }
 
 void PhysicsWorld::Impl::set_mass(Body& body, const BodyConfig& config_, const dMass& total) {
@@ -196,9 +242,11 @@ void PhysicsWorld::Impl::set_mass(Body& body, const BodyConfig& config_, const d
 }
 
 Joint& PhysicsWorld::add_joint(int group, const JointConfig& config, Body& first, Body* second, const Pose& X_WV) {
-  const std::string name = impl_->groups[group] + "/" + config.name;
+  Impl::Group& owner = impl_->group(group);
+  const std::string name = owner.name + "/" + config.name;
   const dBodyID a = first.ode_.get(), b = second ? second->ode_.get() : nullptr;
-  if (!a && !b) throw_config_error({}, "joint '" + name + "'", "joins two fixed bodies");
+  if (!first.free() && !(second && second->free()))
+    throw_config_error({}, "joint '" + name + "'", "joins two bodies that are fixed or kinematic");
   if (config.type == "hinge2" && (!a || !b))
     throw_config_error({}, "joint '" + name + "'", "hinge2 needs two bodies that move");
   if (second == &first) throw_config_error({}, "joint '" + name + "'", "joins a body to itself");
@@ -208,14 +256,102 @@ Joint& PhysicsWorld::add_joint(int group, const JointConfig& config, Body& first
   if (config.type == "hinge" || config.type == "hinge2") dBodySetFiniteRotationMode(b ? b : a, 1);
   impl_->islands.add_joint(a ? first.number_ : -1, b ? second->number_ : -1, joint.max_rows());
   if (second) impl_->collider.join(first.number_, second->number_);
-  if (joint.axes() > 0) impl_->joints_with_axes.emplace_back(group, &joint);
-  impl_->joints.push_back(std::move(owned));
+  joint.measured_joints_ = &impl_->measured_joints;
+  auto& with_axes = impl_->joints_with_axes;
+  const auto by_group = [](int number, const auto& other) { return number < other.first; };
+  if (joint.axes() > 0)
+    with_axes.emplace(std::upper_bound(with_axes.begin(), with_axes.end(), group, by_group), group, &joint);
+  owner.joints.push_back(impl_->joint_numbers.take());
+  slot(impl_->joints, owner.joints.back()) = std::move(owned);
   return joint;
 }
 
 void PhysicsWorld::close_group(int group) {
   impl_->collider.close_group(group);
   impl_->scene->close_group(group);
+}
+
+void PhysicsWorld::remove_group(int group) {
+  Impl& all = *impl_;
+  Impl::Group& gone = all.group(group);
+  all.forget_in_lists(group);
+  all.scene->remove_group(group, gone.parts);
+  for (const int joint : gone.joints) all.joints[joint].reset();
+  all.collider.remove_group(group, gone.bodies, gone.parts);
+  all.islands.remove_bodies(gone.bodies);
+  for (const int body : gone.bodies) all.bodies[body].reset();
+  for (const int part : gone.parts) all.parts[part] = {};
+  for (const int number : gone.joints) all.joint_numbers.give_back(number);
+  for (const int number : gone.bodies) all.body_numbers.give_back(number);
+  for (const int number : gone.parts) all.part_numbers.give_back(number);
+  gone = {};
+  all.group_numbers.give_back(group);
+}
+
+/// Takes a group's bodies and joints out of the lists that a step goes through.
+void PhysicsWorld::Impl::forget_in_lists(int group_number) {
+  const auto in_group = [&](const Body* body) { return body->group_ == group_number; };
+  std::erase_if(moving, in_group);
+  std::erase_if(kinematic, in_group);
+  std::erase_if(joints_with_axes, [&](const auto& joint) { return joint.first == group_number; });
+  for (const int joint : groups[group_number].joints) std::erase(measured_joints, joints[joint].get());
+  std::erase_if(contact_reports, [&](const ContactReport& contact) {
+    return parts[contact.parts[0]].group == group_number || parts[contact.parts[1]].group == group_number;
+  });
+}
+
+void PhysicsWorld::move_group(int group, const Pose& X_move_W, bool keep_velocity) {
+  const Impl::Group& moved = impl_->group(group);
+  const Matrix3d turn_W = X_move_W.linear();
+  for (const int number : moved.bodies) {
+    Body& body = *impl_->bodies[number];
+    const Vector3d v_WB_W = body.v_WB_W(), w_WB_W = body.w_WB_W();
+    body.set_pose(X_move_W * body.X_WB());
+    if (keep_velocity)
+      body.set_velocity_W(turn_W * v_WB_W, turn_W * w_WB_W);
+    else
+      body.set_velocity_W(Vector3d::Zero(), Vector3d::Zero());
+  }
+  for (const int number : moved.joints) impl_->joints[number]->move_world_side(X_move_W);
+}
+
+void PhysicsWorld::add_surfaces(const std::vector<MaterialConfig>& materials,
+                                const std::vector<ContactConfig>& contacts) {
+  impl_->collider.add_surfaces(materials, contacts);
+}
+
+void PhysicsWorld::add_categories(const std::vector<std::string>& names) {
+  std::vector<std::string> all = impl_->categories;
+  for (const std::string& name : names)
+    if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+  if (all.size() > 31) throw std::length_error("more than 31 categories of parts");
+  impl_->categories = std::move(all);
+}
+
+void PhysicsWorld::set_gravity(double gravity_mps2) {
+  if (!std::isfinite(gravity_mps2)) throw std::invalid_argument("gravity is not finite");
+  impl_->gravity_mps2 = gravity_mps2;
+  impl_->collider.set_gravity(gravity_mps2);
+  dWorldSetGravity(impl_->world.get(), 0, 0, -gravity_mps2);
+}
+
+void PhysicsWorld::watch_contacts(int group) {
+  impl_->group(group);
+  impl_->collider.watch(group);
+}
+void PhysicsWorld::unwatch_contacts(int group) {
+  impl_->group(group);
+  impl_->collider.unwatch(group);
+}
+std::span<const ContactReport> PhysicsWorld::contacts() const {
+  return impl_->contact_reports;
+}
+
+std::optional<int> PhysicsWorld::find_part(int group, std::string_view body_slash_part) const {
+  const Impl::Group& owner = impl_->group(group);
+  for (const int part : owner.parts)
+    if (std::string_view(impl_->parts[part].name).substr(owner.name.size() + 1) == body_slash_part) return part;
+  return std::nullopt;
 }
 
 void PhysicsWorld::step(std::int64_t step_number) {
@@ -233,6 +369,7 @@ void PhysicsWorld::step(std::int64_t step_number) {
 }
 
 void PhysicsWorld::Impl::collide() {
+  for (Body* body : kinematic) body->begin_kinematic_step();
   islands.begin_step();
   counts.contacts = collider.collide(world.get(), contacts.get(), islands);
   counts.largest_island_rows = islands.largest_rows();
@@ -242,6 +379,7 @@ void PhysicsWorld::Impl::solve(std::int64_t step_number) {
   const double step_s = config.step_s;
   for (Body* body : moving)
     if (body->gyroscopic_) body->add_gyroscopic_torque(step_s);
+  for (Joint* joint : measured_joints) joint->note_before_step();
   // WorldStep is exact and costs the cube of an island's rows; the rows decide, never the time it takes.
   const bool too_large = config.solver == "auto" && counts.largest_island_rows > config.quick_above_rows;
   counts.quick = config.solver == "quick" || too_large;
@@ -252,12 +390,15 @@ void PhysicsWorld::Impl::solve(std::int64_t step_number) {
   } else {
     dWorldStep(world.get(), step_s);
   }
+  collider.read_forces(contact_reports);
   dJointGroupEmpty(contacts.get());
+  for (Joint* joint : measured_joints) joint->note_load();
 }
 
 /// Checks the bodies and lets the joints follow: a group's joints right after its bodies, which are in the
 /// cache then.
 void PhysicsWorld::Impl::finish(std::int64_t step_number) {
+  for (Body* body : kinematic) body->end_kinematic_step();
   auto joint = joints_with_axes.begin();
   const auto update_joints_before = [&](int group) {
     for (; joint != joints_with_axes.end() && joint->first < group; ++joint)
@@ -306,7 +447,7 @@ std::span<const PartInfo> PhysicsWorld::parts() const {
   return impl_->parts;
 }
 const std::string& PhysicsWorld::group_name(int group) const {
-  return impl_->groups.at(group);
+  return impl_->groups.at(static_cast<std::size_t>(group)).name;
 }
 const StepCounts& PhysicsWorld::last_step() const {
   return impl_->counts;
@@ -335,8 +476,13 @@ std::uint32_t PhysicsWorld::Impl::category_bits(const std::vector<std::string>& 
 }
 
 void PhysicsWorld::hash_state(StateHash& hash) const {
-  for (const auto& body : impl_->bodies) body->hash_state(hash);
-  for (const auto& joint : impl_->joints) joint->hash_state(hash);
+  constexpr int removed = -1;
+  const auto add_all = [&](const auto& all) {
+    for (const auto& each : all) each ? each->hash_state(hash) : hash.add(removed);
+  };
+  add_all(impl_->bodies);
+  add_all(impl_->joints);
+  if (impl_->gravity_mps2 != impl_->config.gravity_mps2) hash.add(impl_->gravity_mps2);
 }
 
 }  // namespace sim

@@ -3,14 +3,18 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/math.hpp"
 #include "sim/physics/body.hpp"
+#include "sim/physics/contact_report.hpp"
 #include "sim/physics/joint.hpp"
+#include "sim/physics/motion.hpp"
 #include "sim/physics/physics_config.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/state_hash.hpp"
@@ -26,8 +30,8 @@ class PhysicsFault : public std::runtime_error {
 /// One part as built: who it belongs to.
 struct PartInfo {
   std::string name;
-  int group = -1;
-  int body = -1;  ///< number in PhysicsWorld::bodies()
+  int group = -1;  ///< -1: the part was removed, and nothing else here means anything
+  int body = -1;   ///< number in PhysicsWorld::bodies()
   int material = 0;
   std::uint32_t category = 1;
 };
@@ -41,6 +45,9 @@ struct StepCounts {
 
 /// Rigid bodies, joints and contacts, stepped by ODE.  Knows no vehicle and no device: a vehicle or an object is a
 /// group, whose parts share one collision space.
+///
+/// Groups can come and go between any two steps.  Groups, bodies, joints and parts have numbers; those of removed ones
+/// are used again, the lowest first, so that a world in which things come and go for days does not grow.
 class PhysicsWorld {
  public:
   /// Names in `contacts` must be materials; `categories` are the names of part categories (at most 31; `solid` is
@@ -55,20 +62,49 @@ class PhysicsWorld {
   /// A vehicle or an object.  Parts of a group collide with each other only when `self_collision`.
   int add_group(const std::string& name, bool self_collision = false);
   /// Builds a body whose mass, centre of mass and inertia are computed from its parts.  X_WV: pose of the vehicle or
-  /// object.  A fixed body has no mass and never moves.  Throws ConfigError (mesh files; no mass).
-  Body& add_body(int group, const BodyConfig& config, const Pose& X_WV, bool fixed = false);
-  /// `second` null: the world.  At the pose the bodies have now, which is the joint's zero.
+  /// object.  A body that is fixed or kinematic needs no mass and has none.  Throws ConfigError (mesh files; no mass).
+  Body& add_body(int group, const BodyConfig& config, const Pose& X_WV, Motion motion = Motion::free);
+  /// Between bodies of this group; `second` null: the world.  At the pose the bodies have now, which is the joint's
+  /// zero.  Throws ConfigError when neither body is free.
   Joint& add_joint(int group, const JointConfig& config, Body& first, Body* second, const Pose& X_WV);
   /// Ends a group: puts its parts into the world's space.  Call after its last body.
   void close_group(int group);
+  /// Destroys joints, bodies and parts of a group; references to them, watches and contact reports of it end here. Rays
+  /// and contacts do not find it any more.  Throws std::out_of_range when there is no such group.
+  void remove_group(int group);
+  /// Moves all bodies of a group as one: X_WB := X_move_W * X_WB, the world's side of its joints too, so that joints
+  /// keep their positions.  Velocities turn along, or become zero.
+  void move_group(int group, const Pose& X_move_W, bool keep_velocity = false);
+
+  /// New materials get new numbers, and keep them.  What the constructor got wins over these contacts, and of these
+  /// the last one wins.  Materials known already and equal contacts are ignored.
+  void add_surfaces(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts);
+  /// Known names are ignored.  Throws std::length_error over 31, and then none was added.
+  void add_categories(const std::vector<std::string>& names);
+  /// Downwards, from the next step on.
+  void set_gravity(double gravity_mps2);
 
   /// One step of `config.step_s`: collide, solve, check.  Throws PhysicsFault naming the body.
   void step(std::int64_t step_number);
 
+  /// From the next step on contacts() tells of this group.  Counted: as many calls of unwatch_contacts end it.
+  void watch_contacts(int group);
+  void unwatch_contacts(int group);
+  /// The contacts of the last step in which a watched group takes part, ordered by the numbers of their parts. Watching
+  /// does not change the run.
+  std::span<const ContactReport> contacts() const;
+
   const Scene& scene() const;
+  /// By number; null where a body was removed.
   std::span<const std::unique_ptr<Body>> bodies() const;
+  /// By number; null where a joint was removed.
   std::span<const std::unique_ptr<Joint>> joints() const;
+  /// By number; a removed part has group -1.
   std::span<const PartInfo> parts() const;
+  /// Number of a part by its name in the group, such as `chassis/hull`; a part without a name is called by its place in
+  /// the body, from 1.
+  std::optional<int> find_part(int group, std::string_view body_slash_part) const;
+  /// Empty when the group was removed.
   const std::string& group_name(int group) const;
   const StepCounts& last_step() const;
   /// Steps in which QuickStep stood in for WorldStep because an island was too large.
@@ -76,7 +112,7 @@ class PhysicsWorld {
   /// Bit of a category name.  Throws std::out_of_range.
   std::uint32_t category_bit(const std::string& name) const;
   double step_s() const;
-  /// Bodies in order: position, rotation, velocities; joints: motor targets.
+  /// Bodies in order: position, rotation, velocities; joints: positions and motor targets.  Gravity, when it was set.
   void hash_state(StateHash& hash) const;
 
  private:

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "sim/physics/free_numbers.hpp"
 #include "sim/physics/ode_math.hpp"
 
 namespace sim {
@@ -43,13 +44,12 @@ OdeScene::OdeScene(const SceneMoves& moves) : moves_(moves), ray_(dCreateRay(nul
   dGeomRaySetClosestHit(ray_.get(), 1);
 }
 
-void OdeScene::add_group() {
-  open_.emplace_back();
+void OdeScene::add_group(int group) {
+  slot(open_, group).clear();
 }
 
-void OdeScene::add_part(dGeomID geom, int group, std::uint32_t category, bool moving) {
-  const int number = static_cast<int>(parts_.size());
-  parts_.push_back({geom, group, category, dGeomGetClass(geom)});
+void OdeScene::add_part(int number, dGeomID geom, int group, std::uint32_t category, bool moving) {
+  slot(parts_, number) = {geom, group, category, dGeomGetClass(geom)};
   if (moving)
     open_[group].push_back(number);
   else
@@ -60,18 +60,48 @@ void OdeScene::close_group(int group) {
   Cluster cluster{std::move(open_[group]), group, 0};
   open_[group].clear();
   for (const int part : cluster.parts) cluster.categories |= parts_[part].category;
-  if (!cluster.parts.empty()) layers_[0].clusters.push_back(std::move(cluster));
-  layers_[0].seen = ~std::uint64_t{0};
+  if (!cluster.parts.empty()) add_cluster(0, std::move(cluster));
 
   std::erase_if(open_fixed_, [&](int part) {
     if (parts_[part].group != group) return false;
     if (parts_[part].kind == dPlaneClass)
       planes_.push_back(part);
     else
-      layers_[1].clusters.push_back({{part}, group, parts_[part].category});
+      add_cluster(1, {{part}, group, parts_[part].category});
     return true;
   });
-  layers_[1].seen = ~std::uint64_t{0};
+}
+
+void OdeScene::add_cluster(int layer, Cluster cluster) {
+  std::vector<Cluster>& clusters = layers_[layer].clusters;
+  for (const int part : cluster.parts) {
+    parts_[part].layer = layer;
+    parts_[part].cluster = static_cast<int>(clusters.size());
+  }
+  clusters.push_back(std::move(cluster));
+  layers_[layer].seen = ~std::uint64_t{0};
+}
+
+void OdeScene::remove_group(int group, std::span<const int> parts) {
+  open_[group].clear();
+  std::erase_if(open_fixed_, [&](int part) { return parts_[part].group == group; });
+  for (const int part : parts) {
+    if (parts_[part].kind == dPlaneClass) std::erase(planes_, part);
+    if (parts_[part].cluster >= 0) remove_cluster(parts_[part].layer, parts_[part].cluster);
+    parts_[part] = {};
+  }
+}
+
+/// The last cluster takes its place; what a ray hits does not depend on the order of clusters.
+void OdeScene::remove_cluster(int layer, int number) {
+  std::vector<Cluster>& clusters = layers_[layer].clusters;
+  for (const int part : clusters[number].parts) parts_[part].cluster = -1;
+  if (number + 1 != static_cast<int>(clusters.size())) {
+    clusters[number] = std::move(clusters.back());
+    for (const int part : clusters[number].parts) parts_[part].cluster = number;
+  }
+  clusters.pop_back();
+  layers_[layer].seen = ~std::uint64_t{0};
 }
 
 void OdeScene::refresh() const {

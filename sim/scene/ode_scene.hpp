@@ -3,6 +3,7 @@
 #include <ode/ode.h>
 
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -27,11 +28,13 @@ class OdeScene final : public Scene {
  public:
   explicit OdeScene(const SceneMoves& moves);
 
-  void add_group();
-  /// The parts in order of their numbers.
-  void add_part(dGeomID geom, int group, std::uint32_t category, bool moving);
+  // Numbers of groups and parts are the caller's, who may use those of removed things again.
+  void add_group(int group);
+  void add_part(int number, dGeomID geom, int group, std::uint32_t category, bool moving);
   /// From now on rays see the parts of the group.
   void close_group(int group);
+  /// Rays see these parts, all that the group has, no more.
+  void remove_group(int group, std::span<const int> parts);
 
   std::optional<RayHit> cast(const Vector3d& origin_W, const Vector3d& direction_W, double range_max_m,
                              const RayFilter& filter) const override;
@@ -39,10 +42,11 @@ class OdeScene final : public Scene {
 
  private:
   struct Part {
-    dGeomID geom;
-    int group;
-    std::uint32_t category;
-    int kind;  // ODE's class of geom
+    dGeomID geom = nullptr;
+    int group = -1;
+    std::uint32_t category = 0;
+    int kind = -1;                 // ODE's class of geom
+    int layer = -1, cluster = -1;  // where rays find it; -1: not closed yet, a plane, or removed
   };
   /// Parts that are found together: the moving ones of a group, or one fixed part.
   struct Cluster {
@@ -62,6 +66,8 @@ class OdeScene final : public Scene {
   /// A fan under way.
   struct FanSearch;
 
+  void add_cluster(int layer, Cluster cluster);
+  void remove_cluster(int layer, int number);
   void refresh(Layer& layer, std::uint64_t moves) const;
   void refresh() const;
   bool passes(const Cluster& cluster, const RayFilter& filter) const {

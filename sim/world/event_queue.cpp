@@ -26,6 +26,11 @@ bool EventQueue::take_due(Time now, Event& event) {
   return true;
 }
 
+void EventQueue::forget_device(int device) {
+  if (std::erase_if(heap_, [&](const Event& event) { return event.device == device; }) > 0)
+    std::make_heap(heap_.begin(), heap_.end(), later);
+}
+
 void EventQueue::hash_state(StateHash& hash) const {
   // The heap's layout depends on its history; the order of delivery is what counts.
   std::vector<const Event*> ordered;

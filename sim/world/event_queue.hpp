@@ -26,6 +26,8 @@ class EventQueue {
   void schedule(Event event);
   /// Takes the next event that is due at or before `now`; false when there is none.
   bool take_due(Time now, Event& event);
+  /// Drops what waits for a device that goes.
+  void forget_device(int device);
   std::size_t size() const { return heap_.size(); }
   void hash_state(StateHash& hash) const;
 

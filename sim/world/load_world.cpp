@@ -2,38 +2,18 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <set>
 
 #include "sim/bus/bus.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
+#include "sim/world/vehicle_loader.hpp"
 
 namespace sim {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-using Parameters = std::vector<std::pair<std::string, ConfigNode>>;
-
-/// Where a file named in a world is found: beside it, then in ../vehicles.
-std::string find_file(const std::string& file, const SourcePlace& named_in) {
-  const fs::path directory = named_in.file ? fs::path(*named_in.file).parent_path() : fs::path();
-  for (const fs::path& candidate : {directory / file, directory / ".." / "vehicles" / file}) {
-    std::error_code ignored;
-    if (fs::is_regular_file(candidate, ignored)) return candidate.lexically_normal().string();
-  }
-  return {};
-}
-
-bool mentions(const ConfigNode& node, std::string_view text) {
-  if (node.scalar.find(text) != std::string::npos) return true;
-  return std::any_of(node.items.begin(), node.items.end(),
-                     [&](const ConfigNode& item) { return mentions(item, text); }) ||
-         std::any_of(node.entries.begin(), node.entries.end(),
-                     [&](const ConfigNode::Entry& entry) { return mentions(entry.value, text); });
-}
 
 ConfigNode scalar_node(const std::string& text, const SourcePlace& place) {
   ConfigNode node;
@@ -42,116 +22,6 @@ ConfigNode scalar_node(const std::string& text, const SourcePlace& place) {
   node.place = place;
   return node;
 }
-
-/// Turns the entries of `vehicles:` into vehicle configurations.
-class VehicleLoader {
- public:
-  VehicleLoader(WorldConfig& world, Diagnostics& diagnostics) : world_(world), diagnostics_(diagnostics) {}
-
-  void load(const VehicleEntry& entry) {
-    const std::string who = "vehicle '" + entry.name + "'";
-    const ConfigNode* model = model_of(entry, who);
-    if (model == nullptr) return;
-    const Pose X_WE = make_pose(entry.position_m, entry.rpy_rad);
-    const std::vector<Pose> poses = entry.count == 1
-                                        ? std::vector<Pose>{X_WE}
-                                        : place_instances(entry.placement, entry.count, X_WE,
-                                                          static_cast<std::uint64_t>(world_.run.seed), entry.name);
-    const bool alike = !mentions(*model, "${index}") && !mentions(entry.parameters, "${index}") &&
-                       !mentions(entry.overrides, "${index}");
-    std::shared_ptr<const VehicleConfig> shared;
-    for (int i = 0; i < entry.count; ++i) {
-      const std::string name = entry.count == 1 ? entry.name : entry.name + std::to_string(i + 1);
-      if (!shared || !alike) shared = instance(entry, *model, name, i + 1);
-      world_.vehicles.push_back({entry.place, name, poses[static_cast<std::size_t>(i)], shared});
-    }
-  }
-
-  /// Fills `file:` entries of the tree with what the files said.
-  void resolve(ConfigNode& world_node) const {
-    ConfigNode* vehicles = world_node.find("vehicles");
-    if (vehicles == nullptr) return;
-    for (ConfigNode& vehicle : vehicles->items)
-      for (ConfigNode::Entry& entry : vehicle.entries) {
-        if (entry.key != "file") continue;
-        const auto found = files_.find(find_file(entry.value.scalar, vehicle.place));
-        if (found == files_.end()) continue;
-        entry.key = "model";
-        entry.value = found->second;
-      }
-  }
-
- private:
-  const ConfigNode* model_of(const VehicleEntry& entry, const std::string& who) {
-    if (entry.file.empty()) return model_of_node(entry.model, who);
-    const std::string path = find_file(entry.file, entry.place);
-    if (path.empty()) {
-      diagnostics_.error(entry.place, who,
-                         "there is no vehicle file '" + entry.file + "' beside the world file or in ../vehicles");
-      return nullptr;
-    }
-    auto [at, fresh] = files_.try_emplace(path);
-    if (fresh) at->second = load_config_file(path, diagnostics_);
-    return at->second.kind == ConfigNode::Kind::map ? &at->second : nullptr;
-  }
-
-  const ConfigNode* model_of_node(const ConfigNode& model, const std::string& who) {
-    if (model.kind == ConfigNode::Kind::map) return &model;
-    // An entry without a model at all was reported by the reader.
-    if (model.place.file != nullptr) diagnostics_.error(model.place, who, "'model' must be a map, got " + shown(model));
-    return nullptr;
-  }
-
-  std::shared_ptr<const VehicleConfig> instance(const VehicleEntry& entry, const ConfigNode& model,
-                                                const std::string& name, int index) {
-    const std::string who = "vehicle '" + name + "'";
-    ConfigNode tree = model;
-    for (const ConfigNode::Entry& change : entry.overrides.entries)
-      set_config_path(tree, change.key, change.value, change.place, diagnostics_);
-    const Parameters parameters = parameters_of(entry, model, who, index);
-    substitute_parameters(tree, parameters, who, diagnostics_);
-    auto config = std::make_shared<VehicleConfig>();
-    ParamReader in(tree, who, diagnostics_);
-    for (const char* kind : {"material", "category"}) declare_all(in, kind);
-    config->read(in);
-    in.finish();
-    return config;
-  }
-
-  void declare_all(ParamReader& in, const char* kind) const {
-    if (kind == std::string("material")) {
-      in.declare(kind, "default");
-      for (const MaterialConfig& material : world_.materials) in.declare(kind, material.name);
-    } else {
-      in.declare(kind, "solid");
-      for (const std::string& category : world_.categories) in.declare(kind, category);
-    }
-  }
-
-  Parameters parameters_of(const VehicleEntry& entry, const ConfigNode& model, const std::string& who, int index) {
-    Parameters parameters;
-    parameters.emplace_back("index", scalar_node(std::to_string(index), entry.place));
-    parameters.emplace_back("name", scalar_node(entry.name, entry.place));
-    const ConfigNode* defaults = model.find("parameters");
-    if (defaults != nullptr)
-      for (const ConfigNode::Entry& each : defaults->entries) parameters.emplace_back(each.key, each.value);
-    for (const ConfigNode::Entry& given : entry.parameters.entries) {
-      const auto known =
-          std::find_if(parameters.begin(), parameters.end(), [&](const auto& each) { return each.first == given.key; });
-      if (known == parameters.end()) {
-        diagnostics_.error(given.place, who, "the vehicle has no parameter '" + given.key + "'");
-        continue;
-      }
-      known->second = given.value;
-      substitute_parameters(known->second, {parameters[0]}, who, diagnostics_);
-    }
-    return parameters;
-  }
-
-  WorldConfig& world_;
-  Diagnostics& diagnostics_;
-  std::map<std::string, ConfigNode> files_;
-};
 
 /// Materials, contacts and categories that vehicles bring.  The world's own contacts come after, so that they win.
 void gather_from_vehicles(WorldConfig& world) {
@@ -191,14 +61,9 @@ void check_channels(const WorldConfig& world, Diagnostics& diagnostics) {
                                                         : channel_name(device.channel, vehicle.name, device.name);
       for (const std::string& channel : {report, channel_name(world.channels.command, vehicle.name, device.name),
                                          channel_name(world.channels.truth, vehicle.name, device.name)}) {
-        if (channel.empty() || channel.size() > Bus::max_channel_length)
-          diagnostics.error(
-              device.place, who,
-              "a channel must have 1 to 63 characters, got " + std::to_string(channel.size()) + ": '" + channel + "'");
-        else if (!taken.insert(channel).second)
-          diagnostics.error(device.place, who, "channel '" + channel + "' is used twice");
-        else if (channel.starts_with("sim."))
-          diagnostics.error(device.place, who, "channel '" + channel + "' belongs to the simulator: sim.*");
+        const std::string error = channel_error(channel, taken.contains(channel));
+        if (!error.empty()) diagnostics.error(device.place, who, error);
+        taken.insert(channel);
       }
     }
 }
@@ -268,10 +133,12 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   ParamReader in(root, "", diagnostics);
   loaded.config.read(in);
   in.finish();
+  if (file.file != nullptr) loaded.config.file = *file.file;
   if (options.seed) loaded.config.run.seed = *options.seed;
   if (loaded.config.name.empty() && file.file != nullptr) loaded.config.name = fs::path(*file.file).stem().string();
   VehicleLoader vehicles(loaded.config, diagnostics);
-  for (const VehicleEntry& entry : loaded.config.vehicle_entries) vehicles.load(entry);
+  for (const VehicleEntry& entry : loaded.config.vehicle_entries)
+    for (VehicleInstance& instance : vehicles.load(entry)) loaded.config.vehicles.push_back(std::move(instance));
   check_channels(loaded.config, diagnostics);
   diagnostics.throw_if_any();
   gather_from_vehicles(loaded.config);
@@ -297,26 +164,6 @@ LoadedWorld load_world_text(const std::string& text, const std::string& file_nam
   Diagnostics diagnostics;
   ConfigNode root = parse_config_text(text, file_name, diagnostics);
   return load(std::move(root), {intern_file_name(file_name), 0, 0}, options, diagnostics);
-}
-
-VehicleConfig load_vehicle(const std::string& path) {
-  Diagnostics diagnostics;
-  ConfigNode tree = load_config_file(path, diagnostics);
-  diagnostics.throw_if_any();
-  std::vector<std::pair<std::string, ConfigNode>> parameters;
-  parameters.emplace_back("index", scalar_node("1", tree.place));
-  parameters.emplace_back("name", scalar_node("vehicle", tree.place));
-  if (const ConfigNode* defaults = tree.find("parameters"))
-    for (const ConfigNode::Entry& each : defaults->entries) parameters.emplace_back(each.key, each.value);
-  substitute_parameters(tree, parameters, "", diagnostics);
-  VehicleConfig config;
-  ParamReader in(tree, "", diagnostics);
-  in.declare("material", "default");
-  in.declare("category", "solid");
-  config.read(in);
-  in.finish();
-  diagnostics.throw_if_any();
-  return config;
 }
 
 }  // namespace sim

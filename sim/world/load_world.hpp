@@ -24,7 +24,4 @@ LoadedWorld load_world(const std::string& path, const LoadOptions& options = {})
 /// The same from text.  `file_name` is used in messages, its directory to find vehicle files.
 LoadedWorld load_world_text(const std::string& text, const std::string& file_name, const LoadOptions& options = {});
 
-/// Reads and checks a vehicle file by itself, with its default parameters.
-VehicleConfig load_vehicle(const std::string& path);
-
 }  // namespace sim

@@ -8,9 +8,10 @@
 
 namespace sim {
 
-World::World(const WorldConfig& config, Bus& bus, PortOpener open_port)
+World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinder find_bus)
     : config_(config),
       bus_(bus),
+      find_bus_(std::move(find_bus)),
       open_port_(std::move(open_port)),
       step_us_(from_seconds(config.physics.step_s).count()),
       step_s_(config.physics.step_s),
@@ -43,37 +44,53 @@ const WorldObject& World::build_object(const ObjectConfig& config, const std::st
   BodyConfig body;
   body.parts = config.parts;
   body.name = "body";
-  object.body = &physics_->add_body(object.group, body, X_WE, config.fixed);
+  try {
+    object.body = &physics_->add_body(object.group, body, X_WE, config.fixed ? Motion::fixed : Motion::free);
+  } catch (...) {
+    physics_->remove_group(object.group);
+    throw;
+  }
   physics_->close_group(object.group);
   ++generation_;
   return objects_.insert_or_assign(name, std::move(object)).first->second;
 }
 
 Vehicle& World::build_vehicle(const VehicleInstance& instance) {
-  const VehicleConfig& config = *instance.config;
-  const int group = physics_->add_group(instance.name, config.self_collision);
-  auto owned = std::make_unique<Vehicle>(instance.name, next_vehicle_number_++, group, instance.config);
-  Vehicle& vehicle = *owned;
-  for (const BodyConfig& body : config.bodies)
-    vehicle.add_body(body.name, physics_->add_body(group, body, instance.X_WV));
-  for (const JointConfig& joint : config.joints) {
-    Body* second = joint.bodies[1] == "world" ? nullptr : &vehicle.body(joint.bodies[1]);
-    vehicle.add_joint(joint.name,
-                      physics_->add_joint(group, joint, vehicle.body(joint.bodies[0]), second, instance.X_WV));
-  }
-  physics_->close_group(group);
-  vehicles_.push_back(std::move(owned));
+  const int group = physics_->add_group(instance.name, instance.config->self_collision);
+  vehicles_.push_back(std::make_unique<Vehicle>(instance.name, next_vehicle_number_++, group, instance.config));
+  Vehicle& vehicle = *vehicles_.back();
   vehicles_by_name_.emplace(instance.name, &vehicle);
-  for (const DeviceConfig& device : config.devices) add_device(vehicle, device, bus_);
+  try {
+    build_parts_of(vehicle, instance);
+  } catch (...) {  // a mesh that is no solid, a port that is taken: nothing of it stays
+    take_apart(vehicle);
+    throw;
+  }
   ++generation_;
   return vehicle;
 }
 
+void World::build_parts_of(Vehicle& vehicle, const VehicleInstance& instance) {
+  const VehicleConfig& config = *instance.config;
+  for (const BodyConfig& body : config.bodies)
+    vehicle.add_body(body.name, physics_->add_body(vehicle.group(), body, instance.X_WV));
+  for (const JointConfig& joint : config.joints) {
+    Body* second = joint.bodies[1] == "world" ? nullptr : &vehicle.body(joint.bodies[1]);
+    vehicle.add_joint(
+        joint.name, physics_->add_joint(vehicle.group(), joint, vehicle.body(joint.bodies[0]), second, instance.X_WV));
+  }
+  physics_->close_group(vehicle.group());
+  for (const DeviceConfig& device : config.devices) add_device(vehicle, device, bus_of(instance.bus));
+}
+
 void World::add_device(Vehicle& vehicle, const DeviceConfig& config, Bus& bus) {
-  const auto free = std::find(devices_.begin(), devices_.end(), nullptr);
-  const auto number = static_cast<int>(free - devices_.begin());
-  if (free == devices_.end()) devices_.emplace_back();
+  if (free_numbers_.empty()) {
+    free_numbers_.push_back(static_cast<int>(devices_.size()));
+    devices_.emplace_back();
+  }
+  const int number = free_numbers_.back();
   auto device = std::make_unique<MountedDevice>(*this, vehicle, config, host_, bus, number);
+  free_numbers_.pop_back();
   vehicle.add_device(*device);
   for (const ChannelKind kind : {ChannelKind::report, ChannelKind::command, ChannelKind::truth})
     channels_.insert(channel_of(vehicle.name(), config, kind));
@@ -132,6 +149,10 @@ std::string World::channel_of(const std::string& vehicle, const DeviceConfig& de
   if (kind == ChannelKind::command) return channel_name(channels.command, vehicle, device.name);
   if (kind == ChannelKind::truth) return channel_name(channels.truth, vehicle, device.name);
   return channel_name(device.channel.empty() ? channels.report : device.channel, vehicle, device.name);
+}
+
+Bus& World::bus_of(const std::string& name) {
+  return name.empty() || !find_bus_ ? bus_ : find_bus_(name);
 }
 
 void World::schedule_arrival(int device, Time due, Bytes payload) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -20,6 +21,9 @@
 #include "sim/world/world_config.hpp"
 
 namespace sim {
+
+/// The bus of a name.
+using BusFinder = std::function<Bus&(const std::string& name)>;
 
 /// What a step of the world cost in work; equal in every run.
 struct WorldCounts {
@@ -54,7 +58,8 @@ class World {
  public:
   /// `config` must outlive the world.  `open_port` serves devices that talk through a pseudo-terminal or FIFO.
   /// Throws ConfigError for what only building can find (mesh files, masses).
-  World(const WorldConfig& config, Bus& bus, PortOpener open_port = {});
+  /// `find_bus` gives the bus of a name in `config.buses`; without it everybody is on `bus`.
+  World(const WorldConfig& config, Bus& bus, PortOpener open_port = {}, BusFinder find_bus = {});
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
@@ -92,6 +97,7 @@ class World {
   const Vehicle& add_vehicle(const VehicleInstance& instance);
   /// Throws WorldError when there is none, or when a metric scores it.
   void remove_vehicle(const std::string& name);
+  void check_removable(const std::string& vehicle) const;
   /// Moves all bodies of a vehicle so that its frame stands at X_WV, at rest.  Throws WorldError.
   void move_vehicle(const std::string& name, const Pose& X_WV);
   /// Adds one object (config.count is not looked at).  Throws ConfigError as add_vehicle does.
@@ -108,6 +114,8 @@ class World {
   /// The run ends after this step; the first call counts.
   void end(const EndOfRun& end);
   const std::optional<EndOfRun>& ended() const { return ended_; }
+  /// Carries out one action, as in `events:`.  Throws ConfigError.
+  void run_action(const ConfigNode& action);
   /// Warns of something that went wrong in the world and counts it; the same line is told once.
   void complain(const std::string& who, const std::string& text);
 
@@ -133,8 +141,11 @@ class World {
   void add_objects();
   const WorldObject& build_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE);
   Vehicle& build_vehicle(const VehicleInstance& instance);
+  void build_parts_of(Vehicle& vehicle, const VehicleInstance& instance);
+  Bus& bus_of(const std::string& name);
   void add_device(Vehicle& vehicle, const DeviceConfig& config, Bus& bus);
   void remove_device(MountedDevice& device);
+  void take_apart(Vehicle& vehicle);
   Vehicle& vehicle_named(const std::string& name) const;
   const WorldObject& object_named(const std::string& name) const;
   MountedDevice& device_named(const std::string& name) const;
@@ -145,6 +156,7 @@ class World {
 
   const WorldConfig& config_;
   Bus& bus_;
+  BusFinder find_bus_;
   PortOpener open_port_;
   std::int64_t step_us_;
   double step_s_;
@@ -165,6 +177,7 @@ class World {
   std::uint64_t generation_ = 0;
   std::optional<EndOfRun> ended_;
   std::vector<std::unique_ptr<MountedDevice>> devices_;
+  std::vector<int> free_numbers_;  // of devices that were removed; the last is used first
   // The devices each stage visits, in device order.
   std::vector<MountedDevice*> listening_, acting_, sensing_;
 };

@@ -6,6 +6,8 @@
 #include <ctime>
 #include <set>
 
+#include "sim/bus/bus.hpp"
+
 namespace sim {
 
 void OriginConfig::read(ParamReader& in) {
@@ -28,6 +30,7 @@ void ChannelConfig::read(ParamReader& in) {
 }
 
 void ObjectConfig::read(ParamReader& in) {
+  if (in.node() != nullptr) place = in.node()->place;
   in.require("name");
   in.read_name("name", name, "name of the object, unique in the world");
   in.read("position_m", position_m, any_number(), "place in the world");
@@ -52,9 +55,18 @@ void VehicleEntry::read(ParamReader& in) {
   in.read("count", count, between(1, 100000), "how many; named NAME1, NAME2, ...");
   in.read("placement", placement, "where the instances stand when there is a count");
   in.read_raw("parameters", parameters, "values of the vehicle file's ${names}; ${index} counts from 1");
+  in.read_reference("bus", bus, "bus", "bus of its own, named in `buses`; unset: the world's");
   in.read_raw("overrides", overrides, "dotted path: value, such as devices.lidar.rate_hz: 5");
   if (!in.describing() && in.has("file") == in.has("model"))
     in.error(in.has("file") ? "needs either 'file' or 'model', not both" : "needs either 'file' or 'model'");
+}
+
+void BusConfig::read(ParamReader& in) {
+  in.require("name");
+  in.read_name("name", name, "name of the bus");
+  in.require("lcm_url");
+  in.read("lcm_url", lcm_url, "LCM URL, such as udpm://239.255.76.67:7668?ttl=0; each bus has its own port");
+  if (in.has("lcm_url") && lcm_url.empty()) in.error("lcm_url", "'lcm_url' must not be empty");
 }
 
 void ProcessConfig::read(ParamReader& in) {
@@ -63,6 +75,7 @@ void ProcessConfig::read(ParamReader& in) {
   in.require("command");
   in.read("command", command, "program and its arguments; {lcm_url} is replaced");
   in.read("client", client, "the name it joins the lockstep with; the run then waits for it");
+  in.read_reference("bus", bus, "bus", "its LCM URL is that of this bus, named in `buses`; unset: the world's");
   in.read_choice("on_exit", on_exit, {"continue", "end"}, "when it ends before the run does");
   if (in.has("command") && command.empty() && in.child("command")->scalar.empty())
     in.error("command", "'command' must name a program");
@@ -158,6 +171,8 @@ void WorldConfig::read(ParamReader& in) {
   in.read("state_rate_hz", state_rate_hz, between(0, 1e6), "of sim.state and sim.clock; 0: never");
   in.read_list("objects", objects, "object", "things without devices");
   for (const ObjectConfig& object : objects) in.declare("object", object.name);
+  in.read_list("buses", buses, "bus", "buses beside the world's, for vehicles that hear each other by modem only");
+  for (const BusConfig& bus : buses) in.declare("bus", bus.name);
   in.read_list("vehicles", vehicle_entries, "vehicle", "vehicles, by file or model");
   for (const VehicleEntry& entry : vehicle_entries) {
     if (entry.count == 1) in.declare("vehicle", entry.name);
@@ -171,6 +186,14 @@ void WorldConfig::read(ParamReader& in) {
   for (const MetricConfig& metric : metrics) in.declare("metric", metric.name);
   declare_figures(in, metrics);
   in.read_list("pass", pass, "rule", "the run passes when every rule holds; else exit code 1");
+}
+
+std::string channel_error(const std::string& channel, bool taken) {
+  if (channel.empty() || channel.size() > Bus::max_channel_length)
+    return "a channel must have 1 to 63 characters, got " + std::to_string(channel.size()) + ": '" + channel + "'";
+  if (taken) return "channel '" + channel + "' is used twice";
+  if (channel.starts_with("sim.")) return "channel '" + channel + "' belongs to the simulator: sim.*";
+  return {};
 }
 
 std::string channel_name(const std::string& pattern, const std::string& vehicle, const std::string& device) {

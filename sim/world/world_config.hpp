@@ -46,6 +46,7 @@ struct ObjectConfig {
   int count = 1;
   PlacementConfig placement;
   std::vector<PartConfig> parts;
+  SourcePlace place;
   void read(ParamReader& in);
 };
 
@@ -60,6 +61,7 @@ struct VehicleEntry {
   PlacementConfig placement;
   ConfigNode parameters;  ///< name: value
   ConfigNode overrides;   ///< dotted path: value
+  std::string bus;        ///< of `buses:`; empty: the world's
   SourcePlace place;
   void read(ParamReader& in);
 };
@@ -70,6 +72,14 @@ struct VehicleInstance {
   std::string name;
   Pose X_WV = Pose::Identity();
   std::shared_ptr<const VehicleConfig> config;  ///< shared by instances that are alike
+  std::string bus;                              ///< name of its own bus; empty: the world's
+};
+
+/// A bus beside the world's, so that robots cannot talk around the simulated modem.
+struct BusConfig {
+  std::string name;
+  std::string lcm_url;  ///< such as udpm://239.255.76.67:7668?ttl=0
+  void read(ParamReader& in);
 };
 
 /// An external program of the experiment, started only with --launch.
@@ -77,6 +87,7 @@ struct ProcessConfig {
   std::string name;
   std::vector<std::string> command;  ///< program and arguments; looked up beside the shoal program, then in PATH
   std::string client;                ///< name it joins the lockstep with; empty: it does not
+  std::string bus;                   ///< of `buses:`; empty: the world's
   std::string on_exit = "continue";  ///< when it ends before the run: continue, end (exit code 1)
   void read(ParamReader& in);
 };
@@ -117,6 +128,7 @@ struct LimitsConfig {
 
 /// Everything a world file says.
 struct WorldConfig {
+  std::string file;  ///< where it was read
   int shoal = 1;
   std::string name;
   std::string description;
@@ -130,6 +142,7 @@ struct WorldConfig {
   ChannelConfig channels;
   RunConfig run;
   std::vector<ObjectConfig> objects;
+  std::vector<BusConfig> buses;
   std::vector<VehicleEntry> vehicle_entries;
   std::vector<VehicleInstance> vehicles;  ///< filled by load_world
   std::vector<ProcessConfig> processes;
@@ -141,6 +154,9 @@ struct WorldConfig {
 
   void read(ParamReader& in);
 };
+
+/// What is wrong with a channel of a device; empty: nothing.  `taken`: another device has it.
+std::string channel_error(const std::string& channel, bool taken);
 
 /// The channel name a template gives.
 std::string channel_name(const std::string& pattern, const std::string& vehicle, const std::string& device);

@@ -30,7 +30,8 @@ struct Arena {
       rovers.back().left->set_motor(3 + 0.1 * (i % 10), 5);
       rovers.back().right->set_motor(-2 + 0.1 * (i % 7), 5);
       if (i % 2 == 0)
-        add(*world, body("box" + std::to_string(i), {box({0.2, 0.2, 0.6}, 0)}), translation(x + 1, y + 1, 0.3), true);
+        add(*world, body("box" + std::to_string(i), {box({0.2, 0.2, 0.6}, 0)}), translation(x + 1, y + 1, 0.3),
+            Motion::fixed);
     }
     for (int i = 0; i < 100; ++i) world->step(step_number++);
   }
@@ -82,7 +83,7 @@ std::unique_ptr<PhysicsWorld> strewn_boxes(int count) {
   add_ground(*world);
   for (int i = 0; i < count; ++i)
     add(*world, body("box" + std::to_string(i), {box({uniform(0.3, 1.5), uniform(0.3, 1.5), 2}, 0)}),
-        sim::make_pose({uniform(0, 100), uniform(0, 100), 1}, {0, 0, uniform(0, 3)}), true);
+        sim::make_pose({uniform(0, 100), uniform(0, 100), 1}, {0, 0, uniform(0, 3)}), Motion::fixed);
   return world;
 }
 

@@ -151,11 +151,8 @@ void Results::write(const std::string& file, const std::string& text) const {
 
 void Results::write_outlines() const {
   std::string text;
-  std::size_t body = 0;  // objects are built first, one body each
-  for (const sim::ObjectConfig& object : world_.config().objects)
-    for (int i = 0; i < object.count; ++i, ++body)
-      for (const sim::PartConfig& part : object.parts)
-        text += outline_of(part, world_.physics().bodies()[body]->X_WB());
+  for (const auto& [name, object] : world_.objects())
+    for (const sim::PartConfig& part : object.config.parts) text += outline_of(part, object.body->X_WB());
   write("outlines.dat", text.empty() ? "0 0\n" : text);
 }
 

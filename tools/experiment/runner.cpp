@@ -9,13 +9,11 @@
 #include <thread>
 
 #include "bridges/lcm/bus_error.hpp"
-#include "bridges/lcm/lcm_bus.hpp"
-#include "bridges/lcm/recording_bus.hpp"
 #include "bridges/lcm/sim_service.hpp"
 #include "bridges/serial/serial_port.hpp"
-#include "sim/bus/in_process_bus.hpp"
 #include "tools/experiment/process_group.hpp"
 #include "tools/experiment/progress.hpp"
+#include "tools/experiment/run_buses.hpp"
 
 namespace tools {
 
@@ -39,37 +37,6 @@ struct RunError : std::runtime_error {
   int exit_code;
   std::string ended;
 };
-
-/// The buses of a run, from the network inwards.
-struct Buses {
-  std::unique_ptr<sim::Bus> network;
-  bridges::LcmBus* lcm = nullptr;  ///< the same, when it is LCM
-  std::unique_ptr<bridges::RecordingBus> recorder;
-  sim::Bus& outer() { return recorder ? static_cast<sim::Bus&>(*recorder) : *network; }
-
-  void wait(std::chrono::milliseconds time) {
-    if (lcm != nullptr)
-      lcm->wait_for_message(time);
-    else
-      std::this_thread::sleep_for(time);
-  }
-};
-
-Buses open_buses(const sim::LoadedWorld& loaded, const RunOptions& options) {
-  Buses buses;
-  if (options.bus == "none") {
-    buses.network = std::make_unique<sim::InProcessBus>();
-  } else {
-    auto lcm = std::make_unique<bridges::LcmBus>(options.lcm_url);
-    buses.lcm = lcm.get();
-    buses.network = std::move(lcm);
-  }
-  if (!options.record.empty())
-    buses.recorder = std::make_unique<bridges::RecordingBus>(
-        *buses.network, options.record, loaded.config.epoch_us,
-        options.overwrite ? bridges::Existing::overwrite : bridges::Existing::refuse);
-  return buses;
-}
 
 /// Holds simulated time to a multiple of wall time.
 class Pacer {
@@ -115,13 +82,15 @@ class Run {
   Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       : loaded_(loaded),
         options_(options),
-        buses_(open_buses(loaded, options)),
-        world_(loaded.config, buses_.outer(), bridges::open_serial_port),
-        service_(buses_.outer(), *buses_.network, world_, control_, lockstep_,
+        buses_(loaded.config, options),
+        world_(loaded.config, buses_.outer(), bridges::open_serial_port,
+               [this](const std::string& name) -> sim::Bus& { return buses_.of(name); }),
+        service_(buses_.outer(), buses_.network(), world_, control_, lockstep_,
                  {sim::to_yaml(loaded.resolved), version_text()}),
         scoring_(world_, buses_.outer()),
         duration_s_(options.duration_s.value_or(loaded.config.run.duration_s)),
         progress_(duration_s_, options.quiet) {
+    for (sim::Bus* bus : buses_.other_networks()) service_.serve_vehicles(*bus);
     control_.speed = options.speed.value_or(loaded.config.run.speed);
     control_.paused = options.paused;
     if (!options.results.empty()) results_ = std::make_unique<Results>(options.results, world_);
@@ -167,17 +136,17 @@ class Run {
   void start_clients() {
     std::vector<std::string> awaited = options_.await;
     const bool takes_clients = !awaited.empty() || (options_.launch && !loaded_.config.processes.empty());
-    if (takes_clients && buses_.lcm != nullptr &&
+    if (takes_clients && buses_.over_lcm() &&
         service_.hears_another_simulator([this](std::chrono::milliseconds time) { buses_.wait(time); })) {
       alone_ = false;
       throw RunError(4, "bus",
-                     "another simulator publishes on " + buses_.lcm->url() +
+                     "another simulator publishes on " + buses_.url("") +
                          "; their clients would mix: choose another port with --lcm-url");
     }
     if (options_.launch) {
       for (const sim::ProcessConfig& process : loaded_.config.processes) {
         try {
-          processes_.start(process, buses_.lcm->url(), options_.results);
+          processes_.start(process, buses_.url(process.bus), options_.results);
         } catch (const std::runtime_error& error) {
           throw RunError(4, "process", error.what());
         }
@@ -214,7 +183,7 @@ class Run {
 
   void loop() {
     service_.publish_step();
-    buses_.outer().end_of_step();
+    buses_.end_of_step();
     synchronize();
     const sim::Time end = duration_s_ > 0 ? sim::from_seconds(duration_s_) : sim::Time::max();
     while (wanted() && world_.now() < end) {
@@ -233,16 +202,15 @@ class Run {
   }
 
   void step() {
-    if (buses_.recorder) buses_.recorder->set_time(world_.now());
+    buses_.set_time(world_.now());
     world_.step();
     control_.step_taken();
     service_.publish_step();
     scoring_.after_step();
     if (results_) results_->after_step();
-    buses_.outer().end_of_step();
+    buses_.end_of_step();
     synchronize();
-    if (buses_.recorder)
-      if (const auto error = buses_.recorder->error()) throw RunError(4, "bus", *error);
+    if (const auto error = buses_.record_error()) throw RunError(4, "bus", *error);
     if (results_)
       if (const auto error = results_->error()) throw RunError(4, "bus", *error);
     if (world_.step_number() % 100 == 0) check_bus();
@@ -277,8 +245,7 @@ class Run {
   }
 
   void check_bus() const {
-    if (buses_.lcm != nullptr && !buses_.lcm->connected())
-      throw RunError(4, "bus", "the connection to " + buses_.lcm->url() + " was lost");
+    if (const auto lost = buses_.lost_connection()) throw RunError(4, "bus", *lost);
   }
 
   void check_processes() {
@@ -293,23 +260,21 @@ class Run {
       else
         spdlog::info("{}", text);
       gone_[exit.client] = true;
-      lockstep_.leave(exit.client);
+      service_.client_gone(exit.client);
     }
   }
 
   std::uint64_t messages() const {
-    const sim::BusCounts counts = buses_.network->counts();
+    const sim::BusCounts counts = buses_.counts();
     return counts.published + counts.received;
   }
 
   void finish(Summary& summary) {
     if (alone_) service_.publish_end();  // else it would end the other simulator's clients
     processes_.stop();
-    if (buses_.recorder) {
-      buses_.recorder->close();
-      if (const auto error = buses_.recorder->error(); error && summary.exit_code == 0) fail(summary, 4, "bus", *error);
-    }
-    const sim::BusCounts counts = buses_.network->counts();
+    buses_.close_record();
+    if (const auto error = buses_.record_error(); error && summary.exit_code == 0) fail(summary, 4, "bus", *error);
+    const sim::BusCounts counts = buses_.counts();
     summary.world = loaded_.config.name;
     summary.seed = loaded_.config.run.seed;
     summary.steps = world_.step_number();
@@ -350,7 +315,7 @@ class Run {
 
   const sim::LoadedWorld& loaded_;
   const RunOptions& options_;
-  Buses buses_;
+  RunBuses buses_;
   sim::RunControl control_;
   sim::Lockstep lockstep_;
   sim::World world_;

@@ -3,6 +3,7 @@
 
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/load_world.hpp"
+#include "sim/world/vehicle_loader.hpp"
 #include "sim/world/world.hpp"
 #include "tools/shoal/commands.hpp"
 

@@ -81,7 +81,7 @@ TEST(Body, SpeaksOfItsOwnFrameNotOfTheCentreOfMass) {
 
 TEST(Body, FixedBodyKeepsItsPlace) {
   const auto world = make_world();
-  sim::Body& rock = add(*world, body("rock", {box({1, 1, 1}, 0)}), translation(0, 0, 5), true);
+  sim::Body& rock = add(*world, body("rock", {box({1, 1, 1}, 0)}), translation(0, 0, 5), Motion::fixed);
   rock.add_force_W({0, 0, 1e6}, {0, 0, 5});
   run(*world, 0.1);
   EXPECT_TRUE(rock.fixed());

@@ -144,7 +144,7 @@ TEST(Contact, EntryThatNamesBothMaterialsWinsAndAmongEqualsTheLast) {
   PhysicsWorld world({}, {ice, rubber}, {old_ice_rubber, ice_rubber, ice_any, all}, {}, 1);
   PartConfig ground = plane();
   ground.material = "ice";
-  add(world, body("ground", {ground}), Pose::Identity(), true);
+  add(world, body("ground", {ground}), Pose::Identity(), Motion::fixed);
   PartConfig rubber_box = box({1, 1, 0.2}, 2), plain_box = rubber_box;
   rubber_box.material = "rubber";
   sim::Body& on_rubber = add(world, body("on_rubber", {rubber_box}), translation(0, 0, 0.0995));
@@ -162,7 +162,7 @@ TEST(Categories, BothPartsMustWantTheContact) {
   EXPECT_THROW(world.category_bit("wall"), std::out_of_range);
   PartConfig ground = plane();
   ground.category = "floor";
-  add(world, body("ground", {ground}), Pose::Identity(), true);
+  add(world, body("ground", {ground}), Pose::Identity(), Motion::fixed);
   PartConfig picky = sphere(0.1, 1), easy = sphere(0.1, 1);
   picky.collides_with = {"ghost"};
   const sim::Body& falls = add(world, body("falls", {picky}), translation(0, 0, 0.2));

@@ -19,7 +19,8 @@ std::unique_ptr<PhysicsWorld> pile_and_fleet(const std::string& space, const std
   auto world = make_world(config, {slippery()});
   add_ground(*world);
   for (int i = 0; i < 4; ++i)
-    add(*world, body("wall" + std::to_string(i), {box({6, 0.2, 1}, 0)}), translation(2, 1.5 * i - 2, 0.5), true);
+    add(*world, body("wall" + std::to_string(i), {box({6, 0.2, 1}, 0)}), translation(2, 1.5 * i - 2, 0.5),
+        Motion::fixed);
   for (int i = 0; i < 24; ++i) {
     const double x = -4 + 0.35 * (i % 3) + 0.01 * i, y = 0.35 * (i / 3 % 3) - 0.013 * i, z = 0.3 + 0.5 * (i / 9);
     const PartConfig part = i % 4 == 3 ? sphere(0.2, 1) : box({0.4, 0.4, 0.4}, 1);

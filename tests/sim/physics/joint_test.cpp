@@ -26,7 +26,8 @@ struct Pair {
   explicit Pair(const JointConfig& config, bool to_world = false, const PhysicsConfig& physics = weightless())
       : world(make_world(physics)) {
     const int group = world->add_group("rig");
-    base = &world->add_body(group, body("base", {box({0.2, 0.2, 0.2}, 1000)}), Pose::Identity(), to_world);
+    base = &world->add_body(group, body("base", {box({0.2, 0.2, 0.2}, 1000)}), Pose::Identity(),
+                            to_world ? Motion::fixed : Motion::free);
     arm = &world->add_body(group, body("arm", {box({0.2, 0.2, 0.2}, 1)}, {1, 0, 0}), Pose::Identity());
     joint = &world->add_joint(group, config, *base, arm, Pose::Identity());
     world->close_group(group);
@@ -277,7 +278,7 @@ TEST(Joint, PartsOfJoinedBodiesDoNotCollide) {
 TEST(Joint, BetweenFixedBodiesIsAConfigError) {
   const auto world = make_world();
   const int group = world->add_group("rig");
-  sim::Body& base = world->add_body(group, body("base", {box({1, 1, 1}, 1)}), Pose::Identity(), true);
+  sim::Body& base = world->add_body(group, body("base", {box({1, 1, 1}, 1)}), Pose::Identity(), Motion::fixed);
   EXPECT_THROW(world->add_joint(group, joint("weld", "hinge", {0, 0, 0}), base, nullptr, Pose::Identity()),
                sim::ConfigError);
 }

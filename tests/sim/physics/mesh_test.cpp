@@ -186,7 +186,7 @@ TEST(MeshPart, OpenSurfaceCannotGiveMassButCanStandFixed) {
       error_of([&] { world->add_body(group, body("hull", {mesh_part(file.path(), 500)}), Pose::Identity()); });
   EXPECT_NE(error.find("boat.yaml:7:3: body 'boat/hull': part 1: mesh '"), std::string::npos) << error;
   EXPECT_NE(error.find("has an open surface"), std::string::npos) << error;
-  add(*world, body("deck", {mesh_part(file.path(), 0)}), Pose::Identity(), true);
+  add(*world, body("deck", {mesh_part(file.path(), 0)}), Pose::Identity(), Motion::fixed);
   const sim::Body& ball = add(*world, body("ball", {sphere(0.2, 1)}), translation(1, 0.5, 0.25));
   for (int i = 0; i < 200; ++i) world->step(i);
   EXPECT_NEAR(ball.X_WB().translation().z(), 0.2 - 0.0005, 3e-4);
@@ -198,7 +198,7 @@ TEST(MeshPart, MissingFileIsAConfigErrorAtThePart) {
   PartConfig part = mesh_part("hull.stl", 0);
   part.directory = "/nowhere";
   part.name = "shell";
-  EXPECT_EQ(error_of([&] { world->add_body(group, body("hull", {part}), Pose::Identity(), true); }),
+  EXPECT_EQ(error_of([&] { world->add_body(group, body("hull", {part}), Pose::Identity(), Motion::fixed); }),
             "boat.yaml:7:3: body 'boat/hull': part 'shell': mesh '/nowhere/hull.stl' does not exist");
   EXPECT_TRUE(world->bodies().empty());
   EXPECT_TRUE(world->parts().empty());

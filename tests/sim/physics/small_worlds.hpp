@@ -14,6 +14,7 @@ using sim::BodyConfig;
 using sim::ContactConfig;
 using sim::JointConfig;
 using sim::MaterialConfig;
+using sim::Motion;
 using sim::PartConfig;
 using sim::PhysicsConfig;
 using sim::PhysicsWorld;
@@ -80,15 +81,15 @@ inline Pose translation(double x, double y, double z) {
 }
 
 /// A group of one body.
-inline sim::Body& add(PhysicsWorld& world, const BodyConfig& config, const Pose& X_W, bool fixed = false) {
+inline sim::Body& add(PhysicsWorld& world, const BodyConfig& config, const Pose& X_W, Motion motion = Motion::free) {
   const int group = world.add_group(config.name);
-  sim::Body& added = world.add_body(group, config, X_W, fixed);
+  sim::Body& added = world.add_body(group, config, X_W, motion);
   world.close_group(group);
   return added;
 }
 
 inline sim::Body& add_ground(PhysicsWorld& world, const Pose& X_W = Pose::Identity()) {
-  return add(world, body("ground", {plane()}), X_W, true);
+  return add(world, body("ground", {plane()}), X_W, Motion::fixed);
 }
 
 inline std::unique_ptr<PhysicsWorld> make_world(const PhysicsConfig& config = {},

@@ -26,7 +26,7 @@ struct Hit {
 /// One fixed body of one part at (5, 0, 0), seen from the origin.
 std::optional<RayHit> look_at(const PartConfig& part, const Vector3d& from, const Vector3d& direction) {
   const auto world = make_world();
-  add(*world, body("target", {part}), translation(5, 0, 0), true);
+  add(*world, body("target", {part}), translation(5, 0, 0), Motion::fixed);
   return world->scene().cast(from, direction.normalized(), 100, {});
 }
 
@@ -74,7 +74,7 @@ TEST(Ray, HitsAPlaneAtAnAngle) {
 
 TEST(Ray, EndsAtItsRange) {
   const auto world = make_world();
-  add(*world, body("target", {sphere(1, 0)}), translation(5, 0, 0), true);
+  add(*world, body("target", {sphere(1, 0)}), translation(5, 0, 0), Motion::fixed);
   EXPECT_TRUE(world->scene().cast({0, 0, 0}, {1, 0, 0}, 4.001, {}).has_value());
   EXPECT_FALSE(world->scene().cast({0, 0, 0}, {1, 0, 0}, 3.999, {}).has_value());
   EXPECT_TRUE(world->scene().occluded({0, 0, 0}, {10, 0, 0}, {}));
@@ -84,7 +84,7 @@ TEST(Ray, EndsAtItsRange) {
 TEST(Ray, HitsTheNearestOfMany) {
   const auto world = make_world();
   for (const double x : {30.0, 10.0, 20.0})
-    add(*world, body("b" + std::to_string(x), {box({2, 2, 2}, 0)}), translation(x, 0, 0), true);
+    add(*world, body("b" + std::to_string(x), {box({2, 2, 2}, 0)}), translation(x, 0, 0), Motion::fixed);
   const auto hit = world->scene().cast({0, 0, 0}, {1, 0, 0}, 100, {});
   ASSERT_TRUE(hit.has_value());
   EXPECT_EQ(hit->part, 1);
@@ -94,7 +94,7 @@ TEST(Ray, HitsTheNearestOfMany) {
 
 TEST(Ray, OfTwoPartsInOnePlaceHitsTheLowerNumber) {
   const auto world = make_world();
-  for (const char* name : {"a", "b"}) add(*world, body(name, {box({2, 2, 2}, 0)}), translation(5, 0, 0), true);
+  for (const char* name : {"a", "b"}) add(*world, body(name, {box({2, 2, 2}, 0)}), translation(5, 0, 0), Motion::fixed);
   EXPECT_EQ(world->scene().cast({0, 0, 0}, {1, 0, 0}, 100, {})->part, 0);
 }
 
@@ -108,7 +108,7 @@ TEST(Ray, HitsAMesh) {
   std::fputs("v -1 -1 0\nv -1 1 0\nv 2 0 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n", file);
   std::fclose(file);
   const auto world = make_world();
-  add(*world, body("target", {part}), translation(5, 0, 0), true);
+  add(*world, body("target", {part}), translation(5, 0, 0), Motion::fixed);
   const auto hit = world->scene().cast({0, 0, 0.5}, {1, 0, 0}, 100, {});
   ASSERT_TRUE(hit.has_value());
   EXPECT_NEAR(hit->range_m, 4.5, 1e-6);  // the mesh collider works in single precision
@@ -121,11 +121,11 @@ TEST(Filter, SeesOnlyItsCategoriesAndNotItsOwnGroup) {
   PhysicsWorld world({}, {}, {}, {"glass"}, 1);
   PartConfig pane = box({0.1, 2, 2}, 0);
   pane.category = "glass";
-  add(world, body("pane", {pane}), translation(2, 0, 0), true);
+  add(world, body("pane", {pane}), translation(2, 0, 0), Motion::fixed);
   const int rover = world.add_group("rover");
   world.add_body(rover, body("hull", {box({1, 1, 1}, 5)}, {4, 0, 0}), Pose::Identity());
   world.close_group(rover);
-  add(world, body("wall", {box({0.2, 9, 9}, 0)}), translation(6, 0, 0), true);
+  add(world, body("wall", {box({0.2, 9, 9}, 0)}), translation(6, 0, 0), Motion::fixed);
   const auto part_seen = [&](const RayFilter& filter) {
     const auto hit = world.scene().cast({0, 0, 0}, {1, 0, 0}, 100, filter);
     std::vector<double> fan(1);
@@ -145,7 +145,7 @@ TEST(Scene, SeesBodiesWhereTheyAreAfterTheStep) {
   config.gravity_mps2 = 0;
   const auto world = make_world(config);
   sim::Body& drone = add(*world, body("drone", {sphere(1, 1)}), translation(5, 0, 0));
-  sim::Body& door = add(*world, body("door", {box({1, 9, 9}, 0)}), translation(20, 0, 0), true);
+  sim::Body& door = add(*world, body("door", {box({1, 9, 9}, 0)}), translation(20, 0, 0), Motion::fixed);
   const auto range = [&] { return world->scene().cast({0, 0, 0}, {1, 0, 0}, 100, {})->range_m; };
   EXPECT_NEAR(range(), 4, 1e-12);
   drone.set_velocity_W({10, 0, 0}, {0, 0, 0});
@@ -164,7 +164,7 @@ TEST(Fan, SeesASquareRoom) {
                         translation(0, -2.5, 0)};
   for (int i = 0; i < 4; ++i)
     add(*world, body("wall" + std::to_string(i), {box(i < 2 ? Vector3d(1, 6, 2) : Vector3d(6, 1, 2), 0)}),
-        walls[i] * translation(0, 0, 1), true);
+        walls[i] * translation(0, 0, 1), Motion::fixed);
   Fan fan;
   fan.X_WS = translation(0, 0, 0.5);
   fan.first_angle_rad = -pi;
@@ -208,7 +208,7 @@ std::unique_ptr<PhysicsWorld> random_scene(std::mt19937& random) {
     }
     add(*world, body("b" + std::to_string(i), parts),
         sim::make_pose({uniform(-15, 15), uniform(-15, 15), uniform(-2, 2)}, {uniform(-3, 3), 0, uniform(-3, 3)}),
-        i % 2 == 0);
+        i % 2 == 0 ? Motion::fixed : Motion::free);
   }
   return world;
 }

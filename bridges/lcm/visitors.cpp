@@ -1,0 +1,133 @@
+#include "bridges/lcm/visitors.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <vector>
+
+#include "shoal/message_codec.hpp"
+#include "shoal/sim_vehicle_t.hpp"
+#include "sim/config/message_text.hpp"
+#include "sim/world/vehicle_loader.hpp"
+
+namespace bridges {
+
+namespace {
+
+/// One line: `rover7: lidar (shoal.planar_lidar_t on rover7.lidar, 10 Hz); drive (takes ... on rover7.drive.cmd)`.
+std::string in_words(const shoal::sim_vehicle_t& message) {
+  std::string text = message.vehicle + ":";
+  for (std::size_t i = 0; i < message.device.size(); ++i) {
+    std::vector<std::string> traffic;
+    if (!message.report_channel[i].empty())
+      traffic.push_back(fmt::format("{} on {}, {}", message.report_type[i], message.report_channel[i],
+                                    message.rate_hz[i] > 0 ? fmt::format("{} Hz", message.rate_hz[i]) : "every step"));
+    if (!message.command_channel[i].empty())
+      traffic.push_back(fmt::format("takes {} on {}", message.command_types[i], message.command_channel[i]));
+    text += fmt::format("{} {} ({})", i > 0 ? ";" : "", message.device[i], fmt::join(traffic, "; "));
+  }
+  return text;
+}
+
+shoal::sim_vehicle_t message_of(const sim::Vehicle& vehicle) {
+  shoal::sim_vehicle_t message{};
+  message.vehicle = vehicle.name();
+  message.count = static_cast<std::int32_t>(vehicle.devices().size());
+  for (const sim::MountedDevice* device : vehicle.devices()) {
+    const sim::DeviceType& type = *device->config().device_type;
+    message.device.push_back(device->config().name);
+    message.device_type.push_back(type.name);
+    message.report_channel.push_back(type.reports() ? device->report_channel() : "");
+    message.report_type.push_back(type.report_message);
+    message.rate_hz.push_back(type.reports() ? device->config().rate_hz : 0);
+    message.command_channel.push_back(type.takes_commands() ? device->command_channel() : "");
+    message.command_types.push_back(type.command_messages);
+  }
+  return message;
+}
+
+}  // namespace
+
+std::string Visitors::tell(const sim::Vehicle& vehicle, bool present) {
+  shoal::sim_vehicle_t message = message_of(vehicle);
+  message.utime = world_.epoch_us() + world_.now().count();
+  message.present = present;
+  if (const auto owner = owners_.find(vehicle.name()); owner != owners_.end()) message.client = owner->second.client;
+  shoal::encode_into(message, buffer_);
+  bus_.publish("sim.vehicle", buffer_, world_.now());
+  return in_words(message);
+}
+
+std::string Visitors::spawn(const std::string& client, const std::string& text) {
+  const sim::SpawnRequest request = sim::read_spawn_request(world_.config(), text);
+  if (request.with_client && client.empty())
+    throw std::runtime_error("a vehicle that goes with its client needs a client name");
+  const sim::Vehicle& vehicle = world_.add_vehicle(request.vehicle);
+  owners_[vehicle.name()] = {client, request.with_client};
+  if (request.with_client) {
+    Client& owner = clients_[client];
+    owner.heard = Clock::now();
+    owner.timeout = std::max(owner.timeout, std::chrono::duration<double>(request.alive_timeout_s));
+  }
+  spdlog::info("client '{}' brought vehicle '{}' at {:.3f} s", sim::printable(sim::shortened(client)), vehicle.name(),
+               sim::to_seconds(world_.now()));
+  return tell(vehicle, true);
+}
+
+void Visitors::remove(const std::string& name) {
+  const sim::Vehicle* vehicle = world_.find_vehicle(name);
+  if (vehicle == nullptr) return world_.remove_object(name);
+  const std::string own_name = vehicle->name();
+  // Told first, for then it still knows its channels; a refusal throws before.
+  world_.check_removable(own_name);
+  tell(*vehicle, false);
+  world_.remove_vehicle(own_name);
+  owners_.erase(own_name);
+}
+
+std::string Visitors::describe(const std::string& name) {
+  const sim::Vehicle* vehicle = world_.find_vehicle(name);
+  if (vehicle == nullptr) throw sim::WorldError("there is no vehicle '" + sim::shortened(sim::printable(name)) + "'");
+  return tell(*vehicle, true);
+}
+
+void Visitors::act(const std::string& text) {
+  sim::Diagnostics diagnostics;
+  const sim::ConfigNode action = sim::parse_config_text(text, "do", diagnostics);
+  diagnostics.throw_if_any();
+  world_.run_action(action);
+}
+
+void Visitors::heard_of(const std::string& client) {
+  const auto known = clients_.find(client);
+  if (known != clients_.end()) known->second.heard = Clock::now();
+}
+
+void Visitors::remove_silent() {
+  if (clients_.empty()) return;
+  const Clock::time_point now = Clock::now();
+  std::vector<std::string> silent;
+  for (const auto& [name, client] : clients_)
+    if (now - client.heard > client.timeout) silent.push_back(name);
+  for (const std::string& name : silent) {
+    spdlog::warn("client '{}' is silent: its vehicles go", sim::printable(sim::shortened(name)));
+    remove_those_of(name);
+  }
+}
+
+void Visitors::remove_those_of(const std::string& client) {
+  std::vector<std::string> going;
+  for (const auto& [vehicle, owner] : owners_)
+    if (owner.with_client && owner.client == client) going.push_back(vehicle);
+  for (const std::string& vehicle : going) {
+    try {
+      if (world_.find_vehicle(vehicle) != nullptr) remove(vehicle);  // else an event removed it
+    } catch (const std::runtime_error& error) {
+      spdlog::warn("{}", error.what());
+    }
+    owners_.erase(vehicle);
+  }
+  clients_.erase(client);
+}
+
+}  // namespace bridges

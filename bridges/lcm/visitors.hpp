@@ -1,0 +1,56 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <string>
+
+#include "sim/bus/bus.hpp"
+#include "sim/world/world.hpp"
+
+namespace bridges {
+
+/// The vehicles that clients bring over `sim.control`, and whose they are.  Every vehicle that comes or goes this way
+/// is told on `sim.vehicle`.
+class Visitors {
+ public:
+  Visitors(sim::World& world, sim::Bus& bus) : world_(world), bus_(bus) {}
+
+  /// Adds the vehicle that `text` describes (an entry of `vehicles:` in YAML); returns one line that names it, its
+  /// channels and rates.  Throws sim::ConfigError, with the same lines as for files.
+  std::string spawn(const std::string& client, const std::string& text);
+  /// A vehicle or an object.  Throws sim::WorldError.
+  void remove(const std::string& name);
+  /// Says the same as spawn() did.  Throws sim::WorldError.
+  std::string describe(const std::string& vehicle);
+  /// An action as in `events:`, in YAML.  Throws sim::ConfigError.
+  void act(const std::string& text);
+
+  /// The client lives.
+  void heard_of(const std::string& client);
+  /// Removes the vehicles of clients that said nothing for their time-out (wall time).
+  void remove_silent();
+  /// Removes the vehicles that came with this client and go with it.
+  void remove_those_of(const std::string& client);
+  bool has(const std::string& client) const { return clients_.contains(client); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Client {
+    Clock::time_point heard;
+    std::chrono::duration<double> timeout{0};
+  };
+  struct Owner {
+    std::string client;
+    bool with_client = false;
+  };
+
+  std::string tell(const sim::Vehicle& vehicle, bool present);
+
+  sim::World& world_;
+  sim::Bus& bus_;
+  std::map<std::string, Owner, std::less<>> owners_;    // by vehicle
+  std::map<std::string, Client, std::less<>> clients_;  // those with vehicles that go with them
+  sim::Bytes buffer_;
+};
+
+}  // namespace bridges

@@ -1,0 +1,227 @@
+#include "sim/world/vehicle_loader.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "sim/config/message_text.hpp"
+#include "sim/device/device_registry.hpp"
+
+namespace sim {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+using Parameters = std::vector<std::pair<std::string, ConfigNode>>;
+
+/// Where a file named in a world is found: beside it, then in ../vehicles.
+std::string find_file(const std::string& file, const SourcePlace& named_in) {
+  const fs::path directory = named_in.file ? fs::path(*named_in.file).parent_path() : fs::path();
+  for (const fs::path& candidate : {directory / file, directory / ".." / "vehicles" / file}) {
+    std::error_code ignored;
+    if (fs::is_regular_file(candidate, ignored)) return candidate.lexically_normal().string();
+  }
+  return {};
+}
+
+bool mentions(const ConfigNode& node, std::string_view text) {
+  if (node.scalar.find(text) != std::string::npos) return true;
+  return std::any_of(node.items.begin(), node.items.end(),
+                     [&](const ConfigNode& item) { return mentions(item, text); }) ||
+         std::any_of(node.entries.begin(), node.entries.end(),
+                     [&](const ConfigNode::Entry& entry) { return mentions(entry.value, text); });
+}
+
+ConfigNode scalar_node(const std::string& text, const SourcePlace& place) {
+  ConfigNode node;
+  node.kind = ConfigNode::Kind::scalar;
+  node.scalar = text;
+  node.place = place;
+  return node;
+}
+
+}  // namespace
+
+std::vector<VehicleInstance> VehicleLoader::load(const VehicleEntry& entry) {
+  const std::string who = "vehicle '" + entry.name + "'";
+  const ConfigNode* model = model_of(entry, who);
+  if (model == nullptr) return {};
+  const Pose X_WE = make_pose(entry.position_m, entry.rpy_rad);
+  const std::vector<Pose> poses = entry.count == 1
+                                      ? std::vector<Pose>{X_WE}
+                                      : place_instances(entry.placement, entry.count, X_WE,
+                                                        static_cast<std::uint64_t>(world_.run.seed), entry.name);
+  const bool alike = !mentions(*model, "${index}") && !mentions(entry.parameters, "${index}") &&
+                     !mentions(entry.overrides, "${index}");
+  std::vector<VehicleInstance> instances;
+  std::shared_ptr<const VehicleConfig> shared;
+  for (int i = 0; i < entry.count; ++i) {
+    const std::string name = entry.count == 1 ? entry.name : entry.name + std::to_string(i + 1);
+    if (!shared || !alike) shared = instance(entry, *model, name, i + 1);
+    instances.push_back({entry.place, name, poses[static_cast<std::size_t>(i)], shared, entry.bus});
+  }
+  return instances;
+}
+
+void VehicleLoader::resolve(ConfigNode& world_node) const {
+  ConfigNode* vehicles = world_node.find("vehicles");
+  if (vehicles == nullptr) return;
+  for (ConfigNode& vehicle : vehicles->items)
+    for (ConfigNode::Entry& entry : vehicle.entries) {
+      if (entry.key != "file") continue;
+      const auto found = files_.find(find_file(entry.value.scalar, vehicle.place));
+      if (found == files_.end()) continue;
+      entry.key = "model";
+      entry.value = found->second;
+    }
+}
+
+const ConfigNode* VehicleLoader::model_of(const VehicleEntry& entry, const std::string& who) {
+  if (entry.file.empty()) return model_of_node(entry.model, who);
+  const std::string path = find_file(entry.file, entry.place);
+  if (path.empty()) {
+    diagnostics_.error(entry.place, who,
+                       "there is no vehicle file '" + entry.file + "' beside the world file or in ../vehicles");
+    return nullptr;
+  }
+  auto [at, fresh] = files_.try_emplace(path);
+  if (fresh) at->second = load_config_file(path, diagnostics_);
+  return at->second.kind == ConfigNode::Kind::map ? &at->second : nullptr;
+}
+
+const ConfigNode* VehicleLoader::model_of_node(const ConfigNode& model, const std::string& who) {
+  if (model.kind == ConfigNode::Kind::map) return &model;
+  // An entry without a model at all was reported by the reader.
+  if (model.place.file != nullptr) diagnostics_.error(model.place, who, "'model' must be a map, got " + shown(model));
+  return nullptr;
+}
+
+std::shared_ptr<const VehicleConfig> VehicleLoader::instance(const VehicleEntry& entry, const ConfigNode& model,
+                                                             const std::string& name, int index) {
+  const std::string who = "vehicle '" + name + "'";
+  ConfigNode tree = model;
+  for (const ConfigNode::Entry& change : entry.overrides.entries)
+    set_config_path(tree, change.key, change.value, change.place, diagnostics_);
+  substitute_parameters(tree, parameters_of(entry, model, who, index), who, diagnostics_);
+  auto config = std::make_shared<VehicleConfig>();
+  ParamReader in(tree, who, diagnostics_);
+  declare_names(in);
+  config->read(in);
+  in.finish();
+  return config;
+}
+
+void VehicleLoader::declare_names(ParamReader& in) const {
+  in.declare("material", "default");
+  for (const MaterialConfig& material : world_.materials) in.declare("material", material.name);
+  in.declare("category", "solid");
+  for (const std::string& category : world_.categories) in.declare("category", category);
+}
+
+Parameters VehicleLoader::parameters_of(const VehicleEntry& entry, const ConfigNode& model, const std::string& who,
+                                        int index) {
+  Parameters parameters;
+  parameters.emplace_back("index", scalar_node(std::to_string(index), entry.place));
+  parameters.emplace_back("name", scalar_node(entry.name, entry.place));
+  const ConfigNode* defaults = model.find("parameters");
+  if (defaults != nullptr)
+    for (const ConfigNode::Entry& each : defaults->entries) parameters.emplace_back(each.key, each.value);
+  for (const ConfigNode::Entry& given : entry.parameters.entries) {
+    const auto known =
+        std::find_if(parameters.begin(), parameters.end(), [&](const auto& each) { return each.first == given.key; });
+    if (known == parameters.end()) {
+      diagnostics_.error(given.place, who, "the vehicle has no parameter '" + given.key + "'");
+      continue;
+    }
+    known->second = given.value;
+    substitute_parameters(known->second, {parameters[0]}, who, diagnostics_);
+  }
+  return parameters;
+}
+
+VehicleConfig load_vehicle(const std::string& path) {
+  Diagnostics diagnostics;
+  ConfigNode tree = load_config_file(path, diagnostics);
+  diagnostics.throw_if_any();
+  Parameters parameters;
+  parameters.emplace_back("index", scalar_node("1", tree.place));
+  parameters.emplace_back("name", scalar_node("vehicle", tree.place));
+  if (const ConfigNode* defaults = tree.find("parameters"))
+    for (const ConfigNode::Entry& each : defaults->entries) parameters.emplace_back(each.key, each.value);
+  substitute_parameters(tree, parameters, "", diagnostics);
+  VehicleConfig config;
+  ParamReader in(tree, "", diagnostics);
+  in.declare("material", "default");
+  in.declare("category", "solid");
+  config.read(in);
+  in.finish();
+  diagnostics.throw_if_any();
+  return config;
+}
+
+namespace {
+
+constexpr std::size_t most_spawn_bytes = 1 << 20;
+
+/// What a spawn request says beside the entry.
+struct SpawnEntry {
+  VehicleEntry vehicle;
+  bool with_client = false;
+  double alive_timeout_s = 5;
+  void read(ParamReader& in) {
+    vehicle.read(in);
+    in.read("with_client", with_client, "the vehicle goes when the client that asked for it goes");
+    in.read("alive_timeout_s", alive_timeout_s, between(0.1, 1e6), "wall time after which a silent client is gone");
+  }
+};
+
+/// A stranger may not reach for files or ports by way of a vehicle.
+void refuse_files(const ConfigNode& node, const std::string& who, Diagnostics& diagnostics) {
+  for (const ConfigNode& item : node.items) refuse_files(item, who, diagnostics);
+  for (const ConfigNode::Entry& entry : node.entries) {
+    const std::string key = entry.key.substr(entry.key.rfind('.') + 1);
+    if (key == "mesh" || key == "serial" || key == "include" || entry.key.find("serial.") != std::string::npos)
+      diagnostics.error(entry.place, who, "'" + key + "' cannot be used in a vehicle that comes over the bus");
+    refuse_files(entry.value, who, diagnostics);
+  }
+}
+
+void check_spawn(const SpawnEntry& entry, Diagnostics& diagnostics) {
+  const VehicleEntry& vehicle = entry.vehicle;
+  const std::string who = "vehicle '" + vehicle.name + "'";
+  for (const ConfigNode* node : {&vehicle.model, &vehicle.parameters, &vehicle.overrides})
+    refuse_files(*node, who, diagnostics);
+  if (vehicle.count != 1) diagnostics.error(vehicle.place, who, "'count' must be 1: vehicles are spawned one by one");
+  const bool bare = vehicle.file.find('/') == std::string::npos && !vehicle.file.starts_with(".");
+  if (!bare) diagnostics.error(vehicle.place, who, "'file' must be a bare file name, got '" + vehicle.file + "'");
+}
+
+}  // namespace
+
+SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& text) {
+  const std::string from = "spawn";
+  Diagnostics diagnostics;
+  const SourcePlace whole{intern_file_name(from), 0, 0};
+  if (text.size() > most_spawn_bytes) {
+    diagnostics.error(whole, "", "a vehicle must have at most 1 MiB of text, got " + std::to_string(text.size()));
+    diagnostics.throw_if_any();
+  }
+  const ConfigNode node = parse_config_text(text, from, diagnostics);
+  diagnostics.throw_if_any();
+  SpawnEntry entry;
+  ParamReader in(node, "", diagnostics);
+  for (const BusConfig& bus : world.buses) in.declare("bus", bus.name);
+  entry.read(in);
+  in.finish();
+  diagnostics.throw_if_any();
+  check_spawn(entry, diagnostics);
+  diagnostics.throw_if_any();
+  // Vehicle files are looked up from the world's file, not from the working directory.
+  VehicleEntry vehicle = entry.vehicle;
+  if (!vehicle.file.empty()) vehicle.place.file = intern_file_name(world.file);
+  std::vector<VehicleInstance> instances = VehicleLoader(world, diagnostics).load(vehicle);
+  diagnostics.throw_if_any();
+  return {std::move(instances.front()), entry.with_client, entry.alive_timeout_s};
+}
+
+}  // namespace sim

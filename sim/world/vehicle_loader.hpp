@@ -1,0 +1,51 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/world/world_config.hpp"
+
+namespace sim {
+
+/// Turns entries of `vehicles:` into vehicle configurations.  Each vehicle file is read once.
+class VehicleLoader {
+ public:
+  VehicleLoader(const WorldConfig& world, Diagnostics& diagnostics) : world_(world), diagnostics_(diagnostics) {}
+
+  /// The instances of an entry, fewer or none after errors.
+  std::vector<VehicleInstance> load(const VehicleEntry& entry);
+  /// Fills `file:` entries of the tree with what the files said.
+  void resolve(ConfigNode& world_node) const;
+
+ private:
+  const ConfigNode* model_of(const VehicleEntry& entry, const std::string& who);
+  const ConfigNode* model_of_node(const ConfigNode& model, const std::string& who);
+  std::shared_ptr<const VehicleConfig> instance(const VehicleEntry& entry, const ConfigNode& model,
+                                                const std::string& name, int index);
+  void declare_names(ParamReader& in) const;
+  std::vector<std::pair<std::string, ConfigNode>> parameters_of(const VehicleEntry& entry, const ConfigNode& model,
+                                                                const std::string& who, int index);
+
+  const WorldConfig& world_;
+  Diagnostics& diagnostics_;
+  std::map<std::string, ConfigNode> files_;
+};
+
+/// Reads and checks a vehicle file by itself, with its default parameters.
+VehicleConfig load_vehicle(const std::string& path);
+
+/// A vehicle that a client brings while the world runs: an entry of `vehicles:`, and who it belongs to.
+struct SpawnRequest {
+  VehicleInstance vehicle;
+  bool with_client = false;    ///< it goes when the client goes
+  double alive_timeout_s = 5;  ///< wall time after which a silent client is gone
+};
+
+/// Reads a spawn request.  The text comes over the network and is not trusted: it can use vehicle files that lie
+/// beside the world file or in ../vehicles by their bare names, but no other file, and no serial port.  Throws
+/// ConfigError, with places such as `spawn:3:7`.
+SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& text);
+
+}  // namespace sim

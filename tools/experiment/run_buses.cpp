@@ -1,0 +1,99 @@
+#include "tools/experiment/run_buses.hpp"
+
+#include <thread>
+
+#include "bridges/lcm/bus_error.hpp"
+#include "sim/bus/in_process_bus.hpp"
+
+namespace tools {
+
+RunBuses::RunBuses(const sim::WorldConfig& world, const RunOptions& options) {
+  main_ = open(options.lcm_url, options);
+  if (!options.record.empty())
+    main_.recorder = std::make_unique<bridges::RecordingBus>(
+        *main_.network, options.record, world.epoch_us,
+        options.overwrite ? bridges::Existing::overwrite : bridges::Existing::refuse);
+  std::map<std::string, std::string> names{{main_.lcm ? main_.lcm->url() : "", "the world's"}};
+  for (const sim::BusConfig& bus : world.buses) {
+    Line line = open(bus.lcm_url, options);
+    if (line.lcm) {
+      const auto [other, fresh] = names.emplace(line.lcm->url(), "bus '" + bus.name + "'");
+      if (!fresh)
+        throw bridges::BusError("bus '" + bus.name + "' and " + other->second + " have the same LCM URL " +
+                                line.lcm->url());
+    }
+    if (main_.recorder) line.recorder = std::make_unique<bridges::RecordingBus>(*line.network, *main_.recorder);
+    others_.emplace(bus.name, std::move(line));
+  }
+}
+
+RunBuses::Line RunBuses::open(const std::string& url, const RunOptions& options) {
+  Line line;
+  if (options.bus == "none") {
+    line.network = std::make_unique<sim::InProcessBus>();
+    return line;
+  }
+  bridges::LcmBusOptions lcm_options;
+  lcm_options.arrivals = arrivals_;
+  auto lcm = std::make_unique<bridges::LcmBus>(url, lcm_options);
+  line.lcm = lcm.get();
+  line.network = std::move(lcm);
+  return line;
+}
+
+std::vector<sim::Bus*> RunBuses::other_networks() {
+  std::vector<sim::Bus*> networks;
+  for (auto& [name, line] : others_) networks.push_back(line.network.get());
+  return networks;
+}
+
+std::string RunBuses::url(const std::string& name) const {
+  const Line& line = name.empty() ? main_ : others_.at(name);
+  return line.lcm ? line.lcm->url() : "";
+}
+
+void RunBuses::wait(std::chrono::milliseconds time) {
+  if (over_lcm())
+    arrivals_->wait(time);
+  else
+    std::this_thread::sleep_for(time);
+}
+
+void RunBuses::end_of_step() {
+  outer().end_of_step();
+  for (auto& [name, line] : others_) line.outer().end_of_step();
+}
+
+void RunBuses::set_time(sim::Time at) {
+  if (main_.recorder) main_.recorder->set_time(at);
+}
+
+std::optional<std::string> RunBuses::lost_connection() const {
+  std::optional<std::string> lost;
+  for_each([&](const Line& line) {
+    if (line.lcm && !line.lcm->connected() && !lost) lost = "the connection to " + line.lcm->url() + " was lost";
+  });
+  return lost;
+}
+
+std::optional<std::string> RunBuses::record_error() const {
+  return main_.recorder ? main_.recorder->error() : std::nullopt;
+}
+
+void RunBuses::close_record() {
+  if (main_.recorder) main_.recorder->close();
+}
+
+sim::BusCounts RunBuses::counts() const {
+  sim::BusCounts sum;
+  for_each([&](const Line& line) {
+    const sim::BusCounts counts = line.network->counts();
+    sum.published += counts.published;
+    sum.received += counts.received;
+    sum.dropped_outgoing += counts.dropped_outgoing;
+    sum.dropped_incoming += counts.dropped_incoming;
+  });
+  return sum;
+}
+
+}  // namespace tools

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bridges/lcm/lcm_bus.hpp"
+#include "bridges/lcm/recording_bus.hpp"
+#include "sim/bus/bus.hpp"
+#include "sim/world/world_config.hpp"
+#include "tools/experiment/runner.hpp"
+
+namespace tools {
+
+/// The buses of a run: the world's, and those that vehicles have to themselves.  With a record, all are written into
+/// one log.
+class RunBuses {
+ public:
+  /// Throws BusError.
+  RunBuses(const sim::WorldConfig& world, const RunOptions& options);
+
+  /// The world's bus, recorded.
+  sim::Bus& outer() { return main_.outer(); }
+  /// The world's bus without the record.
+  sim::Bus& network() { return *main_.network; }
+  /// The bus of a name in `buses:`, recorded; empty: the world's.
+  sim::Bus& of(const std::string& name) { return name.empty() ? main_.outer() : others_.at(name).outer(); }
+  /// Without their records, those that vehicles have to themselves.
+  std::vector<sim::Bus*> other_networks();
+
+  bool over_lcm() const { return main_.lcm != nullptr; }
+  /// LCM URL of a bus; empty when it is none.
+  std::string url(const std::string& name) const;
+  /// Waits for a message on any bus, up to `time`.
+  void wait(std::chrono::milliseconds time);
+  void end_of_step();
+  /// The step that begins, for what the record receives.
+  void set_time(sim::Time at);
+  /// What went wrong with a connection or the record.
+  std::optional<std::string> lost_connection() const;
+  std::optional<std::string> record_error() const;
+  void close_record();
+  /// Of all buses.
+  sim::BusCounts counts() const;
+
+ private:
+  struct Line {
+    std::unique_ptr<sim::Bus> network;
+    bridges::LcmBus* lcm = nullptr;  ///< the same, when it is LCM
+    std::unique_ptr<bridges::RecordingBus> recorder;
+    sim::Bus& outer() { return recorder ? static_cast<sim::Bus&>(*recorder) : *network; }
+  };
+  Line open(const std::string& url, const RunOptions& options);
+  template <typename Use>
+  void for_each(Use&& use) const {
+    use(main_);
+    for (const auto& [name, line] : others_) use(line);
+  }
+
+  std::shared_ptr<bridges::Arrivals> arrivals_ = std::make_shared<bridges::Arrivals>();
+  Line main_;
+  std::map<std::string, Line, std::less<>> others_;  // destroyed before the main one, whose log they write
+};
+
+}  // namespace tools
