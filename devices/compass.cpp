@@ -64,10 +64,10 @@ void Compass::change(const Params& params) {
 
 double Compass::heading_of(const sim::Vector3d& field_S, const sim::Vector3d& up_S) {
   // Magnetic north and west are what is level of the field and what is square to it.  x_S by its parts along the two;
-  // x_S upright has no heading, and atan2(0, 0) is 0.
+  // x_S upright and free fall have no heading: atan2(0, 0) is 0.
   const sim::Vector3d west_S = up_S.cross(field_S);
-  const sim::Vector3d north_S = west_S.cross(up_S) / up_S.norm();
-  return compass_angle(std::atan2(-west_S.x(), north_S.x()));
+  const sim::Vector3d north_S = west_S.cross(up_S);  // longer than west_S by the length of up_S
+  return compass_angle(std::atan2(-west_S.x() * up_S.norm(), north_S.x()));
 }
 
 void Compass::measure(const sim::SenseContext& context) {
