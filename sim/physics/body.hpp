@@ -48,7 +48,8 @@ class Body {
   /// velocity.  A free body alone: PhysicsWorld::move_group takes the whole vehicle.
   void set_pose(const Pose& X_WB);
   /// Moves a kinematic body so that the next step, of `step_s`, ends with its frame at this pose: at one velocity, and
-  /// turning the shorter way.  What it touches sees that velocity.  Without a call it stands still in a step.
+  /// turning the shorter way.  What it touches sees that velocity, which has the bound of every body: for a jump there
+  /// is set_pose.  Without a call it stands still in a step.
   void move_to(const Pose& X_WB_at_end, double step_s);
   /// Of a free body; others do not take it.
   void set_velocity_W(const Vector3d& v_WB_W, const Vector3d& w_WB_W);

@@ -55,10 +55,12 @@ ContactTable::ContactTable(const std::vector<MaterialConfig>& materials, const s
 
 void ContactTable::add(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts) {
   add_names(materials);
+  const std::size_t known = contacts_.size();
   for (const ContactConfig& contact : contacts)
     if (std::find(contacts_.begin(), contacts_.end(), contact) == contacts_.end())
       contacts_.insert(contacts_.begin() + static_cast<std::ptrdiff_t>(added_++), contact);
-  work_out_surfaces();
+  // The second vehicle of a kind brings nothing new.
+  if (contacts_.size() > known || static_cast<int>(names_.size()) > count_) work_out_surfaces();
 }
 
 void ContactTable::add_names(const std::vector<MaterialConfig>& materials) {

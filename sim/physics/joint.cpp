@@ -121,6 +121,9 @@ void Joint::set_stops(std::optional<double> low, std::optional<double> high, int
   if (std::isnan(low.value_or(0)) || std::isnan(high.value_or(0)))
     throw PhysicsFault("joint '" + name_ + "': its stop is not a number");
   place_stops(low, high, axis);
+  // ODE forgets that an axis is at a stop only when it looks again, and without any stop it does not look.
+  const double never_reached = kind_ == dJointTypeSlider ? -1e300 : -std::numbers::pi;
+  if (!low && !high) set_parameter(dParamLoStop, never_reached, axis);
   stops_were_set_ = true;
 }
 

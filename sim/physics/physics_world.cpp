@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -243,6 +244,7 @@ void PhysicsWorld::Impl::set_mass(Body& body, const BodyConfig& config_, const d
 
 Joint& PhysicsWorld::add_joint(int group, const JointConfig& config, Body& first, Body* second, const Pose& X_WV) {
   Impl::Group& owner = impl_->group(group);
+  assert(first.group_ == group && (!second || second->group_ == group));  // or a removal would leave half a joint
   const std::string name = owner.name + "/" + config.name;
   const dBodyID a = first.ode_.get(), b = second ? second->ode_.get() : nullptr;
   if (!first.free() && !(second && second->free()))

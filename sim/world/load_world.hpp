@@ -11,6 +11,7 @@ namespace sim {
 struct LoadOptions {
   std::vector<std::string> sets;     ///< `path=value`, as given with --set
   std::optional<std::int64_t> seed;  ///< instead of the file's
+  bool allow_plugins = false;        ///< load the `plugins:` of the world, which then run code
 };
 
 struct LoadedWorld {

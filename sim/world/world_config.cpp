@@ -169,6 +169,7 @@ void WorldConfig::read(ParamReader& in) {
   in.read("channels", channels, "names of the channels");
   in.read("run", run, "how a run goes when the command line says nothing else");
   in.read("state_rate_hz", state_rate_hz, between(0, 1e6), "of sim.state and sim.clock; 0: never");
+  in.read("plugins", plugins, "libraries with devices, beside this file or installed; only with --launch or --plugin");
   in.read_list("objects", objects, "object", "things without devices");
   for (const ObjectConfig& object : objects) in.declare("object", object.name);
   in.read_list("buses", buses, "bus", "buses beside the world's, for vehicles that hear each other by modem only");

@@ -141,6 +141,7 @@ struct WorldConfig {
   std::vector<std::string> categories;
   ChannelConfig channels;
   RunConfig run;
+  std::vector<std::string> plugins;  ///< loaded by load_world
   std::vector<ObjectConfig> objects;
   std::vector<BusConfig> buses;
   std::vector<VehicleEntry> vehicle_entries;

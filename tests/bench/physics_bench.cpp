@@ -130,6 +130,7 @@ class ShoalFleet {
     }
   }
   void step() { world_->step(step_number_++); }
+  PhysicsWorld& world() { return *world_; }
   Vector3d position(int robot) const { return rovers_[robot].chassis->X_WB().translation(); }
 
  private:
@@ -168,11 +169,63 @@ void build(benchmark::State& state) {
   for (auto _ : state) ShoalFleet fleet(static_cast<int>(state.range(0)));
 }
 
+/// One rover more and less, in a world of others; the step in between is not counted.
+void BM_AddRemoveRover(benchmark::State& state) {
+  const int others = static_cast<int>(state.range(0));
+  ShoalFleet fleet(others);
+  for (int i = 0; i < 10; ++i) fleet.step();
+  const Pose X_WV = translation(-5, -5, 0);
+  for (auto _ : state) {
+    const int group = add_rover(fleet.world(), "visitor", X_WV).chassis->group();
+    fleet.world().remove_group(group);
+  }
+  state.counters["bodies"] = static_cast<double>(fleet.world().bodies().size());
+}
+
+/// The same with a step after each, against physics_world: what comes and goes must not make steps dear.
+void BM_AddStepRemoveRover(benchmark::State& state) {
+  ShoalFleet fleet(static_cast<int>(state.range(0)));
+  for (int i = 0; i < settle_steps; ++i) fleet.step();
+  const Pose X_WV = translation(-5, -5, 0);
+  for (auto _ : state) {
+    const int group = add_rover(fleet.world(), "visitor", X_WV).chassis->group();
+    fleet.step();
+    fleet.world().remove_group(group);
+  }
+}
+
+/// Actors in two parts that walk to and fro.
+void BM_KinematicBodies(benchmark::State& state) {
+  const int actors = static_cast<int>(state.range(0));
+  PhysicsConfig config;
+  config.step_s = step_s;
+  const auto world = make_world(config);
+  add_ground(*world);
+  std::vector<sim::Body*> walkers;
+  const PartConfig torso = at(round("capsule", 0.2, 1, 0), {0, 0, 0.9}), head = at(sphere(0.15, 0), {0, 0, 1.7});
+  for (int i = 0; i < actors; ++i) {
+    const Pose X_WB = sim::make_pose(cell(i, actors), Vector3d::Zero());
+    walkers.push_back(&add(*world, body("walker" + std::to_string(i), {torso, head}), X_WB, Motion::kinematic));
+  }
+  std::int64_t step_number = 0;
+  for (auto _ : state) {
+    const double away_m = std::sin(0.01 * static_cast<double>(step_number));
+    for (int i = 0; i < actors; ++i)
+      walkers[i]->move_to(sim::make_pose(cell(i, actors) + Vector3d(away_m, 0, 0), {0, 0, away_m}), step_s);
+    world->step(step_number++);
+  }
+  state.counters["actor_step"] = benchmark::Counter(static_cast<double>(state.iterations()) * actors,
+                                                    benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
 }  // namespace
 
 BENCHMARK(bare_ode)->RangeMultiplier(10)->Range(1, 1000);
 BENCHMARK(physics_world)->RangeMultiplier(10)->Range(1, 1000);
 BENCHMARK(physics_world_quadtree)->Arg(1000);
+BENCHMARK(BM_AddRemoveRover)->Arg(1000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(BM_AddStepRemoveRover)->Arg(1000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(BM_KinematicBodies)->Arg(500)->Unit(benchmark::kMicrosecond);
 BENCHMARK(build)->Arg(1000)->Unit(benchmark::kMillisecond);
 
 BENCHMARK_MAIN();

@@ -43,6 +43,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
   command->add_option("--set", options->sets, "path=value: change a value of the world file")
       ->type_size(1)
       ->allow_extra_args(false);
+  add_plugin_option(*command);
   command->footer(
       "Example:\n  shoal check worlds/coop_land.yaml --set run.seed=3\nEvery error is printed as "
       "file:line:column: who: rule, value.");

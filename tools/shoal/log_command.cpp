@@ -156,6 +156,7 @@ void add_log_command(CLI::App& app, int& exit_code) {
   for (CLI::App* each : {info_command, csv_command, allan_command}) {
     each->add_option("LOG", arguments->path, "LCM event log")->required();
     each->add_option("--types", arguments->lcm_files, ".lcm files of types that are not Shoal's");
+    add_plugin_option(*each);
   }
   csv_command->add_option("CHANNEL", arguments->channel, "such as rover1.odometry")->required();
   allan_command->add_option("CHANNEL", arguments->channel, "such as rover1.imu")->required();

@@ -43,6 +43,7 @@ std::string check_seed(const std::string& text) {
 
 int run(RunArguments& arguments) {
   spdlog::set_level(spdlog::level::from_str(arguments.log_level));
+  arguments.load.allow_plugins = arguments.run.launch;
   arguments.run.speed = parse_speed(arguments.speed);
   arguments.run.duration_s = arguments.duration_s;
   const sim::LoadedWorld loaded = sim::load_world(arguments.world, arguments.load);
@@ -80,6 +81,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->delimiter(',')
       ->type_size(1)
       ->allow_extra_args(false);
+  add_plugin_option(*command);
   command->add_flag("--quiet", arguments->run.quiet, "no progress and no summary");
   command->add_option("--log-level", arguments->log_level, "what is said on stderr")
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}));

@@ -61,7 +61,7 @@ TEST(SimService, AnswersEachRequestWithItsNumber) {
 
 TEST(SimService, SaysWhyItRefuses) {
   Service s;
-  EXPECT_THAT(s.ask("fly", 0).text, testing::HasSubstr("unknown command 'fly'; known commands: join, leave, pause"));
+  EXPECT_THAT(s.ask("fly", 0).text, testing::HasSubstr("unknown command 'fly'; known commands: alive, describe, do"));
   EXPECT_THAT(s.ask("speed", -1).text, testing::HasSubstr("'speed' must be 0"));
   EXPECT_THAT(s.ask("speed", 5e-324).text, testing::HasSubstr("'speed' must be 0"));
   EXPECT_THAT(s.ask("join", 0.015).text, testing::HasSubstr("a multiple of the step"));
