@@ -77,6 +77,9 @@ class ParamReader {
   /// A list of maps.  Who of an item: `kind 'name'` when the item has a `name`, else `kind 3` (from 1).
   template <ReadsParams T>
   void read_list(const char* key, std::vector<T>& value, const char* kind, const char* meaning);
+  /// A list of such lists.  Describes nothing.
+  template <ReadsParams T>
+  void read_lists(const char* key, std::vector<std::vector<T>>& value, const char* kind);
 
   /// Makes a name known for read_reference in this reader and the readers nested in it.  The second time the same
   /// name of a kind is declared in one reader it is an error: `duplicate joint 'left'`.

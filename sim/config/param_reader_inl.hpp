@@ -70,4 +70,16 @@ void ParamReader::read_list(const char* key, std::vector<T>& value, const char* 
     value = std::move(items);
 }
 
+template <ReadsParams T>
+void ParamReader::read_lists(const char* key, std::vector<std::vector<T>>& value, const char* kind) {
+  const ConfigNode* node = take(key);
+  if (node == nullptr) return;
+  if (node->kind != ConfigNode::Kind::list) return error(key, "'" + std::string(key) + "' must be a list of lists");
+  value.clear();
+  for (const ConfigNode& list : node->items) {
+    std::vector<T>& items = value.emplace_back();
+    read_items(key, list, kind, [&items](ParamReader& in) { items.emplace_back().read(in); });
+  }
+}
+
 }  // namespace sim

@@ -7,6 +7,7 @@
 #include "sim/bus/bus.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
+#include "sim/script/check_script.hpp"
 #include "sim/device/plugin.hpp"
 #include "sim/world/vehicle_loader.hpp"
 
@@ -157,6 +158,7 @@ void make_mesh_paths_absolute(ConfigNode& node) {
 LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& options, Diagnostics& diagnostics) {
   diagnostics.throw_if_any();
   LoadedWorld loaded;
+  loaded.config.encode_message = options.encode_message;
   apply_sets(root, options, diagnostics);
   diagnostics.throw_if_any();
   ParamReader in(root, "", diagnostics);
@@ -173,6 +175,8 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   check_channels(loaded.config, diagnostics);
   diagnostics.throw_if_any();
   gather_from_vehicles(loaded.config);
+  check_script(loaded.config, diagnostics);
+  diagnostics.throw_if_any();
   vehicles.resolve(root);
   make_mesh_paths_absolute(root);
   if (options.seed) {

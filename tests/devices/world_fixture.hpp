@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "shoal/message_codec.hpp"
+#include "shoal/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/world.hpp"
@@ -17,8 +18,12 @@ namespace test {
 class TestWorld {
  public:
   explicit TestWorld(const std::string& yaml, const sim::LoadOptions& options = {})
-      : loaded(sim::load_world_text(yaml, "worlds/test.yaml", options)), world(loaded.config, bus) {}
+      : loaded(sim::load_world_text(yaml, "worlds/test.yaml", with_messages(options))), world(loaded.config, bus) {}
 
+  static sim::LoadOptions with_messages(sim::LoadOptions options) {
+    if (!options.encode_message) options.encode_message = shoal::encode_own_message;
+    return options;
+  }
   void run_for(double time_s) {
     const sim::Time end = world.now() + sim::from_seconds(time_s);
     while (world.now() < end) world.step();

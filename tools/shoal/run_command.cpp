@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "tools/experiment/runner.hpp"
+#include "shoal/message_writer.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {
@@ -46,6 +47,7 @@ int run(RunArguments& arguments) {
   arguments.load.allow_plugins = arguments.run.launch;
   arguments.run.speed = parse_speed(arguments.speed);
   arguments.run.duration_s = arguments.duration_s;
+  arguments.load.encode_message = shoal::encode_own_message;
   const sim::LoadedWorld loaded = sim::load_world(arguments.world, arguments.load);
   catch_signals(true);
   const Summary summary = run_world(loaded, arguments.run);
