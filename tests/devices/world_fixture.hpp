@@ -96,4 +96,19 @@ vehicles:
          more;
 }
 
+/// One free box of 1 kg, 0.6 x 0.4 x 0.2 m, its frame in the middle.  `devices`: as above.
+inline std::string box_world(const std::string& devices, const std::string& physics = "{step_s: 0.001}",
+                             const std::string& more = "") {
+  return "shoal: 1\nphysics: " + physics + R"(
+vehicles:
+  - name: r1
+    position_m: [0, 0, 0]
+    model:
+      shoal: 1
+      vehicle: box
+      bodies: [{name: hull, parts: [{shape: box, size_m: [0.6, 0.4, 0.2], mass_kg: 1}]}]
+      devices:
+)" + devices + more;
+}
+
 }  // namespace test

@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
   tools::add_describe_command(app, exit_code);
   tools::add_list_command(app, exit_code);
   tools::add_spy_command(app, exit_code);
+  tools::add_control_command(app, exit_code);
   tools::add_doctor_command(app, exit_code);
   tools::add_log_command(app, exit_code);
   tools::add_bench_command(app, exit_code);
