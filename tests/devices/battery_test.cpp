@@ -17,8 +17,8 @@ std::string battery(const std::string& more) {
 const std::string wheels = "left_joint: left, right_joint: right";
 
 TEST(Battery, TenWattsEmptyAHundredthOfAWattHourIn3Point6Seconds) {
-  test::TestWorld test(test::rover_world(
-      "        - {name: lamp, type: odometry, " + wheels + ", power_W: 10}\n" + battery(", capacity_Wh: 0.01")));
+  test::TestWorld test(test::rover_world("        - {name: lamp, type: odometry, " + wheels + ", power_W: 10}\n" +
+                                         battery(", capacity_Wh: 0.01")));
   test::Listener<shoal::battery_t> reports(test, "r1.battery");
   const auto& systems = test.world.find_vehicle("r1")->systems();
   test.run_for(1.8);
@@ -38,10 +38,10 @@ TEST(Battery, TenWattsEmptyAHundredthOfAWattHourIn3Point6Seconds) {
 }
 
 TEST(Battery, EmptyTheMotorsStopAndTheSensorsFallSilent) {
-  test::TestWorld test(test::rover_world(
-      "        - {name: drive, type: differential_drive, " + wheels +
-      ", wheel_radius_m: 0.1, track_m: 0.5, power_W: 36}\n" + "        - {name: odometry, type: odometry, " + wheels +
-      ", rate_hz: 100}\n" + battery(", capacity_Wh: 0.02")));
+  test::TestWorld test(test::rover_world("        - {name: drive, type: differential_drive, " + wheels +
+                                         ", wheel_radius_m: 0.1, track_m: 0.5, power_W: 36}\n" +
+                                         "        - {name: odometry, type: odometry, " + wheels + ", rate_hz: 100}\n" +
+                                         battery(", capacity_Wh: 0.02")));
   test::Listener<shoal::odometry_t> odometry(test, "r1.odometry");
   test::Listener<shoal::battery_t> reports(test, "r1.battery");
   shoal::twist_command_t command{};
@@ -61,9 +61,9 @@ TEST(Battery, EmptyTheMotorsStopAndTheSensorsFallSilent) {
 
 TEST(Battery, GivesTheMotorsWhatTheirWorkTakes) {
   // Raising the arm by 0.3 rad from level takes m g l sin(0.3) of work, at an efficiency of 0.5.
-  test::TestWorld test(test::arm_world(
-      "        - {name: motor, type: joint_motor, joint: shoulder, max_force: 100, efficiency: 0.5}\n" +
-      battery(", capacity_Wh: 1, open_circuit_V: [12]")));
+  test::TestWorld test(
+      test::arm_world("        - {name: motor, type: joint_motor, joint: shoulder, max_force: 100, efficiency: 0.5}\n" +
+                      battery(", capacity_Wh: 1, open_circuit_V: [12]")));
   test.run_for(0.1);
   test::Listener<shoal::battery_t> reports(test, "a1.battery");
   shoal::joint_command_t up{};
@@ -76,8 +76,9 @@ TEST(Battery, GivesTheMotorsWhatTheirWorkTakes) {
 }
 
 TEST(Battery, ItsVoltageFallsUnderLoadAndItsHeatIsPaidToo) {
-  test::TestWorld test(test::rover_world("        - {name: lamp, type: odometry, " + wheels + ", power_W: 27}\n" +
-                                         battery(", open_circuit_V: [12], internal_resistance_ohm: 1, capacity_Wh: 1")));
+  test::TestWorld test(
+      test::rover_world("        - {name: lamp, type: odometry, " + wheels + ", power_W: 27}\n" +
+                        battery(", open_circuit_V: [12], internal_resistance_ohm: 1, capacity_Wh: 1")));
   test::Listener<shoal::battery_t> reports(test, "r1.battery");
   test.run_for(1);
   const auto report = reports.last();
@@ -95,10 +96,10 @@ TEST(Battery, MoreThanItCanGiveBreaksItsVoltageDown) {
 }
 
 TEST(Battery, FollowsATableOfVoltages) {
-  for (const auto& [charge, volts] : std::vector<std::pair<const char*, double>>{
-           {"1", 12.6}, {"0.75", 12.1}, {"0.5", 11.6}, {"0.25", 10.6}}) {
-    test::TestWorld test(test::rover_world(
-        battery(std::string(", open_circuit_V: [9.6, 11.6, 12.6], initial_charge: ") + charge)));
+  for (const auto& [charge, volts] :
+       std::vector<std::pair<const char*, double>>{{"1", 12.6}, {"0.75", 12.1}, {"0.5", 11.6}, {"0.25", 10.6}}) {
+    test::TestWorld test(
+        test::rover_world(battery(std::string(", open_circuit_V: [9.6, 11.6, 12.6], initial_charge: ") + charge)));
     test::Listener<shoal::battery_t> reports(test, "r1.battery");
     test.run_for(0.01);
     EXPECT_NEAR(reports.last().voltage_V, volts, 1e-9) << charge;

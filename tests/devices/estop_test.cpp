@@ -83,9 +83,9 @@ TEST(EmergencyStop, StopsWhenTheBumperTouchesAndLetsGoWhenReleased) {
 }
 
 TEST(EmergencyStop, WorksWithoutPower) {
-  test::TestWorld test(rover("") );
+  test::TestWorld test(rover(""));
   test::Listener<shoal::estop_t> reports(test, "r1.estop");
-  const_cast<sim::Vehicle*>(test.world.find_vehicle("r1"))->systems().powered = false;
+  test.world.vehicles().front()->systems().powered = false;
   set_engaged(test, true);
   test.run_for(0.1);
   EXPECT_EQ(reports.last().engaged, 1);

@@ -40,9 +40,9 @@ TEST(JointLoad, MeasuresInTheFrameAskedFor) {
 }
 
 TEST(JointLoad, AHangingMassPullsAndDoesNotTurn) {
-  test::TestWorld test(test::arm_world(
-      "        - {name: servo, type: joint_servo, joint: shoulder, max_effort: 50, max_velocity: 3}\n"
-      "        - {name: load, type: joint_load, joint: shoulder, rate_hz: 0, frame: body}\n"));
+  test::TestWorld test(
+      test::arm_world("        - {name: servo, type: joint_servo, joint: shoulder, max_effort: 50, max_velocity: 3}\n"
+                      "        - {name: load, type: joint_load, joint: shoulder, rate_hz: 0, frame: body}\n"));
   test::Listener<shoal::wrench_t> reports(test, "a1.load");
   shoal::joint_servo_command_t down{};
   down.position = std::numbers::pi / 2;

@@ -212,7 +212,8 @@ TEST(JointServo, SaysWhatIsWrongWithItsParameters) {
     }
   };
   EXPECT_THAT(error_of(", low: 1, high: -1"), testing::HasSubstr("device 'servo': 'low' must not be above 'high'"));
-  EXPECT_THAT(error_of(", axis: 1"), testing::HasSubstr("device 'servo': joint 'shoulder' is a hinge and has no axis 1"));
+  EXPECT_THAT(error_of(", axis: 1"),
+              testing::HasSubstr("device 'servo': joint 'shoulder' is a hinge and has no axis 1"));
   EXPECT_THAT(error_of(", max_effort: 0"), testing::HasSubstr("'max_effort' must be > 0, got 0"));
   EXPECT_THAT(error_of(", efficiency: 1.5"), testing::HasSubstr("'efficiency' must be > 0 and <= 1, got 1.5"));
 }
