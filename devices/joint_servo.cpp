@@ -15,15 +15,16 @@ namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-/// The velocity from which whole steps at -acceleration still stop within `distance`: the positive root of
-/// v^2 / (2 a) + v dt / 2 = distance.
+/// The highest velocity for this step from which it stops exactly after `distance`, when each further step is slower
+/// by change = acceleration * step_s.  With m such steps to come, v = m change + f and
+/// distance / step_s = v + (v - change) + ... + f = (m + 1) (m change / 2 + f), 0 <= f <= change.
 double stopping_velocity(double distance, double acceleration, double step_s) {
   if (distance <= 0) return 0;
-  // The last step may go all the way.
-  const double last = distance / step_s;
-  if (std::isinf(acceleration)) return last;
-  const double half = acceleration * step_s / 2;
-  return std::min(last, std::sqrt(half * half + 2 * acceleration * distance) - half);
+  const double at_once = distance / step_s;
+  if (std::isinf(acceleration) || std::isinf(distance)) return at_once;
+  const double change = acceleration * step_s;
+  const double m = std::floor((std::sqrt(1 + 8 * at_once / change) - 1) / 2);
+  return m * change / 2 + at_once / (m + 1);
 }
 
 }  // namespace

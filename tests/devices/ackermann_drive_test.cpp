@@ -166,7 +166,7 @@ TEST(AckermannDrive, SaysWhatIsWrongWithItsParameters) {
   EXPECT_THAT(error_of(""), testing::HasSubstr("device 'drive': missing key 'drive_joints'"));
   EXPECT_THAT(error_of(rear + ", max_steering_deg: 80"),
               testing::HasSubstr("at 'max_steering_deg' the centre of turn must lie outside the track"));
-  EXPECT_THAT(error_of(rear + ", wheelbase_m: -1"), testing::HasSubstr("'wheelbase_m' must be > 0, got -1"));
+  EXPECT_THAT(error_of(rear + ", max_speed_mps: -1"), testing::HasSubstr("'max_speed_mps' must be > 0, got -1"));
 }
 
 }  // namespace

@@ -94,8 +94,9 @@ TEST(JointServo, EffortAcceleratesTheArmByItsInertia) {
   command(test, 2, 3);
   test.run_for(0.5);
   const double acceleration = 3 / test::arm_inertia_kgm2;
-  EXPECT_NEAR(shoulder(test).velocity(), acceleration * 0.5, 1e-6);
-  // Semi-implicit Euler: a t (t + dt) / 2; the hinge's own error correction is the tolerance.
+  // 1e-4: in each step the ball leaves its circle along the tangent, by up to w dt = 0.003 rad, and is pulled back.
+  EXPECT_NEAR(shoulder(test).velocity(), acceleration * 0.5, 1e-4 * acceleration);
+  // Semi-implicit Euler: a t (t + dt) / 2.
   EXPECT_NEAR(shoulder(test).position(), acceleration * 0.5 * 0.501 / 2, 1e-4);
 }
 
@@ -148,14 +149,15 @@ TEST(JointServo, PartlyDeadItsLargestEffortIsTheShare) {
 }
 
 TEST(JointServo, AfterAFaultItStartsFromWhereTheJointIs) {
-  test::TestWorld test(test::arm_world(servo(", max_velocity: 0.5, max_effort: 100")));
+  test::TestWorld test(test::arm_world(servo(", max_velocity: 0.5, max_effort: 2000")));
   test.world.set_fault("a1/servo", {.kind = sim::FaultKind::dead});
   test.run_for(0.4);
   const double fallen = shoulder(test).position();
   ASSERT_GT(fallen, 0.5);
   test.world.clear_faults("a1/servo");
   test.run_for(0.5);
-  EXPECT_NEAR(shoulder(test).position(), fallen - 0.25, 1e-2);  // back at 0.5 rad/s, not with a jump
+  EXPECT_NEAR(shoulder(test).position(), fallen - 0.25,
+              0.02);  // back at 0.5 rad/s, not with a jump; it falls on while it brakes
 }
 
 TEST(JointServo, GoesToItsSafeStateWhenCommandsStopComing) {
@@ -193,13 +195,14 @@ TEST(JointServo, IgnoresAModeThatDoesNotExist) {
 }
 
 TEST(JointServo, TakesThePowerOfItsMotionAndItsHeat) {
-  // Raising the arm at 0.2 rad/s about level: 9.80665 N m * 0.2 rad/s / 0.5, and 4 W * (9.80665 / 19.6133)^2.
+  // Raising the arm at 0.2 rad/s: moment * 0.2 rad/s / 0.5, and 4 W times the square of the moment over 19.6133 N m.
   test::TestWorld test(test::arm_world(servo(", max_effort: 19.6133, efficiency: 0.5, holding_W: 4") +
                                        "        - {name: battery, type: battery}\n"));
   command(test, 1, -0.2);
-  test.run_for(0.05);
+  test.run_for(0.8);
   const auto* device = test.world.find_vehicle("a1")->find_device("servo")->actuator();
-  EXPECT_NEAR(device->power_W(), 9.80665 * 0.2 / 0.5 + 1, 0.01);
+  const double moment_Nm = 9.80665 * std::cos(shoulder(test).position());
+  EXPECT_NEAR(device->power_W(), moment_Nm * 0.2 / 0.5 + 4 * std::pow(moment_Nm / 19.6133, 2), 0.005);
 }
 
 TEST(JointServo, SaysWhatIsWrongWithItsParameters) {

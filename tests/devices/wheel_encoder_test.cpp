@@ -25,7 +25,7 @@ TEST(WheelEncoder, CountsTheTurnsOfTheJointInWholeTicks) {
   for (const double radps : {7.0, -9.0}) {
     turn(test, radps);
     test.run_for(2.0);
-    const auto report = reports.last();
+    const auto report = reports.last(), truth = truths.last();
     const sim::Vehicle& rover = *test.world.find_vehicle("r1");
     ASSERT_EQ(report.count, 2);
     EXPECT_THAT(report.joint, testing::ElementsAre("left", "right"));
@@ -33,8 +33,8 @@ TEST(WheelEncoder, CountsTheTurnsOfTheJointInWholeTicks) {
     const double ticks = rover.joint("left").position() / (2 * std::numbers::pi) * 500;
     EXPECT_NEAR(static_cast<double>(report.ticks[0]), ticks, 1 + std::abs(radps) * 0.01 / (2 * std::numbers::pi) * 500);
     EXPECT_NEAR(report.rate_radps[0], radps, 2 * std::numbers::pi / 500 / 0.01);  // one tick in a period
-    EXPECT_EQ(truths.last().ticks, report.ticks);                                 // nothing is missed
-    EXPECT_NEAR(truths.last().rate_radps[0], radps, 0.05);
+    EXPECT_EQ(truth.ticks, report.ticks);                                         // nothing is missed
+    EXPECT_NEAR(truth.rate_radps[0], radps, 0.05);
   }
 }
 
