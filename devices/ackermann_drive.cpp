@@ -92,8 +92,7 @@ void AckermannDrive::make_safe(sim::SafeState safe) {
 
 double AckermannDrive::power_W() const {
   double sum_W = 0;
-  for (const sim::Joint* joint : steer_)
-    sum_W += params_.power.of(joint->effort(0), joint->velocity(0), params_.max_steering_torque_Nm);
+  for (const sim::Joint* joint : steer_) sum_W += params_.power.of_motor(*joint, 0, params_.max_steering_torque_Nm);
   for (const DrivenWheel& wheel : wheels_) sum_W += wheel.motors.power_W(params_.power, params_.max_torque_Nm);
   return sum_W;
 }

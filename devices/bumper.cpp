@@ -91,6 +91,12 @@ void Bumper::disturb(double dt_s, sim::Random& random) {
   for (std::size_t i = 0; i < places_.size(); ++i) places_[i].force_N = std::max(forces_N[i], 0.0);
 }
 
+void Bumper::change(const Params& params) {
+  params_.min_force_N = params.min_force_N;
+  params_.report = params.report;
+  force_noise_.change(params.force_noise);
+}
+
 void Bumper::hash_state(sim::StateHash& hash) const {
   for (const bool flag : {looked_, touching_, changed_, sampled_}) hash.add(flag);
   for (const auto* places : {&pressed_, &places_})

@@ -34,6 +34,8 @@ class Bumper final : public sim::Sensor {
   void act(const sim::ActContext& context);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
+  /// All but the parts.
+  void change(const Params& params);
   void hash_state(sim::StateHash& hash) const override;
 
   bool touching() const { return touching_; }
@@ -60,7 +62,8 @@ class Bumper final : public sim::Sensor {
   std::vector<Place> places_;  ///< the reading
 };
 
-/// Publishes shoal.bumper_t: at the first sample and when a touch begins or ends, or at every sample.
+/// Publishes shoal.bumper_t: at the first sample and when a touch begins or ends, or at every sample.  A report of a
+/// change that is lost on its way is not repeated.
 class BumperReporter final : public sim::Reporter {
  public:
   static constexpr const char* report_message = "shoal.bumper_t";

@@ -41,6 +41,12 @@ void JointLoad::disturb(double dt_s, sim::Random& random) {
   torque_noise_.apply(std::span<double>(torque_Nm_.data(), 3), dt_s, random);
 }
 
+void JointLoad::change(const Params& params) {
+  params_.frame = params.frame;
+  force_noise_.change(params.force_noise);
+  torque_noise_.change(params.torque_noise);
+}
+
 void JointLoad::hash_state(sim::StateHash& hash) const {
   hash.add(force_N_);
   hash.add(torque_Nm_);

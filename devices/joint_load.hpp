@@ -23,6 +23,8 @@ class JointLoad final : public sim::Sensor {
   JointLoad(const Params& params, const sim::DeviceContext& context);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
+  /// The errors and the frame; the joint stays.
+  void change(const Params& params);
   void hash_state(sim::StateHash& hash) const override;
   /// In the frame that the parameters say.
   const sim::Vector3d& force_N() const { return force_N_; }

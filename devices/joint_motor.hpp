@@ -24,7 +24,7 @@ class JointMotor final : public sim::Actuator {
   /// stop: it brakes; coast: it turns freely.
   void make_safe(sim::SafeState safe) override;
   void change(const Params& params) { params_ = params; }
-  double power_W() const override { return params_.power.of(joint_.effort(), joint_.velocity(), params_.max_force); }
+  double power_W() const override { return params_.power.of_motor(joint_, 0, params_.max_force); }
   void hash_state(sim::StateHash& hash) const override {
     hash.add(velocity_);
     hash.add(coasting_);

@@ -19,6 +19,12 @@ struct MotorPower {
     in.read("holding_W", holding_W, sim::at_least(0),
             "heat of a motor at its largest effort; less by the square of the effort");
   }
+  /// Of the motor that the physics keeps on an axis.  Its load must be measured.
+  double of_motor(const sim::Joint& joint, int axis, double max_effort) const {
+    // A stop may push harder than the motor, but takes nothing for it.
+    const double limit = joint.motor_max_force(axis);
+    return of(std::clamp(joint.effort(axis), -limit, limit), joint.velocity(axis), max_effort);
+  }
   double of(double effort, double velocity, double max_effort) const {
     const double share = max_effort > 0 ? effort / max_effort : 0;
     return std::max(effort * velocity, 0.0) / efficiency + holding_W * share * share;

@@ -172,9 +172,8 @@ void JointServo::make_safe(sim::SafeState safe) {
 }
 
 double JointServo::power_W() const {
-  const bool by_motor = joint_.motor_max_force(params_.axis) > 0;
-  const double effort = by_motor ? joint_.effort(params_.axis) : applied_;
-  return params_.power.of(effort, joint_.velocity(params_.axis), params_.max_effort);
+  if (joint_.motor_max_force(params_.axis) > 0) return params_.power.of_motor(joint_, params_.axis, params_.max_effort);
+  return params_.power.of(applied_, joint_.velocity(params_.axis), params_.max_effort);
 }
 
 void JointServo::set_position(double position) {

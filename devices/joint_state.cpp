@@ -60,6 +60,12 @@ void JointState::disturb(double dt_s, sim::Random& random) {
   effort_noise_.apply(std::span<double>(efforts_), dt_s, random);
 }
 
+void JointState::change(const Params& params) {
+  position_noise_.change(params.position_noise);
+  velocity_noise_.change(params.velocity_noise);
+  effort_noise_.change(params.effort_noise);
+}
+
 void JointState::hash_state(sim::StateHash& hash) const {
   for (const auto* values : {&positions_, &velocities_, &efforts_}) hash.add(std::span<const double>(*values));
   for (const auto* noise : {&position_noise_, &velocity_noise_, &effort_noise_}) noise->hash_state(hash);

@@ -28,6 +28,8 @@ class JointState final : public sim::Sensor {
   JointState(const Params& params, const sim::DeviceContext& context);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
+  /// The errors; the joints stay.
+  void change(const Params& params);
   void hash_state(sim::StateHash& hash) const override;
 
   // In the joints' own signs; rad, rad/s, N m, or m, m/s, N of a slider.

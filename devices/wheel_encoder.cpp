@@ -92,6 +92,11 @@ void WheelEncoder::disturb(double dt_s, sim::Random& random) {
   }
 }
 
+void WheelEncoder::change(const Params& params) {
+  params_.missed_ticks = params.missed_ticks;
+  noise_.change(params.noise);
+}
+
 void WheelEncoder::hash_state(sim::StateHash& hash) const {
   for (const auto* values : {&angles_rad_, &believed_rad_, &rates_radps_}) hash.add(std::span<const double>(*values));
   for (const auto* counts : {&passed_, &counted_, &ticks_})

@@ -28,6 +28,8 @@ class WheelEncoder final : public sim::Sensor {
   /// The truth: every tick counted, and the joint's own rate.
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
+  /// The errors; joints and ticks stay.
+  void change(const Params& params);
   void hash_state(sim::StateHash& hash) const override;
   const std::vector<Wheel>& wheels() const { return wheels_; }
   const std::vector<std::int64_t>& ticks() const { return ticks_; }

@@ -25,8 +25,7 @@ void WheelMotors::act(double max_acceleration_radps2, double max_torque_Nm, doub
 
 double WheelMotors::power_W(const MotorPower& power, double max_torque_Nm) const {
   double sum_W = 0;
-  for (const Wheel& wheel : wheels_)
-    sum_W += power.of(wheel.joint->effort(wheel.axis), wheel.joint->velocity(wheel.axis), max_torque_Nm);
+  for (const Wheel& wheel : wheels_) sum_W += power.of_motor(*wheel.joint, wheel.axis, max_torque_Nm);
   return sum_W;
 }
 
