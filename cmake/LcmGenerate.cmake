@@ -27,6 +27,27 @@ function(lcm_generate headers)
   set(${headers} ${all_outputs} PARENT_SCOPE)
 endfunction()
 
+# lcm_generate_plugin_tables(<sources> FILES <lcm file>... CPP_DIR <dir>)
+# For the types of a plugin: a source that makes them known to the program, and <dir>/<package>/array_lengths.hpp, which
+# encode_into() of shoal/message_codec.hpp needs.  Shoal_TYPE_TABLES and Shoal_LCM_FILES: from ShoalConfig.cmake.
+function(lcm_generate_plugin_tables sources)
+  cmake_parse_arguments(ARG "" "CPP_DIR" "FILES" ${ARGN})
+  list(GET ARG_FILES 0 first)
+  file(STRINGS ${first} package REGEX "^[ \t]*package[ \t]")
+  string(REGEX REPLACE "^[ \t]*package[ \t]+([A-Za-z0-9_.]+).*" "\\1" package "${package}")
+  if(package STREQUAL shoal)
+    message(FATAL_ERROR "${first}: the package shoal is Shoal's own; the types of a plugin need another one")
+  endif()
+  string(REPLACE "." "/" package_dir "${package}")
+  file(MAKE_DIRECTORY ${ARG_CPP_DIR}/${package_dir})
+  set(texts ${ARG_CPP_DIR}/${package_dir}_texts.cpp)
+  set(lengths ${ARG_CPP_DIR}/${package_dir}/array_lengths.hpp)
+  add_custom_command(OUTPUT ${texts} ${lengths}
+    COMMAND ${Shoal_TYPE_TABLES} ${texts} ${lengths} ${ARG_FILES} --known ${Shoal_LCM_FILES}
+    DEPENDS ${ARG_FILES} COMMENT "Tables of the types of ${package}" VERBATIM)
+  set(${sources} ${texts} ${lengths} PARENT_SCOPE)
+endfunction()
+
 # lcm_generate_python(<target> FILES <lcm file>... DIR <dir>)
 # A target, not built by default, that writes the Python package into <dir>.
 function(lcm_generate_python target)

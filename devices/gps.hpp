@@ -20,6 +20,7 @@ class Gps final : public sim::Sensor {
     int fix_quality = 1;
     int satellites = 9;
     std::optional<double> min_height_m;  ///< below this height of the antenna there is no fix
+    double reacquisition_s = 0;          ///< after a zone that denies it, until there is a fix again
     void read(sim::ParamReader& in);
   };
   struct Reading {
@@ -44,6 +45,7 @@ class Gps final : public sim::Sensor {
   const sim::Geodesy& geodesy_;
   sim::Noise horizontal_noise_, vertical_noise_, velocity_noise_;
   Reading reading_;
+  std::optional<sim::Time> denied_at_;  ///< when it was last in a zone that denies it
 };
 
 /// Publishes shoal.gps_data_t, equal on the wire to bot_core's.

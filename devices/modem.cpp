@@ -112,10 +112,13 @@ void Modem::transmit(sim::Time now, const Outgoing& message) {
                     reinterpret_cast<const std::uint8_t*>(message.data.data()) + message.data.size());
   frame.utime = 0;
   const sim::Bytes payload = shoal::encode(frame);
+  const sim::Zones& zones = network_.world().zones();
+  if (zones.denied(sim::ZoneFlag::radio_denied, p_WS())) return;  // it sends, and nobody hears
   for (Modem* receiver : network_.members()) {
     if (receiver == this || receiver->params_.network != params_.network) continue;
     if (!message.destination.empty() && receiver->vehicle_ != message.destination) continue;
     const double distance_m = (receiver->p_WS() - p_WS()).norm();
+    if (zones.denied(sim::ZoneFlag::radio_denied, receiver->p_WS())) continue;
     if (distance_m > params_.range_m || lost_on_the_way_to(*receiver)) continue;
     const sim::Time due = now + sim::from_seconds(air_time_s + distance_m / params_.propagation_mps);
     network_.world().schedule_arrival(receiver->device_, due, payload);

@@ -67,38 +67,6 @@ std::string shown_as_no_number(const ConfigNode& node) {
 
 }  // namespace
 
-bool Rule::allows(double value) const {
-  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
-}
-
-std::string Rule::text() const {
-  if (low == high) return number_text(low);
-  std::string text;
-  if (std::isfinite(low)) text = (low_open ? "> " : ">= ") + number_text(low);
-  if (std::isfinite(high))
-    text += (text.empty() ? "" : " and ") + std::string(high_open ? "< " : "<= ") + number_text(high);
-  return text;
-}
-
-Rule any_number() {
-  return {};
-}
-Rule at_least(double low) {
-  return {.low = low};
-}
-Rule above(double low) {
-  return {.low = low, .low_open = true};
-}
-Rule at_most(double high) {
-  return {.high = high};
-}
-Rule between(double low, double high) {
-  return {.low = low, .high = high};
-}
-Rule above_to(double low, double high) {
-  return {.low = low, .high = high, .low_open = true};
-}
-
 ParamReader::ParamReader(const ConfigNode& node, std::string who, Diagnostics& diagnostics)
     : ParamReader(node, std::move(who), diagnostics, nullptr) {}
 
@@ -138,6 +106,7 @@ const ConfigNode* ParamReader::child(const char* key) {
 }
 
 void ParamReader::read_name(const char* key, std::string& value, const char* meaning) {
+  if (describing()) return describe_value(key, ParamKind::name, {}, yaml_of(value), meaning);
   read(key, value, meaning);
   const bool plain = std::all_of(value.begin(), value.end(),
                                  [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
@@ -213,49 +182,6 @@ void ParamReader::check_reference(const char* key, const char* kind, const std::
       return;
   error_at(place, quoted_name(key) + " names no " + kind + " " + quoted_name(name) + "; known " + plural_of(kind) +
                       ": " + list_text(declared(kind)));
-}
-
-// Describing
-
-void ParamReader::describe(ParamInfo info) {
-  if (!describing()) return;
-  if (const auto required = std::find(required_.begin(), required_.end(), info.key); required != required_.end()) {
-    required_.erase(required);
-    info.required = true;
-  }
-  if (info.required) info.initial.clear();
-  table_->push_back(std::move(info));
-}
-
-void ParamReader::describe_row(const char* key, const char* type, std::string rule, std::string initial,
-                               const char* meaning) {
-  ParamInfo info;
-  info.key = key;
-  info.type = type;
-  info.rule = std::move(rule);
-  info.initial = std::move(initial);
-  info.meaning = meaning;
-  describe(std::move(info));
-}
-
-std::vector<ParamInfo> ParamReader::describe_children(const void* type, const ReadInto& read_into) const {
-  for (const ParamReader* reader = this; reader != nullptr; reader = reader->parent_)
-    if (reader->type_ == type) return {};  // the type contains itself
-  std::vector<ParamInfo> children;
-  ParamReader nested(children, this, type);
-  read_into(nested);
-  return children;
-}
-
-void ParamReader::describe_nested(const char* key, const char* type_name, const std::string& initial, const void* type,
-                                  const ReadInto& read_into, const char* meaning) {
-  ParamInfo info;
-  info.key = key;
-  info.type = type_name;
-  info.initial = initial;
-  info.meaning = meaning;
-  info.children = describe_children(type, read_into);
-  describe(std::move(info));
 }
 
 // Values
@@ -352,7 +278,7 @@ bool ParamReader::take_texts(const char* key, const ConfigNode& node, std::vecto
 }
 
 void ParamReader::read(const char* key, bool& value, const char* meaning) {
-  if (describing()) return describe_row(key, "bool", "", value ? "true" : "false", meaning);
+  if (describing()) return describe_value(key, ParamKind::boolean, {}, value ? "true" : "false", meaning);
   const ConfigNode* node = take(key);
   if (node == nullptr) return;
   const bool plain = node->kind == Kind::scalar && !node->quoted;
@@ -365,7 +291,7 @@ void ParamReader::read(const char* key, bool& value, const char* meaning) {
 }
 
 void ParamReader::read(const char* key, int& value, const Rule& rule, const char* meaning) {
-  if (describing()) return describe_row(key, "integer", rule.text(), std::to_string(value), meaning);
+  if (describing()) return describe_value(key, ParamKind::integer, rule, std::to_string(value), meaning);
   const ConfigNode* node = take(key);
   if (node == nullptr) return;
   std::int64_t whole = 0;
@@ -380,17 +306,17 @@ void ParamReader::read(const char* key, int& value, const Rule& rule, const char
 }
 
 void ParamReader::read(const char* key, std::int64_t& value, const Rule& rule, const char* meaning) {
-  if (describing()) return describe_row(key, "integer", rule.text(), std::to_string(value), meaning);
+  if (describing()) return describe_value(key, ParamKind::integer, rule, std::to_string(value), meaning);
   if (const ConfigNode* node = take(key)) take_integer(quoted_name(key), *node, rule, value);
 }
 
 void ParamReader::read(const char* key, double& value, const Rule& rule, const char* meaning) {
-  if (describing()) return describe_row(key, "number", rule.text(), number_text(value), meaning);
+  if (describing()) return describe_value(key, ParamKind::number, rule, number_text(value), meaning);
   if (const ConfigNode* node = take(key)) take_number(quoted_name(key), *node, rule, value);
 }
 
 void ParamReader::read(const char* key, std::optional<double>& value, const Rule& rule, const char* meaning) {
-  if (describing()) return describe_row(key, "number", rule.text(), value ? number_text(*value) : "~", meaning);
+  if (describing()) return describe_value(key, ParamKind::number, rule, value ? number_text(*value) : "~", meaning);
   const ConfigNode* node = take(key);
   if (node == nullptr) return;
   double number = 0;
@@ -401,17 +327,17 @@ void ParamReader::read(const char* key, std::optional<double>& value, const Rule
 }
 
 void ParamReader::read(const char* key, std::string& value, const char* meaning) {
-  if (describing()) return describe_row(key, "text", "", yaml_of(value), meaning);
+  if (describing()) return describe_value(key, ParamKind::text, {}, yaml_of(value), meaning);
   if (const ConfigNode* node = take(key)) take_text(quoted_name(key), *node, value);
 }
 
 void ParamReader::read(const char* key, Vector3d& value, const Rule& rule, const char* meaning) {
-  if (describing()) return describe_row(key, "[x, y, z]", rule.text(), yaml_list(value, number_text), meaning);
+  if (describing()) return describe_value(key, ParamKind::vector, rule, yaml_list(value, number_text), meaning);
   if (const ConfigNode* node = take(key)) take_vector(key, *node, rule, value);
 }
 
 void ParamReader::read(const char* key, std::vector<double>& value, const Rule& rule, const char* meaning) {
-  if (describing()) return describe_row(key, "list of numbers", rule.text(), yaml_list(value, number_text), meaning);
+  if (describing()) return describe_value(key, ParamKind::numbers, rule, yaml_list(value, number_text), meaning);
   const ConfigNode* node = take(key);
   if (node == nullptr) return;
   if (node->kind != Kind::list && node->kind != Kind::null)
@@ -426,12 +352,13 @@ void ParamReader::read(const char* key, std::vector<double>& value, const Rule& 
 }
 
 void ParamReader::read(const char* key, std::vector<std::string>& value, const char* meaning) {
-  if (describing()) return describe_row(key, "list of text", "", yaml_list(value, yaml_of), meaning);
+  if (describing()) return describe_value(key, ParamKind::texts, {}, yaml_list(value, yaml_of), meaning);
   if (const ConfigNode* node = take(key)) take_texts(key, *node, value);
 }
 
 void ParamReader::read_deg(const char* key, double& value_rad, const Rule& rule, const char* meaning) {
-  if (describing()) return describe_row(key, "number", rule.text(), number_text(rounded_degrees(value_rad)), meaning);
+  if (describing())
+    return describe_value(key, ParamKind::number, rule, number_text(rounded_degrees(value_rad)), meaning);
   double angle_deg = 0;
   const ConfigNode* node = take(key);
   if (node != nullptr && take_number(quoted_name(key), *node, rule, angle_deg))
@@ -440,7 +367,7 @@ void ParamReader::read_deg(const char* key, double& value_rad, const Rule& rule,
 
 void ParamReader::read_deg(const char* key, Vector3d& value_rad, const char* meaning) {
   const auto degrees_text = [](double angle_rad) { return number_text(rounded_degrees(angle_rad)); };
-  if (describing()) return describe_row(key, "[x, y, z]", "", yaml_list(value_rad, degrees_text), meaning);
+  if (describing()) return describe_value(key, ParamKind::vector, {}, yaml_list(value_rad, degrees_text), meaning);
   Vector3d angles_deg = Vector3d::Zero();
   const ConfigNode* node = take(key);
   if (node == nullptr || !take_vector(key, *node, any_number(), angles_deg)) return;
@@ -451,7 +378,7 @@ std::size_t ParamReader::take_choice(const char* key, const std::vector<std::str
                                      const std::string& initial, const char* meaning) {
   const std::string rule = "one of: " + list_text(choices, choices.size());
   if (describing()) {
-    describe_row(key, "text", rule, yaml_of(initial), meaning);
+    describe_words(key, ParamKind::text, rule, yaml_of(initial), meaning, choices);
     return choices.size();
   }
   const ConfigNode* node = take(key);
@@ -469,7 +396,8 @@ void ParamReader::read_choice(const char* key, std::string& value, const std::ve
 }
 
 void ParamReader::read_reference(const char* key, std::string& value, const char* kind, const char* meaning) {
-  if (describing()) return describe_row(key, "text", "name of " + with_article(kind), yaml_of(value), meaning);
+  if (describing())
+    return describe_words(key, ParamKind::text, "name of " + with_article(kind), yaml_of(value), meaning);
   const ConfigNode* node = take(key);
   if (node == nullptr || !take_text(quoted_name(key), *node, value)) return;
   if (!value.empty()) check_reference(key, kind, value, node->place);
@@ -478,14 +406,14 @@ void ParamReader::read_reference(const char* key, std::string& value, const char
 void ParamReader::read_references(const char* key, std::vector<std::string>& value, const char* kind,
                                   const char* meaning) {
   if (describing())
-    return describe_row(key, "list of text", "names of " + plural_of(kind), yaml_list(value, yaml_of), meaning);
+    return describe_words(key, ParamKind::texts, "names of " + plural_of(kind), yaml_list(value, yaml_of), meaning);
   const ConfigNode* node = take(key);
   if (node == nullptr || !take_texts(key, *node, value)) return;
   for (std::size_t i = 0; i < value.size(); ++i) check_reference(key, kind, value[i], node->items[i].place);
 }
 
 void ParamReader::read_raw(const char* key, ConfigNode& value, const char* meaning) {
-  if (describing()) return describe_row(key, "map", "", "{}", meaning);
+  if (describing()) return describe_value(key, ParamKind::raw, {}, "{}", meaning);
   if (const ConfigNode* node = take(key)) value = *node;
 }
 

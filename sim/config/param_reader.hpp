@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,39 +13,10 @@
 
 #include "sim/config/config_node.hpp"
 #include "sim/config/diagnostics.hpp"
+#include "sim/config/param_info.hpp"
 #include "sim/math.hpp"
 
 namespace sim {
-
-/// The range a number must lie in.
-struct Rule {
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  bool low_open = false;   ///< low itself is not allowed
-  bool high_open = false;  ///< high itself is not allowed
-
-  bool allows(double value) const;
-  /// `>= 1`, `> 0`, `>= 0 and <= 360`; empty for any number.
-  std::string text() const;
-};
-
-Rule any_number();
-Rule at_least(double low);
-Rule above(double low);
-Rule at_most(double high);
-Rule between(double low, double high);   ///< both ends allowed
-Rule above_to(double low, double high);  ///< low excluded, high allowed
-
-/// What is known of one key: the source of error messages, `shoal describe`, docs and schemas.
-struct ParamInfo {
-  std::string key;
-  std::string type;     ///< bool, integer, number, text, [x, y, z], list of numbers, list of text, map, list of maps
-  std::string rule;     ///< as Rule::text(), or `one of: a, b`, or `name of a joint`
-  std::string initial;  ///< default as YAML text; empty when required
-  std::string meaning;
-  bool required = false;
-  std::vector<ParamInfo> children;  ///< keys of a map, or of each item of a list of maps
-};
 
 class ParamReader;
 
@@ -107,6 +77,9 @@ class ParamReader {
   /// A list of maps.  Who of an item: `kind 'name'` when the item has a `name`, else `kind 3` (from 1).
   template <ReadsParams T>
   void read_list(const char* key, std::vector<T>& value, const char* kind, const char* meaning);
+  /// A list of such lists.  Describes nothing.
+  template <ReadsParams T>
+  void read_lists(const char* key, std::vector<std::vector<T>>& value, const char* kind);
 
   /// Makes a name known for read_reference in this reader and the readers nested in it.  The second time the same
   /// name of a kind is declared in one reader it is an error: `duplicate joint 'left'`.
@@ -147,7 +120,10 @@ class ParamReader {
 
   /// The value of `key`, which becomes known; null when absent.  Reports it when it is required and absent.
   const ConfigNode* take(const char* key);
-  void describe_row(const char* key, const char* type, std::string rule, std::string initial, const char* meaning);
+  void describe_value(const char* key, ParamKind kind, const Rule& range, std::string initial, const char* meaning);
+  /// Text whose rule is more than a range: `choices`, or names.
+  void describe_words(const char* key, ParamKind kind, std::string rule, std::string initial, const char* meaning,
+                      std::vector<std::string> choices = {});
   void error_at(const SourcePlace& place, const std::string& text);
   bool take_number(const std::string& what, const ConfigNode& node, const Rule& rule, double& value);
   bool take_integer(const std::string& what, const ConfigNode& node, const Rule& rule, std::int64_t& value);
@@ -161,7 +137,7 @@ class ParamReader {
 
   /// `type` tells types apart, so that describing one that contains itself ends.
   std::vector<ParamInfo> describe_children(const void* type, const ReadInto& read_into) const;
-  void describe_nested(const char* key, const char* type_name, const std::string& initial, const void* type,
+  void describe_nested(const char* key, ParamKind kind, const std::string& initial, const void* type,
                        const ReadInto& read_into, const char* meaning);
   void read_nested(const char* key, const ConfigNode& node, const ReadInto& read_into);
   /// Calls `read_into` for each item of the list.  False when the value is no list.

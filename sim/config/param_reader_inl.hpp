@@ -33,7 +33,7 @@ void ParamReader::read(const char* key, T& value, const char* meaning) {
   if (describing()) {
     // A copy: read() may set members that follow from others.
     const auto read_copy = [&value](ParamReader& in) { T(value).read(in); };
-    describe_nested(key, "map", "{}", &detail::type_mark<T>, read_copy, meaning);
+    describe_nested(key, ParamKind::map, "{}", &detail::type_mark<T>, read_copy, meaning);
     return;
   }
   if (const ConfigNode* node = take(key)) read_nested(key, *node, [&value](ParamReader& in) { value.read(in); });
@@ -43,7 +43,7 @@ template <ReadsParams T>
 void ParamReader::read(const char* key, std::optional<T>& value, const char* meaning) {
   if (describing()) {
     const auto read_sample = [](ParamReader& in) { T().read(in); };
-    describe_nested(key, "map", "~", &detail::type_mark<T>, read_sample, meaning);
+    describe_nested(key, ParamKind::map, "~", &detail::type_mark<T>, read_sample, meaning);
     return;
   }
   const ConfigNode* node = take(key);
@@ -60,7 +60,7 @@ template <ReadsParams T>
 void ParamReader::read_list(const char* key, std::vector<T>& value, const char* kind, const char* meaning) {
   if (describing()) {
     const auto read_sample = [](ParamReader& in) { T().read(in); };
-    describe_nested(key, "list of maps", "[]", &detail::type_mark<T>, read_sample, meaning);
+    describe_nested(key, ParamKind::maps, "[]", &detail::type_mark<T>, read_sample, meaning);
     return;
   }
   const ConfigNode* node = take(key);
@@ -68,6 +68,18 @@ void ParamReader::read_list(const char* key, std::vector<T>& value, const char* 
   std::vector<T> items;
   if (read_items(key, *node, kind, [&items](ParamReader& in) { items.emplace_back().read(in); }))
     value = std::move(items);
+}
+
+template <ReadsParams T>
+void ParamReader::read_lists(const char* key, std::vector<std::vector<T>>& value, const char* kind) {
+  const ConfigNode* node = take(key);
+  if (node == nullptr) return;
+  if (node->kind != ConfigNode::Kind::list) return error(key, "'" + std::string(key) + "' must be a list of lists");
+  value.clear();
+  for (const ConfigNode& list : node->items) {
+    std::vector<T>& items = value.emplace_back();
+    read_items(key, list, kind, [&items](ParamReader& in) { items.emplace_back().read(in); });
+  }
 }
 
 }  // namespace sim

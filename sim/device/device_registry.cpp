@@ -1,7 +1,7 @@
 #include "sim/device/device_registry.hpp"
 
 #include <algorithm>
-#include <stdexcept>
+#include <utility>
 
 #include "sim/config/message_text.hpp"
 #include "sim/world/vehicle.hpp"
@@ -62,10 +62,17 @@ DeviceRegistry& DeviceRegistry::instance() {
 }
 
 void DeviceRegistry::add(DeviceType type) {
-  if (find(type.name) != nullptr) throw std::logic_error("device type '" + type.name + "' exists twice");
+  if (find(type.name) != nullptr) {
+    problems_.push_back("device type '" + type.name + "' exists twice");
+    return;
+  }
   const auto at = std::lower_bound(types_.begin(), types_.end(), type.name,
                                    [](const auto& other, const std::string& name) { return other->name < name; });
   types_.insert(at, std::make_unique<DeviceType>(std::move(type)));
+}
+
+std::vector<std::string> DeviceRegistry::take_problems() {
+  return std::exchange(problems_, {});
 }
 
 const DeviceType* DeviceRegistry::find(const std::string& name) const {

@@ -74,14 +74,18 @@ const std::vector<std::pair<std::string, SafeState>>& safe_state_words();
 class DeviceRegistry {
  public:
   static DeviceRegistry& instance();
-  /// Throws std::logic_error when the name is taken.
+  /// A name that is taken is a problem; the first type keeps it.  Nothing is thrown: a static initialiser calls this,
+  /// and what it throws ends the program.
   void add(DeviceType type);
+  /// What went wrong while types were added, since the last call.
+  std::vector<std::string> take_problems();
   const DeviceType* find(const std::string& name) const;
   /// In the order of their names.
   std::vector<const DeviceType*> all() const;
 
  private:
   std::vector<std::unique_ptr<DeviceType>> types_;
+  std::vector<std::string> problems_;
 };
 
 namespace detail {

@@ -38,6 +38,7 @@ Noise::Noise(const NoiseParams& params, int values, Random bias_source, const No
 void Noise::change(const NoiseParams& params) {
   for (Slow& slow : slow_) slow.bias += params.bias - params_.bias;
   params_ = params;
+  planned_dt_s_ = -1;
 }
 
 void Noise::apply(std::span<double> values, double dt_s, Random& random) {
@@ -68,18 +69,30 @@ void Noise::apply(double& value, double dt_s, Random& random) {
   apply(std::span(&value, 1), dt_s, random);
 }
 
+void Noise::plan(double dt_s) {
+  // Samples come at a steady rate: the roots and exponentials are the same from call to call.
+  planned_dt_s_ = dt_s;
+  walk_root_s_ = std::sqrt(dt_s);
+  kept_ = std::exp(-dt_s / params_.gauss_markov_time_s);
+  fresh_std_ = params_.gauss_markov_std * std::sqrt(-std::expm1(-2 * dt_s / params_.gauss_markov_time_s));
+}
+
 void Noise::advance(double dt_s, Random& random) {
   const NoiseParams& p = params_;
+  if (p.random_walk_std == 0 && p.gauss_markov_std == 0) {
+    started_ = true;
+    return;
+  }
+  if (dt_s != planned_dt_s_) plan(dt_s);
   if (p.random_walk_std > 0 && started_) {
-    const double step_std = (fault_ ? fault_->factor : 1) * p.random_walk_std * std::sqrt(dt_s);
+    const double step_std = (fault_ ? fault_->factor : 1) * p.random_walk_std * walk_root_s_;
     for (Slow& slow : slow_) slow.walk += step_std * random.gaussian();
   }
   if (p.gauss_markov_std > 0) {
     // The exact solution over dt keeps the standard deviation for any dt.  The first value is drawn from the
     // stationary distribution: an instrument has been on for a while when the run starts.
-    const double kept = started_ ? std::exp(-dt_s / p.gauss_markov_time_s) : 0;
-    const double fresh_std =
-        p.gauss_markov_std * (started_ ? std::sqrt(-std::expm1(-2 * dt_s / p.gauss_markov_time_s)) : 1);
+    const double kept = started_ ? kept_ : 0;
+    const double fresh_std = started_ ? fresh_std_ : p.gauss_markov_std;
     for (Slow& slow : slow_) slow.gauss_markov = kept * slow.gauss_markov + fresh_std * random.gaussian();
   }
   started_ = true;

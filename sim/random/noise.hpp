@@ -61,6 +61,8 @@ class Noise {
     double walk = 0;
     double gauss_markov = 0;
   };
+  /// Works out what advance() needs for `dt_s`.
+  void plan(double dt_s);
   /// Takes the slow parts over `dt_s`.
   void advance(double dt_s, Random& random);
 
@@ -68,6 +70,8 @@ class Noise {
   const NoiseFault* fault_;
   std::vector<Slow> slow_;
   bool started_ = false;
+  double planned_dt_s_ = -1;
+  double walk_root_s_ = 0, kept_ = 0, fresh_std_ = 0;
 };
 
 }  // namespace sim

@@ -7,6 +7,8 @@
 #include "sim/bus/bus.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
+#include "sim/script/check_script.hpp"
+#include "sim/device/plugin.hpp"
 #include "sim/world/vehicle_loader.hpp"
 
 namespace sim {
@@ -111,6 +113,34 @@ void apply_sets(ConfigNode& root, const LoadOptions& options, Diagnostics& diagn
   }
 }
 
+/// Why a plugin that a world names was not loaded; empty: it was, or `load_plugin` has said why not.
+std::string plugin_problem(ConfigNode& item, const std::string& who, const LoadOptions& options,
+                           Diagnostics& diagnostics) {
+  const fs::path file = item.place.file != nullptr ? *item.place.file : "";
+  const std::string path = find_plugin(item.scalar, file.parent_path().string());
+  if (path.empty()) return "is neither beside this file nor in SHOAL_PLUGIN_PATH nor in lib/shoal/plugins";
+  if (!options.allow_plugins && !is_loaded_plugin(path))
+    return "a world file may run code only with --launch, or name the plugin with --plugin " + path;
+  load_plugin(path, item.place, who, diagnostics);
+  std::error_code error;
+  if (const fs::path whole = fs::absolute(path, error); !error) item.scalar = whole.lexically_normal().string();
+  return {};
+}
+
+/// Loads what `plugins:` names, before any device is read.  From then on the tree names them by their whole paths.
+bool load_plugins(ConfigNode& root, const LoadOptions& options, Diagnostics& diagnostics) {
+  const std::size_t before = diagnostics.lines().size();
+  ConfigNode* plugins = root.find("plugins");
+  if (plugins == nullptr) return true;
+  for (ConfigNode& item : plugins->items) {
+    if (item.kind != ConfigNode::Kind::scalar || is_loaded_plugin(item.scalar)) continue;
+    const std::string who = "plugin '" + shortened(item.scalar) + "'";
+    const std::string problem = plugin_problem(item, who, options, diagnostics);
+    if (!problem.empty()) diagnostics.error(item.place, who, problem);
+  }
+  return diagnostics.lines().size() == before;
+}
+
 /// The resolved world may be written anywhere: mesh files are named by their whole path.
 void make_mesh_paths_absolute(ConfigNode& node) {
   for (ConfigNode& item : node.items) make_mesh_paths_absolute(item);
@@ -128,11 +158,14 @@ void make_mesh_paths_absolute(ConfigNode& node) {
 LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& options, Diagnostics& diagnostics) {
   diagnostics.throw_if_any();
   LoadedWorld loaded;
+  loaded.config.encode_message = options.encode_message;
   apply_sets(root, options, diagnostics);
   diagnostics.throw_if_any();
   ParamReader in(root, "", diagnostics);
   loaded.config.read(in);
   in.finish();
+  // Its devices would all be of unknown types, which would bury the mistake.
+  if (!load_plugins(root, options, diagnostics)) diagnostics.throw_if_any();
   if (file.file != nullptr) loaded.config.file = *file.file;
   if (options.seed) loaded.config.run.seed = *options.seed;
   if (loaded.config.name.empty() && file.file != nullptr) loaded.config.name = fs::path(*file.file).stem().string();
@@ -142,6 +175,8 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   check_channels(loaded.config, diagnostics);
   diagnostics.throw_if_any();
   gather_from_vehicles(loaded.config);
+  check_script(loaded.config, diagnostics);
+  diagnostics.throw_if_any();
   vehicles.resolve(root);
   make_mesh_paths_absolute(root);
   if (options.seed) {

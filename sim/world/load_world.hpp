@@ -9,8 +9,10 @@
 namespace sim {
 
 struct LoadOptions {
-  std::vector<std::string> sets;     ///< `path=value`, as given with --set
-  std::optional<std::int64_t> seed;  ///< instead of the file's
+  std::vector<std::string> sets;      ///< `path=value`, as given with --set
+  std::optional<std::int64_t> seed;   ///< instead of the file's
+  bool allow_plugins = false;         ///< load the `plugins:` of the world, which then run code
+  EncodeMessage encode_message = {};  ///< for events that publish messages
 };
 
 struct LoadedWorld {

@@ -255,6 +255,7 @@ void MountedDevice::change(const DeviceConfig& changed, Time now) {
   config_.safe = changed.safe;
   config_.truth = changed.truth;
   config_.params = changed.params;
+  config_.source = changed.source;  // the next change starts from here
   if (built_.change) built_.change(*changed.params);
   if (!other_rate) return;
   // The new rate counts from time 0 as the old one did; the next sample is the first one after now.

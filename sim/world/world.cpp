@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "sim/config/message_text.hpp"
+#include "sim/script/script.hpp"
 
 namespace sim {
 
@@ -23,12 +24,14 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
   add_objects();
   for (const VehicleInstance& instance : config.vehicles) build_vehicle(instance);
   sort_devices();
+  script_ = std::make_unique<Script>(*this);
 }
 
 World::~World() = default;
 
 void World::add_objects() {
   for (const ObjectConfig& object : config_.objects) {
+    if (!object.present) continue;
     const Pose X_WE = make_pose(object.position_m, object.rpy_rad);
     const std::vector<Pose> poses = object.count == 1
                                         ? std::vector<Pose>{X_WE}
@@ -44,8 +47,9 @@ const WorldObject& World::build_object(const ObjectConfig& config, const std::st
   BodyConfig body;
   body.parts = config.parts;
   body.name = "body";
+  const Motion motion = config.kinematic ? Motion::kinematic : config.fixed ? Motion::fixed : Motion::free;
   try {
-    object.body = &physics_->add_body(object.group, body, X_WE, config.fixed ? Motion::fixed : Motion::free);
+    object.body = &physics_->add_body(object.group, body, X_WE, motion);
   } catch (...) {
     physics_->remove_group(object.group);
     throw;
@@ -112,6 +116,7 @@ void World::sort_devices() {
 void World::step() {
   for (MountedDevice* device : listening_) device->take_mail(now(), step_number_);
   for (MountedDevice* device : acting_) device->act(now(), step_s_);
+  script_->step();
   physics_->step(step_number_);
   ++step_number_;
   run_due_events();
@@ -178,6 +183,20 @@ void World::complain(const std::string& who, const std::string& text) {
   spdlog::warn("{} (ignored, at {:.3f} s)", line, to_seconds(now()));
 }
 
+const Zones& World::zones() const {
+  return script_->zones();
+}
+
+const std::map<std::string, ZoneRecord>& World::zone_records() const {
+  return script_->zone_records();
+}
+
+void World::run_action(const ConfigNode& action) {
+  Diagnostics diagnostics;
+  script_->run_now(action, diagnostics);
+  diagnostics.throw_if_any();
+}
+
 std::uint64_t World::state_hash() const {
   StateHash hash;
   hash.add(step_number_);
@@ -186,6 +205,7 @@ std::uint64_t World::state_hash() const {
   for (const auto& device : devices_)
     if (device) device->hash_state(hash);
   events_.hash_state(hash);
+  if (!script_->empty()) script_->hash_state(hash);
   return hash.value();
 }
 

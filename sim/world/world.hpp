@@ -31,6 +31,9 @@ struct WorldCounts {
   std::int64_t bad_messages = 0;
 };
 
+class Script;
+struct ZoneRecord;
+
 enum class ChannelKind { report, command, truth };
 
 /// A thing without devices, as built.
@@ -109,12 +112,14 @@ class World {
   /// Throw WorldError when there is no such device, or the fault does not fit it.
   void set_fault(const std::string& device, const FaultConfig& fault);
   void clear_faults(const std::string& device);
+  /// Gives a device other values while it runs.  False: `diagnostics` say why, and nothing has changed.
+  bool change_device(const std::string& full_name, const ConfigNode& values, Diagnostics& diagnostics);
   /// Sends a message on the world's bus, as a script does.
   void publish(const std::string& channel, std::span<const std::byte> payload);
   /// The run ends after this step; the first call counts.
   void end(const EndOfRun& end);
   const std::optional<EndOfRun>& ended() const { return ended_; }
-  /// Carries out one action, as in `events:`.  Throws ConfigError.
+  /// Carries out one action (a map) or several (a list of maps), as in `events:`.  Throws ConfigError.
   void run_action(const ConfigNode& action);
   /// Warns of something that went wrong in the world and counts it; the same line is told once.
   void complain(const std::string& who, const std::string& text);
@@ -133,6 +138,9 @@ class World {
   /// The channel of a device by the world's templates.
   std::string channel_of(const std::string& vehicle, const DeviceConfig& device, ChannelKind kind) const;
 
+  const Zones& zones() const;
+  /// By vehicle, when the world has zones with a speed limit or a finish.
+  const std::map<std::string, ZoneRecord>& zone_records() const;
   const WorldCounts& counts() const { return counts_; }
   /// A hash over bodies, joints, devices, their random streams and the event queue.
   std::uint64_t state_hash() const;
@@ -180,6 +188,7 @@ class World {
   std::vector<int> free_numbers_;  // of devices that were removed; the last is used first
   // The devices each stage visits, in device order.
   std::vector<MountedDevice*> listening_, acting_, sensing_;
+  std::unique_ptr<Script> script_;
 };
 
 }  // namespace sim

@@ -150,8 +150,4 @@ void World::clear_faults(const std::string& device) {
   device_named(device).clear_faults();
 }
 
-void World::run_action(const ConfigNode& action) {
-  throw_config_error(action.place, "", "the world has no script yet");
-}
-
 }  // namespace sim

@@ -36,6 +36,7 @@ void ObjectConfig::read(ParamReader& in) {
   in.read("position_m", position_m, any_number(), "place in the world");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
   in.read("fixed", fixed, "it never moves");
+  in.read("present", present, "false: it is not there until an event adds it");
   in.read("count", count, between(1, 100000), "how many; named NAME1, NAME2, ...");
   in.read("placement", placement, "where the instances stand when there is a count");
   in.require("parts");
@@ -145,6 +146,35 @@ void declare_figures(ParamReader& in, const std::vector<MetricConfig>& metrics) 
         in.declare("figure", metric.name + figure);
 }
 
+/// What events may name.  Before they are read, for they name each other.
+void declare_for_events(ParamReader& in, const WorldConfig& world) {
+  std::set<std::string> objects;
+  for (const ObjectConfig& object : world.objects)
+    for (int i = 1; i <= object.count; ++i)
+      objects.insert(object.count == 1 ? object.name : object.name + std::to_string(i));
+  const ConfigNode* events = in.describing() ? nullptr : in.child("events");
+  if (events != nullptr) {
+    for (std::string& name : names_added_by(*events)) objects.insert(std::move(name));
+    for (const ConfigNode& event : events->items)
+      if (const ConfigNode* name = event.find("name"); name != nullptr) in.declare("event", name->scalar);
+  }
+  const std::vector<std::string> known = in.declared("object");
+  std::set<std::string> movable(objects);
+  for (const std::string& name : objects)
+    if (!std::binary_search(known.begin(), known.end(), name)) in.declare("object", name);
+  for (const std::string& name : in.declared("vehicle")) movable.insert(name);
+  for (const std::string& name : movable) in.declare(movable_kind, name);
+}
+
+void read_script(ParamReader& in, WorldConfig& world) {
+  in.read_list("zones", world.zones, "zone", "regions, for events, denied services and rules");
+  for (const ZoneConfig& zone : world.zones) in.declare("zone", zone.name);
+  in.read_list("actors", world.actors, "actor", "objects that move along paths");
+  for (const ActorConfig& actor : world.actors) in.declare("actor", actor.name);
+  declare_for_events(in, world);
+  in.read_list("events", world.events, "event", "what happens when, see docs/living_worlds.md");
+}
+
 }  // namespace
 
 void WorldConfig::read(ParamReader& in) {
@@ -169,6 +199,7 @@ void WorldConfig::read(ParamReader& in) {
   in.read("channels", channels, "names of the channels");
   in.read("run", run, "how a run goes when the command line says nothing else");
   in.read("state_rate_hz", state_rate_hz, between(0, 1e6), "of sim.state and sim.clock; 0: never");
+  in.read("plugins", plugins, "libraries with devices, beside this file or installed; only with --launch or --plugin");
   in.read_list("objects", objects, "object", "things without devices");
   for (const ObjectConfig& object : objects) in.declare("object", object.name);
   in.read_list("buses", buses, "bus", "buses beside the world's, for vehicles that hear each other by modem only");
@@ -178,6 +209,7 @@ void WorldConfig::read(ParamReader& in) {
     if (entry.count == 1) in.declare("vehicle", entry.name);
     for (int i = 1; entry.count > 1 && i <= entry.count; ++i) in.declare("vehicle", entry.name + std::to_string(i));
   }
+  read_script(in, *this);
   in.read_list("processes", processes, "process", "external programs, started only with --launch");
   for (const ProcessConfig& process : processes) in.declare("process", process.name);
   in.read("lockstep", lockstep, "waiting for clients");

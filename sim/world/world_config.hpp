@@ -9,6 +9,8 @@
 #include "sim/config/param_reader.hpp"
 #include "sim/geodesy.hpp"
 #include "sim/physics/physics_config.hpp"
+#include "sim/script/event_config.hpp"
+#include "sim/script/zone.hpp"
 #include "sim/world/placement.hpp"
 #include "sim/world/vehicle_config.hpp"
 
@@ -42,7 +44,9 @@ struct ObjectConfig {
   std::string name;
   Vector3d position_m = Vector3d::Zero();
   Vector3d rpy_rad = Vector3d::Zero();
-  bool fixed = false;  ///< never moves
+  bool fixed = false;      ///< never moves
+  bool present = true;     ///< false: it is not there until an event adds it
+  bool kinematic = false;  ///< an actor moves it
   int count = 1;
   PlacementConfig placement;
   std::vector<PartConfig> parts;
@@ -141,6 +145,7 @@ struct WorldConfig {
   std::vector<std::string> categories;
   ChannelConfig channels;
   RunConfig run;
+  std::vector<std::string> plugins;  ///< loaded by load_world
   std::vector<ObjectConfig> objects;
   std::vector<BusConfig> buses;
   std::vector<VehicleEntry> vehicle_entries;
@@ -150,6 +155,10 @@ struct WorldConfig {
   std::vector<MetricConfig> metrics;
   std::vector<PassRule> pass;
   LimitsConfig limits;
+  std::vector<ZoneConfig> zones;
+  std::vector<ActorConfig> actors;
+  std::vector<EventConfig> events;
+  EncodeMessage encode_message;  ///< for actions that publish; empty: they cannot
   double state_rate_hz = 10;  ///< of sim.state and sim.clock
 
   void read(ParamReader& in);

@@ -37,7 +37,12 @@ TEST(DeviceRegistry, EveryTypeSaysWhatItIsAndWhatItSpeaks) {
 TEST(DeviceRegistry, RefusesASecondTypeOfTheSameName) {
   sim::DeviceType type;
   type.name = "lidar";
-  EXPECT_THROW(sim::DeviceRegistry::instance().add(type), std::logic_error);
+  sim::DeviceRegistry& registry = sim::DeviceRegistry::instance();
+  const std::size_t before = registry.all().size();
+  registry.add(type);
+  EXPECT_EQ(registry.take_problems(), std::vector<std::string>{"device type 'lidar' exists twice"});
+  EXPECT_EQ(registry.take_problems(), std::vector<std::string>{});
+  EXPECT_EQ(registry.all().size(), before);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "shoal/message_codec.hpp"
+#include "shoal/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/world.hpp"
@@ -17,8 +18,12 @@ namespace test {
 class LoadedTestWorld {
  public:
   /// A file of worlds/.
-  explicit LoadedTestWorld(const std::string& file) : LoadedTestWorld(sim::load_world(file)) {}
+  explicit LoadedTestWorld(const std::string& file) : LoadedTestWorld(sim::load_world(file, with_messages({}))) {}
 
+  static sim::LoadOptions with_messages(sim::LoadOptions options) {
+    if (!options.encode_message) options.encode_message = shoal::encode_own_message;
+    return options;
+  }
   void run_for(double time_s) {
     const sim::Time end = world.now() + sim::from_seconds(time_s);
     while (world.now() < end) world.step();
@@ -41,7 +46,7 @@ class LoadedTestWorld {
 class TestWorld : public LoadedTestWorld {
  public:
   explicit TestWorld(const std::string& yaml, const sim::LoadOptions& options = {})
-      : LoadedTestWorld(sim::load_world_text(yaml, "worlds/test.yaml", options)) {}
+      : LoadedTestWorld(sim::load_world_text(yaml, "worlds/test.yaml", with_messages(options))) {}
 };
 
 /// Everything that is published on a channel, decoded.
@@ -97,6 +102,22 @@ vehicles:
       joints:
         - {name: left, type: hinge, bodies: [chassis, left_wheel], anchor_m: [0, 0.25, 0.1], axis: [0, 1, 0]}
         - {name: right, type: hinge, bodies: [chassis, right_wheel], anchor_m: [0, -0.25, 0.1], axis: [0, 1, 0]}
+      devices:
+)" + devices +
+         more;
+}
+
+/// One free box of 1 kg, 0.6 x 0.4 x 0.2 m, its frame in the middle.  `devices`: as above.
+inline std::string box_world(const std::string& devices, const std::string& physics = "{step_s: 0.001}",
+                             const std::string& more = "") {
+  return "shoal: 1\nphysics: " + physics + R"(
+vehicles:
+  - name: r1
+    position_m: [0, 0, 0]
+    model:
+      shoal: 1
+      vehicle: box
+      bodies: [{name: hull, parts: [{shape: box, size_m: [0.6, 0.4, 0.2], mass_kg: 1}]}]
       devices:
 )" + devices +
          more;

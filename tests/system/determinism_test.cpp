@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "bridges/lcm/lcm_listener.hpp"
+#include "shoal/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/world.hpp"
@@ -35,7 +36,7 @@ class Determinism : public testing::TestWithParam<Case> {
   }
   /// The hash after every step, in this process.
   std::vector<std::uint64_t> hashes_here() const {
-    const auto loaded = sim::load_world(source(GetParam().world));
+    const auto loaded = sim::load_world(source(GetParam().world), {.encode_message = shoal::encode_own_message});
     sim::InProcessBus bus;
     sim::World world(loaded.config, bus);
     std::vector<std::uint64_t> hashes;
@@ -92,7 +93,7 @@ TEST_P(Determinism, AnotherSeedIsAnotherRun) {
 
 INSTANTIATE_TEST_SUITE_P(Worlds, Determinism,
                          testing::Values(Case{"worlds/minimal.yaml", "20"}, Case{"worlds/erl_room.yaml", "20"},
-                                         Case{"worlds/scale.yaml", "2"}),
+                                         Case{"worlds/scale.yaml", "2"}, Case{"worlds/living_warehouse.yaml", "20"}),
                          [](const auto& test) { return std::filesystem::path(test.param.world).stem().string(); });
 
 TEST(CoopLand, IsTheSameRunAtAnySpeedWithItsProcesses) {

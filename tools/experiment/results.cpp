@@ -54,6 +54,7 @@ void write_file(const std::string& path, const std::string& text) {
 }  // namespace
 
 bool Summary::passed() const {
+  if (event && !event->passed) return false;
   return std::all_of(verdicts.begin(), verdicts.end(), [](const Scoring::Verdict& v) { return v.passed; });
 }
 
@@ -78,6 +79,12 @@ std::string Summary::to_json() const {
   json["processes"] = nlohmann::ordered_json::array();
   for (const Process& process : processes)
     json["processes"].push_back({{"name", process.name}, {"how", process.how}, {"sim_time_s", process.sim_time_s}});
+  for (const auto& [vehicle, record] : zones) {
+    auto& entry = json["zones"][vehicle];
+    entry["finish_s"] = record.finish_s ? nlohmann::ordered_json(*record.finish_s) : nlohmann::ordered_json();
+    entry["speeding_s"] = record.speeding_s;
+  }
+  if (event) json["event"] = {{"text", event->text}, {"passed", event->passed}};
   json["passed"] = passed() && exit_code == 0;
   json["ended"] = ended;
   json["error"] = error;
@@ -98,6 +105,11 @@ std::string Summary::to_text() const {
     text += fmt::format("  {}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.rule);
   for (const Process& process : processes)
     text += fmt::format("  process '{}' {} at {:.2f} s\n", process.name, process.how, process.sim_time_s);
+  for (const auto& [vehicle, record] : zones) {
+    if (record.finish_s) text += fmt::format("  {} finished at {:.2f} s\n", vehicle, *record.finish_s);
+    if (record.speeding_s > 0) text += fmt::format("  {} was too fast for {:.2f} s\n", vehicle, record.speeding_s);
+  }
+  if (event) text += fmt::format("  ended by an event, {}: {}\n", event->passed ? "passed" : "FAILED", event->text);
   text += fmt::format("  state hash {:016x}\n", state_hash);
   return text;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/config/config_node.hpp"
+#include "sim/script/script.hpp"
 #include "sim/world/world.hpp"
 #include "tools/experiment/scoring.hpp"
 
@@ -36,7 +37,9 @@ struct Summary {
   std::map<std::string, double> metrics;
   std::vector<Scoring::Verdict> verdicts;
   std::vector<Process> processes;
-  std::string ended = "duration";  ///< duration, quit, signal, fault, bus, timeout, process, configuration, error
+  std::map<std::string, sim::ZoneRecord> zones;  ///< by vehicle, when the world has zones with rules
+  std::optional<sim::EndOfRun> event;            ///< of the world that ended the run
+  std::string ended = "duration";  ///< duration, event, quit, signal, fault, bus, timeout, process, configuration, error
   std::string error;               ///< why it ended early, empty when it did not
   int exit_code = 0;
 

@@ -128,6 +128,7 @@ class Run {
 
   std::string how_ended() const {
     if (signal_caught != 0) return "signal";
+    if (world_.ended()) return "event";
     return control_.quit ? "quit" : "duration";
   }
 
@@ -186,7 +187,7 @@ class Run {
     buses_.end_of_step();
     synchronize();
     const sim::Time end = duration_s_ > 0 ? sim::from_seconds(duration_s_) : sim::Time::max();
-    while (wanted() && world_.now() < end) {
+    while (wanted() && !world_.ended() && world_.now() < end) {
       service_.handle_requests();
       if (!control_.may_step()) {
         progress_.update(world_.now(), messages(), true);
@@ -287,10 +288,12 @@ class Run {
     summary.metrics = scoring_.figures();
     summary.verdicts = scoring_.verdicts();
     summary.processes = ended_processes_;
+    summary.event = world_.ended();
+    for (const auto& [vehicle, record] : world_.zone_records()) summary.zones[vehicle] = record;
     // Without the programs that a world names there is nothing to judge.
     const bool judged = loaded_.config.processes.empty() || options_.launch || !options_.await.empty();
     if (!judged) summary.verdicts.clear();
-    if (summary.exit_code == 0 && !summary.passed()) summary.exit_code = 1;
+    if (summary.exit_code == 0 && !summary.passed()) summary.exit_code = 1;  // a rule, or the event that ended it
     note_signal(summary);
     if (results_) write_results(summary);
   }

@@ -5,6 +5,7 @@
 #include "sim/world/load_world.hpp"
 #include "sim/world/vehicle_loader.hpp"
 #include "sim/world/world.hpp"
+#include "shoal/message_writer.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {
@@ -24,7 +25,9 @@ void check(const std::string& path, const sim::LoadOptions& options) {
               << vehicle.joints.size() << " joints, " << vehicle.devices.size() << " devices\n";
     return;
   }
-  const sim::LoadedWorld loaded = sim::load_world(path, options);
+  sim::LoadOptions with_messages = options;
+  with_messages.encode_message = shoal::encode_own_message;
+  const sim::LoadedWorld loaded = sim::load_world(path, with_messages);
   // Building finds what reading cannot: mesh files, bodies without mass.
   sim::InProcessBus bus;
   const sim::World world(loaded.config, bus);
@@ -43,6 +46,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
   command->add_option("--set", options->sets, "path=value: change a value of the world file")
       ->type_size(1)
       ->allow_extra_args(false);
+  add_plugin_option(*command);
   command->footer(
       "Example:\n  shoal check worlds/coop_land.yaml --set run.seed=3\nEvery error is printed as "
       "file:line:column: who: rule, value.");

@@ -26,12 +26,16 @@ inline CLI::Validator number_from(double low, double high) {
   return CLI::Validator(check, fmt::format("FLOAT in [{:g} - {:g}]", low, high));
 }
 
+/// Adds `--plugin FILE`, which is loaded before the command does anything.
+void add_plugin_option(CLI::App& command);
+
 /// Each adds its sub-command.  When chosen, the command sets `exit_code`.
 void add_run_command(CLI::App& app, int& exit_code);
 void add_check_command(CLI::App& app, int& exit_code);
 void add_describe_command(CLI::App& app, int& exit_code);
 void add_list_command(CLI::App& app, int& exit_code);
 void add_spy_command(CLI::App& app, int& exit_code);
+void add_control_command(CLI::App& app, int& exit_code);
 void add_doctor_command(CLI::App& app, int& exit_code);
 void add_log_command(CLI::App& app, int& exit_code);
 void add_bench_command(CLI::App& app, int& exit_code);

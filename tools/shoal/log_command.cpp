@@ -1,5 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <fstream>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -8,6 +9,7 @@
 #include "bridges/lcm/event_log.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
+#include "tools/experiment/allan_table.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {
@@ -121,28 +123,56 @@ int csv(const std::string& path, const std::string& channel, const shoal::Messag
   return rows == 0 || bad > 0 ? exit_bus : show_problems(log);
 }
 
+/// The Allan deviation of what an instrument at rest reported: as CSV to a file or stdout, and as a picture.
+int allan(const std::string& path, const std::string& channel, const std::string& out, const std::string& png,
+          const shoal::MessageTypes& types) {
+  try {
+    const AllanTable table = allan_table(path, channel, types);
+    if (!out.empty() && !(std::ofstream(out) << to_csv(table) << std::flush))
+      throw std::runtime_error("'" + out + "' cannot be written");
+    if (!png.empty()) plot(table, png);
+    if (out.empty() && png.empty()) std::cout << to_csv(table);
+  } catch (const std::runtime_error& error) {
+    std::cerr << path << ": " << error.what() << '\n';
+    return exit_bus;
+  }
+  return exit_ok;
+}
+
 }  // namespace
 
 void add_log_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("log", "Look into LCM event logs");
   command->require_subcommand(1);
   struct Arguments {
-    std::string path, channel;
+    std::string path, channel, out, png;
     std::vector<std::string> lcm_files;
   };
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* info_command = command->add_subcommand("info", "Channels, rates, types, and the run that made it");
   CLI::App* csv_command = command->add_subcommand("csv", "The messages of one channel as CSV on stdout");
-  for (CLI::App* each : {info_command, csv_command}) {
+  CLI::App* allan_command = command->add_subcommand(
+      "allan", "Allan deviation of each double array of one channel, from an instrument at rest");
+  for (CLI::App* each : {info_command, csv_command, allan_command}) {
     each->add_option("LOG", arguments->path, "LCM event log")->required();
     each->add_option("--types", arguments->lcm_files, ".lcm files of types that are not Shoal's");
+    add_plugin_option(*each);
   }
   csv_command->add_option("CHANNEL", arguments->channel, "such as rover1.odometry")->required();
-  command->footer("Examples:\n  shoal log info run.lcm\n  shoal log csv run.lcm rover1.odometry > odometry.csv");
+  allan_command->add_option("CHANNEL", arguments->channel, "such as rover1.imu")->required();
+  allan_command->add_option("--out", arguments->out, "CSV file; without --out and --png the CSV goes to stdout");
+  allan_command->add_option("--png", arguments->png, "picture, drawn by gnuplot");
+  command->footer(
+      "Examples:\n  shoal log info run.lcm\n  shoal log csv run.lcm rover1.odometry > odometry.csv\n"
+      "  shoal log allan run.lcm bench.imu --png allan.png");
   info_command->callback(
       [arguments, &exit_code] { exit_code = info(arguments->path, shoal::types_with(arguments->lcm_files)); });
   csv_command->callback([arguments, &exit_code] {
     exit_code = csv(arguments->path, arguments->channel, shoal::types_with(arguments->lcm_files));
+  });
+  allan_command->callback([arguments, &exit_code] {
+    exit_code = allan(arguments->path, arguments->channel, arguments->out, arguments->png,
+                      shoal::types_with(arguments->lcm_files));
   });
 }
 

@@ -5,9 +5,11 @@
 #include <cstdio>
 #include <cstring>
 #include <iostream>
+#include <stdexcept>
 
 #include "bridges/lcm/bus_error.hpp"
 #include "sim/config/diagnostics.hpp"
+#include "sim/device/device_registry.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/shoal/commands.hpp"
 
@@ -26,12 +28,15 @@ int run(int argc, char** argv) {
       "`shoal COMMAND --help` tells more.\n"
       "Exit codes: 0 ok, 1 a pass rule of the world failed, 2 usage or configuration, 3 physics fault,\n"
       "4 bus or file trouble, 5 time-out, 129 SIGHUP, 130 SIGINT, 143 SIGTERM.");
+  for (const std::string& problem : sim::DeviceRegistry::instance().take_problems())
+    throw std::logic_error("this program was built wrong: " + problem);
   int exit_code = tools::exit_ok;
   tools::add_run_command(app, exit_code);
   tools::add_check_command(app, exit_code);
   tools::add_describe_command(app, exit_code);
   tools::add_list_command(app, exit_code);
   tools::add_spy_command(app, exit_code);
+  tools::add_control_command(app, exit_code);
   tools::add_doctor_command(app, exit_code);
   tools::add_log_command(app, exit_code);
   tools::add_bench_command(app, exit_code);

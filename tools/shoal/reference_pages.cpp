@@ -6,37 +6,13 @@
 
 #include "shoal/message_schema.hpp"
 #include "sim/config/param_table.hpp"
-#include "sim/device/device_registry.hpp"
 #include "sim/random/noise.hpp"
 #include "sim/world/world_config.hpp"
+#include "tools/shoal/param_tables.hpp"
 
 namespace tools {
 
 namespace {
-
-template <typename Config>
-std::vector<sim::ParamInfo> params_of() {
-  std::vector<sim::ParamInfo> table;
-  sim::ParamReader in(table);
-  Config config;
-  config.read(in);
-  return table;
-}
-
-std::vector<sim::ParamInfo> common_params() {
-  std::vector<sim::ParamInfo> table;
-  sim::ParamReader in(table);
-  sim::DeviceConfig config;
-  config.read_common(in);
-  return table;
-}
-
-std::vector<sim::ParamInfo> params_of(const sim::DeviceType& type) {
-  std::vector<sim::ParamInfo> table;
-  sim::ParamReader in(table);
-  type.make_params()->read(in);
-  return table;
-}
 
 std::string rate_text(double rate_hz) {
   return rate_hz > 0 ? fmt::format("{} Hz", rate_hz) : std::string("every step");

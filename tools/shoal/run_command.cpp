@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "tools/experiment/runner.hpp"
+#include "shoal/message_writer.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {
@@ -43,8 +44,10 @@ std::string check_seed(const std::string& text) {
 
 int run(RunArguments& arguments) {
   spdlog::set_level(spdlog::level::from_str(arguments.log_level));
+  arguments.load.allow_plugins = arguments.run.launch;
   arguments.run.speed = parse_speed(arguments.speed);
   arguments.run.duration_s = arguments.duration_s;
+  arguments.load.encode_message = shoal::encode_own_message;
   const sim::LoadedWorld loaded = sim::load_world(arguments.world, arguments.load);
   catch_signals(true);
   const Summary summary = run_world(loaded, arguments.run);
@@ -80,6 +83,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->delimiter(',')
       ->type_size(1)
       ->allow_extra_args(false);
+  add_plugin_option(*command);
   command->add_flag("--quiet", arguments->run.quiet, "no progress and no summary");
   command->add_option("--log-level", arguments->log_level, "what is said on stderr")
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}));

@@ -130,6 +130,7 @@ void add_spy_command(CLI::App& app, int& exit_code) {
   command->add_option("--duration", arguments->duration_s, "wall seconds; 0: until Ctrl-C")->check(number_from(0, 1e9));
   command->add_option("--lcm-url", arguments->lcm_url, "instead of LCM_DEFAULT_URL and the default");
   command->add_option("--types", arguments->lcm_files, ".lcm files of types that are not Shoal's");
+  add_plugin_option(*command);
   command->footer("Examples:\n  shoal spy\n  shoal spy rover1.odometry\n  shoal spy --duration 5 > channels.txt");
   command->callback([arguments, &exit_code] { exit_code = spy(*arguments); });
 }

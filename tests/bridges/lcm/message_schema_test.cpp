@@ -61,6 +61,9 @@ TEST(MessageSchema, FindsTypesByNameAndByFingerprint) {
   EXPECT_EQ(embedded_types().find(std::uint64_t{0x2e16efb052b0105e}), pose);
   EXPECT_EQ(embedded_types().find("shoal.nothing_t"), nullptr);
   EXPECT_EQ(embedded_types().find(std::uint64_t{1}), nullptr);
+  EXPECT_EQ(embedded_types().find("pose_t", pose->fingerprint), pose);
+  EXPECT_EQ(embedded_types().find("pose_t", 1), nullptr);
+  EXPECT_EQ(embedded_types().find("ose_t", pose->fingerprint), nullptr);
   EXPECT_EQ(pose->min_size, 8u + 16 * 8);
   EXPECT_EQ(pose->members.front().comment, "epoch + simulated time, us");
   EXPECT_NE(pose->comment.find("Equal on the wire"), std::string::npos);

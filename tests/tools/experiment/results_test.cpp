@@ -42,6 +42,24 @@ tools::RunOptions quiet_run() {
   return options;
 }
 
+TEST(RunWorld, EndsByAnEventWithItsVerdictAndTheRecordsOfZones) {
+  for (const bool passed : {true, false}) {
+    const auto world = small_world(
+        "zones: [{name: goal, shape: sphere, radius_m: 1, finish: true}]\n"
+        "events: [{name: stop, at: 0.2, do: [{end: enough, passed: " +
+        std::string(passed ? "true" : "false") + "}]}]\n");
+    const tools::Summary summary = tools::run_world(world, quiet_run());
+    EXPECT_EQ(summary.ended, "event");
+    EXPECT_EQ(summary.exit_code, passed ? 0 : 1);
+    EXPECT_EQ(summary.steps, 201);  // the step in which the event fires is done
+    const auto json = nlohmann::json::parse(summary.to_json());
+    EXPECT_EQ(json["event"]["text"], "enough");
+    EXPECT_EQ(json["passed"], passed);
+    EXPECT_EQ(json["zones"]["r1"]["finish_s"], 0);
+    EXPECT_THAT(summary.to_text(), testing::HasSubstr("r1 finished at 0.00 s"));
+  }
+}
+
 TEST(Summary, HasTheSameKeysForEveryWorld) {
   tools::Summary summary;
   summary.world = "harbor";

@@ -17,14 +17,13 @@ std::int64_t fingerprint_of() {
   return M::getHash();
 }
 
-/// The schema of one of Shoal's own types.
+/// The schema of one of Shoal's own types, or of a plugin's.
 template <class M>
 const MessageSchema& schema_of() {
   static const MessageSchema& schema = [&]() -> const MessageSchema& {
     // The generated class knows its name without package only; utime_t and others may share a fingerprint.
-    const MessageSchema* found = embedded_types().find(std::string("shoal.") + M::getTypeName());
-    if (found == nullptr || found->fingerprint != static_cast<std::uint64_t>(M::getHash()))
-      throw MessageError(std::string(M::getTypeName()) + " is none of Shoal's message types");
+    const MessageSchema* found = embedded_types().find(M::getTypeName(), static_cast<std::uint64_t>(M::getHash()));
+    if (found == nullptr) throw MessageError(std::string(M::getTypeName()) + " is none of Shoal's message types");
     return *found;
   }();
   return schema;

@@ -129,4 +129,11 @@ const MessageSchema* MessageTypes::find(std::uint64_t fingerprint) const {
   return it == by_fingerprint_.end() ? nullptr : it->second;
 }
 
+const MessageSchema* MessageTypes::find(std::string_view short_name, std::uint64_t fingerprint) const {
+  for (const auto& [name, schema] : by_name_)
+    if (schema.fingerprint == fingerprint && std::string_view(name).substr(name.rfind('.') + 1) == short_name)
+      return &schema;
+  return nullptr;
+}
+
 }  // namespace shoal

@@ -73,6 +73,8 @@ class MessageTypes {
   const MessageSchema* find(std::string_view name) const;
   /// Several types are equal on the wire when their members are; the first by name is found.
   const MessageSchema* find(std::uint64_t fingerprint) const;
+  /// By name without package, and fingerprint: all that a generated class knows of itself.
+  const MessageSchema* find(std::string_view short_name, std::uint64_t fingerprint) const;
   const std::map<std::string, MessageSchema, std::less<>>& all() const { return by_name_; }
 
  private:
@@ -82,10 +84,14 @@ class MessageTypes {
   std::map<std::uint64_t, const MessageSchema*> by_fingerprint_;
 };
 
-/// Shoal's own types, known without any file.
+/// Shoal's own types and those of plugins, known without any file.  What was found in it stays valid.
 const MessageTypes& embedded_types();
+/// Shoal's own.
 std::span<const LcmSource> embedded_lcm_sources();
-/// Shoal's own types and those of the user's .lcm files.
+/// Adds the types of a plugin to embedded_types(): a call that lcm_generate writes.  Call before other threads look
+/// at types.  Throws MessageError, such as for a type that exists already.
+bool add_lcm_sources(const std::vector<LcmSource>& sources);
+/// embedded_types() and those of the user's .lcm files.
 MessageTypes types_with(const std::vector<std::string>& lcm_files);
 
 /// Whether NaN and infinity are refused.  Commands: required; reports may hold NaN for "not measured".

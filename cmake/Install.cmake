@@ -1,0 +1,23 @@
+# cmake --install build/release --prefix P: the programs, what a plugin is built against, worlds and vehicles.
+include(CMakePackageConfigHelpers)
+set(package_dir lib/cmake/Shoal)
+set(types_dir ${PROJECT_SOURCE_DIR}/bridges/lcm/types)
+
+install(TARGETS shoal shoal-coop-rover RUNTIME DESTINATION bin)
+install(TARGETS generate_type_tables RUNTIME DESTINATION lib/shoal)
+
+install(DIRECTORY sim DESTINATION include/shoal FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY ${PROJECT_BINARY_DIR}/sim/generated/sim DESTINATION include/shoal)
+install(DIRECTORY ${types_dir}/shoal ${PROJECT_BINARY_DIR}/bridges/lcm/types/generated/shoal DESTINATION include/shoal
+        FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY ${types_dir}/ DESTINATION share/shoal/types FILES_MATCHING PATTERN "*.lcm" PATTERN shoal EXCLUDE)
+
+# The first lines of worlds and vehicles name ../docs/schema.
+install(DIRECTORY worlds vehicles DESTINATION share/shoal)
+install(DIRECTORY docs/schema DESTINATION share/shoal/docs)
+
+configure_package_config_file(cmake/ShoalConfig.cmake.in ${PROJECT_BINARY_DIR}/ShoalConfig.cmake
+                              INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/ShoalConfigVersion.cmake COMPATIBILITY ExactVersion)
+install(FILES ${PROJECT_BINARY_DIR}/ShoalConfig.cmake ${PROJECT_BINARY_DIR}/ShoalConfigVersion.cmake
+              cmake/LcmGenerate.cmake DESTINATION ${package_dir})

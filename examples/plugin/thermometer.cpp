@@ -1,0 +1,66 @@
+#include "shoal/message_codec.hpp"
+#include "sim/device/device_registry.hpp"
+#include "sim/device/plugin.hpp"
+#include "sim/random/noise.hpp"
+#include "thermometer/array_lengths.hpp"
+#include "thermometer/temperature_t.hpp"
+
+namespace {
+
+/// Temperature of a field that changes evenly along each axis of the world.
+class Thermometer final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Temperature of a linear field.";
+  static constexpr double default_rate_hz = 1;
+  struct Params {
+    double origin_degc = 15;
+    sim::Vector3d slope_degcpm = {0, 0, -0.0065};
+    sim::NoiseParams noise;
+    void read(sim::ParamReader& in) {
+      in.read("origin_degc", origin_degc, sim::at_least(-273.15), "temperature at the origin of the world");
+      in.read("slope_degcpm", slope_degcpm, sim::any_number(), "its change per metre along x, y and z");
+      in.read("noise", noise, "error of the temperature, degrees");
+    }
+  };
+
+  Thermometer(const Params& params, const sim::DeviceContext& context)
+      : params_(params), noise_(context.noise(params.noise, 1, "noise")) {}
+
+  void measure(const sim::SenseContext& context) override {
+    temperature_degc_ = params_.origin_degc + params_.slope_degcpm.dot(context.X_WS.translation());
+  }
+  void disturb(double dt_s, sim::Random& random) override { noise_.apply(temperature_degc_, dt_s, random); }
+  void hash_state(sim::StateHash& hash) const override {
+    hash.add(temperature_degc_);
+    noise_.hash_state(hash);
+  }
+
+  double temperature_degc() const { return temperature_degc_; }
+
+ private:
+  Params params_;
+  sim::Noise noise_;
+  double temperature_degc_ = 0;
+};
+
+class ThermometerReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "thermometer.temperature_t";
+  explicit ThermometerReporter(const Thermometer& thermometer) : thermometer_(thermometer) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override {
+    thermometer::temperature_t message;
+    message.utime = out.utime(sampled_at);
+    message.temperature_degc = thermometer_.temperature_degc();
+    shoal::encode_into(message, out.buffer());
+    out.publish(out.buffer());
+  }
+
+ private:
+  const Thermometer& thermometer_;
+};
+
+SHOAL_SENSOR("thermometer", Thermometer, ThermometerReporter);
+
+}  // namespace
+
+SHOAL_PLUGIN("thermometer", "1.0");

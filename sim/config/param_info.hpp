@@ -1,0 +1,64 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace sim {
+
+/// The range a number must lie in.
+struct Rule {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = false;   ///< low itself is not allowed
+  bool high_open = false;  ///< high itself is not allowed
+
+  bool allows(double value) const;
+  /// `>= 1`, `> 0`, `>= 0 and <= 360`; empty for any number.
+  std::string text() const;
+};
+
+Rule any_number();
+Rule at_least(double low);
+Rule above(double low);
+Rule at_most(double high);
+Rule between(double low, double high);   ///< both ends allowed
+Rule above_to(double low, double high);  ///< low excluded, high allowed
+
+/// What the value of a key is.
+enum class ParamKind {
+  any,  ///< described by hand, nothing is known
+  boolean,
+  integer,
+  number,
+  text,
+  name,  ///< text of letters, digits, '_' and '-'
+  vector,
+  numbers,
+  texts,
+  map,
+  maps,
+  raw  ///< a map that is read elsewhere
+};
+
+/// As tables call it: `number`, `[x, y, z]`, `list of maps`.
+std::string type_text(ParamKind kind);
+
+/// What is known of one key: the source of error messages, `shoal describe`, docs and schemas.
+struct ParamInfo {
+  std::string key;
+  std::string type;     ///< as type_text()
+  std::string rule;     ///< as Rule::text(), or `one of: a, b`, or `name of a joint`
+  std::string initial;  ///< default as YAML text; empty when required
+  std::string meaning;
+  bool required = false;
+  std::vector<ParamInfo> children;  ///< keys of a map, or of each item of a list of maps
+
+  // The same for programs.
+  ParamKind kind = ParamKind::any;
+  Rule range = {};                        ///< of each number
+  std::vector<std::string> choices = {};  ///< the only words allowed; empty: any
+  bool may_be_null = false;               ///< `key:` without a value is allowed
+};
+
+}  // namespace sim

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/config/param_reader.hpp"
+#include "sim/script/path.hpp"
+#include "sim/state_hash.hpp"
+#include "sim/time.hpp"
+
+namespace sim {
+
+class World;
+class Body;
+
+/// What an actor does at the end of its path.
+enum class PathEnds { loop, bounce, stop };
+
+enum class ActorCommand {
+  start,    ///< go on in the direction it had
+  stop,     ///< stand
+  forward,  ///< towards the end of the path
+  back,     ///< towards its beginning
+};
+const std::vector<std::pair<std::string, ActorCommand>>& actor_command_words();
+
+/// Moves an object along a path.  The object becomes kinematic: it pushes others, and is not pushed.
+struct ActorConfig {
+  std::string name;
+  std::string object;
+  PathKind path = PathKind::waypoints;
+  std::vector<Vector3d> points_m;  ///< waypoints, spline
+  std::vector<TimedPose> poses;    ///< timed
+  std::optional<Vector3d> rpy_rad;
+  double speed_mps = 1;
+  PathEnds ends = PathEnds::loop;
+  double start_s = 0;
+  bool waiting = false;
+  SourcePlace place;
+
+  void read(ParamReader& in);
+  Path make_path() const;
+
+ private:
+  void check_points(ParamReader& in);
+};
+
+/// An actor in the world.  Where it is follows from its last command and the time since, with no sum over steps.
+class Actor {
+ public:
+  explicit Actor(const ActorConfig& config);
+  const ActorConfig& config() const { return config_; }
+  void command(ActorCommand command, Time now);
+  Pose pose_at(Time now) const;
+  /// Puts its object at the beginning of the path.
+  void place(World& world);
+  /// Moves its object so that it is in its place at the end of the step that begins now.
+  void step(World& world, Time now);
+  void hash_state(StateHash& hash) const;
+
+ private:
+  void find_body(World& world);
+  double progress_at(Time now) const;
+  void anchor(Time now);
+
+  const ActorConfig& config_;
+  Path path_;
+  double rate_;      ///< of the path's parameter, per second
+  Time since_{0};    ///< when the last command came
+  double from_ = 0;  ///< progress then; bounce: up to twice the length, there and back
+  int direction_ = 1;
+  bool moving_ = true;
+  // The object by its name, looked up again when something came or went.
+  Body* body_ = nullptr;
+  Pose X_WB_ = Pose::Identity();  ///< where it was sent last
+  std::uint64_t generation_ = ~std::uint64_t{0};
+};
+
+}  // namespace sim

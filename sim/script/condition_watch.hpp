@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+
+#include "sim/script/event_config.hpp"
+#include "sim/state_hash.hpp"
+
+namespace sim {
+
+class World;
+class Zones;
+
+/// Sees when the condition of an event becomes true.
+class ConditionWatch {
+ public:
+  virtual ~ConditionWatch() = default;
+  /// How often it became true since the last call; called once in each step.
+  virtual int count_new(World& world) = 0;
+  virtual void hash_state(StateHash& hash) const = 0;
+};
+
+/// Null when there is nothing to watch: no condition, or one of another event.
+std::unique_ptr<ConditionWatch> make_watch(const Condition& condition, World& world, const Zones& zones);
+
+}  // namespace sim

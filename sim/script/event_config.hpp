@@ -1,0 +1,53 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "sim/script/action.hpp"
+
+namespace sim {
+
+/// What an event waits for.
+struct Condition {
+  enum class Kind {
+    none,
+    enters,  ///< subject: vehicle or any; object: zone
+    leaves,
+    inside,   ///< as enters, and a vehicle that is inside at the start counts
+    touches,  ///< vehicles or objects
+    message,  ///< subject: channel
+    faster,   ///< subject: vehicle or any
+    fires,    ///< subject: event
+  };
+  Kind kind = Kind::none;
+  std::string subject;
+  std::string object;
+  double speed_mps = 0;
+};
+
+/// Something that happens in the world: at times, every so often, or when something becomes true.
+struct EventConfig {
+  std::string name;
+  std::vector<double> at_s;
+  double every_s = 0;  ///< 0: not so
+  double from_s = 0;
+  double until_s = std::numeric_limits<double>::infinity();
+  double jitter_s = 0;
+  Condition when;
+  double delay_s = 0;
+  std::int64_t times = 0;  ///< it fires at most so often; 0: no limit
+  double probability = 1;
+  std::vector<Action> actions;
+  SourcePlace place;
+
+  void read(ParamReader& in);
+
+ private:
+  void read_times(ParamReader& in);
+};
+
+/// Reads the text of `when:`.  What is wrong is reported at the key; names must be declared.
+Condition parse_condition(ParamReader& in, const char* key);
+
+}  // namespace sim

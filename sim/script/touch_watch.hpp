@@ -1,0 +1,10 @@
+#pragma once
+
+#include "sim/script/condition_watch.hpp"
+
+namespace sim {
+
+/// Of `NAME touches NAME`.  `any`: every vehicle and object but those made of planes, which everything stands on.
+std::unique_ptr<ConditionWatch> make_touch_watch(const Condition& condition, World& world);
+
+}  // namespace sim

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "sim/world/world_config.hpp"
+
+namespace sim {
+
+/// The configuration of a device after some of its values have changed while it runs.  `values`: dotted key: value.
+/// What cannot be read, or cannot change, goes to `diagnostics`, and there is no result.
+std::optional<DeviceConfig> changed_device(const DeviceConfig& device, const VehicleConfig& vehicle,
+                                           const WorldConfig& world, const ConfigNode& values, const std::string& who,
+                                           Diagnostics& diagnostics);
+
+/// Null when there is none.
+struct NamedDevice {
+  const VehicleConfig* vehicle = nullptr;
+  const DeviceConfig* device = nullptr;
+};
+/// The device `VEHICLE/DEVICE` of the world file.
+NamedDevice device_of(const WorldConfig& world, const std::string& full_name);
+
+}  // namespace sim

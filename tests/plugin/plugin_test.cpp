@@ -1,0 +1,220 @@
+// Installs the build tree into a prefix, builds the example plugin against it as a user would, and runs it.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/system/shoal_program.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using system_test::Ended;
+using system_test::source;
+using system_test::write_file;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+Ended run(std::vector<std::string> arguments) {
+  system_test::Program program(std::move(arguments));
+  const int exit_code = program.wait(std::chrono::seconds(240));
+  return {exit_code, program.output(), program.errors()};
+}
+
+/// One installation for all tests of the program.
+class Plugin : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new system_test::ScratchFolder;
+    const Ended installed = run({"cmake", "--install", SHOAL_BINARY_DIR, "--prefix", path("prefix")});
+    ASSERT_EQ(installed.exit_code, 0) << installed.errors;
+    fs::copy(source("examples/plugin"), path("example"), fs::copy_options::recursive);
+    fs::remove_all(path("example/build"));
+    build(path("example"));
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+
+  static std::string path(const std::string& name) { return folder_->file(name); }
+  static std::string example() { return path("example/build/thermometer.so"); }
+
+  static void build(const std::string& directory) {
+    const Ended configured =
+        run({"cmake", "-S", directory, "-B", directory + "/build", "-DCMAKE_PREFIX_PATH=" + path("prefix")});
+    ASSERT_EQ(configured.exit_code, 0) << configured.output << configured.errors;
+    const Ended built = run({"cmake", "--build", directory + "/build"});
+    ASSERT_EQ(built.exit_code, 0) << built.output << built.errors;
+  }
+
+  /// NAME/build/NAME.so out of one source and perhaps a message type.
+  static void build_plugin(const std::string& name, const std::string& source_text, const std::string& more = "",
+                           const std::string& lcm = "") {
+    fs::create_directories(path(name));
+    write_file(path(name + "/" + name + ".cpp"), source_text);
+    write_file(path(name + "/scan_t.lcm"), lcm);
+    write_file(path(name + "/CMakeLists.txt"),
+               "cmake_minimum_required(VERSION 3.25)\nproject(own LANGUAGES CXX)\nfind_package(Shoal REQUIRED)\n"
+               "shoal_add_device(" +
+                   name + " SOURCES " + name + ".cpp " + more + ")\n");
+    build(path(name));
+  }
+
+  static Ended shoal(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), path("prefix/bin/shoal"));
+    return run(std::move(arguments));
+  }
+
+  /// A library of this text, compiled without anything of Shoal.
+  static std::string library(const std::string& name, const std::string& text) {
+    write_file(path(name + ".cpp"), text);
+    const Ended compiled = run({"c++", "-shared", "-fPIC", path(name + ".cpp"), "-o", path(name + ".so")});
+    EXPECT_EQ(compiled.exit_code, 0) << compiled.errors;
+    return path(name + ".so");
+  }
+
+  /// The text of SHOAL_PLUGIN in the example: what the program accepts.
+  static std::string good_info() {
+    const std::string bytes = system_test::text_of_file(example());
+    return bytes.c_str() + bytes.find("shoal-plugin|");
+  }
+  static std::string info_symbol(const std::string& info) {
+    return "extern \"C\" const char shoal_plugin_info[];\nconst char shoal_plugin_info[] = \"" + info + "\";\n";
+  }
+
+  /// Exit code 2, and exactly this line.
+  static void expect_refused(const std::string& plugin, const std::string& reason) {
+    const Ended ended = shoal({"list", "devices", "--plugin", plugin});
+    EXPECT_EQ(ended.exit_code, 2);
+    EXPECT_THAT(ended.errors, StartsWith("--plugin " + plugin + ": " + reason));
+    EXPECT_EQ(std::count(ended.errors.begin(), ended.errors.end(), '\n'), 1) << ended.errors;
+    EXPECT_EQ(ended.output, "");
+  }
+
+ private:
+  static system_test::ScratchFolder* folder_;
+};
+
+system_test::ScratchFolder* Plugin::folder_ = nullptr;
+
+TEST_F(Plugin, BuiltOutsideOfTheTreeReports) {
+  const std::string record = path("air.lcm");
+  const Ended ended = shoal({"run", path("example/thermometer.yaml"), "--plugin", example(), "--bus", "none",
+                             "--record", record, "--overwrite"});
+  ASSERT_EQ(ended.exit_code, 0) << ended.errors;
+  const Ended info = shoal({"log", "info", record, "--plugin", example()});
+  EXPECT_THAT(info.output, HasSubstr("probe.air"));
+  EXPECT_THAT(info.output, HasSubstr("thermometer.temperature_t"));
+  const Ended csv = shoal({"log", "csv", record, "probe.air", "--plugin", example()});
+  EXPECT_THAT(csv.output, HasSubstr("temperature_degc"));
+  // 20 degrees at the ground, a hundredth less per metre, from 100 m.
+  EXPECT_THAT(csv.output, testing::ContainsRegex(",19\\.0[0-9]*\n"));
+}
+
+TEST_F(Plugin, IsDescribedAndListedLikeAnyOtherDevice) {
+  const Ended described = shoal({"describe", "thermometer", "--plugin", example()});
+  EXPECT_EQ(described.exit_code, 0);
+  EXPECT_THAT(described.output, HasSubstr("slope_degcpm"));
+  EXPECT_THAT(shoal({"list", "devices", "--plugin", example()}).output, HasSubstr("\nthermometer "));
+  EXPECT_THAT(shoal({"list", "messages", "--plugin", example()}).output, HasSubstr("thermometer.temperature_t"));
+  EXPECT_THAT(shoal({"describe", "--schema", "world", "--plugin", example()}).output,
+              HasSubstr("\"device_thermometer\""));
+  EXPECT_EQ(shoal({"describe", "thermometer"}).exit_code, 2);
+}
+
+TEST_F(Plugin, MayBeNamedTwice) {
+  EXPECT_EQ(shoal({"list", "devices", "--plugin", example(), "--plugin", example()}).exit_code, 0);
+}
+
+TEST_F(Plugin, OfAWorldNeedsAWordFromTheUser) {
+  const std::string world = path("example/thermometer.yaml");
+  const Ended ended = shoal({"check", world});
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_EQ(ended.errors, world +
+                              ":6:11: plugin 'build/thermometer.so': a world file may run code only with --launch, "
+                              "or name the plugin with --plugin " +
+                              example() + "\n");
+  EXPECT_EQ(shoal({"check", world, "--plugin", example()}).exit_code, 0);
+}
+
+TEST_F(Plugin, OfAWorldIsLoadedWithLaunch) {
+  // Launching needs the bus; what is looked at is that the world itself is accepted.
+  const Ended ended = shoal({"run", path("example/thermometer.yaml"), "--launch", "--bus", "none"});
+  EXPECT_THAT(ended.errors, HasSubstr("--launch needs the LCM bus"));
+}
+
+TEST_F(Plugin, IsFoundAmongTheInstalledOnes) {
+  fs::create_directories(path("prefix/lib/shoal/plugins"));
+  fs::copy_file(example(), path("prefix/lib/shoal/plugins/installed.so"), fs::copy_options::overwrite_existing);
+  EXPECT_THAT(shoal({"list", "devices", "--plugin", "installed.so"}).output, HasSubstr("\nthermometer "));
+}
+
+TEST_F(Plugin, IsFoundByAPathOfTheEnvironment) {
+  const Ended ended = run({"env", "SHOAL_PLUGIN_PATH=/nowhere:" + path("example/build"), path("prefix/bin/shoal"),
+                           "list", "devices", "--plugin", "thermometer.so"});
+  EXPECT_THAT(ended.output, HasSubstr("\nthermometer "));
+}
+
+TEST_F(Plugin, MayHaveMessagesThatHoldArraysAndShoalsOwn) {
+  const std::string initialiser =
+      "#include <stdexcept>\n#include \"arrays/array_lengths.hpp\"\n#include \"shoal/message_codec.hpp\"\n"
+      "#include \"sim/device/plugin.hpp\"\n"
+      "static bool refuses_a_wrong_length() {\n"
+      "  arrays::scan_t message;\n  message.count = 1;\n  std::vector<std::byte> out;\n"
+      "  try { shoal::encode_into(message, out); } catch (const shoal::MessageError&) {\n"
+      "    message.values.resize(1);\n    message.poses.resize(1);\n"
+      "    shoal::encode_into(message, out);\n    return true;\n  }\n"
+      "  throw std::runtime_error(\"not refused\");\n}\n"
+      "static const bool refused = refuses_a_wrong_length();\n"
+      "SHOAL_PLUGIN(\"arrays\", \"1.0\");\n";
+  build_plugin("arrays", initialiser, "LCM scan_t.lcm",
+               "package arrays;\nstruct scan_t { int32_t count; double values[count]; shoal.pose_t poses[count]; }\n");
+  const Ended ended = shoal({"describe", "arrays.scan_t", "--plugin", path("arrays/build/arrays.so")});
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr("shoal.pose_t"));
+}
+
+TEST_F(Plugin, ThatIsNoneSaysWhy) {
+  expect_refused(path("missing.so"), "there is no such file\n");
+  write_file(path("text.so"), "hello\n");
+  expect_refused(path("text.so"), "is not a library\n");
+  expect_refused(library("plain", "int nothing;\n"), "is no plugin of Shoal: it lacks SHOAL_PLUGIN");
+}
+
+TEST_F(Plugin, OfAnotherShoalIsNotEvenInitialised) {
+  const std::string other = library("other", info_symbol("shoal-plugin|other|1.0|shoal 0.0.1") +
+                                                 "#include <cstdlib>\nstatic int ended = (std::abort(), 0);\n");
+  expect_refused(other, "was built against another Shoal and must be built again; it has 'shoal 0.0.1'");
+}
+
+TEST_F(Plugin, ThatLacksAFunctionSaysWhich) {
+  expect_refused(
+      library("lacking", info_symbol(good_info()) + "void nowhere_defined();\nvoid call() { nowhere_defined(); }\n"),
+      "cannot be loaded: undefined symbol: ");
+}
+
+TEST_F(Plugin, WhoseInitialiserThrowsSaysWhat) {
+  expect_refused(
+      library("throwing", info_symbol(good_info()) + "#include <stdexcept>\n"
+                                                     "static int f() { throw std::runtime_error(\"no thermistor\"); }\n"
+                                                     "static int thrown = f();\n"),
+      "an initialiser threw: no thermistor\n");
+}
+
+TEST_F(Plugin, WithATypeThatExistsIsRefused) {
+  const std::string text =
+      "#include \"sim/device/device_registry.hpp\"\n#include \"sim/device/plugin.hpp\"\n"
+      "static const bool added = (sim::DeviceRegistry::instance().add({.name = \"lidar\"}), true);\n"
+      "SHOAL_PLUGIN(\"copy\", \"1.0\");\n";
+  build_plugin("clash", text);
+  expect_refused(path("clash/build/clash.so"), "device type 'lidar' exists twice\n");
+}
+
+TEST_F(Plugin, InstallationRunsItsOwnWorlds) {
+  const Ended ended = shoal({"check", path("prefix/share/shoal/worlds/coop_land.yaml")});
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_TRUE(fs::exists(path("prefix/share/shoal/docs/schema/world.schema.json")));
+}
+
+}  // namespace

@@ -1,0 +1,133 @@
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <sstream>
+#include <thread>
+
+#include "bridges/lcm/lcm_listener.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/sim_control_reply_t.hpp"
+#include "shoal/sim_control_request_t.hpp"
+#include "tools/experiment/runner.hpp"
+#include "tools/shoal/commands.hpp"
+
+namespace tools {
+
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+struct ControlArguments {
+  std::string command;
+  std::string text;
+  double value = 0;
+  std::string client = "shoal-control-" + std::to_string(getpid());
+  std::string lcm_url;
+  double timeout_s = 5;
+  bool stay = false;
+};
+
+/// `@FILE` stands for what is in the file, `-` for standard input.
+std::string text_of(const std::string& argument) {
+  if (argument != "-" && !argument.starts_with("@")) return argument;
+  std::ostringstream text;
+  if (argument == "-") {
+    text << std::cin.rdbuf();
+  } else {
+    std::ifstream file(argument.substr(1));
+    if (!file) throw CLI::ValidationError("TEXT", "cannot read '" + argument.substr(1) + "'");
+    text << file.rdbuf();
+  }
+  return text.str();
+}
+
+/// Requests and their answers.  A request is sent once: sent again it might be obeyed twice.
+class Session {
+ public:
+  explicit Session(const ControlArguments& arguments) : arguments_(arguments), lcm_(arguments.lcm_url) {
+    lcm_.listen("sim.control.reply");
+  }
+
+  /// The reply; nothing when none came in time.
+  std::optional<shoal::sim_control_reply_t> ask(const std::string& command, const std::string& text, double value) {
+    shoal::sim_control_request_t request{};
+    request.id = ++id_;
+    request.client = arguments_.client;
+    request.command = command;
+    request.text = text;
+    request.value = value;
+    const Clock::time_point deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                                          std::chrono::duration<double>(arguments_.timeout_s));
+    lcm_.publish("sim.control", shoal::encode(request));
+    while (Clock::now() < deadline && caught_signal() == 0) {
+      const auto message = lcm_.next(50ms);
+      if (!message || message->channel != "sim.control.reply") continue;
+      try {
+        auto reply = shoal::decode<shoal::sim_control_reply_t>(message->payload, shoal::Finite::any);
+        if (reply.id == id_ && reply.client == arguments_.client) return reply;
+      } catch (const shoal::MessageError&) {
+        // Somebody else's noise on the channel.
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const ControlArguments& arguments_;
+  bridges::LcmListener lcm_;
+  std::int32_t id_ = static_cast<std::int32_t>(getpid()) * 1000;
+};
+
+int control(const ControlArguments& arguments) {
+  const std::string text = text_of(arguments.text);
+  catch_signals(false);
+  Session session(arguments);
+  const auto reply = session.ask(arguments.command, text, arguments.value);
+  if (!reply) {
+    std::cerr << "shoal control: no simulator answered within " << arguments.timeout_s
+              << " s; is one running on this LCM URL? see shoal doctor\n";
+    return exit_timeout;
+  }
+  (reply->ok ? std::cout : std::cerr) << reply->text << (reply->text.empty() ? "ok\n" : "\n") << std::flush;
+  if (!reply->ok) return exit_failed;
+  // A vehicle that goes with its client stays as long as we say that we live.
+  while (arguments.stay && caught_signal() == 0) {
+    if (!session.ask("alive", "", 0) && caught_signal() == 0) return exit_timeout;
+    std::this_thread::sleep_for(500ms);
+  }
+  if (arguments.stay) session.ask("leave", "", 0);
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_control_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("control", "Send a request to a running simulator and print its answer");
+  const auto arguments = std::make_shared<ControlArguments>();
+  command
+      ->add_option("COMMAND", arguments->command,
+                   "pause, resume, step, speed, quit, spawn, remove, describe, do (docs/messages.md)")
+      ->required();
+  command->add_option("TEXT", arguments->text, "text of the request; @FILE: what is in the file; -: standard input");
+  command->add_option("--value", arguments->value, "number of the request: steps, speed");
+  command->add_option("--client", arguments->client, "name to ask by")->capture_default_str();
+  command->add_option("--timeout", arguments->timeout_s, "wall seconds to wait for the answer")
+      ->check(number_from(0.01, 1e6));
+  command->add_flag("--stay", arguments->stay, "keep a vehicle spawned with `with_client: true` until Ctrl-C");
+  command->add_option("--lcm-url", arguments->lcm_url, "instead of LCM_DEFAULT_URL and the default");
+  command->footer(
+      "Examples:\n"
+      "  shoal control pause\n"
+      "  shoal control step --value 10\n"
+      "  shoal control spawn '{name: rover7, file: rover.yaml, position_m: [2, 0, 0]}'\n"
+      "  shoal control spawn @my_robot.yaml\n"
+      "  shoal control remove rover7\n"
+      "  shoal control do '{fault: rover1/lidar, kind: stuck}'");
+  command->callback([arguments, &exit_code] { exit_code = control(*arguments); });
+}
+
+}  // namespace tools
