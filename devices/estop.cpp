@@ -29,9 +29,8 @@ EmergencyStop::EmergencyStop(const Params& params, const sim::DeviceContext& con
 
 void EmergencyStop::act(const sim::ActContext&) {
   if (params_.stops_on_touch.empty()) return;
-  const sim::MountedDevice* device = vehicle_.find_device(params_.stops_on_touch);
-  const auto* bumper = device ? dynamic_cast<const Bumper*>(device->sensor()) : nullptr;
-  const bool touching = bumper && bumper->touching();
+  if (bumper_ == nullptr) bumper_ = dynamic_cast<const Bumper*>(vehicle_.find_device(params_.stops_on_touch)->sensor());
+  const bool touching = bumper_->touching();
   if (touching && !touched_) set_engaged(true);
   touched_ = touching;
 }

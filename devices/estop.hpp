@@ -7,6 +7,8 @@
 
 namespace devices {
 
+class Bumper;
+
 /// The emergency stop of a vehicle: while it is engaged, all actuators are in their safe states and take no commands.
 /// Released, they stay there until their next command.
 class EmergencyStop final : public sim::Sensor {
@@ -32,6 +34,7 @@ class EmergencyStop final : public sim::Sensor {
  private:
   Params params_;
   sim::Vehicle& vehicle_;
+  const Bumper* bumper_ = nullptr;  ///< once all devices are there
   bool touched_ = false;
   bool engaged_ = false;  ///< as sampled
 };

@@ -119,6 +119,20 @@ TEST(JointServo, GoesNoFartherThanItsRange) {
   EXPECT_NEAR(shoulder(test).position(), -0.2, 1e-4);  // its own
 }
 
+TEST(JointServo, ItsRangeCanShrinkWhileItRuns) {
+  test::TestWorld test(test::arm_world(servo(", max_effort: 50")));
+  command(test, 0, 0.8);
+  test.run_for(1.5);
+  EXPECT_NEAR(shoulder(test).position(), 0.8, 1e-4);
+  sim::Diagnostics diagnostics;
+  const auto values = sim::parse_config_text("{high: 0.2, max_velocity: 2}", "change", diagnostics);
+  ASSERT_TRUE(test.world.change_device("a1/servo", values, diagnostics));
+  test.run_for(0.15);
+  EXPECT_NEAR(shoulder(test).velocity(), -2, 0.01);
+  test.run_for(0.5);
+  EXPECT_NEAR(shoulder(test).position(), 0.2, 1e-4);
+}
+
 TEST(JointServo, TooWeakForTheArmItSinks) {
   // The arm asks for 9.8 N m, the servo has 9 N m of it, and the arm's moment falls below that at 23 degrees.
   test::TestWorld test(test::arm_world(servo(", max_effort: 9")));

@@ -6,7 +6,7 @@
 
 namespace {
 
-/// The rover stands on its casters with the wheels turning free: they slip as they like.
+/// One wheel is driven, so that the rover goes around and its wheels slip: the encoder does not care.
 std::string encoder(const std::string& more) {
   return "        - {name: motor, type: joint_motor, joint: left, max_velocity: 100}\n"
          "        - {name: encoder, type: wheel_encoder, joints: [left, right], rate_hz: 100, truth: true" +
