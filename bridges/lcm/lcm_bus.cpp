@@ -20,6 +20,7 @@ namespace bridges {
 namespace {
 
 constexpr std::chrono::seconds time_to_flush{1};
+constexpr std::size_t max_echoes = 4096;
 
 class ChannelMailbox;
 
@@ -28,12 +29,19 @@ struct Channel {
   Channel(std::string channel_name, std::function<void()> on_arrival)
       : name(std::move(channel_name)), arrived(std::move(on_arrival)) {}
 
+  /// From the network.  What we sent ourselves and comes back is dropped: deliver_own() gave it out already.
   void deliver(std::span<const std::byte> payload);
+  /// At once, so that what the world tells itself arrives at the same step in every run.
+  void deliver_own(std::span<const std::byte> payload);
+
+  /// With the lock held.
+  void give_out(sim::Message message);
 
   const std::string name;
   const std::function<void()> arrived;
   std::mutex mutex;  // also guards what is in the mailboxes
   std::vector<ChannelMailbox*> mailboxes;
+  std::deque<std::size_t> echoes;  // hashes of what we sent and may hear again
   std::atomic<std::uint64_t> received = 0;
   std::atomic<std::uint64_t> dropped = 0;
 };
@@ -82,16 +90,42 @@ class ChannelMailbox final : public sim::Mailbox {
   std::atomic<std::uint64_t> dropped_ = 0;
 };
 
+std::size_t hash_of(std::span<const std::byte> payload) {
+  return std::hash<std::string_view>()({reinterpret_cast<const char*>(payload.data()), payload.size()});
+}
+
 void Channel::deliver(std::span<const std::byte> payload) {
-  sim::Message message{name, sim::Bytes(payload.begin(), payload.end()), true};
+  {
+    const std::lock_guard lock(mutex);
+    if (!echoes.empty()) {
+      // The network keeps the order, so those before the one that came back are lost.
+      const auto echo = std::find(echoes.begin(), echoes.end(), hash_of(payload));
+      if (echo != echoes.end()) {
+        echoes.erase(echoes.begin(), echo + 1);
+        return;
+      }
+    }
+    if (mailboxes.empty()) return;
+    give_out({name, sim::Bytes(payload.begin(), payload.end()), true});
+  }
+  arrived();
+}
+
+void Channel::deliver_own(std::span<const std::byte> payload) {
   {
     const std::lock_guard lock(mutex);
     if (mailboxes.empty()) return;
-    received.fetch_add(1, std::memory_order_relaxed);
-    for (std::size_t i = 0; i + 1 < mailboxes.size(); ++i) mailboxes[i]->add(message);
-    mailboxes.back()->add(std::move(message));
+    if (echoes.size() == max_echoes) echoes.pop_front();
+    echoes.push_back(hash_of(payload));
+    give_out({name, sim::Bytes(payload.begin(), payload.end()), false});
   }
   arrived();
+}
+
+void Channel::give_out(sim::Message message) {
+  received.fetch_add(1, std::memory_order_relaxed);
+  for (std::size_t i = 0; i + 1 < mailboxes.size(); ++i) mailboxes[i]->add(message);
+  mailboxes.back()->add(std::move(message));
 }
 
 void on_message(const lcm_recv_buf_t* buffer, const char*, void* user) {
@@ -132,6 +166,12 @@ struct LcmBus::Threads {
       }
       if (!sent) count_refused();
     }
+  }
+
+  Channel* find_channel(std::string_view name) const {
+    const std::lock_guard lock(channels_mutex);
+    const auto found = channels.find(name);
+    return found == channels.end() ? nullptr : found->second.get();
   }
 
   void count_refused() {
@@ -181,6 +221,8 @@ void LcmBus::publish(std::string_view channel, std::span<const std::byte> payloa
                    threads_->options.max_message_bytes);
     return;
   }
+  // Before it goes out: the echo must not overtake it.
+  if (Channel* own = threads_->find_channel(channel)) own->deliver_own(payload);
   threads_->outgoing.push(channel, payload);
 }
 

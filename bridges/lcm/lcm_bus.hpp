@@ -23,8 +23,8 @@ struct LcmBusOptions {
 /// The bus over LCM.  One thread sends, one receives: publish() and take() only move messages, and the
 /// physics loop never waits for the network.  Messages go out at end_of_step(), earlier when many wait.
 /// Messages of one sender arrive in the order it sent them, over all channels: when a later one is in a
-/// mailbox, the earlier ones are in theirs.  A subscriber hears also what this process publishes, as it comes
-/// back from the network.
+/// mailbox, the earlier ones are in theirs.  A subscriber hears also what this process publishes: at once, and not
+/// again when it comes back from the network.
 class LcmBus final : public sim::Bus {
  public:
   /// An empty URL means LCM_DEFAULT_URL, else default_lcm_url.  Throws BusError when LCM cannot be used.

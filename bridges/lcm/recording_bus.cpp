@@ -8,8 +8,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <deque>
-#include <functional>
 #include <vector>
 
 namespace bridges {
@@ -17,11 +15,6 @@ namespace {
 
 // liblcm writes field by field; with stdio's small buffer large images cost seven times as much.
 constexpr std::size_t file_buffer_bytes = std::size_t{1} << 20;
-constexpr std::size_t max_echoes = 4096;
-
-std::size_t hash_of(std::span<const std::byte> payload) {
-  return std::hash<std::string_view>()({reinterpret_cast<const char*>(payload.data()), payload.size()});
-}
 
 }  // namespace
 
@@ -49,7 +42,6 @@ struct RecordingBus::Log {
 struct RecordingBus::Channel {
   std::string name;
   std::vector<const RecordingMailbox*> mailboxes;  // the first one records
-  std::deque<std::size_t> echoes;                  // hashes of what we published and may hear again
 };
 
 class RecordingBus::RecordingMailbox final : public sim::Mailbox {
@@ -63,7 +55,7 @@ class RecordingBus::RecordingMailbox final : public sim::Mailbox {
   std::optional<sim::Message> take() override {
     auto message = inner_->take();
     if (message && message->from_outside && channel_.mailboxes.front() == this)
-      bus_.record_incoming(channel_, *message);
+      bus_.record(message->channel, message->payload);
     return message;
   }
   std::uint64_t dropped() const override { return inner_->dropped(); }
@@ -97,33 +89,18 @@ void RecordingBus::publish(std::string_view channel, std::span<const std::byte> 
   inner_.publish(channel, payload, at);
   set_time(at);
   record(channel, payload);
-  if (const auto found = channels_.find(channel); found != channels_.end()) {
-    auto& echoes = found->second->echoes;
-    if (echoes.size() == max_echoes) echoes.pop_front();
-    echoes.push_back(hash_of(payload));
-  }
 }
 
 std::unique_ptr<sim::Mailbox> RecordingBus::open_mailbox(const std::string& channel, std::size_t capacity) {
   auto inner = inner_.open_mailbox(channel, capacity);
   auto& known = channels_[channel];
-  if (!known) known = std::make_unique<Channel>(Channel{channel, {}, {}});
+  if (!known) known = std::make_unique<Channel>(Channel{channel, {}});
   return std::make_unique<RecordingMailbox>(*this, *known, std::move(inner));
 }
 
 void RecordingBus::set_time(sim::Time at) {
   if (first_) return first_->set_time(at);
   utime_ = std::max(utime_, epoch_utime_ + at.count());
-}
-
-void RecordingBus::record_incoming(Channel& channel, const sim::Message& message) {
-  auto& echoes = channel.echoes;
-  // The network keeps the order, so those before the one that came back are lost.
-  if (const auto echo = std::find(echoes.begin(), echoes.end(), hash_of(message.payload)); echo != echoes.end()) {
-    echoes.erase(echoes.begin(), echo + 1);
-    return;
-  }
-  record(message.channel, message.payload);
 }
 
 void RecordingBus::record(std::string_view channel, std::span<const std::byte> payload) {

@@ -19,8 +19,7 @@ enum class Existing { refuse, overwrite };
 /// lcm-logplayer plays it back at the right speed, and two equal runs leave equal files.  For one thread.
 ///
 /// Recorded are what is published here, and what mailboxes hand over from outside, once per channel: when the
-/// simulation takes it, as only that decides what it does.  A published message that comes back from the
-/// network is not written twice.
+/// simulation takes it, as only that decides what it does.
 class RecordingBus final : public sim::Bus {
  public:
   /// Throws BusError when the file exists and may not be overwritten, or cannot be made.
@@ -54,7 +53,6 @@ class RecordingBus final : public sim::Bus {
   struct Channel;
 
   void record(std::string_view channel, std::span<const std::byte> payload);
-  void record_incoming(Channel& channel, const sim::Message& message);
   void fail(int error_number);
 
   std::unique_ptr<sim::Bus> owned_;

@@ -7,8 +7,8 @@
 #include "sim/bus/bus.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
-#include "sim/script/check_script.hpp"
 #include "sim/device/plugin.hpp"
+#include "sim/script/check_script.hpp"
 #include "sim/world/vehicle_loader.hpp"
 
 namespace sim {

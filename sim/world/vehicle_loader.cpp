@@ -105,17 +105,27 @@ std::shared_ptr<const VehicleConfig> VehicleLoader::instance(const VehicleEntry&
   substitute_parameters(tree, parameters_of(entry, model, who, index), who, diagnostics_);
   auto config = std::make_shared<VehicleConfig>();
   ParamReader in(tree, who, diagnostics_);
-  declare_names(in);
+  declare_names(in, tree);
   config->read(in);
   in.finish();
   return config;
 }
 
-void VehicleLoader::declare_names(ParamReader& in) const {
+void VehicleLoader::declare_names(ParamReader& in, const ConfigNode& tree) const {
+  // What the vehicle brings itself it declares itself; another vehicle may have brought the same.
+  const auto brings = [&](const char* list, const std::string& name) {
+    const ConfigNode* items = tree.find(list);
+    return items != nullptr && std::any_of(items->items.begin(), items->items.end(), [&](const ConfigNode& item) {
+             const ConfigNode* own = item.find("name");
+             return (own != nullptr ? own->scalar : item.scalar) == name;
+           });
+  };
   in.declare("material", "default");
-  for (const MaterialConfig& material : world_.materials) in.declare("material", material.name);
+  for (const MaterialConfig& material : world_.materials)
+    if (!brings("materials", material.name)) in.declare("material", material.name);
   in.declare("category", "solid");
-  for (const std::string& category : world_.categories) in.declare("category", category);
+  for (const std::string& category : world_.categories)
+    if (!brings("categories", category)) in.declare("category", category);
 }
 
 Parameters VehicleLoader::parameters_of(const VehicleEntry& entry, const ConfigNode& model, const std::string& who,

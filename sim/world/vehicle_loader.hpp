@@ -24,7 +24,7 @@ class VehicleLoader {
   const ConfigNode* model_of_node(const ConfigNode& model, const std::string& who);
   std::shared_ptr<const VehicleConfig> instance(const VehicleEntry& entry, const ConfigNode& model,
                                                 const std::string& name, int index);
-  void declare_names(ParamReader& in) const;
+  void declare_names(ParamReader& in, const ConfigNode& tree) const;
   std::vector<std::pair<std::string, ConfigNode>> parameters_of(const VehicleEntry& entry, const ConfigNode& model,
                                                                 const std::string& who, int index);
 

@@ -159,7 +159,7 @@ struct WorldConfig {
   std::vector<ActorConfig> actors;
   std::vector<EventConfig> events;
   EncodeMessage encode_message;  ///< for actions that publish; empty: they cannot
-  double state_rate_hz = 10;  ///< of sim.state and sim.clock
+  double state_rate_hz = 10;     ///< of sim.state and sim.clock
 
   void read(ParamReader& in);
 };

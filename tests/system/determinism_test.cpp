@@ -36,7 +36,9 @@ class Determinism : public testing::TestWithParam<Case> {
   }
   /// The hash after every step, in this process.
   std::vector<std::uint64_t> hashes_here() const {
-    const auto loaded = sim::load_world(source(GetParam().world), {.encode_message = shoal::encode_own_message});
+    sim::LoadOptions options;
+    options.encode_message = shoal::encode_own_message;
+    const auto loaded = sim::load_world(source(GetParam().world), options);
     sim::InProcessBus bus;
     sim::World world(loaded.config, bus);
     std::vector<std::uint64_t> hashes;

@@ -128,7 +128,9 @@ TEST_F(LiveRun, RefusesWhatItDoesNotUnderstand) {
   start();
   const auto unknown = request("fly");
   EXPECT_FALSE(unknown.ok);
-  EXPECT_EQ(unknown.text, "unknown command 'fly'; known commands: alive, describe, do, join, leave, pause, quit, remove, resume, spawn, speed, step");
+  EXPECT_EQ(unknown.text,
+            "unknown command 'fly'; known commands: alive, describe, do, join, leave, pause, quit, remove, resume, "
+            "spawn, speed, step");
   EXPECT_FALSE(request("speed", -1).ok);
   EXPECT_FALSE(request("step", 0).ok);
   EXPECT_FALSE(request("step", 1e300).ok);

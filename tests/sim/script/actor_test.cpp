@@ -88,7 +88,9 @@ events:
     ahead.forward_mps = 0.8;
     test.send("r1.drive.cmd", ahead);
     test.run_for(0.1);
-    if (i == 32) EXPECT_NEAR(door_y(), 2.5, 1e-9);
+    if (i == 32) {
+      EXPECT_NEAR(door_y(), 2.5, 1e-9);
+    }
   }
   // It went through: 8 s at about 0.8 m/s, the door in between at 3 m; and the door is shut again.
   EXPECT_GT(test.world.vehicles()[0]->X_WV().translation().x(), 4);
