@@ -144,7 +144,9 @@ void JointServo::act(const sim::ActContext& context) {
     const double error_before = was_following ? 0 : error();
     move_set_point(context.step_s);
     if (params_.control == Control::velocity) {
-      const double wanted = set_point_.velocity + params_.kp * error_before;
+      // More than the whole error in a step would swing.
+      const double gain = std::min(params_.kp, 1 / context.step_s);
+      const double wanted = set_point_.velocity + gain * error_before;
       joint_.set_motor(std::clamp(wanted, -params_.max_velocity, params_.max_velocity), max_effort, params_.axis);
       return;
     }

@@ -119,6 +119,14 @@ TEST(JointServo, GoesNoFartherThanItsRange) {
   EXPECT_NEAR(shoulder(test).position(), -0.2, 1e-4);  // its own
 }
 
+TEST(JointServo, TheVelocityLoopIsStableAtAnyGain) {
+  test::TestWorld test(test::arm_world(servo(", kp: 1e6, max_effort: 100, max_acceleration: 2")));
+  command(test, 0, 0.5);
+  test.run_for(3);
+  EXPECT_NEAR(shoulder(test).position(), 0.5, 1e-5);
+  EXPECT_NEAR(shoulder(test).velocity(), 0, 1e-4);
+}
+
 TEST(JointServo, ItsRangeCanShrinkWhileItRuns) {
   test::TestWorld test(test::arm_world(servo(", max_effort: 50")));
   command(test, 0, 0.8);
