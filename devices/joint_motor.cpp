@@ -12,12 +12,14 @@ void JointMotor::Params::read(sim::ParamReader& in) {
   in.read_reference("joint", joint, "joint", "hinge or slider that it drives");
   in.read("max_velocity", max_velocity, sim::above(0), "commands are cut to this, rad/s or m/s");
   in.read("max_force", max_force, sim::above(0), "the most it can give, N m or N");
+  power.read(in);
 }
 
 JointMotor::JointMotor(const Params& params, const sim::DeviceContext& context)
-    : params_(params), joint_(context.joint(params.joint)) {}
+    : params_(params), joint_(context.joint(params.joint)), vehicle_(context.vehicle) {}
 
 void JointMotor::act(const sim::ActContext& context) {
+  if (vehicle_.systems().metered) joint_.measure_load();
   joint_.set_motor(velocity_, coasting_ ? 0 : context.effectiveness * params_.max_force);
 }
 

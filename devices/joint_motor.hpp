@@ -1,7 +1,8 @@
 #pragma once
 
+#include "devices/joint_power.hpp"
 #include "sim/device/device_registry.hpp"
-#include "sim/physics/joint.hpp"
+#include "sim/world/vehicle.hpp"
 
 namespace devices {
 
@@ -14,6 +15,7 @@ class JointMotor final : public sim::Actuator {
     std::string joint;
     double max_velocity = 10;  ///< rad/s, or m/s of a slider
     double max_force = 10;     ///< N m, or N of a slider
+    MotorPower power;
     void read(sim::ParamReader& in);
   };
 
@@ -22,6 +24,7 @@ class JointMotor final : public sim::Actuator {
   /// stop: it brakes; coast: it turns freely.
   void make_safe(sim::SafeState safe) override;
   void change(const Params& params) { params_ = params; }
+  double power_W() const override { return params_.power.of_motor(joint_, 0, params_.max_force); }
   void hash_state(sim::StateHash& hash) const override {
     hash.add(velocity_);
     hash.add(coasting_);
@@ -33,6 +36,7 @@ class JointMotor final : public sim::Actuator {
  private:
   Params params_;
   sim::Joint& joint_;
+  const sim::Vehicle& vehicle_;
   double velocity_ = 0;
   bool coasting_ = false;
 };

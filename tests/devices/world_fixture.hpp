@@ -14,11 +14,11 @@
 
 namespace test {
 
-/// A world from YAML text on the in-process bus.
-class TestWorld {
+/// A loaded world on the in-process bus.
+class LoadedTestWorld {
  public:
-  explicit TestWorld(const std::string& yaml, const sim::LoadOptions& options = {})
-      : loaded(sim::load_world_text(yaml, "worlds/test.yaml", with_messages(options))), world(loaded.config, bus) {}
+  /// A file of worlds/.
+  explicit LoadedTestWorld(const std::string& file) : LoadedTestWorld(sim::load_world(file, with_messages({}))) {}
 
   static sim::LoadOptions with_messages(sim::LoadOptions options) {
     if (!options.encode_message) options.encode_message = shoal::encode_own_message;
@@ -33,16 +33,27 @@ class TestWorld {
     bus.publish(channel, shoal::encode(message), world.now());
   }
 
+ protected:
+  explicit LoadedTestWorld(sim::LoadedWorld from) : loaded(std::move(from)), world(loaded.config, bus) {}
+
+ public:
   sim::LoadedWorld loaded;
   sim::InProcessBus bus;
   sim::World world;
+};
+
+/// A world from YAML text.
+class TestWorld : public LoadedTestWorld {
+ public:
+  explicit TestWorld(const std::string& yaml, const sim::LoadOptions& options = {})
+      : LoadedTestWorld(sim::load_world_text(yaml, "worlds/test.yaml", with_messages(options))) {}
 };
 
 /// Everything that is published on a channel, decoded.
 template <typename Message>
 class Listener {
  public:
-  Listener(TestWorld& world, const std::string& channel) : mailbox_(world.bus.open_mailbox(channel, 100000)) {}
+  Listener(LoadedTestWorld& world, const std::string& channel) : mailbox_(world.bus.open_mailbox(channel, 100000)) {}
   std::vector<Message> take_all() {
     std::vector<Message> all;
     while (const auto message = mailbox_->take())
@@ -108,7 +119,8 @@ vehicles:
       vehicle: box
       bodies: [{name: hull, parts: [{shape: box, size_m: [0.6, 0.4, 0.2], mass_kg: 1}]}]
       devices:
-)" + devices + more;
+)" + devices +
+         more;
 }
 
 }  // namespace test

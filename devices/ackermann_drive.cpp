@@ -1,0 +1,130 @@
+#include "devices/ackermann_drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "devices/drive_commands.hpp"
+#include "devices/joint_of_device.hpp"
+
+namespace devices {
+
+void AckermannDrive::Params::read(sim::ParamReader& in) {
+  in.require("left_steer_joint");
+  in.read_reference("left_steer_joint", left_steer_joint, "joint", "steers the left front wheel; first axis up");
+  in.require("right_steer_joint");
+  in.read_reference("right_steer_joint", right_steer_joint, "joint", "steers the right front wheel; first axis up");
+  in.require("drive_joints");
+  in.read_references("drive_joints", drive_joints, "joint", "joints of the driven wheels, axes to the left");
+  if (in.has("drive_joints") && drive_joints.empty()) in.error("drive_joints", "'drive_joints' must name a joint");
+  in.read("wheelbase_m", wheelbase_m, sim::above(0), "from rear to front axle");
+  in.read("track_m", track_m, sim::above(0), "between the axes that the front wheels are steered about");
+  in.read("wheel_radius_m", wheel_radius_m, sim::above(0), "radius of the driven wheels");
+  in.read("differential", differential, "driven wheels turn as each one's way asks; false: all alike");
+  in.read("max_speed_mps", max_speed_mps, sim::above(0), "speeds are cut to this");
+  in.read("max_acceleration_mps2", max_acceleration_mps2, sim::above(0), "of the speed");
+  in.read("max_torque_Nm", max_torque_Nm, sim::above(0), "the most the motor of each driven wheel can give");
+  in.read_deg("max_steering_deg", max_steering_rad, sim::above_to(0, 80), "steering angles are cut to this");
+  in.read("max_steering_rate_radps", max_steering_rate_radps, sim::above(0), "how fast the steering angle changes");
+  in.read("max_steering_torque_Nm", max_steering_torque_Nm, sim::above(0), "the most each steering motor can give");
+  power.read(in);
+  if (track_m / 2 * std::tan(max_steering_rad) >= wheelbase_m)
+    in.error("max_steering_deg", "at 'max_steering_deg' the centre of turn must lie outside the track");
+}
+
+AckermannDrive::AckermannDrive(const Params& params, const sim::DeviceContext& context)
+    : params_(params),
+      vehicle_(context.vehicle),
+      steer_{&joint_with_axis(context, params.left_steer_joint, 0),
+             &joint_with_axis(context, params.right_steer_joint, 0)} {
+  const sim::Vector3d front_V = (joint_config(vehicle_, params.left_steer_joint).anchor_m +
+                                 joint_config(vehicle_, params.right_steer_joint).anchor_m) /
+                                2;
+  for (const std::string& name : params.drive_joints) {
+    const sim::Vector3d p_m = joint_config(vehicle_, name).anchor_m - front_V;
+    wheels_.push_back({WheelMotors(context, {name}), p_m.x() + params.wheelbase_m, p_m.y()});
+  }
+}
+
+void AckermannDrive::change(const Params& params) {
+  params_ = params;
+  set_steering(target_mps_, target_steering_rad_);
+}
+
+/// `side`: -1 left, 1 right.
+void AckermannDrive::steer(sim::Joint& joint, double side, double torque_Nm, double step_s) {
+  const double tangent = std::tan(steering_rad_);
+  const double L = params_.wheelbase_m;
+  const double angle_rad = std::atan(L * tangent / (L + side * params_.track_m / 2 * tangent));
+  // A fifth of the error each step, as ODE's erp: quick and without overshoot.
+  const double velocity = 0.2 * (angle_rad - joint.position(0)) / step_s;
+  const double most = 2 * params_.max_steering_rate_radps;  // the inner wheel turns faster than the middle
+  if (vehicle_.systems().metered) joint.measure_load();
+  joint.set_motor(std::clamp(velocity, -most, most), torque_Nm, 0);
+}
+
+double AckermannDrive::speed_ratio(const DrivenWheel& wheel) const {
+  if (!params_.differential) return 1;
+  const double curvature = std::tan(steering_rad_) / params_.wheelbase_m;
+  // The velocity of the wheel's place; a front wheel points along it.
+  return std::hypot(1 - curvature * wheel.y_m, curvature * wheel.x_m);
+}
+
+void AckermannDrive::act(const sim::ActContext& context) {
+  const double effort = coasting_ ? 0 : context.effectiveness;
+  const double speed_change = params_.max_acceleration_mps2 * context.step_s;
+  speed_mps_ += std::clamp(target_mps_ - speed_mps_, -speed_change, speed_change);
+  const double turn = params_.max_steering_rate_radps * context.step_s;
+  steering_rad_ += std::clamp(target_steering_rad_ - steering_rad_, -turn, turn);
+  steer(*steer_[0], -1, effort * params_.max_steering_torque_Nm, context.step_s);
+  steer(*steer_[1], 1, effort * params_.max_steering_torque_Nm, context.step_s);
+  for (DrivenWheel& wheel : wheels_) {
+    wheel.motors.set_target(speed_mps_ * speed_ratio(wheel) / params_.wheel_radius_m);
+    // The limit is of the car's speed, above; the wheel follows at once.
+    wheel.motors.act(std::numeric_limits<double>::infinity(), effort * params_.max_torque_Nm, context.step_s);
+  }
+}
+
+void AckermannDrive::make_safe(sim::SafeState safe) {
+  target_mps_ = 0;
+  coasting_ = safe == sim::SafeState::coast;
+}
+
+double AckermannDrive::power_W() const {
+  double sum_W = 0;
+  for (const sim::Joint* joint : steer_) sum_W += params_.power.of_motor(*joint, 0, params_.max_steering_torque_Nm);
+  for (const DrivenWheel& wheel : wheels_) sum_W += wheel.motors.power_W(params_.power, params_.max_torque_Nm);
+  return sum_W;
+}
+
+void AckermannDrive::hash_state(sim::StateHash& hash) const {
+  for (const double number : {target_mps_, target_steering_rad_, speed_mps_, steering_rad_}) hash.add(number);
+  hash.add(coasting_);
+}
+
+void AckermannDrive::set_steering(double speed_mps, double steering_rad) {
+  coasting_ = false;
+  target_mps_ = std::clamp(speed_mps, -params_.max_speed_mps, params_.max_speed_mps);
+  target_steering_rad_ = std::clamp(steering_rad, -params_.max_steering_rad, params_.max_steering_rad);
+}
+
+void AckermannDrive::set_twist(double forward_mps, double turn_radps) {
+  // atan2 would turn the steering around when it backs up.
+  const double steering_rad = forward_mps == 0
+                                  ? std::copysign(turn_radps == 0 ? 0.0 : params_.max_steering_rad, turn_radps)
+                                  : std::atan(params_.wheelbase_m * turn_radps / forward_mps);
+  set_steering(forward_mps, steering_rad);
+}
+
+void AckermannDrive::set_thrust_rudder(double thrust, double rudder) {
+  set_steering(std::clamp(thrust, -1.0, 1.0) * params_.max_speed_mps,
+               std::clamp(rudder, -1.0, 1.0) * params_.max_steering_rad);
+}
+
+void AckermannDriveController::receive(sim::Time, std::span<const std::byte> payload) {
+  receive_drive_command(drive_, payload);
+}
+
+SHOAL_ACTUATOR("ackermann_drive", AckermannDrive, AckermannDriveController);
+
+}  // namespace devices
