@@ -86,7 +86,7 @@ TEST(InertialErrors, TheRateRandomWalkRisesWithTheRootOfTime) {
   InertialParams params;
   params.rate_random_walk = 10 * devices::unit::deg_per_h_per_sqrt_h;
   const auto axes = Bench().record(params, 2);
-  for (const double tau_s : {3.0, 30.0}) {  // K sqrt(tau / 3), IEEE Std 952-1997, C.1.4
+  for (const double tau_s : {3.0, 30.0}) {  // K sqrt(tau / 3), IEEE Std 952-1997
     const sim::AllanPoint point = pooled(axes, tau_s);
     const double expected = params.rate_random_walk * std::sqrt(tau_s / 3);
     EXPECT_NEAR(point.deviation, expected, 4 * point.relative_error * expected) << tau_s;
