@@ -119,7 +119,8 @@ TEST(InertialErrors, TheMatrixAndTheBiasActOnTheTruth) {
   params.scale = 0.01;
   params.misalignment_rad = 0.02;
   params.turn_on_bias = 0.1;
-  InertialErrors triad = Bench().errors(params);
+  Bench bench;
+  InertialErrors triad = bench.errors(params);
   sim::Random random(1, "x");
   Vector3d value(1, 2, 3);
   triad.apply(value, dt_s, random);
