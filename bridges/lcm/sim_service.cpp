@@ -62,6 +62,7 @@ bool SimService::due(double rate_hz) const {
 }
 
 void SimService::publish_step() {
+  visitors_.tell_changes();
   if (due(info_rate_hz)) publish_info();
   if (!due(world_.config().state_rate_hz)) return;
   shoal::utime_t clock;
@@ -156,7 +157,7 @@ void SimService::handle_requests() {
 
 void SimService::handle_request(Line& line, const sim::Message& message) {
   try {
-    answer(line, shoal::decode<shoal::sim_control_request_t>(message.payload, shoal::Finite::required));
+    answer(line, shoal::decode<shoal::sim_control_request_t>(message.payload, shoal::Finite::any));
   } catch (const shoal::MessageError& error) {
     complain(std::string("sim.control: ") + error.what());
   }
@@ -174,9 +175,9 @@ void SimService::answer(Line& line, const shoal::sim_control_request_t& request)
     if (&line != &lines_.front() && !of_lockstep)
       throw std::runtime_error("only alive, join and leave are served on a vehicle's bus");
     reply.text = obey(request);
-  } catch (const std::runtime_error& error) {
+  } catch (const std::exception& error) {  // whatever it is, it is the request's fault, and the run goes on
     reply.ok = false;
-    reply.text = error.what();
+    reply.text = sim::shortened(error.what(), 4000);
     complain("sim.control: client '" + sim::shortened(request.client) + "': " + error.what());
   }
   publish(*line.network, "sim.control.reply", reply);

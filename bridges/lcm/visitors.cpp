@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "shoal/message_codec.hpp"
-#include "shoal/sim_vehicle_t.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world/vehicle_loader.hpp"
 
@@ -48,14 +47,37 @@ shoal::sim_vehicle_t message_of(const sim::Vehicle& vehicle) {
 
 }  // namespace
 
-std::string Visitors::tell(const sim::Vehicle& vehicle, bool present) {
-  shoal::sim_vehicle_t message = message_of(vehicle);
+Visitors::Visitors(sim::World& world, sim::Bus& bus) : world_(world), bus_(bus), generation_(world.generation()) {
+  for (const auto& vehicle : world.vehicles()) known_.emplace(vehicle->name(), message_of(*vehicle));
+}
+
+void Visitors::tell(shoal::sim_vehicle_t& message, bool present) {
   message.utime = world_.epoch_us() + world_.now().count();
   message.present = present;
-  if (const auto owner = owners_.find(vehicle.name()); owner != owners_.end()) message.client = owner->second.client;
+  const auto owner = owners_.find(message.vehicle);
+  message.client = owner == owners_.end() ? "" : owner->second.client;
   shoal::encode_into(message, buffer_);
   bus_.publish("sim.vehicle", buffer_, world_.now());
-  return in_words(message);
+}
+
+void Visitors::tell_changes() {
+  if (generation_ == world_.generation()) return;
+  generation_ = world_.generation();
+  for (auto known = known_.begin(); known != known_.end();) {
+    if (world_.find_vehicle(known->first) != nullptr) {
+      ++known;
+      continue;
+    }
+    tell(known->second, false);
+    owners_.erase(known->first);
+    known = known_.erase(known);
+  }
+  for (const auto& vehicle : world_.vehicles()) {
+    const auto [known, fresh] = known_.try_emplace(vehicle->name());
+    if (!fresh) continue;
+    known->second = message_of(*vehicle);
+    tell(known->second, true);
+  }
 }
 
 std::string Visitors::spawn(const std::string& client, const std::string& text) {
@@ -71,31 +93,32 @@ std::string Visitors::spawn(const std::string& client, const std::string& text) 
   }
   spdlog::info("client '{}' brought vehicle '{}' at {:.3f} s", sim::printable(sim::shortened(client)), vehicle.name(),
                sim::to_seconds(world_.now()));
-  return tell(vehicle, true);
+  tell_changes();
+  return in_words(known_.at(vehicle.name()));
 }
 
 void Visitors::remove(const std::string& name) {
   const sim::Vehicle* vehicle = world_.find_vehicle(name);
   if (vehicle == nullptr) return world_.remove_object(name);
-  const std::string own_name = vehicle->name();
-  // Told first, for then it still knows its channels; a refusal throws before.
-  world_.check_removable(own_name);
-  tell(*vehicle, false);
-  world_.remove_vehicle(own_name);
-  owners_.erase(own_name);
+  world_.remove_vehicle(std::string(vehicle->name()));
+  tell_changes();
 }
 
 std::string Visitors::describe(const std::string& name) {
   const sim::Vehicle* vehicle = world_.find_vehicle(name);
   if (vehicle == nullptr) throw sim::WorldError("there is no vehicle '" + sim::shortened(sim::printable(name)) + "'");
-  return tell(*vehicle, true);
+  shoal::sim_vehicle_t& message = known_.at(vehicle->name());
+  tell(message, true);
+  return in_words(message);
 }
 
 void Visitors::act(const std::string& text) {
+  const sim::ConfigNode action = sim::parse_untrusted(text, "do");
   sim::Diagnostics diagnostics;
-  const sim::ConfigNode action = sim::parse_config_text(text, "do", diagnostics);
+  sim::check_untrusted(action, "", diagnostics);
   diagnostics.throw_if_any();
   world_.run_action(action);
+  tell_changes();
 }
 
 void Visitors::heard_of(const std::string& client) {

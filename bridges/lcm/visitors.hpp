@@ -4,16 +4,17 @@
 #include <map>
 #include <string>
 
+#include "shoal/sim_vehicle_t.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/world/world.hpp"
 
 namespace bridges {
 
-/// The vehicles that clients bring over `sim.control`, and whose they are.  Every vehicle that comes or goes this way
-/// is told on `sim.vehicle`.
+/// The vehicles that clients bring over `sim.control`, and whose they are.  Every vehicle that comes or goes, whoever
+/// brings or takes it, is told on `sim.vehicle`.
 class Visitors {
  public:
-  Visitors(sim::World& world, sim::Bus& bus) : world_(world), bus_(bus) {}
+  Visitors(sim::World& world, sim::Bus& bus);
 
   /// Adds the vehicle that `text` describes (an entry of `vehicles:` in YAML); returns one line that names it, its
   /// channels and rates.  Throws sim::ConfigError, with the same lines as for files.
@@ -25,6 +26,8 @@ class Visitors {
   /// An action as in `events:`, in YAML.  Throws sim::ConfigError.
   void act(const std::string& text);
 
+  /// Tells of the vehicles that came or went since the last call.
+  void tell_changes();
   /// The client lives.
   void heard_of(const std::string& client);
   /// Removes the vehicles of clients that said nothing for their time-out (wall time).
@@ -44,12 +47,14 @@ class Visitors {
     bool with_client = false;
   };
 
-  std::string tell(const sim::Vehicle& vehicle, bool present);
+  void tell(shoal::sim_vehicle_t& message, bool present);
 
   sim::World& world_;
   sim::Bus& bus_;
-  std::map<std::string, Owner, std::less<>> owners_;    // by vehicle
-  std::map<std::string, Client, std::less<>> clients_;  // those with vehicles that go with them
+  std::map<std::string, Owner, std::less<>> owners_;                // by vehicle
+  std::map<std::string, Client, std::less<>> clients_;              // those with vehicles that go with them
+  std::map<std::string, shoal::sim_vehicle_t, std::less<>> known_;  // the vehicles told of, or there from the start
+  std::uint64_t generation_;
   sim::Bytes buffer_;
 };
 

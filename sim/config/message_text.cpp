@@ -95,6 +95,8 @@ std::string number_text(double value) {
 
 std::string plural_of(std::string_view word) {
   const std::string text(word);
+  if (const std::size_t either = text.find(" or "); either != std::string::npos)
+    return plural_of(text.substr(0, either)) + " or " + plural_of(text.substr(either + 4));
   const auto ends_with_consonant_y = [&] {
     return text.size() > 1 && text.back() == 'y' &&
            std::string("aeiou").find(text[text.size() - 2]) == std::string::npos;

@@ -19,6 +19,10 @@ std::string Rule::text() const {
   return text;
 }
 
+Rule any_place() {
+  return between(-1e7, 1e7);
+}
+
 Rule any_number() {
   return {};
 }

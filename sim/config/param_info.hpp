@@ -19,6 +19,8 @@ struct Rule {
 };
 
 Rule any_number();
+/// A coordinate in the world: within 1e7 m, beyond which a body counts as lost.
+Rule any_place();
 Rule at_least(double low);
 Rule above(double low);
 Rule at_most(double high);

@@ -12,6 +12,7 @@ void DeviceConfig::read_common(ParamReader& in) {
   in.require("type");
   in.read("type", type, "device type, see `shoal list devices`");
   in.read_reference("body", body, "body", "body it is mounted on; unset: the vehicle's first body");
+  if (body == "world") in.error("body", "'body' must be a body of the vehicle, got 'world'");
   in.read("position_m", position_m, any_number(), "place of the sensor frame in the body frame");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw of the sensor frame in the body frame");
   in.read("rate_hz", rate_hz, between(0, 1e6), "samples per simulated second; 0: every step");

@@ -138,6 +138,30 @@ void Collider::read_forces(std::vector<ContactReport>& reports) const {
   }
 }
 
+Collider::Overlap Collider::deepest_overlap(int group) const {
+  Overlap deepest;
+  std::vector<dContactGeom> touching(8);
+  for (const CollisionPart& own : parts_) {
+    if (own.geom == nullptr || own.group != group) continue;
+    dReal box[6];
+    dGeomGetAABB(own.geom, box);
+    for (const CollisionPart& other : parts_) {
+      if (other.geom == nullptr || other.group == group || (own.category & other.collides_with) == 0 ||
+          (other.category & own.collides_with) == 0)
+        continue;
+      dReal b[6];
+      dGeomGetAABB(other.geom, b);
+      if (box[0] > b[1] || b[0] > box[1] || box[2] > b[3] || b[2] > box[3] || box[4] > b[5] || b[4] > box[5]) continue;
+      const int count =
+          dCollide(own.geom, other.geom, static_cast<int>(touching.size()), &touching[0], sizeof(dContactGeom));
+      for (int i = 0; i < count; ++i)
+        if (touching[static_cast<std::size_t>(i)].depth > deepest.depth_m)
+          deepest = {other.group, touching[static_cast<std::size_t>(i)].depth};
+    }
+  }
+  return deepest;
+}
+
 void Collider::on_near(void* self, dGeomID first, dGeomID second) {
   if (dGeomIsSpace(first) || dGeomIsSpace(second)) {
     dSpaceCollide2(first, second, self, &Collider::on_near);

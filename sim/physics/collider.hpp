@@ -58,6 +58,12 @@ class Collider {
     table_.add(materials, contacts);
   }
   void set_gravity(double gravity_mps2);
+  /// How deep the parts of a group stand in those of another, at the deepest; group -1: nowhere.
+  struct Overlap {
+    int group = -1;
+    double depth_m = 0;
+  };
+  Overlap deepest_overlap(int group) const;
 
   /// The contacts of watched groups are noted in each step.  Counted: several may watch one group.
   void watch(int group);

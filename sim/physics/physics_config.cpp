@@ -92,7 +92,7 @@ void PartConfig::read(ParamReader& in) {
   in.read("length_m", length_m, above(0), "capsule (without its caps) and cylinder: length along z");
   in.read("mesh", mesh, "mesh: an STL or OBJ file, relative to this file");
   in.read("scale", scale, above(0), "mesh: its numbers times this are metres");
-  in.read("position_m", position_m, any_number(), "centre of the part in the frame of the body");
+  in.read("position_m", position_m, any_place(), "centre of the part in the frame of the body");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch and yaw of the part in the frame of the body");
   in.read("mass_kg", mass_kg, above(0), "mass; a part with neither mass nor density weighs nothing");
   in.read("density_kgpm3", density_kgpm3, above(0), "density, instead of a mass");
@@ -112,7 +112,7 @@ void BodyConfig::read(ParamReader& in) {
   if (!in.describing()) place = in.node()->place;
   in.require("name");
   in.read_name("name", name, "name of the body");
-  in.read("position_m", position_m, any_number(), "origin of the body's frame in the frame of the vehicle");
+  in.read("position_m", position_m, any_place(), "origin of the body's frame in the frame of the vehicle");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch and yaw of the body's frame in the frame of the vehicle");
   in.read_list("parts", parts, "part", "shapes that move as one");
 }

@@ -436,6 +436,11 @@ void PhysicsWorld::Impl::fault(const Body& body, std::int64_t step_number) const
   throw PhysicsFault("body '" + body.name() + "': " + text + " at step " + std::to_string(step_number));
 }
 
+std::pair<std::string, double> PhysicsWorld::deepest_overlap(int group) const {
+  const Collider::Overlap overlap = impl_->collider.deepest_overlap(group);
+  return {overlap.group < 0 ? "" : group_name(overlap.group), overlap.depth_m};
+}
+
 const Scene& PhysicsWorld::scene() const {
   return *impl_->scene;
 }

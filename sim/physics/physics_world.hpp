@@ -76,6 +76,9 @@ class PhysicsWorld {
   /// keep their positions.  Velocities turn along, or become zero.
   void move_group(int group, const Pose& X_move_W, bool keep_velocity = false);
 
+  /// Names the group that a group stands deepest in, and how deep; empty: in none.
+  std::pair<std::string, double> deepest_overlap(int group) const;
+
   /// New materials get new numbers, and keep them.  What the constructor got wins over these contacts, and of these
   /// the last one wins.  Materials known already and equal contacts are ignored.
   void add_surfaces(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts);

@@ -75,7 +75,7 @@ void describe_actions(ParamReader& in) {
 void PlaceChoice::read(ParamReader& in) {
   Vector3d position = Vector3d::Zero();
   Vector3d rpy = Vector3d::Zero();
-  in.read("position_m", position, any_number(), "place in the world");
+  in.read("position_m", position, any_place(), "place in the world");
   in.read_deg("rpy_deg", rpy, "roll, pitch, yaw; unset: as it was");
   read_points(in, "places", places_m, 3, "one of these places, at random");
   in.read("area_m", area_m, at_least(0), "size of a box around the place, somewhere in which it is put");
@@ -214,6 +214,9 @@ void Action::read_publish(ParamReader& in) {
   in.read("publish", channel, "");
   if (channel.empty() || channel.size() > Bus::max_channel_length)
     in.error("publish", "a channel must have 1 to 63 characters, got " + std::to_string(channel.size()));
+  else if (channel.starts_with("sim.") || printable(channel) != channel)
+    in.error("publish", "channel '" + printable(channel) +
+                            "' cannot be published on: sim.* belongs to the simulator, and " + "names are printable");
   in.require("type");
   in.read("type", message_type, "");
   in.read_raw("value", values, "");

@@ -23,7 +23,7 @@ struct ReadTimedPose : TimedPose {
     in.require("at_s");
     in.read("at_s", at_s, between(0, 1e9), "when it is there, since the start of the path");
     in.require("position_m");
-    in.read("position_m", position_m, any_number(), "place in the world");
+    in.read("position_m", position_m, any_place(), "place in the world");
     in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
   }
 };
@@ -70,7 +70,12 @@ void ActorConfig::check_points(ParamReader& in) {
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const std::string where = std::to_string(i + 1) + " and " + std::to_string(i + 2);
     if (timed && poses[i + 1].at_s <= poses[i].at_s) in.error("poses", "'at_s' must grow: poses " + where);
-    if (!timed && points_m[i] == points_m[i + 1]) in.error("points", "points " + where + " are the same place");
+    const double most_mps = 1000;
+    if (timed &&
+        (poses[i + 1].position_m - poses[i].position_m).norm() > most_mps * (poses[i + 1].at_s - poses[i].at_s))
+      in.error("poses", "poses " + where + " are too far apart for their times: at most 1000 m/s");
+    if (!timed && (points_m[i] - points_m[i + 1]).norm() < 1e-6)
+      in.error("points", "points " + where + " are the same place");
   }
   if (timed && ends == PathEnds::loop &&
       !make_pose(poses.front().position_m, poses.front().rpy_rad)
@@ -123,7 +128,8 @@ void Actor::command(ActorCommand command, Time now) {
 void Actor::find_body(World& world) {
   if (generation_ == world.generation()) return;
   const WorldObject* object = world.find_object(config_.object);
-  body_ = object ? object->body : nullptr;
+  // Only a kinematic body can be led along; World::add_object sees to it that an actor's object is one.
+  body_ = object && object->body->kinematic() ? object->body : nullptr;
   generation_ = world.generation();
 }
 

@@ -75,7 +75,8 @@ class SpeedWatch final : public VehicleWatch {
 class MessageWatch final : public ConditionWatch {
  public:
   MessageWatch(const Condition& condition, World& world)
-      : mailbox_(world.bus().open_mailbox(condition.subject, Bus::default_mailbox_capacity)) {}
+      : mailbox_(
+            world.bus_of_channel(condition.subject).open_mailbox(condition.subject, Bus::default_mailbox_capacity)) {}
   int count_new(World&) override {
     int count = 0;
     while (mailbox_->take()) ++count;

@@ -37,7 +37,7 @@ void read_points(ParamReader& in, const char* key, std::vector<Vector3d>& value,
     const ConfigNode item = map_of(name, list->items[i]);
     ParamReader one(item, in.who(), in.diagnostics());
     std::vector<double> numbers;
-    one.read(name.c_str(), numbers, any_number(), "");
+    one.read(name.c_str(), numbers, any_place(), "");
     if (list->items[i].kind == ConfigNode::Kind::list && list->items[i].items.size() != columns)
       one.error(name.c_str(),
                 "'" + name + "' must be " + std::to_string(columns) + " numbers, got " + shown(list->items[i]));

@@ -75,6 +75,7 @@ class Script {
   void add(const Action& action, const Doing& doing);
   void remove(const Action& action, const Doing& doing);
   void change(const Action& action, const Doing& doing);
+  void log(const std::string& who, const std::string& text);
   void publish(const Action& action);
   void command(const Action& action);
   const std::string& pick_target(const Action& action, const Doing& doing) const;
@@ -96,6 +97,7 @@ class Script {
   bool catalogued_ = false;
   Random live_random_;
   std::int64_t live_random_step_ = -1;
+  int log_lines_ = 0;
 };
 
 }  // namespace sim

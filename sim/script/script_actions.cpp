@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "sim/config/message_text.hpp"
 #include "sim/script/script.hpp"
 #include "sim/world/world.hpp"
 
@@ -15,10 +16,10 @@ void Script::carry_out(const std::vector<Action>& actions, const Doing& doing) {
     std::string failure;
     try {
       carry_out(action, doing);
-    } catch (const WorldError& error) {
-      failure = error.what();
     } catch (const ConfigError& error) {
       failure = error.lines().front();
+    } catch (const std::exception& error) {  // one action that fails does not end the run
+      failure = error.what();
     }
     if (failure.empty()) continue;
     if (doing.diagnostics != nullptr)
@@ -55,11 +56,9 @@ void Script::carry_out(const Action& action, const Doing& doing) {
     case ActionKind::gravity:
       return world_.physics().set_gravity(action.gravity_mps2);
     case ActionKind::log:
-      spdlog::info("{}{}{} (at {:.3f} s)", doing.who, doing.who.empty() ? "" : ": ", action.text,
-                   to_seconds(world_.now()));
-      return;
+      return log(doing.who, action.text);
     case ActionKind::end:
-      return world_.end({action.text, action.passed});
+      return world_.end({printable(action.text), action.passed});
   }
 }
 
@@ -130,6 +129,15 @@ void Script::change(const Action& action, const Doing&) {
   Diagnostics diagnostics;
   world_.change_device(action.targets[0], action.values, diagnostics);
   diagnostics.throw_if_any();
+}
+
+void Script::log(const std::string& who, const std::string& text) {
+  constexpr int most_lines = 1000;
+  if (++log_lines_ > most_lines + 1) return;
+  if (log_lines_ > most_lines)
+    spdlog::warn("events have said {} lines; what they say from now on is left out", most_lines);
+  else
+    spdlog::info("{}{}{} (at {:.3f} s)", who, who.empty() ? "" : ": ", printable(text), to_seconds(world_.now()));
 }
 
 void Script::publish(const Action& action) {

@@ -1,6 +1,7 @@
 #include "sim/script/touch_watch.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "sim/world/world.hpp"
@@ -16,13 +17,13 @@ class TouchWatch final : public ConditionWatch {
   int count_new(World& world) override {
     if (generation_ != world.generation()) choose_groups(world);
     const auto parts = world.physics().parts();
-    std::set<std::pair<int, int>> touching;
+    std::set<std::pair<std::int64_t, std::int64_t>> touching;
     for (const ContactReport& contact : world.physics().contacts()) {
       const int a = parts[static_cast<std::size_t>(contact.parts[0])].group;
       const int b = parts[static_cast<std::size_t>(contact.parts[1])].group;
-      if (matches(a, b) || matches(b, a)) touching.insert(std::minmax(a, b));
+      if (matches(a, b) || matches(b, a)) touching.insert(std::minmax(whose_.at(a), whose_.at(b)));
     }
-    const auto is_new = [&](const std::pair<int, int>& pair) { return !touching_.contains(pair); };
+    const auto is_new = [&](const auto& pair) { return !touching_.contains(pair); };
     const auto count = std::count_if(touching.begin(), touching.end(), is_new);
     touching_ = std::move(touching);
     return static_cast<int>(count);
@@ -40,8 +41,13 @@ class TouchWatch final : public ConditionWatch {
     generation_ = world.generation();
     first_.clear();
     second_.clear();
-    for (const auto& vehicle : world.vehicles()) consider(vehicle->name(), vehicle->group(), true);
+    whose_.clear();
+    for (const auto& vehicle : world.vehicles()) {
+      whose_[vehicle->group()] = 2 * static_cast<std::int64_t>(vehicle->number());
+      consider(vehicle->name(), vehicle->group(), true);
+    }
     for (const auto& [name, object] : world.objects()) {
+      whose_[object.group] = 2 * object.number + 1;
       const auto is_plane = [](const PartConfig& part) { return part.shape == "plane"; };
       const auto& shapes = object.config.parts;
       consider(name, object.group, !std::all_of(shapes.begin(), shapes.end(), is_plane));
@@ -61,7 +67,9 @@ class TouchWatch final : public ConditionWatch {
   const Condition& condition_;
   std::uint64_t generation_ = ~std::uint64_t{0};
   std::set<int> first_, second_;
-  std::set<std::pair<int, int>> touching_;
+  // A group's number is used again when something comes for something that went: then it is another touch.
+  std::map<int, std::int64_t> whose_;
+  std::set<std::pair<std::int64_t, std::int64_t>> touching_;
 };
 
 }  // namespace

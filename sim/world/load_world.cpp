@@ -73,7 +73,7 @@ void check_channels(const WorldConfig& world, Diagnostics& diagnostics) {
 /// `vehicles.NAME.devices.lidar.rate_hz` changes what is in the vehicle's file: it becomes one of its overrides.
 bool set_override(ConfigNode& root, const std::string& path, const ConfigNode& value, const SourcePlace& place) {
   static const std::set<std::string> own_keys = {"name",  "file",      "model",      "position_m", "rpy_deg",
-                                                 "count", "placement", "parameters", "overrides"};
+                                                 "count", "placement", "parameters", "overrides",  "bus"};
   const std::size_t first = path.find('.');
   const std::size_t second = path.find('.', first + 1);
   if (path.rfind("vehicles.", 0) != 0 || second == std::string::npos) return false;

@@ -11,8 +11,8 @@ namespace sim {
 /// Publishes at once, or at a later simulated time by way of an event.
 class MountedDevice::Outlet final : public Publisher {
  public:
-  Outlet(MountedDevice& device, EventKind kind, const std::string& channel)
-      : Publisher(device.host_.epoch_us), device_(device), kind_(kind), channel_(channel) {}
+  Outlet(MountedDevice& device, const std::string& channel)
+      : Publisher(device.host_.epoch_us), device_(device), channel_(channel) {}
 
   void set(Time now, Time latency) {
     now_ = now;
@@ -31,7 +31,7 @@ class MountedDevice::Outlet final : public Publisher {
     Event event;
     event.due = now_ + latency_;
     event.device = device_.number_;
-    event.kind = kind_;
+    event.kind = report_event;
     event.stamp = now_;
     event.payload.assign(payload.begin(), payload.end());
     device_.host_.events.schedule(std::move(event));
@@ -39,7 +39,6 @@ class MountedDevice::Outlet final : public Publisher {
 
  private:
   MountedDevice& device_;
-  EventKind kind_;
   const std::string& channel_;
   Time now_{0};
   Time latency_{0};
@@ -66,8 +65,8 @@ MountedDevice::MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig&
       noise_random_(host.seed, full_name_),
       link_random_(host.seed, full_name_ + "#link") {
   if (built_.controller) mailbox_ = bus_.open_mailbox(command_channel_, Bus::default_mailbox_capacity);
-  report_outlet_ = std::make_unique<Outlet>(*this, report_event, report_channel_);
-  truth_outlet_ = std::make_unique<Outlet>(*this, truth_event, truth_channel_);
+  report_outlet_ = std::make_unique<Outlet>(*this, report_channel_);
+  truth_outlet_ = std::make_unique<Outlet>(*this, truth_channel_);
   plan_schedule();
 }
 

@@ -73,7 +73,7 @@ class MountedDevice {
   void hash_state(StateHash& hash) const;
 
  private:
-  enum EventKind { report_event, truth_event, command_event, arrival_event };
+  enum EventKind { report_event, command_event, arrival_event };
   class Outlet;
   friend class World;
 

@@ -171,7 +171,7 @@ VehicleConfig load_vehicle(const std::string& path) {
 
 namespace {
 
-constexpr std::size_t most_spawn_bytes = 1 << 20;
+constexpr std::size_t most_request_bytes = 1 << 20;
 
 /// What a spawn request says beside the entry.
 struct SpawnEntry {
@@ -185,22 +185,11 @@ struct SpawnEntry {
   }
 };
 
-/// A stranger may not reach for files or ports by way of a vehicle.
-void refuse_files(const ConfigNode& node, const std::string& who, Diagnostics& diagnostics) {
-  for (const ConfigNode& item : node.items) refuse_files(item, who, diagnostics);
-  for (const ConfigNode::Entry& entry : node.entries) {
-    const std::string key = entry.key.substr(entry.key.rfind('.') + 1);
-    if (key == "mesh" || key == "serial" || key == "include" || entry.key.find("serial.") != std::string::npos)
-      diagnostics.error(entry.place, who, "'" + key + "' cannot be used in a vehicle that comes over the bus");
-    refuse_files(entry.value, who, diagnostics);
-  }
-}
-
 void check_spawn(const SpawnEntry& entry, Diagnostics& diagnostics) {
   const VehicleEntry& vehicle = entry.vehicle;
   const std::string who = "vehicle '" + vehicle.name + "'";
   for (const ConfigNode* node : {&vehicle.model, &vehicle.parameters, &vehicle.overrides})
-    refuse_files(*node, who, diagnostics);
+    check_untrusted(*node, who, diagnostics);
   if (vehicle.count != 1) diagnostics.error(vehicle.place, who, "'count' must be 1: vehicles are spawned one by one");
   const bool bare = vehicle.file.find('/') == std::string::npos && !vehicle.file.starts_with(".");
   if (!bare) diagnostics.error(vehicle.place, who, "'file' must be a bare file name, got '" + vehicle.file + "'");
@@ -208,16 +197,30 @@ void check_spawn(const SpawnEntry& entry, Diagnostics& diagnostics) {
 
 }  // namespace
 
-SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& text) {
-  const std::string from = "spawn";
-  Diagnostics diagnostics;
-  const SourcePlace whole{intern_file_name(from), 0, 0};
-  if (text.size() > most_spawn_bytes) {
-    diagnostics.error(whole, "", "a vehicle must have at most 1 MiB of text, got " + std::to_string(text.size()));
-    diagnostics.throw_if_any();
+void check_untrusted(const ConfigNode& node, const std::string& who, Diagnostics& diagnostics) {
+  for (const ConfigNode& item : node.items) check_untrusted(item, who, diagnostics);
+  for (const ConfigNode::Entry& entry : node.entries) {
+    const std::string key = entry.key.substr(entry.key.rfind('.') + 1);
+    if (key == "mesh" || key == "serial" || key == "include" || entry.key.find("serial.") != std::string::npos)
+      diagnostics.error(entry.place, who, "'" + key + "' cannot be used in what comes over the bus");
+    check_untrusted(entry.value, who, diagnostics);
   }
-  const ConfigNode node = parse_config_text(text, from, diagnostics);
+}
+
+ConfigNode parse_untrusted(const std::string& text, const std::string& from) {
+  Diagnostics diagnostics;
+  if (text.size() > most_request_bytes)
+    diagnostics.error({intern_file_name(from), 0, 0}, "",
+                      "a request must have at most 1 MiB of text, got " + std::to_string(text.size()) + " bytes");
   diagnostics.throw_if_any();
+  ConfigNode node = parse_config_text(text, from, diagnostics);
+  diagnostics.throw_if_any();
+  return node;
+}
+
+SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& text) {
+  const ConfigNode node = parse_untrusted(text, "spawn");
+  Diagnostics diagnostics;
   SpawnEntry entry;
   ParamReader in(node, "", diagnostics);
   for (const BusConfig& bus : world.buses) in.declare("bus", bus.name);

@@ -48,4 +48,9 @@ struct SpawnRequest {
 /// ConfigError, with places such as `spawn:3:7`.
 SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& text);
 
+/// A stranger may not reach for files or ports: reports keys such as `mesh` and `serial`.
+void check_untrusted(const ConfigNode& node, const std::string& who, Diagnostics& diagnostics);
+/// YAML that comes over the bus, at most 1 MiB.  Throws ConfigError, with places such as `spawn:3:7`.
+ConfigNode parse_untrusted(const std::string& text, const std::string& from);
+
 }  // namespace sim

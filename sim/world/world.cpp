@@ -21,6 +21,9 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
             [this](const BadMessage& bad) { complain(bad.channel, bad.text); }},
       physics_(std::make_unique<PhysicsWorld>(config.physics, config.materials, config.contacts, config.categories,
                                               static_cast<std::uint64_t>(config.run.seed))) {
+  known_materials_.insert("default");
+  for (const MaterialConfig& material : config.materials) known_materials_.insert(material.name);
+  known_contacts_ = config.contacts;
   add_objects();
   for (const VehicleInstance& instance : config.vehicles) build_vehicle(instance);
   sort_devices();
@@ -43,7 +46,7 @@ void World::add_objects() {
 }
 
 const WorldObject& World::build_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE) {
-  WorldObject object{name, physics_->add_group(name), nullptr, config};
+  WorldObject object{next_object_number_++, name, physics_->add_group(name), nullptr, config};
   BodyConfig body;
   body.parts = config.parts;
   body.name = "body";
@@ -98,7 +101,7 @@ void World::add_device(Vehicle& vehicle, const DeviceConfig& config) {
   free_numbers_.pop_back();
   vehicle.add_device(*device);
   for (const ChannelKind kind : {ChannelKind::report, ChannelKind::command, ChannelKind::truth})
-    channels_.insert(channel_of(vehicle.name(), config, kind));
+    channels_.emplace(channel_of(vehicle.name(), config, kind), &vehicle.bus());
   devices_[static_cast<std::size_t>(number)] = std::move(device);
 }
 
@@ -166,7 +169,12 @@ void World::schedule_arrival(int device, Time due, Bytes payload) {
 }
 
 void World::publish(const std::string& channel, std::span<const std::byte> payload) {
-  bus_.publish(channel, payload, now());
+  bus_of_channel(channel).publish(channel, payload, now());
+}
+
+Bus& World::bus_of_channel(const std::string& channel) {
+  const auto known = channels_.find(channel);
+  return known == channels_.end() ? bus_ : *known->second;
 }
 
 void World::end(const EndOfRun& end) {

@@ -38,6 +38,7 @@ enum class ChannelKind { report, command, truth };
 
 /// A thing without devices, as built.
 struct WorldObject {
+  std::int64_t number = 0;  ///< grows from object to object, and is not used again
   std::string name;
   int group = -1;
   Body* body = nullptr;
@@ -95,8 +96,8 @@ class World {
 
   // What changes a world while it runs.  Call between steps, or from a script in stage 4.
 
-  /// Adds a vehicle.  Throws ConfigError (names and channels that are taken, meshes, masses, limits), and leaves the
-  /// world as it was then.
+  /// Adds a vehicle.  Throws ConfigError (names and channels that are taken, meshes, masses, limits, contacts that
+  /// would change the surfaces of others, a place where something stands), and the vehicle is not there then.
   const Vehicle& add_vehicle(const VehicleInstance& instance);
   /// Throws WorldError when there is none, or when a metric scores it.
   void remove_vehicle(const std::string& name);
@@ -114,7 +115,7 @@ class World {
   void clear_faults(const std::string& device);
   /// Gives a device other values while it runs.  False: `diagnostics` say why, and nothing has changed.
   bool change_device(const std::string& full_name, const ConfigNode& values, Diagnostics& diagnostics);
-  /// Sends a message on the world's bus, as a script does.
+  /// Sends a message, as a script does, on the bus of the device whose channel it is, else on the world's.
   void publish(const std::string& channel, std::span<const std::byte> payload);
   /// The run ends after this step; the first call counts.
   void end(const EndOfRun& end);
@@ -135,6 +136,8 @@ class World {
   }
   const PortOpener& open_port() const { return open_port_; }
   Bus& bus() { return bus_; }
+  /// Where a channel is spoken: the bus of the vehicle whose device has it, else the world's.
+  Bus& bus_of_channel(const std::string& channel);
   /// The channel of a device by the world's templates.
   std::string channel_of(const std::string& vehicle, const DeviceConfig& device, ChannelKind kind) const;
 
@@ -158,6 +161,8 @@ class World {
   const WorldObject& object_named(const std::string& name) const;
   MountedDevice& device_named(const std::string& name) const;
   void check_new_vehicle(const VehicleInstance& instance) const;
+  void check_new_surfaces(const VehicleInstance& instance) const;
+  void check_place_is_free(Vehicle& vehicle, const SourcePlace& place);
   void check_new_name(const std::string& name, const SourcePlace& place, const std::string& who) const;
   void sort_devices();
   void run_due_events();
@@ -180,8 +185,11 @@ class World {
   std::vector<std::unique_ptr<Vehicle>> vehicles_;
   std::map<std::string, Vehicle*, std::less<>> vehicles_by_name_;
   std::map<std::string, WorldObject, std::less<>> objects_;
-  std::set<std::string, std::less<>> channels_;  // those that are taken
+  std::map<std::string, Bus*, std::less<>> channels_;  // those that are taken, and where
+  std::set<std::string, std::less<>> known_materials_;
+  std::vector<ContactConfig> known_contacts_;
   int next_vehicle_number_ = 0;
+  std::int64_t next_object_number_ = 0;
   std::uint64_t generation_ = 0;
   std::optional<EndOfRun> ended_;
   std::vector<std::unique_ptr<MountedDevice>> devices_;

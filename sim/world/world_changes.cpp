@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
@@ -70,15 +71,51 @@ void World::check_new_vehicle(const VehicleInstance& instance) const {
     }
 }
 
+/// What a newcomer says of surfaces may concern its own only: a contact of [default, any] would change everybody's.
+void World::check_new_surfaces(const VehicleInstance& instance) const {
+  const std::string who = "vehicle " + quoted(instance.name);
+  const VehicleConfig& config = *instance.config;
+  std::set<std::string, std::less<>> own;
+  for (const MaterialConfig& material : config.materials)
+    if (!known_materials_.contains(material.name)) own.insert(material.name);
+  constexpr int most_materials = 200;  // a table of pairs is kept
+  check_limit("materials", known_materials_.size() + own.size(), most_materials, instance.place, who);
+  check_limit("contacts", known_contacts_.size() + config.contacts.size(), 20 * most_materials, instance.place, who);
+  for (const ContactConfig& contact : config.contacts) {
+    const bool known = std::find(known_contacts_.begin(), known_contacts_.end(), contact) != known_contacts_.end();
+    if (!known && !own.contains(contact.between[0]) && !own.contains(contact.between[1]))
+      throw_config_error(instance.place, who,
+                         "its contact between '" + contact.between[0] + "' and '" + contact.between[1] +
+                             "' would change the surfaces of others: it must name a new material of its own");
+  }
+}
+
+void World::check_place_is_free(Vehicle& vehicle, const SourcePlace& place) {
+  constexpr double allowed_m = 0.05;
+  const auto [other, depth_m] = physics_->deepest_overlap(vehicle.group());
+  if (depth_m <= allowed_m) return;
+  const std::string who = "vehicle " + quoted(vehicle.name());
+  take_apart(vehicle);
+  throw_config_error(place, who,
+                     "'position_m' is taken: it would stand " + number_text(std::round(depth_m * 1000) / 1000) +
+                         " m deep in '" + other + "'");
+}
+
 const Vehicle& World::add_vehicle(const VehicleInstance& instance) {
   check_new_vehicle(instance);
+  check_new_surfaces(instance);
   try {
     physics_->add_categories(instance.config->categories);
   } catch (const std::length_error& error) {
     throw_config_error(instance.place, "vehicle " + quoted(instance.name), error.what());
   }
   physics_->add_surfaces(instance.config->materials, instance.config->contacts);
-  const Vehicle& vehicle = build_vehicle(instance);
+  for (const MaterialConfig& material : instance.config->materials) known_materials_.insert(material.name);
+  for (const ContactConfig& contact : instance.config->contacts)
+    if (std::find(known_contacts_.begin(), known_contacts_.end(), contact) == known_contacts_.end())
+      known_contacts_.push_back(contact);
+  Vehicle& vehicle = build_vehicle(instance);
+  check_place_is_free(vehicle, instance.place);
   sort_devices();
   return vehicle;
 }
@@ -123,7 +160,17 @@ const WorldObject& World::add_object(const ObjectConfig& config, const std::stri
   check_new_name(name, config.place, who);
   check_limit("objects", objects_.size() + 1, config_.limits.objects, config.place, who);
   check_limit("parts in an object", config.parts.size(), config_.limits.parts, config.place, who);
-  return build_object(config, name, X_WE);
+  // What an actor leads along must be kinematic, also when something else of its name comes.
+  const bool led = std::any_of(config_.actors.begin(), config_.actors.end(),
+                               [&](const ActorConfig& actor) { return actor.object == name; });
+  if (!led || config.kinematic) return build_object(config, name, X_WE);
+  const bool has_plane = std::any_of(config.parts.begin(), config.parts.end(),
+                                     [](const PartConfig& part) { return part.shape == "plane"; });
+  if (config.fixed || has_plane)
+    throw_config_error(config.place, who, "an actor moves it: it cannot be fixed or a plane");
+  ObjectConfig kinematic = config;
+  kinematic.kinematic = true;
+  return build_object(kinematic, name, X_WE);
 }
 
 void World::remove_object(const std::string& name) {

@@ -30,11 +30,22 @@ void ChannelConfig::read(ParamReader& in) {
   in.read("truth", truth, "of a device's readings without errors");
 }
 
+namespace {
+
+/// Words that mean something else where names are used.
+void refuse_reserved(ParamReader& in, const std::string& name) {
+  if (name == "any" || name == "world" || name == "sim")
+    in.error("name", "'" + name + "' cannot be a name: it is a word");
+}
+
+}  // namespace
+
 void ObjectConfig::read(ParamReader& in) {
   if (in.node() != nullptr) place = in.node()->place;
   in.require("name");
   in.read_name("name", name, "name of the object, unique in the world");
-  in.read("position_m", position_m, any_number(), "place in the world");
+  refuse_reserved(in, name);
+  in.read("position_m", position_m, any_place(), "place in the world");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
   in.read("fixed", fixed, "it never moves");
   in.read("present", present, "false: it is not there until an event adds it");
@@ -50,9 +61,10 @@ void VehicleEntry::read(ParamReader& in) {
   if (in.node() != nullptr) place = in.node()->place;
   in.require("name");
   in.read_name("name", name, "name of the vehicle, unique in the world; part of its channels");
+  refuse_reserved(in, name);
   in.read("file", file, "vehicle file, beside the world file or in ../vehicles");
   in.read_raw("model", model, "the vehicle itself, as in a vehicle file, instead of a file");
-  in.read("position_m", position_m, any_number(), "place of the vehicle frame in the world");
+  in.read("position_m", position_m, any_place(), "place of the vehicle frame in the world");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
   in.read("count", count, between(1, 100000), "how many; named NAME1, NAME2, ...");
   in.read("placement", placement, "where the instances stand when there is a count");
@@ -208,6 +220,10 @@ void WorldConfig::read(ParamReader& in) {
   for (const ObjectConfig& object : objects) in.declare("object", object.name);
   in.read_list("buses", buses, "bus", "buses beside the world's, for vehicles that hear each other by modem only");
   for (const BusConfig& bus : buses) in.declare("bus", bus.name);
+  for (std::size_t i = 0; i < buses.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (buses[i].lcm_url == buses[j].lcm_url)
+        in.error("buses", "buses '" + buses[j].name + "' and '" + buses[i].name + "' have the same 'lcm_url'");
   in.read_list("vehicles", vehicle_entries, "vehicle", "vehicles, by file or model");
   for (const VehicleEntry& entry : vehicle_entries) {
     if (entry.count == 1) in.declare("vehicle", entry.name);

@@ -107,7 +107,7 @@ TEST(AckermannCar, StopsWithoutCommandsAndWhenItHitsAWall) {
 }
 
 TEST(RoverArm, ReachesAPoseAndWeighsItsHand) {
-  Driven driven("rover_arm");
+  Driven driven("arm_reach");
   test::Listener<shoal::joint_state_t> joints(driven, "rover1.joints");
   test::Listener<shoal::wrench_t> load(driven, "rover1.wrist_load");
   const std::vector<std::pair<std::string, double>> pose = {

@@ -104,7 +104,7 @@ TEST(Spawn, ErrorsReadAsThoseOfFiles) {
   EXPECT_THAT(refused("{name: a, file: rover.yaml}"), HasSubstr("there is a vehicle of this name already"));
   EXPECT_THAT(refused("{name: crate, file: rover.yaml}"), HasSubstr("there is an object of this name already"));
   EXPECT_THAT(refused("{name: x, model: {shoal: 1, bodies: [{name: b, parts: [{shape: mesh, mesh: /etc/passwd}]}]}}"),
-              HasSubstr("spawn:1:70: vehicle 'x': 'mesh' cannot be used in a vehicle that comes over the bus"));
+              HasSubstr("spawn:1:70: vehicle 'x': 'mesh' cannot be used in what comes over the bus"));
   EXPECT_THAT(refused("{name: x, file: rover.yaml, overrides: {devices.modem.serial: {path: /tmp/x}}}"),
               HasSubstr("'serial' cannot be used"));
   EXPECT_THAT(refused("{name: x, model: {shoal: 1, bodies: [{name: b, parts: [{shape: box}]}]}}"),
@@ -116,12 +116,59 @@ TEST(Spawn, ErrorsReadAsThoseOfFiles) {
   EXPECT_NO_THROW(host.test.run_for(0.1));
 }
 
+TEST(Spawn, APlaceThatIsTakenIsRefused) {
+  Host host;
+  EXPECT_THAT(host.ask("spawn", "{name: x, file: rover_small.yaml, position_m: [-9, 0.3, 0.9]}").text,
+              HasSubstr("spawn:1:1: vehicle 'x': 'position_m' is taken: it would stand 0."));
+  EXPECT_EQ(host.test.world.vehicles().size(), 1u);
+  EXPECT_TRUE(host.ask("spawn", "{name: x, file: rover_small.yaml, position_m: [-6, 0, 0]}").ok);
+}
+
+TEST(Spawn, TheSurfacesOfOthersStayAsTheyAre) {
+  Host host;
+  const auto ball = [](const std::string& contacts) {
+    return "{name: x, position_m: [0, 0, 3], model: {shoal: 1, materials: [{name: ice}], contacts: [" + contacts +
+           "], bodies: [{name: b, parts: [{shape: sphere, mass_kg: 1, material: ice}]}]}}";
+  };
+  EXPECT_THAT(host.ask("spawn", ball("{between: [default, any], friction: 0}")).text,
+              HasSubstr("its contact between 'default' and 'any' would change the surfaces of others"));
+  EXPECT_TRUE(host.ask("spawn", ball("{between: [ice, any], friction: 0}")).ok);
+}
+
+TEST(Spawn, NeitherFilesNorEndlessTextComeByAnAction) {
+  Host host;
+  EXPECT_THAT(host.ask("do", "{add: {name: m, fixed: true, parts: [{shape: mesh, mesh: /etc/passwd}]}}").text,
+              HasSubstr("'mesh' cannot be used in what comes over the bus"));
+  EXPECT_THAT(host.ask("do", std::string(2 << 20, ' ')).text, HasSubstr("at most 1 MiB"));
+  EXPECT_THAT(host.ask("do", "{publish: sim.control, type: shoal.utime_t, value: {}}").text,
+              HasSubstr("sim.* belongs to the simulator"));
+  EXPECT_TRUE(host.ask("do", "{move: crate, position_m: [5, 5, 1]}").ok);
+}
+
+TEST(Spawn, ADeviceOnTheWorldIsRefused) {
+  Host host;
+  EXPECT_THAT(host.ask("spawn",
+                       "{name: x, position_m: [0, 0, 3], model: {shoal: 1, bodies: [{name: b, parts: [{shape: "
+                       "box, mass_kg: 1}]}], devices: [{name: g, type: gps, body: world}]}}")
+                  .text,
+              HasSubstr("'body' must be a body of the vehicle, got 'world'"));
+}
+
+TEST(Spawn, WhatAnActionTakesAwayIsToldToo) {
+  Host host;
+  ASSERT_TRUE(host.ask("do", "{remove: a}").ok);
+  const auto told = host.vehicles.last();
+  EXPECT_EQ(told.vehicle, "a");
+  EXPECT_FALSE(told.present);
+}
+
 TEST(Spawn, LimitsProtectTheRun) {
   Host host("limits: {vehicles: 3, bodies_per_vehicle: 2, devices_per_vehicle: 2}\n");
   EXPECT_THAT(host.ask("spawn", "{name: x, file: rover_small.yaml}").text,
               HasSubstr("at most 2 bodies in a vehicle are allowed (limits of the world), got 3"));
   const auto box = [](const std::string& name) {
-    return "{name: " + name + ", model: {shoal: 1, bodies: [{name: b, parts: [{shape: box, mass_kg: 1}]}]}}";
+    return "{name: " + name + ", position_m: [0, " + std::to_string(name.back()) +
+           ", 1], model: {shoal: 1, bodies: [{name: b, parts: [{shape: box, mass_kg: 1}]}]}}";
   };
   EXPECT_TRUE(host.ask("spawn", box("x1")).ok);
   EXPECT_TRUE(host.ask("spawn", box("x2")).ok);

@@ -97,4 +97,21 @@ events:
   EXPECT_NEAR(door_y(), 0, 1e-9);
 }
 
+TEST(Actor, LeadsWhatComesInPlaceOfItsObjectAndRefusesWhatCannotBeLed) {
+  test::TestWorld test(
+      "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nobjects: [{name: lift, parts: [{shape: box, mass_kg: "
+      "1}]}]\nactors: [{name: up, object: lift, points: [[0, 0, 0], [0, 0, 9]], speed_mps: 1}]\n");
+  test.run_for(1);
+  test.world.remove_object("lift");
+  test.run_for(0.1);
+  sim::ObjectConfig other = test.loaded.config.objects.front();
+  other.kinematic = false;
+  other.fixed = true;
+  EXPECT_THROW(test.world.add_object(other, "lift", sim::Pose::Identity()), sim::ConfigError);
+  other.fixed = false;
+  test.world.add_object(other, "lift", sim::Pose::Identity());
+  test.run_for(0.9);
+  EXPECT_NEAR(test.world.find_object("lift")->body->X_WB().translation().z(), 2, 1e-9);  // 1 m/s for 2 s
+}
+
 }  // namespace
