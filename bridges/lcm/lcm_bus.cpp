@@ -14,6 +14,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace bridges {
@@ -24,10 +25,11 @@ constexpr std::size_t max_echoes = 4096;
 
 class ChannelMailbox;
 
-/// The mailboxes of one channel.  They share one LCM subscription.
+/// The mailboxes of one channel.  They share one LCM subscription, which ends with the last of them; the channel stays,
+/// for LCM's thread may just be about to use it.
 struct Channel {
-  Channel(std::string channel_name, std::function<void()> on_arrival)
-      : name(std::move(channel_name)), arrived(std::move(on_arrival)) {}
+  Channel(std::string channel_name, std::function<void()> on_arrival, std::function<void(Channel&)> on_unused)
+      : name(std::move(channel_name)), arrived(std::move(on_arrival)), unused(std::move(on_unused)) {}
 
   /// From the network.  What we sent ourselves and comes back is dropped: deliver_own() gave it out already.
   void deliver(std::span<const std::byte> payload);
@@ -39,6 +41,8 @@ struct Channel {
 
   const std::string name;
   const std::function<void()> arrived;
+  const std::function<void(Channel&)> unused;
+  lcm_subscription_t* subscription = nullptr;
   std::mutex mutex;  // also guards what is in the mailboxes
   std::vector<ChannelMailbox*> mailboxes;
   std::deque<std::size_t> echoes;  // hashes of what we sent and may hear again
@@ -55,8 +59,13 @@ class ChannelMailbox final : public sim::Mailbox {
   }
 
   ~ChannelMailbox() override {
-    const std::lock_guard lock(channel_.mutex);
-    std::erase(channel_.mailboxes, this);
+    {
+      const std::lock_guard lock(channel_.mutex);
+      std::erase(channel_.mailboxes, this);
+      if (!channel_.mailboxes.empty()) return;
+      channel_.echoes.clear();
+    }
+    channel_.unused(channel_);
   }
 
   std::optional<sim::Message> take() override {
@@ -168,6 +177,25 @@ struct LcmBus::Threads {
     }
   }
 
+  Channel& open_channel(const std::string& name) {
+    const std::lock_guard lock(channels_mutex);
+    std::unique_ptr<Channel>& channel = channels[name];
+    if (!channel)
+      channel = std::make_unique<Channel>(
+          name, [arrivals = options.arrivals.get()] { arrivals->arrived(); },
+          [this](Channel& unused) { close_channel(unused); });
+    if (channel->subscription == nullptr) {
+      const std::lock_guard transmit(transmit_mutex);
+      channel->subscription = connection.subscribe(literal_channel_pattern(name), on_message, channel.get());
+    }
+    return *channel;
+  }
+
+  void close_channel(Channel& channel) {
+    const std::lock_guard transmit(transmit_mutex);
+    if (channel.subscription != nullptr) connection.unsubscribe(std::exchange(channel.subscription, nullptr));
+  }
+
   Channel* find_channel(std::string_view name) const {
     const std::lock_guard lock(channels_mutex);
     const auto found = channels.find(name);
@@ -229,17 +257,8 @@ void LcmBus::publish(std::string_view channel, std::span<const std::byte> payloa
 std::unique_ptr<sim::Mailbox> LcmBus::open_mailbox(const std::string& channel, std::size_t capacity) {
   if (channel.empty() || channel.size() > max_channel_length)
     throw std::invalid_argument("a channel has 1 to 63 characters, got '" + channel + "'");
-  const std::lock_guard lock(threads_->channels_mutex);
-  auto found = threads_->channels.find(channel);
-  if (found == threads_->channels.end()) {
-    auto added =
-        std::make_unique<Channel>(channel, [arrivals = threads_->options.arrivals.get()] { arrivals->arrived(); });
-    Channel& subscribed = *added;
-    found = threads_->channels.emplace(channel, std::move(added)).first;
-    const std::lock_guard transmit(threads_->transmit_mutex);
-    threads_->connection.subscribe(literal_channel_pattern(channel), on_message, &subscribed);
-  }
-  return std::make_unique<ChannelMailbox>(*found->second, capacity);
+  Channel& opened = threads_->open_channel(channel);
+  return std::make_unique<ChannelMailbox>(opened, capacity);
 }
 
 void LcmBus::end_of_step() {

@@ -179,11 +179,16 @@ LcmConnection::~LcmConnection() {
   lcm_destroy(lcm_);
 }
 
-void LcmConnection::subscribe(const std::string& pattern, Handler handler, void* user) {
+lcm_subscription_t* LcmConnection::subscribe(const std::string& pattern, Handler handler, void* user) {
   lcm_subscription_t* subscription = lcm_subscribe(lcm_, pattern.c_str(), handler, user);
   if (subscription == nullptr)
     throw BusError("LCM cannot subscribe to '" + pattern + "' on " + url_ + "; run `shoal doctor`");
   lcm_subscription_set_queue_capacity(subscription, 0);
+  return subscription;
+}
+
+void LcmConnection::unsubscribe(lcm_subscription_t* subscription) {
+  lcm_unsubscribe(lcm_, subscription);
 }
 
 bool LcmConnection::publish(const char* channel, std::span<const std::byte> payload) {

@@ -9,6 +9,7 @@
 
 // LCM's own types; its header stays out of ours.
 struct _lcm_t;
+struct _lcm_subscription_t;
 struct _lcm_recv_buf_t;
 
 namespace bridges {
@@ -48,7 +49,9 @@ class LcmConnection {
   /// Readable when handle() has a message.
   int fd() const { return fd_; }
   /// `pattern`: an anchored regular expression.  The queue inside liblcm is made unlimited.
-  void subscribe(const std::string& pattern, Handler handler, void* user);
+  _lcm_subscription_t* subscribe(const std::string& pattern, Handler handler, void* user);
+  /// The handler may be at work for a last time while this returns.
+  void unsubscribe(_lcm_subscription_t* subscription);
   /// False when LCM refused it.
   bool publish(const char* channel, std::span<const std::byte> payload);
   /// Calls the handlers for one message.  Only after fd() became readable.  False when the connection is

@@ -49,7 +49,7 @@ void Noise::apply(std::span<double> values, double dt_s, Random& random) {
   for (double& value : values) {
     const Slow& slow = slow_[state];
     if (++state == slow_.size()) state = 0;
-    value = value * (1 + p.scale_error) + slow.bias + slow.walk + fault.factor * slow.gauss_markov + fault.bias;
+    value = value * (1 + p.scale_error) + slow.bias + fault.factor * (slow.walk + slow.gauss_markov) + fault.bias;
   }
   // One loop for each part: a scan of hundreds of beams asks for each part once, not once for each beam.
   if (p.gaussian_std > 0)
@@ -85,7 +85,7 @@ void Noise::advance(double dt_s, Random& random) {
   }
   if (dt_s != planned_dt_s_) plan(dt_s);
   if (p.random_walk_std > 0 && started_) {
-    const double step_std = (fault_ ? fault_->factor : 1) * p.random_walk_std * walk_root_s_;
+    const double step_std = p.random_walk_std * walk_root_s_;
     for (Slow& slow : slow_) slow.walk += step_std * random.gaussian();
   }
   if (p.gauss_markov_std > 0) {

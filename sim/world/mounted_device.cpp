@@ -46,12 +46,11 @@ class MountedDevice::Outlet final : public Publisher {
   std::vector<Bytes>* copies_ = nullptr;
 };
 
-MountedDevice::MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig& config, DeviceHost& host, Bus& bus,
-                             int number)
+MountedDevice::MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig& config, DeviceHost& host, int number)
     : config_(config),
       type_(*config.device_type),
       host_(host),
-      bus_(bus),
+      bus_(vehicle.bus()),
       vehicle_(vehicle),
       body_(config.body.empty() ? vehicle.base() : vehicle.body(config.body)),
       number_(number),
@@ -66,7 +65,7 @@ MountedDevice::MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig&
                                            number, faults_})),
       noise_random_(host.seed, full_name_),
       link_random_(host.seed, full_name_ + "#link") {
-  if (built_.controller) mailbox_ = bus.open_mailbox(command_channel_, Bus::default_mailbox_capacity);
+  if (built_.controller) mailbox_ = bus_.open_mailbox(command_channel_, Bus::default_mailbox_capacity);
   report_outlet_ = std::make_unique<Outlet>(*this, report_event, report_channel_);
   truth_outlet_ = std::make_unique<Outlet>(*this, truth_event, truth_channel_);
   plan_schedule();

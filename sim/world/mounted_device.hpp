@@ -32,8 +32,8 @@ struct DeviceHost {
 /// jitter, dropout, the truth channel, the mailbox, faults, the watchdog, power and emergency stop.
 class MountedDevice {
  public:
-  /// `bus`: of the vehicle.  `config` must outlive the device (the vehicle keeps it).
-  MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig& config, DeviceHost& host, Bus& bus, int number);
+  /// `config` must outlive the device (the vehicle keeps it).
+  MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig& config, DeviceHost& host, int number);
   ~MountedDevice();
   MountedDevice(const MountedDevice&) = delete;
   MountedDevice& operator=(const MountedDevice&) = delete;

@@ -17,11 +17,12 @@ Part& find_named(const std::vector<std::pair<std::string, Part*>>& all, const st
 
 }  // namespace
 
-Vehicle::Vehicle(std::string name, int number, int group, std::shared_ptr<const VehicleConfig> config)
+Vehicle::Vehicle(std::string name, int number, int group, std::shared_ptr<const VehicleConfig> config, Bus& bus)
     : name_(std::move(name)),
       number_(number),
       group_(group),
       config_(std::move(config)),
+      bus_(bus),
       X_BV_(make_pose(config_->bodies.front().position_m, config_->bodies.front().rpy_rad).inverse()) {}
 
 MountedDevice* Vehicle::find_device(const std::string& name) const {

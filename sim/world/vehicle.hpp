@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/bus/bus.hpp"
 #include "sim/math.hpp"
 #include "sim/physics/body.hpp"
 #include "sim/physics/joint.hpp"
@@ -31,13 +32,15 @@ struct VehicleSystems {
 /// A vehicle in the world: its bodies, joints and devices by name.
 class Vehicle {
  public:
-  Vehicle(std::string name, int number, int group, std::shared_ptr<const VehicleConfig> config);
+  Vehicle(std::string name, int number, int group, std::shared_ptr<const VehicleConfig> config, Bus& bus);
 
   const std::string& name() const { return name_; }
   /// Grows from vehicle to vehicle, and is not used again when one is removed.
   int number() const { return number_; }
   int group() const { return group_; }
   const VehicleConfig& config() const { return *config_; }
+  /// Where its devices publish and listen.
+  Bus& bus() const { return bus_; }
   /// The first body, which carries the vehicle frame.
   const Body& base() const { return *bodies_.front().second; }
   Pose X_WV() const { return base().X_WB() * X_BV_; }
@@ -63,6 +66,7 @@ class Vehicle {
   int number_;
   int group_;
   std::shared_ptr<const VehicleConfig> config_;
+  Bus& bus_;
   Pose X_BV_;
   std::vector<std::pair<std::string, Body*>> bodies_;
   std::vector<std::pair<std::string, Joint*>> joints_;

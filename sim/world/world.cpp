@@ -61,7 +61,8 @@ const WorldObject& World::build_object(const ObjectConfig& config, const std::st
 
 Vehicle& World::build_vehicle(const VehicleInstance& instance) {
   const int group = physics_->add_group(instance.name, instance.config->self_collision);
-  vehicles_.push_back(std::make_unique<Vehicle>(instance.name, next_vehicle_number_++, group, instance.config));
+  vehicles_.push_back(
+      std::make_unique<Vehicle>(instance.name, next_vehicle_number_++, group, instance.config, bus_of(instance.bus)));
   Vehicle& vehicle = *vehicles_.back();
   vehicles_by_name_.emplace(instance.name, &vehicle);
   try {
@@ -84,16 +85,16 @@ void World::build_parts_of(Vehicle& vehicle, const VehicleInstance& instance) {
         joint.name, physics_->add_joint(vehicle.group(), joint, vehicle.body(joint.bodies[0]), second, instance.X_WV));
   }
   physics_->close_group(vehicle.group());
-  for (const DeviceConfig& device : config.devices) add_device(vehicle, device, bus_of(instance.bus));
+  for (const DeviceConfig& device : config.devices) add_device(vehicle, device);
 }
 
-void World::add_device(Vehicle& vehicle, const DeviceConfig& config, Bus& bus) {
+void World::add_device(Vehicle& vehicle, const DeviceConfig& config) {
   if (free_numbers_.empty()) {
     free_numbers_.push_back(static_cast<int>(devices_.size()));
     devices_.emplace_back();
   }
   const int number = free_numbers_.back();
-  auto device = std::make_unique<MountedDevice>(*this, vehicle, config, host_, bus, number);
+  auto device = std::make_unique<MountedDevice>(*this, vehicle, config, host_, number);
   free_numbers_.pop_back();
   vehicle.add_device(*device);
   for (const ChannelKind kind : {ChannelKind::report, ChannelKind::command, ChannelKind::truth})

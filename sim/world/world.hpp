@@ -151,7 +151,7 @@ class World {
   Vehicle& build_vehicle(const VehicleInstance& instance);
   void build_parts_of(Vehicle& vehicle, const VehicleInstance& instance);
   Bus& bus_of(const std::string& name);
-  void add_device(Vehicle& vehicle, const DeviceConfig& config, Bus& bus);
+  void add_device(Vehicle& vehicle, const DeviceConfig& config);
   void remove_device(MountedDevice& device);
   void take_apart(Vehicle& vehicle);
   Vehicle& vehicle_named(const std::string& name) const;

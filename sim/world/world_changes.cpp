@@ -36,7 +36,7 @@ MountedDevice& World::device_named(const std::string& name) const {
 
 void World::check_new_name(const std::string& name, const SourcePlace& place, const std::string& who) const {
   const char* kind = vehicles_by_name_.contains(name) ? "vehicle" : objects_.contains(name) ? "object" : nullptr;
-  if (kind) throw_config_error(place, who, "there is a " + std::string(kind) + " of this name already");
+  if (kind) throw_config_error(place, who, "there is " + with_article(kind) + " of this name already");
 }
 
 namespace {

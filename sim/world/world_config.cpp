@@ -7,6 +7,7 @@
 #include <set>
 
 #include "sim/bus/bus.hpp"
+#include "sim/config/message_text.hpp"
 
 namespace sim {
 
@@ -58,6 +59,9 @@ void VehicleEntry::read(ParamReader& in) {
   in.read_raw("parameters", parameters, "values of the vehicle file's ${names}; ${index} counts from 1");
   in.read_reference("bus", bus, "bus", "bus of its own, named in `buses`; unset: the world's");
   in.read_raw("overrides", overrides, "dotted path: value, such as devices.lidar.rate_hz: 5");
+  for (const char* key : {"parameters", "overrides"})
+    if (in.has(key) && in.child(key)->kind != ConfigNode::Kind::map && in.child(key)->kind != ConfigNode::Kind::null)
+      in.error(key, std::string("'") + key + "' must be a map, got " + shown(*in.child(key)));
   if (!in.describing() && in.has("file") == in.has("model"))
     in.error(in.has("file") ? "needs either 'file' or 'model', not both" : "needs either 'file' or 'model'");
 }

@@ -2,8 +2,10 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "sim/world/load_world.hpp"
+#include "sim/world/vehicle_loader.hpp"
 #include "tools/experiment/scale_scene.hpp"
 
 namespace {
@@ -37,6 +39,35 @@ void LoadThousandVehicles(benchmark::State& state) {
   state.counters["lines"] = static_cast<double>(std::count(text.begin(), text.end(), '\n'));
 }
 BENCHMARK(LoadThousandVehicles)->ArgName("one_entry_each")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+
+/// A rover comes into a world of 1000 others and goes again; both from the request's text on.
+void SpawnAndRemove(benchmark::State& state) {
+  const sim::LoadedWorld loaded =
+      sim::load_world_text(tools::scale_scene_text(static_cast<int>(state.range(0)), false), "worlds/scale.yaml");
+  sim::InProcessBus bus;
+  sim::World world(loaded.config, bus);
+  for (int i = 0; i < 10; ++i) world.step();
+  double spawn_s = 0, remove_s = 0, most_s = 0;
+  const auto timed = [&](double& sum_s, const auto& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    sum_s += took_s;
+    most_s = std::max(most_s, took_s);
+  };
+  for (auto _ : state) {
+    timed(spawn_s, [&] {
+      world.add_vehicle(
+          sim::read_spawn_request(world.config(), "{name: guest, file: rover.yaml, position_m: [0, 0, 50]}").vehicle);
+    });
+    timed(remove_s, [&] { world.remove_vehicle("guest"); });
+  }
+  const auto iterations = static_cast<double>(state.iterations());
+  state.counters["spawn_us"] = spawn_s * 1e6 / iterations;
+  state.counters["remove_us"] = remove_s * 1e6 / iterations;
+  state.counters["worst_us"] = most_s * 1e6;
+}
+BENCHMARK(SpawnAndRemove)->Arg(10)->Arg(1000)->Unit(benchmark::kMicrosecond);
 
 void StateHash(benchmark::State& state) {
   tools::ScaleScene scene(static_cast<int>(state.range(0)));

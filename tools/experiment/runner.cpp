@@ -87,7 +87,7 @@ class Run {
                [this](const std::string& name) -> sim::Bus& { return buses_.of(name); }),
         service_(buses_.outer(), buses_.network(), world_, control_, lockstep_,
                  {sim::to_yaml(loaded.resolved), version_text()}),
-        scoring_(world_, buses_.outer()),
+        scoring_(world_),
         duration_s_(options.duration_s.value_or(loaded.config.run.duration_s)),
         progress_(duration_s_, options.quiet) {
     for (sim::Bus* bus : buses_.other_networks()) service_.serve_vehicles(*bus);

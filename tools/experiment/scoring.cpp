@@ -19,13 +19,13 @@ constexpr double truth_memory_s = 10;
 
 }  // namespace
 
-Scoring::Scoring(const sim::World& world, sim::Bus& bus) : world_(world) {
+Scoring::Scoring(const sim::World& world) : world_(world) {
   const auto steps = static_cast<std::size_t>(truth_memory_s / sim::to_seconds(world.step_time())) + 1;
   for (const sim::MetricConfig& config : world.config().metrics) {
     const sim::Vehicle* vehicle = world.find_vehicle(config.vehicle);
     metrics_.push_back({&config,
                         vehicle,
-                        bus.open_mailbox(config.channel),
+                        vehicle->bus().open_mailbox(config.channel),
                         std::vector<sim::Vector3d>(steps, vehicle->X_WV().translation()),
                         {}});
   }

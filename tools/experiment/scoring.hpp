@@ -10,7 +10,7 @@
 
 namespace tools {
 
-/// Scores a run by the `metrics:` of its world: compares estimates on the bus with the truth.
+/// Scores a run by the `metrics:` of its world: compares estimates, on the bus of the vehicle, with the truth.
 class Scoring {
  public:
   /// One estimate beside the truth at the estimate's own time.
@@ -29,7 +29,7 @@ class Scoring {
     bool passed;
   };
 
-  Scoring(const sim::World& world, sim::Bus& bus);
+  explicit Scoring(const sim::World& world);
   /// Takes the estimates that have come.  Call after every step.
   void after_step();
 

@@ -179,6 +179,20 @@ TEST_P(LcmBusFrom, AClosedMailboxGetsNothing) {
   EXPECT_TRUE(take(*stays));
 }
 
+TEST_P(LcmBusFrom, AMailboxThatIsOpenedAgainHearsWhatComesFromThenOn) {
+  bus.open_mailbox("a").reset();
+  sender.publish("a", bytes_of("unheard"), now);
+  sender.end_of_step();
+  const auto again = bus.open_mailbox("a");
+  sender.publish("a", bytes_of("heard"), now);
+  sender.end_of_step();
+  // The first one may still be on its way when the mailbox opens.
+  auto message = take(*again);
+  if (message && text_of(message->payload) == "unheard") message = take(*again);
+  ASSERT_TRUE(message);
+  EXPECT_EQ(text_of(message->payload), "heard");
+}
+
 TEST_P(LcmBusFrom, MessagesLeaveAlsoWithoutEndOfStep) {
   const auto mailbox = bus.open_mailbox("a");
   sender.publish("a", bytes_of("x"), now);

@@ -118,7 +118,7 @@ TEST(Spawn, ErrorsReadAsThoseOfFiles) {
               HasSubstr("vehicle 'x': there is no vehicle file 'nosuch.yaml'"));
   EXPECT_THAT(refused("{name: x, file: ../../etc/passwd}"), HasSubstr("'file' must be a bare file name"));
   EXPECT_THAT(refused("{name: a, file: rover.yaml}"), HasSubstr("there is a vehicle of this name already"));
-  EXPECT_THAT(refused("{name: crate, file: rover.yaml}"), HasSubstr("there is a object of this name already"));
+  EXPECT_THAT(refused("{name: crate, file: rover.yaml}"), HasSubstr("there is an object of this name already"));
   EXPECT_THAT(refused("{name: x, model: {shoal: 1, bodies: [{name: b, parts: [{shape: mesh, mesh: /etc/passwd}]}]}}"),
               HasSubstr("spawn:1:70: vehicle 'x': 'mesh' cannot be used in a vehicle that comes over the bus"));
   EXPECT_THAT(refused("{name: x, file: rover.yaml, overrides: {devices.modem.serial: {path: /tmp/x}}}"),

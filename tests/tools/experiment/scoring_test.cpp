@@ -24,7 +24,7 @@ std::string scored_world(const std::string& more = "") {
 }
 
 struct ScoredWorld {
-  explicit ScoredWorld(const std::string& more = "") : test(scored_world(more)), scoring(test.world, test.bus) {}
+  explicit ScoredWorld(const std::string& more = "") : test(scored_world(more)), scoring(test.world) {}
 
   void run_for(double time_s) {
     const sim::Time end = test.world.now() + sim::from_seconds(time_s);
