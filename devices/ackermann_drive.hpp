@@ -11,7 +11,7 @@ namespace devices {
 /// Two steered front wheels and driven wheels, as on a car.  The wheels stand at right angles to the lines to one
 /// centre of turn, on the line of the rear axle: for the steering angle d of a wheel in the middle of the front axle,
 /// wheelbase L and track t, tan d_left = L tan d / (L - t/2 tan d), and + on the right (Rajamani, Vehicle Dynamics and
-/// Control, 2nd ed., 2.2).
+/// Control, 2nd ed., 2012).
 class AckermannDrive final : public sim::Actuator {
  public:
   static constexpr const char* meaning =

@@ -7,9 +7,9 @@
 namespace devices {
 
 /// The one battery of a vehicle: an open-circuit voltage E that falls with the charge, behind an internal resistance R
-/// (the Rint model; Plett, Battery Management Systems vol. 1, ch. 2).  It gives the vehicle the power P it draws:
-/// E I - R I^2 = P; of that the charge pays E I.  Where P is more than E^2 / 4R the voltage breaks down to E / 2, and
-/// no more comes.
+/// (the Rint model; Plett, Battery Management Systems, vol. I: Battery Modeling, 2015).  It gives the vehicle the power
+/// P it draws: E I - R I^2 = P; of that the charge pays E I.  Where P is more than E^2 / 4R the voltage breaks down to
+/// E / 2, and no more comes.
 class Battery final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Battery of the vehicle: drained by its devices; empty, they go off.";

@@ -8,18 +8,20 @@ namespace devices {
 
 /// Three-axis magnetometer and the heading it gives.  The earth's field is the same in the whole world.  What is
 /// measured: soft iron * field + hard iron + noise; hard iron is magnetised and turns with the sensor, soft iron bends
-/// the field (Gebre-Egziabher et al. 2006, Calibration of strapdown magnetometers in magnetic field domain, J. Aerosp.
-/// Eng. 19(2), equation 2).
+/// the field (Gebre-Egziabher et al., Calibration of strapdown magnetometers in magnetic field domain, J. Aerosp. Eng.
+/// 19(2), 2006).
 class Compass final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Magnetic heading and field, with hard and soft iron.";
   static constexpr double default_rate_hz = 10;
   enum class TiltCompensation { none, ideal, accelerometer };
   struct Params {
-    // About what the World Magnetic Model 2025 gives at the default origin (Cambridge, Massachusetts), in 2026.
+    // The World Magnetic Model 2025 at the default origin (42.36 N 71.09 W, Cambridge, Massachusetts) at the start of
+    // 2026: -13.97 deg, 66.26 deg, 51.22 uT; computed from NOAA's coefficients, held against the declinations of its
+    // test values.
     double declination_rad = sim::degrees_to_radians(-14.0);
-    double inclination_rad = sim::degrees_to_radians(66.5);
-    double field_uT = 51.5;
+    double inclination_rad = sim::degrees_to_radians(66.3);
+    double field_uT = 51.2;
     double declination_correction_rad = 0;
     sim::Vector3d hard_iron_uT = sim::Vector3d::Zero();
     std::vector<double> soft_iron = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< rows of a matrix

@@ -21,18 +21,19 @@ struct InertialParams {
 };
 
 /// Allan deviation of a first-order Gauss-Markov process of standard deviation 1 over correlation times `tau / T_c`:
-/// sigma_A^2 = 2 / x (1 - (3 - 4 exp(-x) + exp(-2 x)) / (2 x)).  IEEE Std 952-1997, annex C, equation C.18, with
-/// q_c^2 = 2 sigma^2 / T_c.
+/// sigma_A^2 = 2 / x (1 - (3 - 4 exp(-x) + exp(-2 x)) / (2 x)).  From the definition of the Allan variance, with the
+/// covariance exp(-|t| / T_c).
 double gauss_markov_allan_deviation(double correlation_times);
 
-/// It is largest at tau = 1.89 T_c, where it is this (IEEE Std 952-1997: 0.437 q_c sqrt(T_c) = 0.437 sqrt(2) sigma).
+/// It is largest at tau = 1.89 T_c, where it is this (found numerically from the formula above).
 /// Data sheets quote the flat part of the measured Allan deviation as `bias instability`; the Gauss-Markov process gets
 /// the standard deviation with which its peak is as high: sigma = quoted / 0.6174.
 inline constexpr double gauss_markov_allan_peak = 0.61737;
 inline constexpr double gauss_markov_allan_peak_at = 1.8926;  ///< correlation times
 
 /// Applies the errors: output = (I + M) truth + offset + drift + white noise, cut and rounded.  The diagonal of M holds
-/// scale errors, the rest misalignments of the axes (first order; Titterton and Weston, chapter 8).
+/// scale errors, the rest misalignments of the axes (first order; Titterton and Weston, Strapdown Inertial Navigation
+/// Technology, 2nd ed., 2004).
 class InertialErrors {
  public:
   /// `noise_key`: such as `gyro_noise`; what faults do to that quantity reaches the errors of the data sheet too.

@@ -9,7 +9,8 @@ namespace devices {
 
 /// What the motor of an axis takes from the battery, by the model of a DC motor: mechanical power over efficiency, and
 /// the heat of its winding, which grows with the square of the effort and is there at standstill too (Krause et al.,
-/// Analysis of Electric Machinery, ch. 2: P = effort * velocity + R i^2, effort ~ i).  Braking gives nothing back.
+/// Analysis of Electric Machinery and Drive Systems, 3rd ed., 2013: P = effort * velocity + R i^2, effort ~ i).
+/// Braking gives nothing back.
 struct MotorPower {
   double efficiency = 0.8;
   double holding_W = 0;  ///< heat at the largest effort

@@ -29,7 +29,7 @@ class LowPass {
 
 /// What ideal gyros and accelerometers fixed to the sensor frame S give: integrals over the sampling interval, divided
 /// by its length, as strapdown units sum up inside (Titterton and Weston, Strapdown Inertial Navigation Technology, 2nd
-/// edition, chapter 11).  Means, not differences of positions: a contact that pushes for a millisecond is
+/// ed., 2004).  Means, not differences of positions: a contact that pushes for a millisecond is
 /// spread over the interval and does not ring.
 class Strapdown {
  public:

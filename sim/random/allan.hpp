@@ -14,9 +14,9 @@ struct AllanPoint {
 
 /// The overlapping Allan deviation of samples at equal intervals of `dt_s`, each the mean over its interval:
 /// sigma^2(m dt) = sum over k of (theta[k + 2 m] - 2 theta[k + m] + theta[k])^2 / (2 (m dt)^2 (N - 2 m + 1)), theta the
-/// running sum of the samples times dt (IEEE Std 952-1997, annex C.1, with all overlapping clusters).
-/// `points_per_decade` averaging times, from dt_s to a quarter of the record.  Error: 1 / sqrt(2 (N / m - 1)), annex
-/// C.3, which counts only the clusters that do not overlap; the overlap makes it somewhat better.
+/// running sum of the samples times dt (IEEE Std 952-1997, with all overlapping clusters).
+/// `points_per_decade` averaging times, from dt_s to a quarter of the record.  Error: 1 / sqrt(2 (N / m - 1)), which
+/// counts only the clusters that do not overlap; the overlap makes it somewhat better.
 std::vector<AllanPoint> allan_deviation(std::span<const double> samples, double dt_s, int points_per_decade = 10);
 
 /// The same at one averaging time, rounded to a multiple of dt_s.  There must be at least two clusters.

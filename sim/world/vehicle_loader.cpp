@@ -78,7 +78,7 @@ void VehicleLoader::resolve(ConfigNode& world_node) const {
 
 const ConfigNode* VehicleLoader::model_of(const VehicleEntry& entry, const std::string& who) {
   if (entry.file.empty()) return model_of_node(entry.model, who);
-  const std::string path = find_file(entry.file, entry.place);
+  const std::string path = find_file(entry.file, entry.beside.file != nullptr ? entry.beside : entry.place);
   if (path.empty()) {
     diagnostics_.error(entry.place, who,
                        "there is no vehicle file '" + entry.file + "' beside the world file or in ../vehicles");
@@ -227,9 +227,8 @@ SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& tex
   check_spawn(entry, diagnostics);
   diagnostics.throw_if_any();
   // Vehicle files are looked up from the world's file, not from the working directory.
-  VehicleEntry vehicle = entry.vehicle;
-  if (!vehicle.file.empty()) vehicle.place.file = intern_file_name(world.file);
-  std::vector<VehicleInstance> instances = VehicleLoader(world, diagnostics).load(vehicle);
+  entry.vehicle.beside.file = intern_file_name(world.file);
+  std::vector<VehicleInstance> instances = VehicleLoader(world, diagnostics).load(entry.vehicle);
   diagnostics.throw_if_any();
   return {std::move(instances.front()), entry.with_client, entry.alive_timeout_s};
 }

@@ -67,6 +67,7 @@ struct VehicleEntry {
   ConfigNode overrides;   ///< dotted path: value
   std::string bus;        ///< of `buses:`; empty: the world's
   SourcePlace place;
+  SourcePlace beside;  ///< the file that vehicle files lie beside; unset: `place`
   void read(ParamReader& in);
 };
 

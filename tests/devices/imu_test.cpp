@@ -168,8 +168,10 @@ TEST(Imu, PresetsHoldTheFiguresOfTheDataSheetsInSi) {
   EXPECT_NEAR(find("adis16470").accel.bias_instability, 1.275e-4, 1e-7);
   EXPECT_NEAR(find("vn100").gyro.random_walk, 6.109e-5, 1e-8);
   EXPECT_NEAR(find("vn100").accel.random_walk, 1.373e-3, 1e-6);
-  EXPECT_NEAR(find("kvh1750").gyro.bias_instability, 2.424e-7, 1e-10);
+  EXPECT_NEAR(find("stim300").gyro.bias_instability, 2.424e-6, 1e-9);
+  EXPECT_NEAR(find("stim300").accel.random_walk, 1.167e-3, 1e-6);
   EXPECT_NEAR(find("bmi088").gyro.random_walk, 0.84 * devices::unit::deg_per_sqrt_h, 1e-10);
+  EXPECT_NEAR(find("bmi088").accel.random_walk, 2.256e-3, 1e-6);
 }
 
 TEST(Imu, RefusesBadParameters) {

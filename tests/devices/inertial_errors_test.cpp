@@ -86,7 +86,7 @@ TEST(InertialErrors, TheRateRandomWalkRisesWithTheRootOfTime) {
   InertialParams params;
   params.rate_random_walk = 10 * devices::unit::deg_per_h_per_sqrt_h;
   const auto axes = Bench().record(params, 2);
-  for (const double tau_s : {3.0, 30.0}) {  // K sqrt(tau / 3), IEEE Std 952-1997, C.1.4
+  for (const double tau_s : {3.0, 30.0}) {  // K sqrt(tau / 3), IEEE Std 952-1997
     const sim::AllanPoint point = pooled(axes, tau_s);
     const double expected = params.rate_random_walk * std::sqrt(tau_s / 3);
     EXPECT_NEAR(point.deviation, expected, 4 * point.relative_error * expected) << tau_s;
@@ -119,7 +119,8 @@ TEST(InertialErrors, TheMatrixAndTheBiasActOnTheTruth) {
   params.scale = 0.01;
   params.misalignment_rad = 0.02;
   params.turn_on_bias = 0.1;
-  InertialErrors triad = Bench().errors(params);
+  Bench bench;
+  InertialErrors triad = bench.errors(params);
   sim::Random random(1, "x");
   Vector3d value(1, 2, 3);
   triad.apply(value, dt_s, random);

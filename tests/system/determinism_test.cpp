@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "bridges/lcm/lcm_listener.hpp"
 #include "shoal/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
+#include "sim/device/device_registry.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/world.hpp"
 #include "tests/system/shoal_program.hpp"
@@ -95,8 +97,20 @@ TEST_P(Determinism, AnotherSeedIsAnotherRun) {
 
 INSTANTIATE_TEST_SUITE_P(Worlds, Determinism,
                          testing::Values(Case{"worlds/minimal.yaml", "20"}, Case{"worlds/erl_room.yaml", "20"},
-                                         Case{"worlds/scale.yaml", "2"}, Case{"worlds/living_warehouse.yaml", "20"}),
+                                         Case{"worlds/scale.yaml", "2"}, Case{"worlds/living_warehouse.yaml", "20"},
+                                         Case{"worlds/proving_ground.yaml", "20"}),
                          [](const auto& test) { return std::filesystem::path(test.param.world).stem().string(); });
+
+TEST(ProvingGround, HasEveryDevice) {
+  sim::LoadOptions options;
+  options.encode_message = shoal::encode_own_message;
+  const auto loaded = sim::load_world(source("worlds/proving_ground.yaml"), options);
+  std::set<std::string> types;
+  for (const sim::VehicleInstance& vehicle : loaded.config.vehicles)
+    for (const sim::DeviceConfig& device : vehicle.config->devices) types.insert(device.type);
+  for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all())
+    EXPECT_TRUE(types.contains(type->name)) << type->name;
+}
 
 TEST(CoopLand, IsTheSameRunAtAnySpeedWithItsProcesses) {
   const ScratchFolder folder;

@@ -39,8 +39,9 @@ struct Summary {
   std::vector<Process> processes;
   std::map<std::string, sim::ZoneRecord> zones;  ///< by vehicle, when the world has zones with rules
   std::optional<sim::EndOfRun> event;            ///< of the world that ended the run
-  std::string ended = "duration";  ///< duration, event, quit, signal, fault, bus, timeout, process, configuration, error
-  std::string error;               ///< why it ended early, empty when it did not
+  std::string ended =
+      "duration";     ///< duration, event, quit, signal, fault, bus, timeout, process, configuration, error
+  std::string error;  ///< why it ended early, empty when it did not
   int exit_code = 0;
 
   double real_time_factor() const { return wall_s > 0 ? sim_time_s / wall_s : 0; }

@@ -1,11 +1,11 @@
 #include <iostream>
 #include <memory>
 
+#include "shoal/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/vehicle_loader.hpp"
 #include "sim/world/world.hpp"
-#include "shoal/message_writer.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {

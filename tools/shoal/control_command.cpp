@@ -60,8 +60,8 @@ class Session {
     request.command = command;
     request.text = text;
     request.value = value;
-    const Clock::time_point deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                                          std::chrono::duration<double>(arguments_.timeout_s));
+    const Clock::time_point deadline =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(arguments_.timeout_s));
     lcm_.publish("sim.control", shoal::encode(request));
     while (Clock::now() < deadline && caught_signal() == 0) {
       const auto message = lcm_.next(50ms);

@@ -4,8 +4,8 @@
 #include <iostream>
 #include <memory>
 
-#include "tools/experiment/runner.hpp"
 #include "shoal/message_writer.hpp"
+#include "tools/experiment/runner.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {

@@ -1,28 +1,22 @@
-#include "bridges/lcm/sim_service.hpp"
-
 #include <gmock/gmock.h>
 
 #include "shoal/sim_ack_t.hpp"
-#include "shoal/sim_control_reply_t.hpp"
 #include "shoal/sim_state_t.hpp"
 #include "shoal/sim_tick_t.hpp"
-#include "tests/devices/world_fixture.hpp"
+#include "tests/bridges/lcm/service_fixture.hpp"
 
 namespace {
 
-/// A world with one box, and its service on the same in-process bus.
-struct Service {
-  Service() = default;
+/// A world with one box.
+struct Service : lcm_test::ServedWorld {
+  Service()
+      : ServedWorld(
+            "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nvehicles: [{name: a, model: {shoal: 1, bodies: "
+            "[{name: "
+            "b, parts: [{shape: box, mass_kg: 1}]}]}}]\n") {}
 
-  shoal::sim_control_reply_t ask(const std::string& command, double value, const std::string& client = "pilot") {
-    shoal::sim_control_request_t request{};
-    request.id = ++id;
-    request.client = client;
-    request.command = command;
-    request.value = value;
-    test.send("sim.control", request);
-    service.handle_requests();
-    return replies.last();
+  shoal::sim_control_reply_t ask(const std::string& command, double value) {
+    return ServedWorld::ask(command, value, "");
   }
   void acknowledge(std::int64_t step, const std::string& client = "pilot") {
     shoal::sim_ack_t ack{};
@@ -32,18 +26,11 @@ struct Service {
   }
   /// Waits for nobody longer than a moment.
   void synchronize() {
-    service.synchronize(0.02, [](std::chrono::milliseconds) {}, [] { return true; });
+    service.synchronize(
+        0.02, [](std::chrono::milliseconds) {}, [] { return true; });
   }
 
-  test::TestWorld test{
-      "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nvehicles: [{name: a, model: {shoal: 1, bodies: [{name: b, "
-      "parts: [{shape: box, mass_kg: 1}]}]}}]\n"};
-  test::Listener<shoal::sim_control_reply_t> replies{test, "sim.control.reply"};
   test::Listener<shoal::sim_tick_t> ticks{test, "sim.tick"};
-  sim::RunControl control;
-  sim::Lockstep lockstep;
-  bridges::SimService service{test.bus, test.bus, test.world, control, lockstep, {"{}", "test"}};
-  std::int32_t id = 0;
 };
 
 TEST(SimService, AnswersEachRequestWithItsNumber) {

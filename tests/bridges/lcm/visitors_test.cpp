@@ -1,14 +1,10 @@
-#include "bridges/lcm/visitors.hpp"
-
 #include <gmock/gmock.h>
 
-#include "bridges/lcm/sim_service.hpp"
 #include "shoal/planar_lidar_t.hpp"
-#include "shoal/sim_control_reply_t.hpp"
 #include "shoal/sim_vehicle_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
-#include "tests/devices/world_fixture.hpp"
+#include "tests/bridges/lcm/service_fixture.hpp"
 
 // Vehicles that clients bring, by way of requests on sim.control.
 
@@ -17,33 +13,21 @@ namespace {
 using testing::HasSubstr;
 
 /// A world with a ground, one box vehicle `a` and a service; vehicle files come from vehicles/.
-struct Host {
+struct Host : lcm_test::ServedWorld {
   explicit Host(const std::string& more = "")
-      : test(
+      : ServedWorld(
             "shoal: 1\nphysics: {step_s: 0.01}\nobjects: [{name: ground, fixed: true, parts: [{shape: plane}]}, {name: "
             "crate, position_m: [9, 9, 1], parts: [{shape: box, mass_kg: 3}]}]\nvehicles: [{name: a, position_m: [-9, "
-            "0, 1], model: {shoal: 1, bodies: [{name: b, parts: [{shape: box, mass_kg: 1}]}]}}]\n" +
+            "0, "
+            "1], model: {shoal: 1, bodies: [{name: b, parts: [{shape: box, mass_kg: 1}]}]}}]\n" +
             more) {}
 
   shoal::sim_control_reply_t ask(const std::string& command, const std::string& text,
                                  const std::string& client = "pilot") {
-    shoal::sim_control_request_t request{};
-    request.id = ++id;
-    request.client = client;
-    request.command = command;
-    request.text = text;
-    test.send("sim.control", request);
-    service.handle_requests();
-    return replies.last();
+    return ServedWorld::ask(command, 0, text, client);
   }
 
-  test::TestWorld test;
-  test::Listener<shoal::sim_control_reply_t> replies{test, "sim.control.reply"};
   test::Listener<shoal::sim_vehicle_t> vehicles{test, "sim.vehicle"};
-  sim::RunControl control;
-  sim::Lockstep lockstep;
-  bridges::SimService service{test.bus, test.bus, test.world, control, lockstep, {"{}", "test"}};
-  std::int32_t id = 0;
 };
 
 TEST(Spawn, AVehicleFromAFileDrivesAndReports) {

@@ -23,7 +23,7 @@ TEST(Allan, OfARampIsTheSlopeTimesTauByRootTwo) {
   std::vector<double> samples;
   for (int i = 0; i < 1000; ++i) samples.push_back(0.3 * i * 0.01);  // 0.3 per second
   const auto points = sim::allan_deviation(samples, 0.01);
-  for (const sim::AllanPoint& point : points)  // IEEE Std 952-1997, C.1.5
+  for (const sim::AllanPoint& point : points)  // IEEE Std 952-1997
     EXPECT_NEAR(point.deviation, 0.3 * point.tau_s / std::sqrt(2.0), 1e-9);
   EXPECT_EQ(points.front().tau_s, 0.01);
   EXPECT_NEAR(points.back().tau_s, 2.5, 0.6);  // a quarter of the record, less up to a step of the ladder
