@@ -42,7 +42,7 @@ TEST(DeviceChange, RefusesKeysThatOnlyConstructionUses) {
 TEST(DeviceChange, OtherKeysOfTheSameDevicesChange) {
   test::TestWorld test(test::rover_world("        - {name: d, type: joint_load, joint: left}\n"));
   EXPECT_EQ(test.change("r1/d", "{frame: world}"), "");
-  EXPECT_EQ(test.change("r1/d", "{force_noise: {std: 1}}"), "");
+  EXPECT_EQ(test.change("r1/d", "{force_noise: {gaussian_std: 1}}"), "");
 }
 
 }  // namespace
