@@ -35,20 +35,19 @@ void AckermannDrive::Params::read(sim::ParamReader& in) {
 AckermannDrive::AckermannDrive(const Params& params, const sim::DeviceContext& context)
     : params_(params),
       vehicle_(context.vehicle),
-      steer_{&joint_with_axis(context, params.left_steer_joint, 0),
-             &joint_with_axis(context, params.right_steer_joint, 0)} {
+      steer_{&wheel_joint(context, params.left_steer_joint), &wheel_joint(context, params.right_steer_joint)} {
   const sim::Vector3d front_V = (joint_config(vehicle_, params.left_steer_joint).anchor_m +
                                  joint_config(vehicle_, params.right_steer_joint).anchor_m) /
                                 2;
   for (const std::string& name : params.drive_joints) {
     const sim::Vector3d p_m = joint_config(vehicle_, name).anchor_m - front_V;
-    wheels_.push_back({WheelMotors(context, {name}), p_m.x() + params.wheelbase_m, p_m.y()});
+    wheels_.push_back({WheelMotors(context, {name}), p_m.x(), p_m.y()});
   }
 }
 
 void AckermannDrive::change(const Params& params) {
   params_ = params;
-  set_steering(target_mps_, target_steering_rad_);
+  clamp_targets();
 }
 
 /// `side`: -1 left, 1 right.
@@ -67,7 +66,7 @@ double AckermannDrive::speed_ratio(const DrivenWheel& wheel) const {
   if (!params_.differential) return 1;
   const double curvature = std::tan(steering_rad_) / params_.wheelbase_m;
   // The velocity of the wheel's place; a front wheel points along it.
-  return std::hypot(1 - curvature * wheel.y_m, curvature * wheel.x_m);
+  return std::hypot(1 - curvature * wheel.y_m, curvature * (wheel.x_m + params_.wheelbase_m));
 }
 
 void AckermannDrive::act(const sim::ActContext& context) {
@@ -104,8 +103,14 @@ void AckermannDrive::hash_state(sim::StateHash& hash) const {
 
 void AckermannDrive::set_steering(double speed_mps, double steering_rad) {
   coasting_ = false;
-  target_mps_ = std::clamp(speed_mps, -params_.max_speed_mps, params_.max_speed_mps);
-  target_steering_rad_ = std::clamp(steering_rad, -params_.max_steering_rad, params_.max_steering_rad);
+  target_mps_ = speed_mps;
+  target_steering_rad_ = steering_rad;
+  clamp_targets();
+}
+
+void AckermannDrive::clamp_targets() {
+  target_mps_ = std::clamp(target_mps_, -params_.max_speed_mps, params_.max_speed_mps);
+  target_steering_rad_ = std::clamp(target_steering_rad_, -params_.max_steering_rad, params_.max_steering_rad);
 }
 
 void AckermannDrive::set_twist(double forward_mps, double turn_radps) {

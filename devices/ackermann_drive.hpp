@@ -17,6 +17,7 @@ class AckermannDrive final : public sim::Actuator {
   static constexpr const char* meaning =
       "Steered front wheels and driven wheels, commanded by speed and steering, by twist, or by thrust and rudder.";
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::coast};
+  static constexpr const char* fixed_keys[] = {"left_steer_joint", "right_steer_joint", "drive_joints"};
   struct Params {
     std::string left_steer_joint;
     std::string right_steer_joint;
@@ -54,8 +55,9 @@ class AckermannDrive final : public sim::Actuator {
  private:
   struct DrivenWheel {
     WheelMotors motors;
-    double x_m, y_m;  ///< from the middle of the rear axle: forward, left
+    double x_m, y_m;  ///< from the middle of the front axle: forward, left
   };
+  void clamp_targets();
   void steer(sim::Joint& joint, double side, double torque_Nm, double step_s);
   /// Ground speed of a wheel that rolls without slip, over that of the middle of the rear axle.
   double speed_ratio(const DrivenWheel& wheel) const;

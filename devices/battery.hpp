@@ -15,6 +15,7 @@ class Battery final : public sim::Sensor {
   static constexpr const char* meaning = "Battery of the vehicle: drained by its devices; empty, they go off.";
   static constexpr double default_rate_hz = 1;
   static constexpr bool always_on = true;
+  static constexpr const char* fixed_keys[] = {"initial_charge"};
   struct Params {
     double capacity_Wh = 100;
     double initial_charge = 1;

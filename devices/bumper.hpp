@@ -12,6 +12,7 @@ class Bumper final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Contacts of parts of the vehicle: where, with whom and how hard.";
   static constexpr double default_rate_hz = 0;
+  static constexpr const char* fixed_keys[] = {"parts"};
   enum class When { changes, always };
   struct Params {
     std::vector<std::string> parts;

@@ -9,6 +9,7 @@ class DifferentialDrive final : public TwoSidedDrive {
  public:
   static constexpr const char* meaning =
       "Two driven wheels, commanded by wheel speeds, by forward speed and turn rate, or by thrust and rudder.";
+  static constexpr const char* fixed_keys[] = {"left_joint", "right_joint"};
   struct Params {
     std::string left_joint;
     std::string right_joint;

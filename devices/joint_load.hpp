@@ -12,6 +12,7 @@ class JointLoad final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Force and torque that go through a joint, about its anchor.";
   static constexpr double default_rate_hz = 100;
+  static constexpr const char* fixed_keys[] = {"joint"};
   struct Params {
     std::string joint;
     std::string frame = "sensor";

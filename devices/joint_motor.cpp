@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "devices/joint_of_device.hpp"
 #include "shoal/joint_command_t.hpp"
 #include "shoal/message_codec.hpp"
 
@@ -16,7 +17,7 @@ void JointMotor::Params::read(sim::ParamReader& in) {
 }
 
 JointMotor::JointMotor(const Params& params, const sim::DeviceContext& context)
-    : params_(params), joint_(context.joint(params.joint)), vehicle_(context.vehicle) {}
+    : params_(params), joint_(joint_with_axis(context, params.joint, 0)), vehicle_(context.vehicle) {}
 
 void JointMotor::act(const sim::ActContext& context) {
   if (vehicle_.systems().metered) joint_.measure_load();
@@ -26,6 +27,11 @@ void JointMotor::act(const sim::ActContext& context) {
 void JointMotor::make_safe(sim::SafeState safe) {
   velocity_ = 0;
   coasting_ = safe == sim::SafeState::coast;
+}
+
+void JointMotor::change(const Params& params) {
+  params_ = params;
+  velocity_ = std::clamp(velocity_, -params_.max_velocity, params_.max_velocity);
 }
 
 void JointMotor::set_velocity(double velocity) {

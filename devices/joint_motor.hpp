@@ -11,6 +11,7 @@ class JointMotor final : public sim::Actuator {
  public:
   static constexpr const char* meaning = "Motor on one hinge or slider, commanded by velocity.";
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::coast};
+  static constexpr const char* fixed_keys[] = {"joint"};
   struct Params {
     std::string joint;
     double max_velocity = 10;  ///< rad/s, or m/s of a slider
@@ -23,7 +24,7 @@ class JointMotor final : public sim::Actuator {
   void act(const sim::ActContext& context) override;
   /// stop: it brakes; coast: it turns freely.
   void make_safe(sim::SafeState safe) override;
-  void change(const Params& params) { params_ = params; }
+  void change(const Params& params);
   double power_W() const override { return params_.power.of_motor(joint_, 0, params_.max_force); }
   void hash_state(sim::StateHash& hash) const override {
     hash.add(velocity_);

@@ -7,6 +7,16 @@
 
 namespace devices {
 
+namespace {
+
+/// Such as: joint 'lift' is a slider.
+std::string what_it_is(const sim::Joint& joint, const std::string& name) {
+  const std::string& type = joint.type();
+  return "joint '" + name + "' is " + (type == "fixed" ? type : (type == "ball" ? "a ball joint" : "a " + type));
+}
+
+}  // namespace
+
 void refuse(const sim::DeviceContext& context, const std::string& text) {
   sim::throw_config_error(context.config.place,
                           "vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'", text);
@@ -15,7 +25,15 @@ void refuse(const sim::DeviceContext& context, const std::string& text) {
 sim::Joint& joint_with_axis(const sim::DeviceContext& context, const std::string& name, int axis) {
   sim::Joint& joint = context.joint(name);
   if (axis >= joint.axes())
-    refuse(context, "joint '" + name + "' is a " + joint.type() + " and has no axis " + std::to_string(axis));
+    refuse(context,
+           what_it_is(joint, name) + " and has no axis" + (joint.axes() > 0 ? " " + std::to_string(axis) : ""));
+  return joint;
+}
+
+sim::Joint& wheel_joint(const sim::DeviceContext& context, const std::string& name) {
+  sim::Joint& joint = context.joint(name);
+  if (joint.type() != "hinge" && joint.type() != "hinge2")
+    refuse(context, what_it_is(joint, name) + "; a wheel must be on a hinge or hinge2");
   return joint;
 }
 

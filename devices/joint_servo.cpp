@@ -8,6 +8,7 @@
 #include "shoal/joint_command_t.hpp"
 #include "shoal/joint_servo_command_t.hpp"
 #include "shoal/message_codec.hpp"
+#include "sim/config/message_text.hpp"
 
 namespace devices {
 
@@ -74,23 +75,26 @@ JointServo::JointServo(const Params& params, const sim::DeviceContext& context)
   const sim::JointAxisConfig& axis = params.axis == 0 ? joint.axis1 : joint.axis2;
   low_stop_ = axis.low_stop;
   high_stop_ = axis.high_stop;
+  using sim::number_text;
+  if (params.low && high_stop_ && *params.low > *high_stop_)
+    refuse(context, "'low' is outside the joint's stops: " + number_text(*params.low) + " is above 'high_stop', " +
+                        number_text(*high_stop_));
+  if (params.high && low_stop_ && *params.high < *low_stop_)
+    refuse(context, "'high' is outside the joint's stops: " + number_text(*params.high) + " is below 'low_stop', " +
+                        number_text(*low_stop_));
   find_range();
   set_point_.position = target_ = joint_.position(params_.axis);
 }
 
 void JointServo::find_range() {
-  low_ = std::max(params_.low.value_or(-unlimited), low_stop_.value_or(-unlimited));
-  high_ = std::max(low_, std::min(params_.high.value_or(unlimited), high_stop_.value_or(unlimited)));
+  const double low_stop = low_stop_.value_or(-unlimited), high_stop = high_stop_.value_or(unlimited);
+  low_ = std::clamp(params_.low.value_or(-unlimited), low_stop, high_stop);
+  high_ = std::clamp(params_.high.value_or(unlimited), low_stop, high_stop);
 }
 
 void JointServo::change(const Params& params) {
-  // The joint is what the servo was built for; a target in a range that shrank is cut.
-  const std::string joint = params_.joint;
-  const int axis = params_.axis;
   params_ = params;
-  params_.joint = joint;
-  params_.axis = axis;
-  find_range();
+  find_range();  // a target in a range that shrank is cut
   if (mode_ == Mode::position) target_ = std::clamp(target_, low_, high_);
 }
 

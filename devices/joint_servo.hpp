@@ -37,6 +37,7 @@ class JointServo final : public sim::Actuator {
   static constexpr const char* meaning = "Servo on one axis of a joint, commanded by position, velocity or effort.";
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::hold, sim::SafeState::coast, sim::SafeState::stop,
                                                    sim::SafeState::park};
+  static constexpr const char* fixed_keys[] = {"joint", "axis"};
   enum class Mode { position, velocity, effort, coast };
   enum class Control { velocity, pid };
   struct Params {

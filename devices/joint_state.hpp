@@ -11,6 +11,7 @@ class JointState final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Positions, velocities and efforts of the vehicle's joints.";
   static constexpr double default_rate_hz = 50;
+  static constexpr const char* fixed_keys[] = {"joints", "effort"};
   struct Params {
     std::vector<std::string> joints;
     bool effort = true;

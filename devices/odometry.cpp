@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "devices/joint_of_device.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/odometry_t.hpp"
 #include "sim/world/world.hpp"
@@ -21,8 +22,8 @@ void Odometry::Params::read(sim::ParamReader& in) {
 
 Odometry::Odometry(const Params& params, const sim::DeviceContext& context)
     : params_(params),
-      left_(context.joint(params.left_joint)),
-      right_(context.joint(params.right_joint)),
+      left_(wheel_joint(context, params.left_joint)),
+      right_(wheel_joint(context, params.right_joint)),
       noise_(context.noise(params.noise, 2, "noise")),
       X_W0_(context.vehicle.X_WV()) {}
 
@@ -41,7 +42,7 @@ void Odometry::measure(const sim::SenseContext& context) {
 }
 
 void Odometry::disturb(double dt_s, sim::Random& random) {
-  const double angles[2] = {left_.position(), right_.position()};
+  const double angles[2] = {left_.position(left_.axes() - 1), right_.position(right_.axes() - 1)};
   double turned[2] = {angles[0] - wheel_rad_[0], angles[1] - wheel_rad_[1]};
   noise_.apply(std::span<double>(turned), dt_s, random);
   const double rad_per_tick = 2 * std::numbers::pi / params_.ticks_per_turn;

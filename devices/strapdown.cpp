@@ -42,20 +42,21 @@ void LowPass::hash_state(sim::StateHash& hash) const {
   hash.add(y_);
 }
 
-Strapdown::Strapdown(const sim::DeviceContext& context)
-    : body_(context.body), gravity_W_mps2_(0, 0, -context.world.config().physics.gravity_mps2) {}
+Strapdown::Strapdown(const sim::DeviceContext& context) : body_(context.body) {}
 
 void Strapdown::measure(const sim::SenseContext& context) {
+  // An event may change it; the sample in whose interval it does takes all of it as new.
+  const sim::Vector3d gravity_W_mps2(0, 0, -context.world.physics().gravity_mps2());
   sim::Quaterniond q_WS(context.X_WS.linear());
   if (started_ && context.dt_s > 0) {
     if (q_WS.dot(q_WS_) < 0) q_WS.coeffs() = -q_WS.coeffs();  // the same rotation, on the side of the last one
     w_WS_S_ = rotation_vector(q_WS_.conjugate() * q_WS) / context.dt_s;
     // The sum of two unit quaternions points to the rotation half-way.
     const sim::Quaterniond q_half(sim::Quaterniond(q_WS_.coeffs() + q_WS.coeffs()).normalized());
-    f_S_ = q_half.conjugate() * sim::Vector3d((context.v_WS_W - v_WS_W_) / context.dt_s - gravity_W_mps2_);
+    f_S_ = q_half.conjugate() * sim::Vector3d((context.v_WS_W - v_WS_W_) / context.dt_s - gravity_W_mps2);
   } else {
     w_WS_S_ = context.X_WS.linear().transpose() * body_.w_WB_W();
-    f_S_ = context.X_WS.linear().transpose() * -gravity_W_mps2_;
+    f_S_ = context.X_WS.linear().transpose() * -gravity_W_mps2;
   }
   q_WS_ = q_WS;
   v_WS_W_ = context.v_WS_W;

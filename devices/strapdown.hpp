@@ -48,7 +48,6 @@ class Strapdown {
 
  private:
   const sim::Body& body_;
-  sim::Vector3d gravity_W_mps2_;
   bool started_ = false;
   sim::Quaterniond q_WS_ = sim::Quaterniond::Identity();  ///< at the last sample
   sim::Vector3d v_WS_W_ = sim::Vector3d::Zero();

@@ -41,6 +41,14 @@ void TwoSidedDrive::hash_state(sim::StateHash& hash) const {
   hash.add(coasting_);
 }
 
+void TwoSidedDrive::change_drive(const Params& params) {
+  params_ = params;
+  const double most = params_.max_speed_mps / params_.wheel_radius_m;
+  const double fastest = std::max(std::abs(left_.target_radps()), std::abs(right_.target_radps()));
+  if (fastest <= most) return;
+  for (WheelMotors* side : {&left_, &right_}) side->set_target(side->target_radps() * most / fastest);
+}
+
 void TwoSidedDrive::set_wheel_speeds(double left_radps, double right_radps) {
   coasting_ = false;
   const double most = params_.max_speed_mps / params_.wheel_radius_m;

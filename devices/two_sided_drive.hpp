@@ -39,7 +39,8 @@ class TwoSidedDrive : public sim::Actuator {
  protected:
   TwoSidedDrive(const Params& params, const sim::DeviceContext& context, const std::vector<std::string>& left_joints,
                 const std::vector<std::string>& right_joints);
-  void change_drive(const Params& params) { params_ = params; }
+  /// A command that is too fast now is slowed, with its curvature.
+  void change_drive(const Params& params);
 
  private:
   Params params_;

@@ -11,6 +11,7 @@ class WheelEncoder final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Ticks of wheels, counted from the turning of their joints.";
   static constexpr double default_rate_hz = 50;
+  static constexpr const char* fixed_keys[] = {"joints", "ticks_per_turn"};
   struct Params {
     std::vector<std::string> joints;
     int ticks_per_turn = 1024;

@@ -9,7 +9,7 @@ namespace devices {
 WheelMotors::WheelMotors(const sim::DeviceContext& context, const std::vector<std::string>& joints)
     : vehicle_(context.vehicle) {
   for (const std::string& name : joints) {
-    sim::Joint& joint = joint_with_axis(context, name, 0);
+    sim::Joint& joint = wheel_joint(context, name);
     wheels_.push_back({&joint, joint.axes() - 1});
   }
 }

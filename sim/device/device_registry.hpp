@@ -49,11 +49,12 @@ struct DeviceType {
   std::string name;
   std::string meaning;  ///< one sentence
   double default_rate_hz = 0;
-  std::string report_message;          ///< such as `shoal.pose_t`; empty: does not report
-  std::string command_messages;        ///< comma separated; empty: takes no commands
-  std::vector<SafeState> safe_states;  ///< of an actuator, the default first; empty: no actuator
-  bool changeable = false;             ///< its own keys can change while it runs
-  bool always_on = false;              ///< works without power and at an emergency stop
+  std::string report_message;           ///< such as `shoal.pose_t`; empty: does not report
+  std::string command_messages;         ///< comma separated; empty: takes no commands
+  std::vector<SafeState> safe_states;   ///< of an actuator, the default first; empty: no actuator
+  bool changeable = false;              ///< its own keys can change while it runs
+  std::vector<std::string> fixed_keys;  ///< of its own keys those that cannot, all the same
+  bool always_on = false;               ///< works without power and at an emergency stop
   std::function<std::shared_ptr<DeviceParams>()> make_params;
   std::function<BuiltDevice(const DeviceParams&, const DeviceContext&)> build;
 
@@ -167,6 +168,8 @@ bool add_device(const char* name) {
   type.changeable = requires(Model & model, const typename Model::Params& changed) {
     model.change(changed);
   };
+  if constexpr (requires { Model::fixed_keys; })
+    type.fixed_keys.assign(std::begin(Model::fixed_keys), std::end(Model::fixed_keys));
   if constexpr (requires { Model::always_on; }) type.always_on = Model::always_on;
   type.make_params = [] { return std::make_shared<ParamsOf<typename Model::Params>>(); };
   type.build = build_device<Model, ReporterType, ControllerType>;

@@ -337,6 +337,10 @@ void PhysicsWorld::set_gravity(double gravity_mps2) {
   dWorldSetGravity(impl_->world.get(), 0, 0, -gravity_mps2);
 }
 
+double PhysicsWorld::gravity_mps2() const {
+  return impl_->gravity_mps2;
+}
+
 void PhysicsWorld::watch_contacts(int group) {
   impl_->group(group);
   impl_->collider.watch(group);

@@ -86,6 +86,7 @@ class PhysicsWorld {
   void add_categories(const std::vector<std::string>& names);
   /// Downwards, from the next step on.
   void set_gravity(double gravity_mps2);
+  double gravity_mps2() const;  ///< now, downwards
 
   /// One step of `config.step_s`: collide, solve, check.  Throws PhysicsFault naming the body.
   void step(std::int64_t step_number);

@@ -27,6 +27,8 @@ std::set<std::string> common_keys(const DeviceType& type) {
 std::string why_not(const DeviceType& type, const std::string& key, const std::set<std::string>& common) {
   for (const char* fixed : {"name", "type", "body", "position_m", "rpy_deg", "channel"})
     if (key == fixed) return "'" + key + "' cannot change while the device runs";
+  for (const std::string& fixed : type.fixed_keys)
+    if (key == fixed) return "'" + key + "' cannot change while the device runs";
   if (type.changeable || common.contains(key)) return {};
   return "'" + shortened(printable(key)) + "' cannot change while a device of type " + type.name + " runs";
 }

@@ -154,6 +154,32 @@ TEST(AckermannDrive, SafeItBrakesOrRollsOn) {
   }
 }
 
+TEST(AckermannDrive, AChangeCutsTheStandingCommandAndLetsItCoast) {
+  test::TestWorld test(car_world(rear + ", max_acceleration_mps2: 1000, watchdog_s: 1, safe: coast"));
+  steer(test, 0.6, 0.4);
+  test.run_for(0.5);
+  ASSERT_EQ(test.change("c1/drive", "{max_speed_mps: 0.3, max_steering_deg: 10, differential: false}"), "");
+  test.run_for(0.4);
+  EXPECT_NEAR(car(test).joint("rl").motor_velocity(), 0.3 / 0.06, 1e-9);
+  const auto& drive = dynamic_cast<const devices::AckermannDrive&>(*car(test).find_device("drive")->actuator());
+  EXPECT_NEAR(drive.steering_rad(), sim::degrees_to_radians(10), 1e-12);
+  test.run_for(0.5);
+  ASSERT_EQ(car(test).joint("rl").motor_max_force(), 0);
+  ASSERT_EQ(test.change("c1/drive", "{max_torque_Nm: 2}"), "");
+  test.run_for(0.1);
+  EXPECT_EQ(car(test).joint("rl").motor_max_force(), 0);
+}
+
+TEST(AckermannDrive, AWheelbaseThatChangesReachesTheWheelsToo) {
+  test::TestWorld test(car_world(", drive_joints: [fl]"));
+  ASSERT_EQ(test.change("c1/drive", "{wheelbase_m: 0.5}"), "");
+  steer(test, 0.6, 0.3);
+  test.run_for(1);
+  // The wheel is 0.5 m before the centre of turn and (0.5 / tan 0.3 - 0.15) m beside it; 10 rad/s in the middle.
+  const double ratio = std::hypot(1 - 0.15 * std::tan(0.3) / 0.5, std::tan(0.3));
+  EXPECT_NEAR(car(test).joint("fl").motor_velocity(1), 10 * ratio, 1e-9);
+}
+
 TEST(AckermannDrive, SaysWhatIsWrongWithItsParameters) {
   const auto error_of = [](const std::string& drive) -> std::string {
     try {

@@ -92,6 +92,31 @@ TEST(DifferentialDrive, IgnoresBadCommandsAndGoesOn) {
   EXPECT_NEAR(test.world.find_vehicle("r1")->joint("left").velocity(), 5, 0.05);
 }
 
+TEST(DifferentialDrive, AChangeSlowsACommandThatIsTooFastNowAndKeepsItsCurvature) {
+  test::TestWorld test(test::rover_world(drive));
+  shoal::wheel_speeds_command_t command{};
+  command.left_radps = 8;
+  command.right_radps = -16;
+  test.send("r1.drive.cmd", command);
+  test.run_for(0.5);
+  ASSERT_EQ(test.change("r1/drive", "{max_speed_mps: 0.4}"), "");
+  test.run_for(0.1);
+  const sim::Vehicle& rover = *test.world.find_vehicle("r1");
+  EXPECT_NEAR(rover.joint("left").motor_velocity(), 2, 1e-12);  // 0.4 / 0.1 is the faster one's
+  EXPECT_NEAR(rover.joint("right").motor_velocity(), -4, 1e-12);
+}
+
+TEST(DifferentialDrive, AChangeDoesNotEndCoasting) {
+  std::string device(drive);
+  device.insert(device.find("track_m"), "watchdog_s: 0.1, safe: coast, ");
+  test::TestWorld test(test::rover_world(device));
+  test.send("r1.drive.cmd", twist(0.5, 0));
+  test.run_for(0.5);
+  ASSERT_EQ(test.change("r1/drive", "{max_speed_mps: 0.1}"), "");
+  test.run_for(0.1);
+  EXPECT_EQ(test.world.find_vehicle("r1")->joint("left").motor_max_force(), 0);
+}
+
 TEST(DifferentialDrive, ActuatorLatencyShiftsTheResponseByExactlyThatTime) {
   const auto speeds = [](const char* latency) {
     std::string device(drive);

@@ -48,6 +48,24 @@ TEST(Imu, FeelsTheGroundAtRestInItsOwnAxes) {
   EXPECT_NEAR(f.norm(), 9.80665, 1e-3);  // at rest, whichever way it leans
 }
 
+TEST(Imu, FeelsTheGravityOfTheMoment) {
+  test::TestWorld test(test::rover_world(imu()));
+  test::Listener<shoal::imu_t> reports(test, "r1.imu");
+  test.run_for(1);
+  test.world.physics().set_gravity(1.62);
+  test.run_for(2);
+  EXPECT_NEAR(accel_of(reports.last()).norm(), 1.62, 1e-3);  // at rest
+}
+
+TEST(Imu, FeelsNothingInFreeFallUnderAnotherGravity) {
+  test::TestWorld test(test::box_world(imu()));
+  test::Listener<shoal::imu_t> reports(test, "r1.imu");
+  test.run_for(0.1);
+  test.world.physics().set_gravity(1.62);
+  test.run_for(0.1);
+  EXPECT_NEAR(accel_of(reports.last()).norm(), 0, 1e-12);
+}
+
 TEST(Imu, TheFirstSampleKnowsGravityOnly) {
   test::TestWorld test(test::box_world(imu()));
   hull(test).set_velocity_W({0, 0, 0}, {0, 0, 3});

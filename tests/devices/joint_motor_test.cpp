@@ -26,6 +26,17 @@ TEST(JointMotor, CutsACommandToItsLimit) {
   EXPECT_EQ(test.world.find_vehicle("r1")->joint("left").motor_velocity(), -3);
 }
 
+TEST(JointMotor, AChangeOfItsLimitCutsTheStandingCommand) {
+  test::TestWorld test(test::rover_world(motor));
+  shoal::joint_command_t command{};
+  command.velocity = 2;
+  test.send("r1.motor.cmd", command);
+  test.run_for(0.1);
+  ASSERT_EQ(test.change("r1/motor", "{max_velocity: 1}"), "");
+  test.run_for(0.1);
+  EXPECT_EQ(test.world.find_vehicle("r1")->joint("left").motor_velocity(), 1);
+}
+
 TEST(JointMotor, NamesAJointThatDoesNotExist) {
   try {
     test::TestWorld test(test::rover_world("        - {name: motor, type: joint_motor, joint: lft}\n"));

@@ -141,6 +141,26 @@ TEST(JointServo, ItsRangeCanShrinkWhileItRuns) {
   EXPECT_NEAR(shoulder(test).position(), 0.2, 1e-4);
 }
 
+TEST(JointServo, ItsRangeMustMeetTheStopsOfItsJoint) {
+  const auto error_of = [](const std::string& keys) {
+    return test::error_of_world(test::arm_world(servo(keys), 9.80665, ", low_stop: -0.4, high_stop: 0.3"));
+  };
+  EXPECT_THAT(error_of(", low: 0.5"), testing::HasSubstr("device 'servo': 'low' is outside the joint's stops: 0.5 is "
+                                                         "above 'high_stop', 0.3"));
+  EXPECT_THAT(error_of(", high: -0.5"), testing::HasSubstr("device 'servo': 'high' is outside the joint's stops: -0.5 "
+                                                           "is below 'low_stop', -0.4"));
+  EXPECT_EQ(error_of(", low: -1, high: 1"), "");
+  EXPECT_EQ(error_of(", low: 0.3"), "");
+}
+
+TEST(JointServo, AChangeOfItsRangeDoesNotReachBeyondTheStops) {
+  test::TestWorld test(test::arm_world(servo(""), 9.80665, ", high_stop: 0.3"));
+  ASSERT_EQ(test.change("a1/servo", "{low: 0.5}"), "");
+  const auto& device = *test.world.find_vehicle("a1")->find_device("servo")->actuator();
+  EXPECT_EQ(dynamic_cast<const devices::JointServo&>(device).low(), 0.3);
+  EXPECT_EQ(dynamic_cast<const devices::JointServo&>(device).high(), 0.3);
+}
+
 TEST(JointServo, TooWeakForTheArmItSinks) {
   // The arm asks for 9.8 N m, the servo has 9 N m of it, and the arm's moment falls below that at 23 degrees.
   test::TestWorld test(test::arm_world(servo(", max_effort: 9")));

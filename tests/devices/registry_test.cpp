@@ -34,6 +34,20 @@ TEST(DeviceRegistry, EveryTypeSaysWhatItIsAndWhatItSpeaks) {
   }
 }
 
+TEST(DeviceRegistry, FixedKeysAreKeysOfTheirType) {
+  int found = 0;
+  for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all()) {
+    std::set<std::string> keys;
+    for (const auto& info : params_of([&](sim::ParamReader& in) { type->make_params()->read(in); }))
+      keys.insert(info.key);
+    for (const std::string& fixed : type->fixed_keys) {
+      EXPECT_TRUE(type->changeable && keys.contains(fixed)) << type->name << ": " << fixed;
+      ++found;
+    }
+  }
+  EXPECT_GT(found, 10);
+}
+
 TEST(DeviceRegistry, RefusesASecondTypeOfTheSameName) {
   sim::DeviceType type;
   type.name = "lidar";

@@ -28,6 +28,13 @@ class LoadedTestWorld {
     const sim::Time end = world.now() + sim::from_seconds(time_s);
     while (world.now() < end) world.step();
   }
+  /// As an event's `set`.  Empty: it was taken; else what is wrong.
+  std::string change(const std::string& device, const std::string& values) {
+    sim::Diagnostics diagnostics;
+    const auto node = sim::parse_config_text(values, "change", diagnostics);
+    if (world.change_device(device, node, diagnostics)) return {};
+    return diagnostics.lines().empty() ? "refused" : diagnostics.lines().front();
+  }
   template <typename Message>
   void send(const std::string& channel, const Message& message) {
     bus.publish(channel, shoal::encode(message), world.now());
@@ -48,6 +55,16 @@ class TestWorld : public LoadedTestWorld {
   explicit TestWorld(const std::string& yaml, const sim::LoadOptions& options = {})
       : LoadedTestWorld(sim::load_world_text(yaml, "worlds/test.yaml", with_messages(options))) {}
 };
+
+/// What is wrong with a world; empty: nothing.
+inline std::string error_of_world(const std::string& yaml) {
+  try {
+    TestWorld test(yaml);
+    return {};
+  } catch (const sim::ConfigError& error) {
+    return error.what();
+  }
+}
 
 /// Everything that is published on a channel, decoded.
 template <typename Message>
