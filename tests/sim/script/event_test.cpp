@@ -307,7 +307,7 @@ TEST(RunAction, DoesInAWorldWithoutEventsWhatAnEventDoes) {
 TEST(RunAction, SaysWhatIsWrongInOneLine) {
   test::TestWorld test(test::rover_world(drive));
   EXPECT_EQ(failure(test.world, "{move: r2, position_m: [0, 0, 0]}"),
-            "request:1:8: action 1: 'move' names no vehicle or object 'r2'; known vehicle or objects: ground, r1");
+            "request:1:8: action 1: 'move' names no vehicle or object 'r2'; known vehicles or objects: ground, r1");
   EXPECT_EQ(failure(test.world, "{fault: r1/drve, kind: dead}"),
             "request:1:1: action 1: there is no device 'r1/drve'; devices are named VEHICLE/DEVICE; vehicle 'r1' has: "
             "drive");
