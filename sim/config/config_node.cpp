@@ -136,6 +136,22 @@ class Substitution {
 
 }  // namespace
 
+ConfigNode scalar_node(const std::string& text, const SourcePlace& place) {
+  ConfigNode node;
+  node.kind = ConfigNode::Kind::scalar;
+  node.scalar = text;
+  node.place = place;
+  return node;
+}
+
+ConfigNode map_node(const std::string& key, const ConfigNode& value) {
+  ConfigNode node;
+  node.kind = ConfigNode::Kind::map;
+  node.place = value.place;
+  node.entries.push_back({key, value.place, value});
+  return node;
+}
+
 const ConfigNode* ConfigNode::find(std::string_view key) const {
   for (const Entry& entry : entries)
     if (entry.key == key) return &entry.value;

@@ -31,6 +31,11 @@ struct ConfigNode::Entry {
   ConfigNode value;
 };
 
+/// A plain scalar, as if it were written at `place`.
+ConfigNode scalar_node(const std::string& text, const SourcePlace& place);
+/// A map of one key, so that a value is read with the rules and messages of a key.
+ConfigNode map_node(const std::string& key, const ConfigNode& value);
+
 /// Parses one YAML document.  Syntax errors, duplicate keys, a second document, documents nested too deeply or
 /// with too many nodes (aliases expanded) go to `diagnostics`; the result is then a null node.
 ConfigNode parse_config_text(const std::string& text, const std::string& file_name, Diagnostics& diagnostics);

@@ -23,10 +23,7 @@ std::string quoted_name(std::string_view name) {
 }
 
 std::string yaml_of(const std::string& text) {
-  ConfigNode node;
-  node.kind = Kind::scalar;
-  node.scalar = text;
-  return to_flow_yaml(node);
+  return to_flow_yaml(scalar_node(text, {}));
 }
 
 template <typename Values, typename ToText>

@@ -42,11 +42,6 @@ void DeviceFaults::clear() {
   update();
 }
 
-void DeviceFaults::clear(FaultKind kind) {
-  std::erase_if(active_, [&](const FaultConfig& fault) { return fault.kind == kind; });
-  update();
-}
-
 const NoiseFault& DeviceFaults::noise_of(const std::string& name) {
   for (const auto& quantity : quantities_)
     if (quantity->name == name) return quantity->fault;

@@ -40,9 +40,7 @@ struct FaultConfig {
 class DeviceFaults {
  public:
   void set(const FaultConfig& fault);
-  /// Every fault, or those of a kind.
   void clear();
-  void clear(FaultKind kind);
 
   /// Where the Noise of a quantity finds what a fault does to it; made at the first call, stays where it is.
   const NoiseFault& noise_of(const std::string& quantity);

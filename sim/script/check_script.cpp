@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "sim/bus/utime_stamp.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
 
@@ -64,15 +65,12 @@ class ActionCheck {
   /// sim/ knows no message types, but one whose first member is `int64_t utime` shows when it is given another one.
   bool begins_with_utime(const Action& action) const {
     ConfigNode stamped = action.values;
-    ConfigNode one;
-    one.kind = ConfigNode::Kind::scalar;
-    one.scalar = "1";
-    stamped.entries.push_back({"utime", action.place, one});
+    stamped.entries.push_back({"utime", action.place, scalar_node("1", action.place)});
     Diagnostics ignored;
     const Bytes with = world_.encode_message(action.message_type, stamped, ignored);
-    if (!ignored.ok() || with.size() != action.payload.size() || with.size() < 16) return false;
+    if (!ignored.ok() || !utime_of(action.payload)) return false;
     Bytes expected = action.payload;
-    expected[15] = std::byte{1};
+    set_utime(expected, 1);
     return with == expected;
   }
 

@@ -57,14 +57,7 @@ class ConditionParser {
   bool faster(Condition& condition) {
     condition = {Condition::Kind::faster, words_[0], "", 0};
     // The number is read with the rules and messages of a key.
-    ConfigNode map;
-    map.kind = ConfigNode::Kind::map;
-    map.place = in_.node()->find(key_)->place;
-    ConfigNode value;
-    value.kind = ConfigNode::Kind::scalar;
-    value.scalar = words_[3];
-    value.place = map.place;
-    map.entries.push_back({"faster than", map.place, value});
+    const ConfigNode map = map_node("faster than", scalar_node(words_[3], in_.node()->find(key_)->place));
     ParamReader number(map, in_.who(), in_.diagnostics());
     number.read("faster than", condition.speed_mps, at_least(0), "");
     return check("vehicle", words_[0], true);

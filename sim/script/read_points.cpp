@@ -6,19 +6,6 @@
 
 namespace sim {
 
-namespace {
-
-/// A map of one key, so that an item of a list is read with the rules and messages of a key.
-ConfigNode map_of(const std::string& key, const ConfigNode& value) {
-  ConfigNode map;
-  map.kind = ConfigNode::Kind::map;
-  map.place = value.place;
-  map.entries.push_back({key, value.place, value});
-  return map;
-}
-
-}  // namespace
-
 void read_points(ParamReader& in, const char* key, std::vector<Vector3d>& value, std::size_t columns,
                  const char* meaning) {
   ParamInfo info;
@@ -34,7 +21,7 @@ void read_points(ParamReader& in, const char* key, std::vector<Vector3d>& value,
   value.clear();
   for (std::size_t i = 0; i < list->items.size(); ++i) {
     const std::string name = std::string(key) + "[" + std::to_string(i + 1) + "]";
-    const ConfigNode item = map_of(name, list->items[i]);
+    const ConfigNode item = map_node(name, list->items[i]);
     ParamReader one(item, in.who(), in.diagnostics());
     std::vector<double> numbers;
     one.read(name.c_str(), numbers, any_place(), "");

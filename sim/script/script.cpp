@@ -18,6 +18,12 @@ constexpr int most_depth = 100;
 Script::EventState::EventState(const EventConfig& config_, std::uint64_t seed)
     : config(config_), random(seed, "event/" + config_.name), jitter(seed, "event/" + config_.name + "#jitter") {}
 
+void Script::EventState::begin_draws(std::int64_t step_number) {
+  if (random_step == step_number) return;
+  random_step = step_number;
+  random.begin_step(step_number);
+}
+
 Script::Script(World& world) : world_(world), zones_(world.config().zones), live_random_(world.seed(), "action") {
   const WorldConfig& config = world.config();
   for (std::size_t i = 0; i < config.zones.size(); ++i)
@@ -109,10 +115,7 @@ void Script::attempt(std::size_t i, int depth) {
   if (event.config.times > 0 && event.fired >= event.config.times) return;
   if (firings_ >= most_firings_per_step) return cut(event, "more than 1000 events fired in a step");
   if (depth > most_depth) return cut(event, "events fire each other more than 100 deep");
-  if (event.random_step != world_.step_number()) {
-    event.random_step = world_.step_number();
-    event.random.begin_step(event.random_step);
-  }
+  event.begin_draws(world_.step_number());
   if (event.config.probability < 1 && event.random.uniform() >= event.config.probability) return;
   ++event.fired;
   if (event.config.delay_s > 0) {
@@ -126,10 +129,7 @@ void Script::attempt(std::size_t i, int depth) {
 void Script::fire(std::size_t i, int depth) {
   EventState& event = events_[i];
   ++firings_;
-  if (event.random_step != world_.step_number()) {
-    event.random_step = world_.step_number();
-    event.random.begin_step(event.random_step);
-  }
+  event.begin_draws(world_.step_number());
   carry_out(event.config.actions, {"event '" + event.config.name + "'", event.random, nullptr, depth});
   for (const int next : event.fired_by_this) attempt(static_cast<std::size_t>(next), depth + 1);
 }
@@ -144,10 +144,7 @@ std::vector<Action> Script::parse_now(const ConfigNode& action, Diagnostics& dia
   list.kind = ConfigNode::Kind::list;
   list.place = action.place;
   list.items = {action};
-  ConfigNode map;
-  map.kind = ConfigNode::Kind::map;
-  map.place = action.place;
-  map.entries.push_back({"do", action.place, action.kind == ConfigNode::Kind::list ? action : list});
+  const ConfigNode map = map_node("do", action.kind == ConfigNode::Kind::list ? action : list);
   ParamReader in(map, "", diagnostics);
   const WorldConfig& config = world_.config();
   std::set<std::string> objects, movable;
@@ -160,11 +157,7 @@ std::vector<Action> Script::parse_now(const ConfigNode& action, Diagnostics& dia
   for (const std::string& name : movable) in.declare(movable_kind, name);
   for (const ActorConfig& actor : config.actors) in.declare("actor", actor.name);
   for (const EventConfig& event : config.events) in.declare("event", event.name);
-  std::set<std::string> materials{"default"}, categories{"solid"};
-  for (const MaterialConfig& material : config.materials) materials.insert(material.name);
-  categories.insert(config.categories.begin(), config.categories.end());
-  for (const std::string& name : materials) in.declare("material", name);
-  for (const std::string& name : categories) in.declare("category", name);
+  declare_surfaces(in, config);
   std::vector<Action> actions;
   in.read_list("do", actions, "action", "");
   return actions;

@@ -42,6 +42,8 @@ class Script {
  private:
   struct EventState {
     explicit EventState(const EventConfig& config, std::uint64_t seed);
+    /// Once in a step.
+    void begin_draws(std::int64_t step_number);
     const EventConfig& config;
     Random random;  ///< of its choices; begun anew in each step
     Random jitter;  ///< of its times; one draw for each planned firing

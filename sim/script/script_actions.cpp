@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "sim/bus/utime_stamp.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/script/script.hpp"
 #include "sim/world/world.hpp"
@@ -142,10 +143,7 @@ void Script::log(const std::string& who, const std::string& text) {
 
 void Script::publish(const Action& action) {
   Bytes payload = action.payload;
-  if (action.stamp_utime) {
-    const std::int64_t utime = world_.epoch_us() + world_.now().count();
-    for (std::size_t i = 0; i < 8; ++i) payload[8 + i] = static_cast<std::byte>(utime >> (56 - 8 * i) & 0xff);
-  }
+  if (action.stamp_utime) set_utime(payload, world_.epoch_us() + world_.now().count());
   world_.publish(action.channel, payload);
 }
 

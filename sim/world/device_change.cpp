@@ -35,18 +35,8 @@ std::string why_not(const DeviceType& type, const std::string& key, const std::s
 
 /// What a device may name: see VehicleConfig::read.
 void declare_names(ParamReader& in, const VehicleConfig& vehicle, const WorldConfig& world) {
-  std::set<std::string> materials{"default"}, categories{"solid"};
-  for (const auto* list : {&world.materials, &vehicle.materials})
-    for (const MaterialConfig& material : *list) materials.insert(material.name);
-  for (const auto* list : {&world.categories, &vehicle.categories}) categories.insert(list->begin(), list->end());
-  for (const std::string& name : materials) in.declare("material", name);
-  for (const std::string& name : categories) in.declare("category", name);
-  for (const BodyConfig& body : vehicle.bodies) {
-    in.declare("body", body.name);
-    for (const PartConfig& part : body.parts)
-      if (!part.name.empty()) in.declare("part", body.name + "/" + part.name);
-  }
-  in.declare("body", "world");
+  declare_surfaces(in, world, &vehicle);
+  vehicle.declare_bodies(in);
   for (const JointConfig& joint : vehicle.joints) in.declare("joint", joint.name);
   for (const DeviceConfig& device : vehicle.devices) in.declare("device", device.name);
 }

@@ -17,14 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ConfigNode scalar_node(const std::string& text, const SourcePlace& place) {
-  ConfigNode node;
-  node.kind = ConfigNode::Kind::scalar;
-  node.scalar = text;
-  node.place = place;
-  return node;
-}
-
 /// Materials, contacts and categories that vehicles bring.  The world's own contacts come after, so that they win.
 void gather_from_vehicles(WorldConfig& world) {
   std::vector<MaterialConfig> materials;
@@ -59,10 +51,8 @@ void check_channels(const WorldConfig& world, Diagnostics& diagnostics) {
       // Of two devices of one name, which the reader has reported, all channels would clash.
       if (device.device_type == nullptr || !seen.insert(vehicle.name + "/" + device.name).second) continue;
       const std::string who = "vehicle '" + vehicle.name + "': device '" + device.name + "'";
-      const std::string report = device.channel.empty() ? channel_name(world.channels.report, vehicle.name, device.name)
-                                                        : channel_name(device.channel, vehicle.name, device.name);
-      for (const std::string& channel : {report, channel_name(world.channels.command, vehicle.name, device.name),
-                                         channel_name(world.channels.truth, vehicle.name, device.name)}) {
+      for (const ChannelKind kind : all_channel_kinds) {
+        const std::string channel = device_channel(world.channels, vehicle.name, device, kind);
         const std::string error = channel_error(channel, taken.contains(channel));
         if (!error.empty()) diagnostics.error(device.place, who, error);
         taken.insert(channel);

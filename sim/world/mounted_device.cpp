@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/bus/utime_stamp.hpp"
 #include "sim/world/vehicle.hpp"
 #include "sim/world/world.hpp"
 
@@ -54,9 +55,9 @@ MountedDevice::MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig&
       body_(config.body.empty() ? vehicle.base() : vehicle.body(config.body)),
       number_(number),
       full_name_(vehicle.name() + "/" + config.name),
-      report_channel_(world.channel_of(vehicle.name(), config, ChannelKind::report)),
-      truth_channel_(world.channel_of(vehicle.name(), config, ChannelKind::truth)),
-      command_channel_(world.channel_of(vehicle.name(), config, ChannelKind::command)),
+      report_channel_(device_channel(world.config().channels, vehicle.name(), config, ChannelKind::report)),
+      truth_channel_(device_channel(world.config().channels, vehicle.name(), config, ChannelKind::truth)),
+      command_channel_(device_channel(world.config().channels, vehicle.name(), config, ChannelKind::command)),
       X_BS_(config_.X_BS()),
       built_(type_.build(*config_.params, {world, vehicle, config_,
                                            config.body.empty() ? vehicle.body(vehicle.config().bodies.front().name)
@@ -198,17 +199,13 @@ void MountedDevice::report(Time now) {
     report_outlet_->copy_to(nullptr);
     return;
   }
-  // Only the time stamp goes on: messages begin with their fingerprint and `utime`, big-endian.
+  // Only the time stamp goes on.
+  const std::int64_t utime = host_.epoch_us + now.count();
   for (Bytes& payload : *frozen_) {
-    std::int64_t utime = 0;
-    for (std::size_t i = 8; i < std::min<std::size_t>(16, payload.size()); ++i)
-      utime = utime << 8 | std::to_integer<std::int64_t>(payload[i]);
-    const std::int64_t stamp = host_.epoch_us + now.count();
-    if (payload.size() >= 16 && utime == frozen_utime_)
-      for (std::size_t i = 0; i < 8; ++i) payload[8 + i] = static_cast<std::byte>(stamp >> (56 - 8 * i) & 0xff);
+    if (utime_of(payload) == frozen_utime_) set_utime(payload, utime);
     report_outlet_->publish(payload);
   }
-  frozen_utime_ = host_.epoch_us + now.count();
+  frozen_utime_ = utime;
 }
 
 void MountedDevice::handle(const Event& event) {
@@ -236,24 +233,9 @@ void MountedDevice::clear_faults() {
   frozen_.reset();
 }
 
-void MountedDevice::clear_faults(FaultKind kind) {
-  faults_.clear(kind);
-  if (!faults_.stuck()) frozen_.reset();
-}
-
 void MountedDevice::change(const DeviceConfig& changed, Time now) {
   const bool other_rate = changed.rate_hz != config_.rate_hz || changed.phase_s != config_.phase_s;
-  config_.rate_hz = changed.rate_hz;
-  config_.phase_s = changed.phase_s;
-  config_.latency_s = changed.latency_s;
-  config_.jitter_s = changed.jitter_s;
-  config_.dropout = changed.dropout;
-  config_.power_W = changed.power_W;
-  config_.watchdog_s = changed.watchdog_s;
-  config_.safe = changed.safe;
-  config_.truth = changed.truth;
-  config_.params = changed.params;
-  config_.source = changed.source;  // the next change starts from here
+  config_ = changed;  // what must stay as it is, changed_device() refuses to change
   if (built_.change) built_.change(*changed.params);
   if (!other_rate) return;
   // The new rate counts from time 0 as the old one did; the next sample is the first one after now.

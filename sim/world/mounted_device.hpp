@@ -50,7 +50,6 @@ class MountedDevice {
   /// From now on; a fault of the same kind (and quantity) is replaced.
   void set_fault(const FaultConfig& fault);
   void clear_faults();
-  void clear_faults(FaultKind kind);
   const DeviceFaults& faults() const { return faults_; }
   /// Takes the values of `changed` that may change while it runs: rate, latency, jitter, dropout, power, watchdog, and
   /// the type's own keys when the type allows it (see can_change).  Name, mounting and channels stay.

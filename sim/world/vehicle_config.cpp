@@ -19,16 +19,20 @@ void VehicleConfig::read(ParamReader& in) {
   in.require("bodies");
   in.read_list("bodies", bodies, "body", "parts that move as one; the first carries the vehicle frame");
   if (in.has("bodies") && bodies.empty()) in.error("bodies", "'bodies' must have at least one body");
+  declare_bodies(in);
+  in.read_list("joints", joints, "joint", "what ties bodies together");
+  for (const JointConfig& joint : joints) in.declare("joint", joint.name);
+  in.read_list("devices", devices, "device", "sensors and actuators; keys by type, see docs/devices.md");
+  for (const DeviceConfig& device : devices) in.declare("device", device.name);
+}
+
+void VehicleConfig::declare_bodies(ParamReader& in) const {
   for (const BodyConfig& body : bodies) {
     in.declare("body", body.name);
     for (const PartConfig& part : body.parts)
       if (!part.name.empty()) in.declare("part", body.name + "/" + part.name);
   }
-  in.declare("body", "world");
-  in.read_list("joints", joints, "joint", "what ties bodies together");
-  for (const JointConfig& joint : joints) in.declare("joint", joint.name);
-  in.read_list("devices", devices, "device", "sensors and actuators; keys by type, see docs/devices.md");
-  for (const DeviceConfig& device : devices) in.declare("device", device.name);
+  in.declare("body", "world");  // for joints
 }
 
 }  // namespace sim

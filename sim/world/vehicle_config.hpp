@@ -24,6 +24,8 @@ struct VehicleConfig {
   std::vector<DeviceConfig> devices;
 
   void read(ParamReader& in);
+  /// Makes its bodies and parts known to what names them.
+  void declare_bodies(ParamReader& in) const;
 };
 
 }  // namespace sim

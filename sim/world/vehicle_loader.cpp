@@ -32,14 +32,6 @@ bool mentions(const ConfigNode& node, std::string_view text) {
                      [&](const ConfigNode::Entry& entry) { return mentions(entry.value, text); });
 }
 
-ConfigNode scalar_node(const std::string& text, const SourcePlace& place) {
-  ConfigNode node;
-  node.kind = ConfigNode::Kind::scalar;
-  node.scalar = text;
-  node.place = place;
-  return node;
-}
-
 }  // namespace
 
 std::vector<VehicleInstance> VehicleLoader::load(const VehicleEntry& entry) {

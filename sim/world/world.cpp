@@ -100,8 +100,8 @@ void World::add_device(Vehicle& vehicle, const DeviceConfig& config) {
   auto device = std::make_unique<MountedDevice>(*this, vehicle, config, host_, number);
   free_numbers_.pop_back();
   vehicle.add_device(*device);
-  for (const ChannelKind kind : {ChannelKind::report, ChannelKind::command, ChannelKind::truth})
-    channels_.emplace(channel_of(vehicle.name(), config, kind), &vehicle.bus());
+  for (const ChannelKind kind : all_channel_kinds)
+    channels_.emplace(device_channel(config_.channels, vehicle.name(), config, kind), &vehicle.bus());
   devices_[static_cast<std::size_t>(number)] = std::move(device);
 }
 
@@ -151,13 +151,6 @@ MountedDevice* World::find_device(const std::string& full_name) const {
 const WorldObject* World::find_object(const std::string& name) const {
   const auto found = objects_.find(name);
   return found == objects_.end() ? nullptr : &found->second;
-}
-
-std::string World::channel_of(const std::string& vehicle, const DeviceConfig& device, ChannelKind kind) const {
-  const ChannelConfig& channels = config_.channels;
-  if (kind == ChannelKind::command) return channel_name(channels.command, vehicle, device.name);
-  if (kind == ChannelKind::truth) return channel_name(channels.truth, vehicle, device.name);
-  return channel_name(device.channel.empty() ? channels.report : device.channel, vehicle, device.name);
 }
 
 Bus& World::bus_of(const std::string& name) {

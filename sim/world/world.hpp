@@ -34,8 +34,6 @@ struct WorldCounts {
 class Script;
 struct ZoneRecord;
 
-enum class ChannelKind { report, command, truth };
-
 /// A thing without devices, as built.
 struct WorldObject {
   std::int64_t number = 0;  ///< grows from object to object, and is not used again
@@ -138,8 +136,6 @@ class World {
   Bus& bus() { return bus_; }
   /// Where a channel is spoken: the bus of the vehicle whose device has it, else the world's.
   Bus& bus_of_channel(const std::string& channel);
-  /// The channel of a device by the world's templates.
-  std::string channel_of(const std::string& vehicle, const DeviceConfig& device, ChannelKind kind) const;
 
   const Zones& zones() const;
   /// By vehicle, when the world has zones with a speed limit or a finish.

@@ -64,8 +64,8 @@ void World::check_new_vehicle(const VehicleInstance& instance) const {
   check_limit("parts in a vehicle", parts, limits.parts, instance.place, who);
   std::set<std::string, std::less<>> own;
   for (const DeviceConfig& device : config.devices)
-    for (const ChannelKind kind : {ChannelKind::report, ChannelKind::command, ChannelKind::truth}) {
-      const std::string channel = channel_of(instance.name, device, kind);
+    for (const ChannelKind kind : all_channel_kinds) {
+      const std::string channel = device_channel(config_.channels, instance.name, device, kind);
       const std::string error = channel_error(channel, channels_.contains(channel) || !own.insert(channel).second);
       if (!error.empty()) throw_config_error(device.place, who + ": device " + quoted(device.name), error);
     }
@@ -143,8 +143,8 @@ void World::take_apart(Vehicle& vehicle) {
 
 void World::remove_device(MountedDevice& device) {
   events_.forget_device(device.number());
-  for (const ChannelKind kind : {ChannelKind::report, ChannelKind::command, ChannelKind::truth})
-    channels_.erase(channel_of(device.vehicle().name(), device.config(), kind));
+  for (const ChannelKind kind : all_channel_kinds)
+    channels_.erase(device_channel(config_.channels, device.vehicle().name(), device.config(), kind));
   const int number = device.number();
   free_numbers_.push_back(number);
   devices_[static_cast<std::size_t>(number)].reset();

@@ -240,6 +240,25 @@ void WorldConfig::read(ParamReader& in) {
   in.read_list("pass", pass, "rule", "the run passes when every rule holds; else exit code 1");
 }
 
+void declare_surfaces(ParamReader& in, const WorldConfig& world, const VehicleConfig* vehicle) {
+  std::set<std::string> materials{"default"}, categories{"solid"};
+  const auto gather = [&](const auto& from) {
+    for (const MaterialConfig& material : from.materials) materials.insert(material.name);
+    categories.insert(from.categories.begin(), from.categories.end());
+  };
+  gather(world);
+  if (vehicle != nullptr) gather(*vehicle);
+  for (const std::string& name : materials) in.declare("material", name);
+  for (const std::string& name : categories) in.declare("category", name);
+}
+
+std::string device_channel(const ChannelConfig& channels, const std::string& vehicle, const DeviceConfig& device,
+                           ChannelKind kind) {
+  if (kind == ChannelKind::command) return channel_name(channels.command, vehicle, device.name);
+  if (kind == ChannelKind::truth) return channel_name(channels.truth, vehicle, device.name);
+  return channel_name(device.channel.empty() ? channels.report : device.channel, vehicle, device.name);
+}
+
 std::string channel_error(const std::string& channel, bool taken) {
   if (channel.empty() || channel.size() > Bus::max_channel_length)
     return "a channel must have 1 to 63 characters, got " + std::to_string(channel.size()) + ": '" + channel + "'";

@@ -165,6 +165,15 @@ struct WorldConfig {
   void read(ParamReader& in);
 };
 
+/// Makes the materials and categories known that parts may name: the world's, and those a vehicle brings (or null).
+void declare_surfaces(ParamReader& in, const WorldConfig& world, const VehicleConfig* vehicle = nullptr);
+
+enum class ChannelKind { report, command, truth };
+inline constexpr ChannelKind all_channel_kinds[] = {ChannelKind::report, ChannelKind::command, ChannelKind::truth};
+/// The channel of a device by the world's templates.
+std::string device_channel(const ChannelConfig& channels, const std::string& vehicle, const DeviceConfig& device,
+                           ChannelKind kind);
+
 /// What is wrong with a channel of a device; empty: nothing.  `taken`: another device has it.
 std::string channel_error(const std::string& channel, bool taken);
 

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/physics/collider.hpp"
+#include "sim/physics/free_numbers.hpp"
+#include "sim/physics/islands.hpp"
+#include "sim/physics/ode_library.hpp"
+#include "sim/physics/part_shape.hpp"
+#include "sim/physics/physics_world.hpp"
+#include "sim/scene/ode_scene.hpp"
+
+namespace sim {
+
+// Members are destroyed from the last to the first: joints and bodies before their world.
+struct PhysicsWorld::Impl {
+  /// What belongs to a group, by number.
+  struct Group {
+    std::string name;
+    bool in_use = false;
+    std::vector<int> bodies, parts, joints;
+  };
+
+  Impl(const PhysicsConfig& config_, ContactTable table, std::uint64_t seed_)
+      : config(config_), seed(seed_), collider(config_, std::move(table)) {}
+
+  PhysicsConfig config;
+  std::uint64_t seed;
+  std::vector<std::string> categories = {"solid"};
+  MeshCache meshes;
+  // ODE's default threading is shared by all worlds of the process; two worlds in two threads then abort.
+  ThreadingHandle threading{dThreadingAllocateSelfThreadedImplementation()};
+  WorldHandle world{dWorldCreate()};
+  JointGroupHandle contacts{dJointGroupCreate(0)};
+  Collider collider;
+  Islands islands;
+  std::vector<Group> groups;
+  std::vector<PartInfo> parts;
+  std::vector<std::unique_ptr<Body>> bodies;
+  std::vector<std::unique_ptr<Joint>> joints;
+  FreeNumbers group_numbers, part_numbers, body_numbers, joint_numbers;
+  // What a step goes through, in order of groups.
+  std::vector<Body*> moving;                             // free and kinematic
+  std::vector<std::pair<int, Joint*>> joints_with_axes;  // with their groups
+  std::vector<Body*> kinematic;
+  std::vector<Joint*> measured_joints;
+  std::vector<ContactReport> contact_reports;
+  double gravity_mps2 = config.gravity_mps2;
+  SceneMoves moves;
+  std::unique_ptr<OdeScene> scene;
+  StepCounts counts;
+  std::int64_t quick_steps = 0;
+  bool broken = false;  ///< ODE threw in mid-step
+
+  std::uint32_t category_bit(const std::string& name) const;
+  std::uint32_t category_bits(const std::vector<std::string>& names) const;
+  Group& group(int number);
+  void attach_ode_body(Body& body);
+  void add_parts(Body& body, const BodyConfig& config);
+  void add_part(Body& body, const BodyConfig& config, std::size_t index, GeomHandle geom);
+  void forget_in_lists(int group_number);
+  void set_mass(Body& body, const BodyConfig& config, const dMass& total);
+  void collide();
+  void solve(std::int64_t step_number);
+  void finish(std::int64_t step_number);
+  bool out_of_bounds(const Body& body) const;
+  [[noreturn]] void fault(const Body& body, std::int64_t step_number) const;
+};
+
+}  // namespace sim
