@@ -32,7 +32,7 @@ void Lidar::change(const Params& params) {
   params_ = params;
   noise_.change(params.noise);
   ranges_m_.assign(static_cast<std::size_t>(params.beams), params.range_max_m);
-  hit_.assign(ranges_m_.size(), false);
+  hits_.assign(ranges_m_.size(), {});
   fan_.count = params.beams;
   fan_.range_max_m = params.range_max_m;
   fan_.first_angle_rad = params.beams == 1 ? 0.0 : -0.5 * params.fov_rad;
@@ -47,10 +47,9 @@ void Lidar::change(const Params& params) {
 
 void Lidar::measure(const sim::SenseContext& context) {
   fan_.X_WS = context.X_WS;
-  context.world.scene().cast_fan(fan_, filter_, ranges_m_);
+  context.world.scene().cast_fan(fan_, filter_, hits_);
   for (std::size_t i = 0; i < ranges_m_.size(); ++i) {
-    hit_[i] = ranges_m_[i] <= params_.range_max_m;
-    ranges_m_[i] = std::clamp(ranges_m_[i], params_.range_min_m, params_.range_max_m);
+    ranges_m_[i] = std::clamp(hits_[i].range_m, params_.range_min_m, params_.range_max_m);
   }
 }
 
@@ -58,7 +57,8 @@ void Lidar::disturb(double dt_s, sim::Random& random) {
   noise_.apply(std::span<double>(ranges_m_), dt_s, random);
   for (std::size_t i = 0; i < ranges_m_.size(); ++i) {
     if (params_.resolution_m > 0) ranges_m_[i] = std::round(ranges_m_[i] / params_.resolution_m) * params_.resolution_m;
-    ranges_m_[i] = hit_[i] ? std::clamp(ranges_m_[i], params_.range_min_m, params_.range_max_m) : params_.range_max_m;
+    ranges_m_[i] =
+        hits_[i].hit() ? std::clamp(ranges_m_[i], params_.range_min_m, params_.range_max_m) : params_.range_max_m;
   }
 }
 

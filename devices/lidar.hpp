@@ -15,6 +15,7 @@ class Lidar final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Planar laser scanner: ranges over a fan of beams.";
   static constexpr double default_rate_hz = 10;
+  static constexpr bool casts_rays = true;
   struct Params {
     int beams = 180;
     double fov_rad = std::numbers::pi;
@@ -46,7 +47,7 @@ class Lidar final : public sim::Sensor {
   sim::RayFilter filter_;
   sim::Noise noise_;
   std::vector<double> ranges_m_;
-  std::vector<bool> hit_;
+  std::vector<sim::RayHit> hits_;
 };
 
 /// Publishes shoal.planar_lidar_t, equal on the wire to bot_core's.

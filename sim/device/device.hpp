@@ -26,12 +26,30 @@ struct SenseContext {
   Vector3d v_WS_W;  ///< velocity of its origin
 };
 
+/// A step that a sensor looks into all the while, as a laser that turns does.
+struct SweepContext {
+  const World& world;
+  const Vehicle& vehicle;
+  Time from, now;        ///< the step that just ended
+  Pose X_WS_from, X_WS;  ///< the sensor frame at both ends
+  Time next_sample;      ///< when measure() is called next; now or later
+
+  /// Between the ends of the step.
+  Pose X_WS_at(Time at) const;
+};
+
 /// The model of a sensor: reads physics, knows no message.
+///
+/// A model whose measure(), disturb() and sweep() touch nothing but itself and the scene says `static constexpr bool
+/// casts_rays = true`: those are then called from several threads, for different devices at once, and so is its
+/// reporter.  A model that has sweep() says `static constexpr bool sweeps = true`.
 class Sensor {
  public:
   virtual ~Sensor() = default;
   /// Measures without error: the truth becomes the reading.  Called at every sample.
   virtual void measure(const SenseContext& context) = 0;
+  /// Called after each step, before measure() when that is due; the world stands as it does at the end of the step.
+  virtual void sweep(const SweepContext& /*context*/) {}
   /// Turns the truth into a measurement, in place: noise, quantisation.  Called once after every measure().
   virtual void disturb(double dt_s, Random& random) = 0;
   /// Something sent to this device at a simulated time arrives, see World::schedule_arrival.

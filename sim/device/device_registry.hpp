@@ -55,6 +55,8 @@ struct DeviceType {
   bool changeable = false;              ///< its own keys can change while it runs
   std::vector<std::string> fixed_keys;  ///< of its own keys those that cannot, all the same
   bool always_on = false;               ///< works without power and at an emergency stop
+  bool casts_rays = false;              ///< see Sensor
+  bool sweeps = false;                  ///< see Sensor
   std::function<std::shared_ptr<DeviceParams>()> make_params;
   std::function<BuiltDevice(const DeviceParams&, const DeviceContext&)> build;
 
@@ -171,6 +173,8 @@ bool add_device(const char* name) {
   if constexpr (requires { Model::fixed_keys; })
     type.fixed_keys.assign(std::begin(Model::fixed_keys), std::end(Model::fixed_keys));
   if constexpr (requires { Model::always_on; }) type.always_on = Model::always_on;
+  if constexpr (requires { Model::casts_rays; }) type.casts_rays = Model::casts_rays;
+  if constexpr (requires { Model::sweeps; }) type.sweeps = Model::sweeps;
   type.make_params = [] { return std::make_shared<ParamsOf<typename Model::Params>>(); };
   type.build = build_device<Model, ReporterType, ControllerType>;
   DeviceRegistry::instance().add(std::move(type));

@@ -48,29 +48,34 @@ bool names(const std::string& pattern, const std::string& material) {
 }  // namespace
 
 ContactTable::ContactTable(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts)
-    : names_{"default"}, contacts_(contacts) {
-  add_names(materials);
+    : contacts_(contacts) {
+  materials_.emplace_back().name = "default";
+  add_materials(materials);
   work_out_surfaces();
 }
 
 void ContactTable::add(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts) {
-  add_names(materials);
+  add_materials(materials);
   const std::size_t known = contacts_.size();
   for (const ContactConfig& contact : contacts)
     if (std::find(contacts_.begin(), contacts_.end(), contact) == contacts_.end())
       contacts_.insert(contacts_.begin() + static_cast<std::ptrdiff_t>(added_++), contact);
   // The second vehicle of a kind brings nothing new.
-  if (contacts_.size() > known || static_cast<int>(names_.size()) > count_) work_out_surfaces();
+  if (contacts_.size() > known || static_cast<int>(materials_.size()) > count_) work_out_surfaces();
 }
 
-void ContactTable::add_names(const std::vector<MaterialConfig>& materials) {
+void ContactTable::add_materials(const std::vector<MaterialConfig>& materials) {
   for (const MaterialConfig& material : materials)
-    if (std::find(names_.begin(), names_.end(), material.name) == names_.end()) names_.push_back(material.name);
+    if (find(material.name) == materials_.end()) materials_.push_back(material);
+}
+
+std::vector<MaterialConfig>::const_iterator ContactTable::find(const std::string& material) const {
+  return std::find_if(materials_.begin(), materials_.end(), [&](const auto& each) { return each.name == material; });
 }
 
 void ContactTable::work_out_surfaces() {
-  count_ = static_cast<int>(names_.size());
-  surfaces_.assign(names_.size() * names_.size(), make_surface(ContactConfig{}));
+  count_ = static_cast<int>(materials_.size());
+  surfaces_.assign(materials_.size() * materials_.size(), make_surface(ContactConfig{}));
   // An entry that names both materials wins over one that says `any`; among equals the last one wins.
   std::vector<ContactConfig> by_weight = contacts_;
   std::stable_sort(by_weight.begin(), by_weight.end(), [](const ContactConfig& a, const ContactConfig& b) {
@@ -82,14 +87,14 @@ void ContactTable::work_out_surfaces() {
   for (const ContactConfig& contact : by_weight)
     for (int i = 0; i < count_; ++i)
       for (int j = 0; j < count_; ++j)
-        if (names(contact.between[0], names_[i]) && names(contact.between[1], names_[j]))
+        if (names(contact.between[0], materials_[i].name) && names(contact.between[1], materials_[j].name))
           surfaces_[i * count_ + j] = surfaces_[j * count_ + i] = make_surface(contact);
 }
 
 int ContactTable::number_of(const std::string& material) const {
-  const auto at = std::find(names_.begin(), names_.end(), material);
-  if (at == names_.end()) throw std::out_of_range("unknown material '" + material + "'");
-  return static_cast<int>(at - names_.begin());
+  const auto at = find(material);
+  if (at == materials_.end()) throw std::out_of_range("unknown material '" + material + "'");
+  return static_cast<int>(at - materials_.begin());
 }
 
 }  // namespace sim

@@ -23,14 +23,17 @@ class ContactTable {
   /// More of them.  Numbers of known materials stay; the contacts given at construction win over later ones.
   void add(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts);
   const Surface& of(int first, int second) const { return surfaces_[first * count_ + second]; }
+  /// By number; 0 is `default`.
+  const MaterialConfig& material(int number) const { return materials_[static_cast<std::size_t>(number)]; }
   /// Number of a material; `default` is always there.  Throws std::out_of_range.
   int number_of(const std::string& material) const;
 
  private:
-  void add_names(const std::vector<MaterialConfig>& materials);
+  void add_materials(const std::vector<MaterialConfig>& materials);
+  std::vector<MaterialConfig>::const_iterator find(const std::string& material) const;
   void work_out_surfaces();
 
-  std::vector<std::string> names_;
+  std::vector<MaterialConfig> materials_;
   std::vector<ContactConfig> contacts_;  // in the order of their weight: the added ones, then those of construction
   std::size_t added_ = 0;                // how many of them were added
   int count_ = 0;

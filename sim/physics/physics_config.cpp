@@ -28,14 +28,10 @@ void PhysicsConfig::read(ParamReader& in) {
           "depth to which parts at rest sink in, which keeps contacts from flickering");
   in.read("max_contacts_per_pair", max_contacts_per_pair, between(1, 256), "contact points of two parts");
   in.read_choice("space", space, {"sap", "quadtree", "hash", "simple"}, "how parts near each other are found");
+  in.read_choice("rays", rays, {"embree", "ode"},
+                 "how rays find parts: embree is fast; ode, one ray at a time, is there to compare");
   in.read("max_speed_mps", max_speed_mps, above(0), "a body faster than this stops the run");
   in.read("max_distance_m", max_distance_m, above(0), "a body farther from the origin than this stops the run");
-}
-
-void MaterialConfig::read(ParamReader& in) {
-  in.require("name");
-  in.read("name", name, "name of the material");
-  if (name == "any") in.error("name", "'any' stands for every material and cannot be a name");
 }
 
 void ContactConfig::read(ParamReader& in) {
@@ -57,11 +53,6 @@ void ContactConfig::read(ParamReader& in) {
 }
 
 namespace {
-
-bool is_color(const std::string& text) {
-  return text.size() == 7 && text[0] == '#' &&
-         std::all_of(text.begin() + 1, text.end(), [](unsigned char c) { return std::isxdigit(c) != 0; });
-}
 
 /// A key of another shape is a mistake: it would do nothing.
 void check_keys_of_shape(ParamReader& in, const std::string& shape) {
@@ -100,12 +91,12 @@ void PartConfig::read(ParamReader& in) {
   in.read_reference("category", category, "category", "what others see in the part: whether it collides, stops rays");
   in.read_references("collides_with", collides_with, "category",
                      "categories it collides with, if they want to as well; none: all");
-  in.read("color", color, "color in viewers, #rrggbb");
+  in.read("color", color, "color in pictures and viewers, #rrggbb; none: the material's");
   if (in.describing()) return;
   check_keys_of_shape(in, shape);
   if (mass_kg && density_kgpm3) in.error("density_kgpm3", "give 'mass_kg' or 'density_kgpm3', not both");
   if (shape == "mesh" && mesh.empty()) in.error("a part of shape mesh needs the key 'mesh'");
-  if (!color.empty() && !is_color(color)) in.error("color", "'color' must look like #rrggbb, got '" + color + "'");
+  if (!color.empty() && !parse_color(color)) in.error("color", "'color' must look like #rrggbb, got '" + color + "'");
 }
 
 void BodyConfig::read(ParamReader& in) {

@@ -6,6 +6,7 @@
 
 #include "sim/config/param_reader.hpp"
 #include "sim/math.hpp"
+#include "sim/scene/material.hpp"
 
 namespace sim {
 
@@ -22,14 +23,10 @@ struct PhysicsConfig {
   double contact_surface_layer_m = 0.0005;
   int max_contacts_per_pair = 8;
   std::string space = "sap";    ///< sap, quadtree, hash, simple
+  std::string rays = "ode";     ///< embree, ode: which library follows rays
   double max_speed_mps = 1000;  ///< a body faster than this has exploded
   double max_distance_m = 1e7;  ///< a body farther from the origin than this has exploded
 
-  void read(ParamReader& in);
-};
-
-struct MaterialConfig {
-  std::string name;
   void read(ParamReader& in);
 };
 
@@ -66,7 +63,7 @@ struct PartConfig {
   std::string material = "default";
   std::string category = "solid";
   std::vector<std::string> collides_with;  ///< categories; empty: all.  A plane with normal +z of its frame.
-  std::string color;                       ///< for viewers: #rrggbb
+  std::string color;                       ///< in pictures and viewers: #rrggbb; empty: the material's
 
   SourcePlace place;      ///< where the part was written, for errors found while building
   std::string directory;  ///< of the YAML file, where mesh files are looked up

@@ -189,6 +189,13 @@ std::span<const std::unique_ptr<Joint>> PhysicsWorld::joints() const {
 std::span<const PartInfo> PhysicsWorld::parts() const {
   return impl_->parts;
 }
+const MaterialConfig& PhysicsWorld::material(int number) const {
+  return impl_->collider.table().material(number);
+}
+Pose PhysicsWorld::X_WP(int part) const {
+  const PartInfo& info = impl_->parts[static_cast<std::size_t>(part)];
+  return impl_->bodies[static_cast<std::size_t>(info.body)]->X_WB() * info.X_BP;
+}
 const std::string& PhysicsWorld::group_name(int group) const {
   return impl_->groups.at(static_cast<std::size_t>(group)).name;
 }

@@ -30,10 +30,12 @@ class PhysicsFault : public std::runtime_error {
 /// One part as built: who it belongs to.
 struct PartInfo {
   std::string name;
-  int group = -1;  ///< -1: the part was removed, and nothing else here means anything
-  int body = -1;   ///< number in PhysicsWorld::bodies()
-  int material = 0;
+  int group = -1;    ///< -1: the part was removed, and nothing else here means anything
+  int body = -1;     ///< number in PhysicsWorld::bodies()
+  int material = 0;  ///< see PhysicsWorld::material
   std::uint32_t category = 1;
+  Pose X_BP = Pose::Identity();  ///< of the part in its body
+  std::optional<Color> color;    ///< of its own; else the material's
 };
 
 /// Work done by the last step, the same in every run.
@@ -108,6 +110,10 @@ class PhysicsWorld {
   /// Number of a part by its name in the group, such as `chassis/hull`; a part without a name is called by its place in
   /// the body, from 1.
   std::optional<int> find_part(int group, std::string_view body_slash_part) const;
+  /// Number 0 is `default`; where a ray hit: RayHit::material.
+  const MaterialConfig& material(int number) const;
+  /// Where a part is now.
+  Pose X_WP(int part) const;
   /// Empty when the group was removed.
   const std::string& group_name(int group) const;
   const StepCounts& last_step() const;

@@ -77,6 +77,7 @@ void PhysicsWorld::Impl::attach_ode_body(Body& body) {
 void PhysicsWorld::Impl::add_parts(Body& body, const BodyConfig& config_) {
   // Checked and made first, added after: an exception leaves no half body behind.
   std::vector<GeomHandle> geoms;
+  std::vector<const CollisionMesh*> part_meshes;
   dMass total;
   dMassSetZero(&total);
   for (std::size_t i = 0; i < config_.parts.size(); ++i) {
@@ -87,15 +88,17 @@ void PhysicsWorld::Impl::add_parts(Body& body, const BodyConfig& config_) {
       throw_config_error(part.place, who, "a plane can only be part of a fixed body");
     const CollisionMesh* mesh = part.shape == "mesh" ? &meshes.get(part, who) : nullptr;
     geoms.push_back(make_geom(part, mesh));
+    part_meshes.push_back(mesh);
     if (!body.free()) continue;
     const dMass mass = part_mass(part, mesh, who);
     if (mass.mass > 0) dMassAdd(&total, &mass);
   }
   if (body.free()) set_mass(body, config_, total);
-  for (std::size_t i = 0; i < geoms.size(); ++i) add_part(body, config_, i, std::move(geoms[i]));
+  for (std::size_t i = 0; i < geoms.size(); ++i) add_part(body, config_, i, std::move(geoms[i]), part_meshes[i]);
 }
 
-void PhysicsWorld::Impl::add_part(Body& body, const BodyConfig& config_, std::size_t index, GeomHandle owned) {
+void PhysicsWorld::Impl::add_part(Body& body, const BodyConfig& config_, std::size_t index, GeomHandle owned,
+                                  const CollisionMesh* mesh) {
   const PartConfig& part = config_.parts[index];
   const dGeomID geom = owned.get();
   const Pose X_BG = make_pose(part.position_m, part.rpy_rad);
@@ -118,9 +121,16 @@ void PhysicsWorld::Impl::add_part(Body& body, const BodyConfig& config_, std::si
                                 category_bits(part.collides_with)};
   const int number = part_numbers.take();
   groups[body.group_].parts.push_back(number);
-  slot(parts, number) = {part_name(body, part, index), body.group_, body.number_, collision.material,
-                         collision.category};
-  scene->add_part(number, geom, body.group_, collision.category, !body.fixed());
+  slot(parts, number) = {part_name(body, part, index), body.group_, body.number_,           collision.material,
+                         collision.category,           X_BG,        parse_color(part.color)};
+  scene->add_part(number, {geom,
+                           body.group_,
+                           collision.category,
+                           collision.material,
+                           collider.table().material(collision.material).transmits(),
+                           !body.fixed(),
+                           mesh ? &mesh->mesh : nullptr,
+                           {}});
   collider.add_part(number, collision, std::move(owned), body.motion_);
 }
 

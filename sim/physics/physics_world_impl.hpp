@@ -50,7 +50,7 @@ struct PhysicsWorld::Impl {
   std::vector<ContactReport> contact_reports;
   double gravity_mps2 = config.gravity_mps2;
   SceneMoves moves;
-  std::unique_ptr<OdeScene> scene;
+  std::unique_ptr<WorldScene> scene;
   StepCounts counts;
   std::int64_t quick_steps = 0;
   bool broken = false;  ///< ODE threw in mid-step
@@ -60,7 +60,7 @@ struct PhysicsWorld::Impl {
   Group& group(int number);
   void attach_ode_body(Body& body);
   void add_parts(Body& body, const BodyConfig& config);
-  void add_part(Body& body, const BodyConfig& config, std::size_t index, GeomHandle geom);
+  void add_part(Body& body, const BodyConfig& config, std::size_t index, GeomHandle geom, const CollisionMesh* mesh);
   void forget_in_lists(int group_number);
   void set_mass(Body& body, const BodyConfig& config, const dMass& total);
   void collide();

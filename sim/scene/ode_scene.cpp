@@ -48,10 +48,10 @@ void OdeScene::add_group(int group) {
   slot(open_, group).clear();
 }
 
-void OdeScene::add_part(int number, dGeomID geom, int group, std::uint32_t category, bool moving) {
-  slot(parts_, number) = {geom, group, category, dGeomGetClass(geom)};
-  if (moving)
-    open_[group].push_back(number);
+void OdeScene::add_part(int number, const ScenePart& part) {
+  slot(parts_, number) = {part, dGeomGetClass(part.geom)};
+  if (part.moving)
+    open_[part.group].push_back(number);
   else
     open_fixed_.push_back(number);
 }
@@ -135,7 +135,9 @@ bool OdeScene::hit(int part, const Vector3d& origin_W, const Vector3d& direction
   if (contact.depth > nearest.range_m ||
       (contact.depth == nearest.range_m && part >= nearest.part && nearest.part >= 0))
     return false;
-  nearest = {contact.depth, to_eigen(contact.normal), part};
+  const Vector3d normal_W = to_eigen(contact.normal);
+  nearest = {contact.depth, normal_W.dot(direction_W) > 0 ? Vector3d(-normal_W) : normal_W, part,
+             parts_[part].material};
   return true;
 }
 
@@ -144,7 +146,7 @@ void OdeScene::find_candidates(const AlignedBox& around, const RayFilter& filter
   candidates_.clear();
   for (int layer = 0; layer < 2; ++layer)
     layers_[layer].grid.find(around, [&](int index) {
-      if (!passes(layers_[layer].clusters[index], filter)) return;
+      if (!stops(layers_[layer].clusters[index], filter)) return;
       const double nearest = distance(layers_[layer].grid.box(index), from_W);
       if (nearest <= range_max_m) candidates_.push_back({nearest, layer, index});
     });
@@ -158,7 +160,8 @@ std::optional<RayHit> OdeScene::cast(const Vector3d& origin_W, const Vector3d& d
                                      const RayFilter& filter) const {
   if (!(range_max_m > 0)) return std::nullopt;
   refresh();
-  RayHit nearest{range_max_m, Vector3d::Zero(), -1};
+  RayHit nearest;
+  nearest.range_m = range_max_m;
   const Vector3d end_W = origin_W + range_max_m * direction_W;
   find_candidates({origin_W.cwiseMin(end_W), origin_W.cwiseMax(end_W)}, filter, origin_W, range_max_m);
   for (const Candidate& candidate : candidates_) {
@@ -166,11 +169,10 @@ std::optional<RayHit> OdeScene::cast(const Vector3d& origin_W, const Vector3d& d
     const Layer& layer = layers_[candidate.layer];
     if (entry_range(layer.grid.box(candidate.cluster), origin_W, direction_W) > nearest.range_m) continue;
     for (const int part : layer.clusters[candidate.cluster].parts)
-      if ((parts_[part].category & filter.categories) != 0) hit(part, origin_W, direction_W, nearest);
+      if (stops(parts_[part], filter)) hit(part, origin_W, direction_W, nearest);
   }
   for (const int plane : planes_)
-    if (parts_[plane].group != filter.exclude_group && (parts_[plane].category & filter.categories) != 0)
-      hit(plane, origin_W, direction_W, nearest);
+    if (stops(parts_[plane], filter)) hit(plane, origin_W, direction_W, nearest);
   if (nearest.part < 0) return std::nullopt;
   return nearest;
 }
@@ -193,7 +195,7 @@ struct OdeScene::FanSearch {
   const OdeScene& scene;
   const Fan& fan;
   const RayFilter& filter;
-  std::span<double> ranges_m;
+  std::span<RayHit> hits;
   const std::vector<Vector3d>& directions_S;
   Matrix3d R_SW = fan.X_WS.linear().transpose();
   Vector3d p_WS = fan.X_WS.translation();
@@ -246,7 +248,7 @@ void OdeScene::FanSearch::beams_towards(const AlignedBox& box, Use&& use) const 
 bool OdeScene::FanSearch::any_beyond(const AlignedBox& box, double nearest_m) const {
   bool any = false;
   beams_towards(box, [&](int first, int last) {
-    for (int i = first; i <= last && !any; ++i) any = ranges_m[i] > nearest_m;
+    for (int i = first; i <= last && !any; ++i) any = hits[i].range_m > nearest_m;
   });
   return any;
 }
@@ -257,9 +259,10 @@ void OdeScene::FanSearch::try_part(int part) {
   const double nearest_m = distance(box, p_WS);
   beams_towards(box, [&](int first, int last) {
     for (int i = first; i <= last; ++i) {
-      if (ranges_m[i] <= nearest_m) continue;
-      RayHit hit{std::min(ranges_m[i], fan.range_max_m), Vector3d::Zero(), -1};
-      if (scene.hit(part, p_WS, fan.X_WS.linear() * directions_S[i], hit)) ranges_m[i] = hit.range_m;
+      if (hits[i].range_m < nearest_m) continue;
+      RayHit hit = hits[i];
+      hit.range_m = std::min(hit.range_m, fan.range_max_m);
+      if (scene.hit(part, p_WS, fan.X_WS.linear() * directions_S[i], hit)) hits[i] = hit;
     }
   });
 }
@@ -273,24 +276,29 @@ void OdeScene::FanSearch::try_plane(int part) {
   if (std::hypot(normal_S.x(), normal_S.y()) * fan.range_max_m < std::abs(height)) return;
   for (int i = 0; i < fan.count; ++i) {
     const double range = -height / normal_S.dot(directions_S[i]);
-    if (range >= 0 && range <= fan.range_max_m && range < ranges_m[i]) ranges_m[i] = range;
+    if (!(range >= 0 && range <= fan.range_max_m)) continue;
+    if (range > hits[i].range_m || (range == hits[i].range_m && part >= hits[i].part && hits[i].hit())) continue;
+    const Vector3d normal_W = to_eigen(plane);
+    hits[i] = {range, height < 0 ? Vector3d(-normal_W) : normal_W, part, scene.parts_[part].material};
   }
 }
 
-void OdeScene::cast_fan(const Fan& fan, const RayFilter& filter, std::span<double> ranges_m) const {
-  std::fill(ranges_m.begin(), ranges_m.end(), infinity);
+void OdeScene::cast_fan(const Fan& fan, const RayFilter& filter, std::span<RayHit> hits) const {
+  std::fill(hits.begin(), hits.end(), RayHit{});
   if (fan.count <= 0 || !(fan.range_max_m > 0)) return;
   refresh();
-  FanSearch search{*this, fan, filter, ranges_m, directions(fan)};
+  FanSearch search{*this, fan, filter, hits, directions(fan)};
   for (const int plane : planes_)
-    if (parts_[plane].group != filter.exclude_group && (parts_[plane].category & filter.categories) != 0)
-      search.try_plane(plane);
+    if (stops(parts_[plane], filter)) search.try_plane(plane);
   find_candidates(search.around(), filter, search.p_WS, fan.range_max_m);
   double farthest_m = infinity;
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     const Candidate& candidate = candidates_[i];
     // In a room or a crowd all beams end soon, and what lies behind need not be looked at.
-    if (i % 16 == 15) farthest_m = *std::max_element(ranges_m.begin(), ranges_m.end());
+    if (i % 16 == 15)
+      farthest_m = std::max_element(hits.begin(), hits.end(), [](const RayHit& a, const RayHit& b) {
+                     return a.range_m < b.range_m;
+                   })->range_m;
     if (candidate.nearest_m > farthest_m) break;
     const Layer& layer = layers_[candidate.layer];
     const Cluster& cluster = layer.clusters[candidate.cluster];
@@ -298,7 +306,7 @@ void OdeScene::cast_fan(const Fan& fan, const RayFilter& filter, std::span<doubl
     if (!search.crosses(box)) continue;
     if (cluster.parts.size() > 1 && !search.any_beyond(box, candidate.nearest_m)) continue;
     for (const int part : cluster.parts)
-      if ((parts_[part].category & filter.categories) != 0) search.try_part(part);
+      if (stops(parts_[part], filter)) search.try_part(part);
   }
 }
 

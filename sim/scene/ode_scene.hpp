@@ -9,42 +9,32 @@
 
 #include "sim/physics/ode_library.hpp"
 #include "sim/scene/box_grid.hpp"
-#include "sim/scene/scene.hpp"
+#include "sim/scene/world_scene.hpp"
 
 namespace sim {
-
-/// Counts of what moved, so that the scene knows when to look at the parts again.
-struct SceneMoves {
-  std::uint64_t moving = 0;  ///< bodies that move: each step
-  std::uint64_t fixed = 0;   ///< fixed bodies: only when someone puts them elsewhere
-};
 
 /// Rays against the collision geoms.  Not for two threads at once: the ray and the lists are used over and
 /// over.
 ///
 /// A search finds the boxes around groups (vehicles, with all their moving parts) and fixed parts that it may
 /// meet, looks at the nearest first, and drops what lies behind hits found already.
-class OdeScene final : public Scene {
+class OdeScene final : public WorldScene {
  public:
   explicit OdeScene(const SceneMoves& moves);
 
-  // Numbers of groups and parts are the caller's, who may use those of removed things again.
-  void add_group(int group);
-  void add_part(int number, dGeomID geom, int group, std::uint32_t category, bool moving);
-  /// From now on rays see the parts of the group.
-  void close_group(int group);
-  /// Rays see these parts, all that the group has, no more.
-  void remove_group(int group, std::span<const int> parts);
+  void add_group(int group) override;
+  void add_part(int number, const ScenePart& part) override;
+  void close_group(int group) override;
+  void remove_group(int group, std::span<const int> parts) override;
 
+  using Scene::cast;
   std::optional<RayHit> cast(const Vector3d& origin_W, const Vector3d& direction_W, double range_max_m,
                              const RayFilter& filter) const override;
-  void cast_fan(const Fan& fan, const RayFilter& filter, std::span<double> ranges_m) const override;
+  void cast_fan(const Fan& fan, const RayFilter& filter, std::span<RayHit> hits) const override;
+  void prepare() const override { refresh(); }
 
  private:
-  struct Part {
-    dGeomID geom = nullptr;
-    int group = -1;
-    std::uint32_t category = 0;
+  struct Part : ScenePart {
     int kind = -1;                 // ODE's class of geom
     int layer = -1, cluster = -1;  // where rays find it; -1: not closed yet, a plane, or removed
   };
@@ -52,7 +42,7 @@ class OdeScene final : public Scene {
   struct Cluster {
     std::vector<int> parts;
     int group;
-    std::uint32_t categories;
+    std::uint32_t categories;  // of all of its parts
   };
   struct Layer {
     std::vector<Cluster> clusters;
@@ -70,8 +60,12 @@ class OdeScene final : public Scene {
   void remove_cluster(int layer, int number);
   void refresh(Layer& layer, std::uint64_t moves) const;
   void refresh() const;
-  bool passes(const Cluster& cluster, const RayFilter& filter) const {
+  static bool stops(const Cluster& cluster, const RayFilter& filter) {
     return cluster.group != filter.exclude_group && (cluster.categories & filter.categories) != 0;
+  }
+  static bool stops(const Part& part, const RayFilter& filter) {
+    return part.group != filter.exclude_group && (part.category & filter.categories) != 0 &&
+           (part.transmits & static_cast<std::uint8_t>(filter.kind)) == 0;
   }
   bool hit(int part, const Vector3d& origin_W, const Vector3d& direction_W, RayHit& nearest) const;
   void find_candidates(const AlignedBox& around, const RayFilter& filter, const Vector3d& from_W,

@@ -9,7 +9,7 @@
 
 namespace sim {
 
-/// Publishes at once, or at a later simulated time by way of an event.
+/// Keeps what a sensor reports until the world publishes it: at once, or at a later simulated time by way of an event.
 class MountedDevice::Outlet final : public Publisher {
  public:
   Outlet(MountedDevice& device, const std::string& channel)
@@ -25,17 +25,26 @@ class MountedDevice::Outlet final : public Publisher {
 
   void publish(std::span<const std::byte> payload) override {
     if (copies_) copies_->emplace_back(payload.begin(), payload.end());
-    if (latency_.count() == 0) {
-      device_.bus_.publish(channel_, payload, now_);
-      return;
+    // Payloads are kept for their memory: a camera's is large.
+    if (waiting_ == payloads_.size()) payloads_.emplace_back();
+    payloads_[waiting_++].assign(payload.begin(), payload.end());
+  }
+
+  void flush() {
+    for (std::size_t i = 0; i < waiting_; ++i) {
+      if (latency_.count() == 0) {
+        device_.bus_.publish(channel_, payloads_[i], now_);
+        continue;
+      }
+      Event event;
+      event.due = now_ + latency_;
+      event.device = device_.number_;
+      event.kind = report_event;
+      event.stamp = now_;
+      event.payload = payloads_[i];
+      device_.host_.events.schedule(std::move(event));
     }
-    Event event;
-    event.due = now_ + latency_;
-    event.device = device_.number_;
-    event.kind = report_event;
-    event.stamp = now_;
-    event.payload.assign(payload.begin(), payload.end());
-    device_.host_.events.schedule(std::move(event));
+    waiting_ = 0;
   }
 
  private:
@@ -43,8 +52,19 @@ class MountedDevice::Outlet final : public Publisher {
   const std::string& channel_;
   Time now_{0};
   Time latency_{0};
+  std::vector<Bytes> payloads_;
+  std::size_t waiting_ = 0;
   std::vector<Bytes>* copies_ = nullptr;
 };
+
+Pose SweepContext::X_WS_at(Time at) const {
+  if (at >= now || now == from) return X_WS;
+  const double share = to_seconds(at - from) / to_seconds(now - from);
+  Pose X = Pose::Identity();
+  X.linear() = Quaterniond(X_WS_from.linear()).slerp(share, Quaterniond(X_WS.linear())).toRotationMatrix();
+  X.translation() = X_WS_from.translation() + share * (X_WS.translation() - X_WS_from.translation());
+  return X;
+}
 
 MountedDevice::MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig& config, DeviceHost& host, int number)
     : config_(config),
@@ -162,6 +182,19 @@ void MountedDevice::act(Time now, double step_s) {
   if (systems.metered && works()) vehicle_.systems().drawn_J += built_.actuator->power_W() * step_s;
 }
 
+void MountedDevice::sweep(const World& world, Time now) {
+  const Pose X_WS = body_.X_WB() * X_BS_;
+  if (works())
+    built_.sensor->sweep({world, vehicle_, now - host_.step, now, X_WS_before_.value_or(X_WS), X_WS,
+                          Time{next_sample_step_ * host_.step.count()}});
+  X_WS_before_ = X_WS;
+}
+
+void MountedDevice::publish_reports() {
+  truth_outlet_->flush();
+  report_outlet_->flush();
+}
+
 void MountedDevice::sample(const World& world, Time now, std::int64_t step_number) {
   plan_next_sample();
   if (!works()) return;
@@ -253,6 +286,7 @@ void MountedDevice::hash_state(StateHash& hash) const {
   faults_.hash_state(hash);
   if (frozen_)
     for (const Bytes& payload : *frozen_) hash.add_bytes(payload.data(), payload.size());
+  if (X_WS_before_) hash.add(std::span<const double>(X_WS_before_->matrix().data(), 16));
   if (built_.sensor) built_.sensor->hash_state(hash);
   if (built_.actuator) built_.actuator->hash_state(hash);
 }

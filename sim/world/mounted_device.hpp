@@ -42,8 +42,12 @@ class MountedDevice {
   void take_mail(Time now, std::int64_t step_number);
   void act(Time now, double step_s);
   bool sample_is_due(std::int64_t step_number) const { return step_number >= next_sample_step_; }
-  /// Samples, and publishes or schedules the report.
+  /// See Sensor::sweep; called after each step of a sensor that sweeps.
+  void sweep(const World& world, Time now);
+  /// Samples; the reports wait for publish().  Sensors that cast rays may do so at the same time in several threads.
   void sample(const World& world, Time now, std::int64_t step_number);
+  /// Publishes or schedules what sample() found.
+  void publish_reports();
   /// An event of this device is due.
   void handle(const Event& event);
 
@@ -58,6 +62,8 @@ class MountedDevice {
   bool can_change() const { return static_cast<bool>(built_.change); }
 
   bool senses() const { return built_.sensor != nullptr; }
+  bool sweeps() const { return type_.sweeps; }
+  bool casts_rays() const { return type_.casts_rays; }
   bool acts() const { return built_.actuator != nullptr; }
   bool has_mailbox() const { return mailbox_ != nullptr; }
   int number() const { return number_; }
@@ -104,8 +110,9 @@ class MountedDevice {
   std::int64_t samples_planned_ = 0;
   std::int64_t next_sample_step_ = 1;
   Time last_sample_{-1};
-  Time last_command_{-1};  ///< the last one that was good; -1: none yet
-  bool safe_ = false;      ///< the actuator was made safe, and no command came since
+  Time last_command_{-1};            ///< the last one that was good; -1: none yet
+  std::optional<Pose> X_WS_before_;  ///< at the end of the last step, for sweep()
+  bool safe_ = false;                ///< the actuator was made safe, and no command came since
   /// What a stuck sensor repeats, and the time stamp in it.
   std::optional<std::vector<Bytes>> frozen_;
   std::int64_t frozen_utime_ = 0;

@@ -32,6 +32,10 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
 
 World::~World() = default;
 
+void World::use_threads(int threads) {
+  threads_ = threads == 1 ? nullptr : std::make_unique<ThreadPool>(threads);
+}
+
 void World::add_objects() {
   for (const ObjectConfig& object : config_.objects) {
     if (!object.present) continue;
@@ -124,11 +128,37 @@ void World::step() {
   physics_->step(step_number_);
   ++step_number_;
   run_due_events();
+  sense();
+}
+
+/// Stages 6 and 7.  Sensors that cast rays take nearly all the time and touch nothing but themselves: they go first,
+/// in parallel.  What they found is published among the others' in device order, as if one after the other had sampled.
+void World::sense() {
+  due_.clear();
+  casting_.clear();
   for (MountedDevice* device : sensing_) {
-    if (!device->sample_is_due(step_number_)) continue;
-    device->sample(*this, now(), step_number_);
-    ++counts_.samples;
+    const bool due = device->sample_is_due(step_number_);
+    if (due) due_.push_back(device);
+    if (device->casts_rays() && (due || device->sweeps())) casting_.push_back({device, due});
   }
+  if (!casting_.empty()) cast_rays();
+  for (MountedDevice* device : due_) {
+    if (!device->casts_rays()) device->sample(*this, now(), step_number_);
+    device->publish_reports();
+  }
+  counts_.samples += static_cast<std::int64_t>(due_.size());
+}
+
+void World::cast_rays() {
+  scene().prepare();
+  const auto sample = [this](const Casting& casting) {
+    if (casting.device->sweeps()) casting.device->sweep(*this, now());
+    if (casting.due) casting.device->sample(*this, now(), step_number_);
+  };
+  if (threads_ && scene().concurrent())
+    threads_->for_each(casting_.size(), [&](std::size_t i) { sample(casting_[i]); });
+  else
+    for (const Casting& casting : casting_) sample(casting);
 }
 
 void World::run_due_events() {

@@ -15,6 +15,7 @@
 #include "sim/bus/byte_port.hpp"
 #include "sim/geodesy.hpp"
 #include "sim/physics/physics_world.hpp"
+#include "sim/thread_pool.hpp"
 #include "sim/world/event_queue.hpp"
 #include "sim/world/mounted_device.hpp"
 #include "sim/world/vehicle.hpp"
@@ -65,6 +66,9 @@ class World {
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
+
+  /// Threads that share the sensors which cast rays; 0: one for each processor.  The run is the same for any number.
+  void use_threads(int threads);
 
   /// Stages 1 to 7 of a step: mail, act, medium, script, physics, sense, report.  Throws PhysicsFault.
   void step();
@@ -162,6 +166,8 @@ class World {
   void check_new_name(const std::string& name, const SourcePlace& place, const std::string& who) const;
   void sort_devices();
   void run_due_events();
+  void sense();
+  void cast_rays();
 
   const WorldConfig& config_;
   Bus& bus_;
@@ -192,6 +198,14 @@ class World {
   std::vector<int> free_numbers_;  // of devices that were removed; the last is used first
   // The devices each stage visits, in device order.
   std::vector<MountedDevice*> listening_, acting_, sensing_;
+  /// What this step has to sense.
+  struct Casting {
+    MountedDevice* device;
+    bool due;
+  };
+  std::vector<MountedDevice*> due_;
+  std::vector<Casting> casting_;
+  std::unique_ptr<ThreadPool> threads_;  // null: one thread
   std::unique_ptr<Script> script_;
 };
 

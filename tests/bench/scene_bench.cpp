@@ -36,14 +36,14 @@ struct Arena {
     for (int i = 0; i < 100; ++i) world->step(step_number++);
   }
   /// A lidar on top of a rover, which does not see its own rover.
-  void scan(int rover, std::vector<double>& ranges) const {
+  void scan(int rover, std::vector<sim::RayHit>& hits) const {
     sim::Fan fan;
     fan.X_WS = rovers[rover].chassis->X_WB() * translation(0.1, 0, 0.02);
     fan.first_angle_rad = -std::numbers::pi / 2;
     fan.step_rad = std::numbers::pi / (beams - 1);
     fan.count = beams;
     fan.range_max_m = 8;
-    world->scene().cast_fan(fan, {~0u, rovers[rover].chassis->group()}, ranges);
+    world->scene().cast_fan(fan, {~0u, rovers[rover].chassis->group()}, hits);
   }
   std::unique_ptr<PhysicsWorld> world;
   std::vector<Rover> rovers;
@@ -56,11 +56,11 @@ void per_ray(benchmark::State& state, double rays) {
 
 void fan_in_arena(benchmark::State& state) {
   const Arena arena(static_cast<int>(state.range(0)), "sap");
-  std::vector<double> ranges(beams);
+  std::vector<sim::RayHit> hits(beams);
   int rover = 0;
   for (auto _ : state) {
-    arena.scan(rover, ranges);
-    benchmark::DoNotOptimize(ranges.data());
+    arena.scan(rover, hits);
+    benchmark::DoNotOptimize(hits.data());
     rover = (rover + 1) % static_cast<int>(arena.rovers.size());
   }
   per_ray(state, static_cast<double>(state.iterations()) * beams);
@@ -69,10 +69,10 @@ void fan_in_arena(benchmark::State& state) {
 /// As a run does it: a step, then one in ten rovers scans (10 Hz at 100 steps a second).
 void step_and_scan(benchmark::State& state, const std::string& space) {
   Arena arena(1000, space);
-  std::vector<double> ranges(beams);
+  std::vector<sim::RayHit> hits(beams);
   for (auto _ : state) {
     arena.world->step(arena.step_number++);
-    for (int i = static_cast<int>(arena.step_number % 10); i < 1000; i += 10) arena.scan(i, ranges);
+    for (int i = static_cast<int>(arena.step_number % 10); i < 1000; i += 10) arena.scan(i, hits);
   }
 }
 
@@ -90,7 +90,7 @@ std::unique_ptr<PhysicsWorld> strewn_boxes(int count) {
 void fan_among_boxes(benchmark::State& state) {
   const auto world = strewn_boxes(static_cast<int>(state.range(0)));
   std::mt19937 random(2);
-  std::vector<double> ranges(beams);
+  std::vector<sim::RayHit> hits(beams);
   for (auto _ : state) {
     sim::Fan fan;
     fan.X_WS = sim::make_pose({random() % 100 + 0.5, random() % 100 + 0.5, 0.5}, {0, 0, 0.01 * (random() % 628)});
@@ -98,8 +98,8 @@ void fan_among_boxes(benchmark::State& state) {
     fan.step_rad = std::numbers::pi / (beams - 1);
     fan.count = beams;
     fan.range_max_m = 20;
-    world->scene().cast_fan(fan, {}, ranges);
-    benchmark::DoNotOptimize(ranges.data());
+    world->scene().cast_fan(fan, {}, hits);
+    benchmark::DoNotOptimize(hits.data());
   }
   per_ray(state, static_cast<double>(state.iterations()) * beams);
 }

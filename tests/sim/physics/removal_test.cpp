@@ -43,9 +43,9 @@ TEST_P(RemovalInEachSpace, RaysPassWhereAPartWas) {
   EXPECT_NEAR(look(*world, 0.5)->range_m, 12.5, 1e-9);
   world->remove_group(wall.group());
   EXPECT_NEAR(look(*world, 0.5)->range_m, 15.5, 1e-9);
-  std::vector<double> range_m(1);
-  world->scene().cast_fan({translation(-10, 0, 0.5), 0, 0.1, 1, 100}, {}, range_m);
-  EXPECT_NEAR(range_m[0], 15.5, 1e-9);
+  std::vector<sim::RayHit> seen(1);
+  world->scene().cast_fan({translation(-10, 0, 0.5), 0, 0.1, 1, 100}, {}, seen);
+  EXPECT_NEAR(seen[0].range_m, 15.5, 1e-9);
 }
 
 TEST_P(RemovalInEachSpace, ContactsVanishAndWhatStoodOnItFalls) {

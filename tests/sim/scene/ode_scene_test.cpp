@@ -112,9 +112,9 @@ TEST(Ray, HitsAMesh) {
   const auto hit = world->scene().cast({0, 0, 0.5}, {1, 0, 0}, 100, {});
   ASSERT_TRUE(hit.has_value());
   EXPECT_NEAR(hit->range_m, 4.5, 1e-6);  // the mesh collider works in single precision
-  std::vector<double> range(1);
-  world->scene().cast_fan({translation(0, 0, 0.5), 0, 0.1, 1, 100}, {}, range);
-  EXPECT_EQ(range[0], hit->range_m);
+  std::vector<RayHit> seen(1);
+  world->scene().cast_fan({translation(0, 0, 0.5), 0, 0.1, 1, 100}, {}, seen);
+  EXPECT_EQ(seen[0].range_m, hit->range_m);
 }
 
 TEST(Filter, SeesOnlyItsCategoriesAndNotItsOwnGroup) {
@@ -128,9 +128,9 @@ TEST(Filter, SeesOnlyItsCategoriesAndNotItsOwnGroup) {
   add(world, body("wall", {box({0.2, 9, 9}, 0)}), translation(6, 0, 0), Motion::fixed);
   const auto part_seen = [&](const RayFilter& filter) {
     const auto hit = world.scene().cast({0, 0, 0}, {1, 0, 0}, 100, filter);
-    std::vector<double> fan(1);
+    std::vector<RayHit> fan(1);
     world.scene().cast_fan({Pose::Identity(), 0, 0.1, 1, 100}, filter, fan);
-    EXPECT_EQ(fan[0], hit ? hit->range_m : std::numeric_limits<double>::infinity());
+    EXPECT_EQ(fan[0].range_m, hit ? hit->range_m : std::numeric_limits<double>::infinity());
     return hit ? hit->part : -1;
   };
   EXPECT_EQ(part_seen({}), 0);
@@ -171,23 +171,23 @@ TEST(Fan, SeesASquareRoom) {
   fan.count = 360;
   fan.step_rad = 2 * pi / fan.count;
   fan.range_max_m = 10;
-  std::vector<double> ranges(360);
-  world->scene().cast_fan(fan, {}, ranges);
+  std::vector<RayHit> hits(360);
+  world->scene().cast_fan(fan, {}, hits);
   for (int i = 0; i < fan.count; ++i) {
     const double angle = fan.first_angle_rad + i * fan.step_rad;
-    EXPECT_NEAR(ranges[i], 2 / std::max(std::abs(std::cos(angle)), std::abs(std::sin(angle))), 1e-9) << i;
+    EXPECT_NEAR(hits[i].range_m, 2 / std::max(std::abs(std::cos(angle)), std::abs(std::sin(angle))), 1e-9) << i;
   }
 }
 
 TEST(Fan, TiltedDownSeesTheGround) {
   const auto world = make_world();
   add_ground(*world);
-  std::vector<double> ranges(3);
+  std::vector<RayHit> hits(3);
   // Pitched down by 30 degrees at 1 m: the middle beam runs 2 m.
-  world->scene().cast_fan({sim::make_pose({0, 0, 1}, {0, pi / 6, 0}), -pi / 2, pi / 2, 3, 5}, {}, ranges);
-  EXPECT_EQ(ranges[0], std::numeric_limits<double>::infinity());
-  EXPECT_NEAR(ranges[1], 2, 1e-12);
-  EXPECT_EQ(ranges[2], std::numeric_limits<double>::infinity());
+  world->scene().cast_fan({sim::make_pose({0, 0, 1}, {0, pi / 6, 0}), -pi / 2, pi / 2, 3, 5}, {}, hits);
+  EXPECT_EQ(hits[0].range_m, std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(hits[1].range_m, 2, 1e-12);
+  EXPECT_EQ(hits[2].range_m, std::numeric_limits<double>::infinity());
 }
 
 /// Parts of every shape in a heap, fixed and moving, some close together, some around the sensor.
@@ -216,7 +216,7 @@ std::unique_ptr<PhysicsWorld> random_scene(std::mt19937& random) {
 TEST(Fan, EqualsSingleCastsInRandomScenes) {
   std::mt19937 random(1);
   const auto uniform = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
-  int hits = 0;
+  int count = 0;
   for (int scene = 0; scene < 10; ++scene) {
     const auto world = random_scene(random);
     for (int k = 0; k < 20; ++k) {
@@ -229,20 +229,20 @@ TEST(Fan, EqualsSingleCastsInRandomScenes) {
       fan.step_rad = uniform(0.001, 2 * pi / fan.count);
       fan.range_max_m = uniform(1, 30);
       const RayFilter filter{~0u, k % 5 == 0 ? static_cast<int>(random() % 80) : -1};
-      std::vector<double> ranges(fan.count);
-      world->scene().cast_fan(fan, filter, ranges);
+      std::vector<RayHit> hits(fan.count);
+      world->scene().cast_fan(fan, filter, hits);
       for (int i = 0; i < fan.count; ++i) {
         const double angle = fan.first_angle_rad + i * fan.step_rad;
         const Vector3d direction = fan.X_WS.linear() * Vector3d(std::cos(angle), std::sin(angle), 0);
         const auto hit = world->scene().cast(fan.X_WS.translation(), direction, fan.range_max_m, filter);
-        ASSERT_EQ(hit.has_value(), std::isfinite(ranges[i])) << scene << " " << k << " " << i;
+        ASSERT_EQ(hit.has_value(), std::isfinite(hits[i].range_m)) << scene << " " << k << " " << i;
         if (!hit) continue;
-        ASSERT_NEAR(ranges[i], hit->range_m, 1e-9) << scene << " " << k << " " << i;
-        ++hits;
+        ASSERT_NEAR(hits[i].range_m, hit->range_m, 1e-9) << scene << " " << k << " " << i;
+        ++count;
       }
     }
   }
-  EXPECT_GT(hits, 1000);  // the test saw something
+  EXPECT_GT(count, 1000);  // the test saw something
 }
 
 TEST(Cast, EqualsLookingAtEveryPart) {

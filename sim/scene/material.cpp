@@ -1,0 +1,75 @@
+#include "sim/scene/material.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+namespace sim {
+
+namespace {
+
+const std::pair<const char*, RayKind> ray_kinds[] = {
+    {"light", RayKind::light}, {"laser", RayKind::laser}, {"sound", RayKind::sound}};
+
+void check_color(ParamReader& in, const char* key, const std::string& color) {
+  if (!parse_color(color)) in.error(key, std::string("'") + key + "' must look like #rrggbb, got '" + color + "'");
+}
+
+}  // namespace
+
+void TextureConfig::read(ParamReader& in) {
+  if (!in.describing()) {
+    place = in.node()->place;
+    if (place.file) directory = std::filesystem::path(*place.file).parent_path().string();
+  }
+  in.read_choice("pattern", pattern, {"none", "checker", "stripes", "image"}, "what is on the surface");
+  in.read("colors", colors, "checker, stripes: two colors, #rrggbb");
+  in.read("size_m", size_m, above(0), "length of a field, width of a stripe or of the image");
+  in.read("file", file, "image: a PNG or JPEG file, relative to this file");
+  if (in.describing()) return;
+  for (const std::string& color : colors) check_color(in, "colors", color);
+  const bool two_colors = pattern == "checker" || pattern == "stripes";
+  if (two_colors && colors.size() != 2)
+    in.error("colors", "a " + pattern + " texture needs two 'colors', got " + std::to_string(colors.size()));
+  if (pattern == "image" && file.empty()) in.error("a texture of pattern image needs the key 'file'");
+  std::error_code error;
+  const auto path = std::filesystem::path(directory) / file;
+  if (pattern == "image" && !file.empty() && !std::filesystem::is_regular_file(path, error))
+    in.error("file", "there is no file '" + path.string() + "'");
+}
+
+void LaserSurface::read(ParamReader& in) {
+  in.read("reflectivity", reflectivity, between(0, 1), "share of a laser's power that comes back diffusely");
+  in.read("gloss", gloss, between(0, 1), "share of it that is mirrored, so that it comes back head-on only");
+}
+
+void SoundSurface::read(ParamReader& in) {
+  in.read("backscatter_dB", backscatter_dB, between(-80, 10), "backscatter at normal incidence (Lambert), dB");
+}
+
+void MaterialConfig::read(ParamReader& in) {
+  in.require("name");
+  in.read("name", name, "name of the material");
+  if (name == "any") in.error("name", "'any' stands for every material and cannot be a name");
+  in.read("color", color, "color in pictures and viewers, #rrggbb; a part's own color wins");
+  if (!in.describing() && !color.empty()) check_color(in, "color", color);
+  in.read("gloss", gloss, between(0, 1), "strength of the sun's highlight in pictures");
+  in.read("texture", texture, "pattern in pictures");
+  in.read("laser", laser, "how it sends back a laser beam");
+  in.read("sound", sound, "how it sends back sound");
+  in.read("lets_through", lets_through, "what passes: light, laser, sound");
+  for (const std::string& word : lets_through)
+    if (!in.describing() &&
+        std::none_of(std::begin(ray_kinds), std::end(ray_kinds), [&](const auto& kind) { return word == kind.first; }))
+      in.error("lets_through", "'lets_through' must name light, laser or sound, got '" + word + "'");
+}
+
+std::uint8_t MaterialConfig::transmits() const {
+  std::uint8_t bits = 0;
+  for (const auto& [word, kind] : ray_kinds)
+    if (std::find(lets_through.begin(), lets_through.end(), word) != lets_through.end())
+      bits |= static_cast<std::uint8_t>(kind);
+  return bits;
+}
+
+}  // namespace sim
