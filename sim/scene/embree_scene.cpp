@@ -73,7 +73,7 @@ void EmbreeScene::prepare() const {
 void EmbreeScene::refresh(Layer& layer, std::uint64_t moves) const {
   if (layer.seen == moves && !layer.changed) return;
   follow_geoms(layer);
-  if (&layer != &planes_ && !layer.shapes.empty()) {
+  if (!layer.few()) {
     choose_origin(layer);
     build(layer);
   }
@@ -111,21 +111,26 @@ void EmbreeScene::choose_origin(Layer& layer) {
 void EmbreeScene::build(Layer& layer) {
   if (!layer.scene) {
     layer.scene.reset(rtcNewScene(embree_device()));
+    check_embree();
+    if (layer.moves) {
+      // Only both together make Embree widen a tree instead of building it.
+      rtcSetSceneFlags(layer.scene.get(), RTC_SCENE_FLAG_DYNAMIC);
+      rtcSetSceneBuildQuality(layer.scene.get(), RTC_BUILD_QUALITY_LOW);
+    }
+  }
+  if (!layer.geometry || layer.changed || layer.travelled_m > layer.half_width_m) {
+    if (layer.geometry) rtcDetachGeometry(layer.scene.get(), 0);
     layer.geometry.reset(rtcNewGeometry(embree_device(), RTC_GEOMETRY_TYPE_USER));
     check_embree();
-    rtcSetSceneFlags(layer.scene.get(), RTC_SCENE_FLAG_DYNAMIC);
+    rtcSetGeometryBuildQuality(layer.geometry.get(), RTC_BUILD_QUALITY_REFIT);
+    rtcSetGeometryUserPrimitiveCount(layer.geometry.get(), static_cast<unsigned>(layer.shapes.size()));
     rtcSetGeometryUserData(layer.geometry.get(), &layer);
     rtcSetGeometryBoundsFunction(layer.geometry.get(), bounds_of, nullptr);
     rtcSetGeometryIntersectFunction(layer.geometry.get(), intersect);
     rtcSetGeometryOccludedFunction(layer.geometry.get(), find_occluded);
-    rtcAttachGeometry(layer.scene.get(), layer.geometry.get());
-  }
-  const bool anew = layer.changed || layer.travelled_m > layer.half_width_m;
-  if (anew) {
-    rtcSetGeometryUserPrimitiveCount(layer.geometry.get(), static_cast<unsigned>(layer.shapes.size()));
+    rtcAttachGeometryByID(layer.scene.get(), layer.geometry.get(), 0);
     layer.travelled_m = 0;
   }
-  rtcSetGeometryBuildQuality(layer.geometry.get(), anew ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_REFIT);
   rtcCommitGeometry(layer.geometry.get());
   commit_alone(layer.scene.get());
 }
@@ -231,10 +236,12 @@ void EmbreeScene::find_occluded(const RTCOccludedFunctionNArguments* arguments) 
 }
 
 void EmbreeScene::cast_packet(RayPacket& rays, unsigned lanes, const RayFilter& filter) const {
-  for (const RayShape& plane : planes_.shapes)
-    if (plane.stops(filter)) cast_at(plane, rays, lanes);
-  for (const Layer* layer : {&fixed_, &moving_}) {
-    if (layer->shapes.empty()) continue;
+  for (const Layer* layer : {&planes_, &fixed_, &moving_}) {
+    if (layer->few()) {
+      for (const RayShape& shape : layer->shapes)
+        if (shape.stops(filter)) cast_at(shape, rays, lanes);
+      continue;
+    }
     Query query(*layer, rays, lanes, filter);
     query.floats.intersect(layer->scene.get(), query.context);
   }
@@ -242,10 +249,13 @@ void EmbreeScene::cast_packet(RayPacket& rays, unsigned lanes, const RayFilter& 
 
 unsigned EmbreeScene::blocked_packet(RayPacket& rays, unsigned lanes, const RayFilter& filter) const {
   unsigned blocked = 0;
-  for (const RayShape& plane : planes_.shapes)
-    if (plane.stops(filter)) blocked |= blocked_by(plane, rays, lanes);
-  for (const Layer* layer : {&fixed_, &moving_}) {
-    if (layer->shapes.empty() || (lanes & ~blocked) == 0) continue;
+  for (const Layer* layer : {&planes_, &fixed_, &moving_}) {
+    if (layer->few()) {
+      for (const RayShape& shape : layer->shapes)
+        if (shape.stops(filter)) blocked |= blocked_by(shape, rays, lanes & ~blocked);
+      continue;
+    }
+    if ((lanes & ~blocked) == 0) break;
     Query query(*layer, rays, lanes & ~blocked, filter);
     query.floats.find_occluded(layer->scene.get(), query.context);
     blocked |= query.blocked;

@@ -17,7 +17,7 @@ namespace sim {
 /// which other rays are cast with it, or on how the tree over the parts came about.
 class EmbreeScene final : public WorldScene {
  public:
-  explicit EmbreeScene(const SceneMoves& moves) : moves_(moves) {}
+  explicit EmbreeScene(const SceneMoves& moves) : moves_(moves) { moving_.moves = true; }
 
   void add_group(int group) override;
   void add_part(int number, const ScenePart& part) override;
@@ -38,6 +38,10 @@ class EmbreeScene final : public WorldScene {
 
   /// Shapes under one tree.
   struct Layer {
+    /// Planes have no end, and for few shapes a tree does not pay.
+    bool few() const { return shapes.size() <= 4 || shapes.front().kind == RayShape::Kind::plane; }
+
+    bool moves = false;
     std::vector<RayShape> shapes;
     std::vector<dGeomID> geoms;  // of each
     EmbreeSceneHandle scene;

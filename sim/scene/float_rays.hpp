@@ -74,6 +74,8 @@ class FloatRays {
   /// `context` starts a struct of the caller's, which the callbacks get.
   void intersect(RTCScene scene, RTCIntersectContext& context) {
     if (!any_) return;
+    static const bool coh = getenv("COH");
+    if (coh) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     if (count_ == 1)
       rtcIntersect1(scene, &context, reinterpret_cast<RTCRayHit*>(data_));
     else

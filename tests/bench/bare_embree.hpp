@@ -174,8 +174,9 @@ class Scene {
     rtcSetGeometryIntersectFunction(user_, intersect);
     rtcSetGeometryOccludedFunction(user_, occluded);
     rtcAttachGeometry(scene_, user_);
+    // As our moving parts have it: only all three together make Embree refit its tree.
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_DYNAMIC);
-    update();
+    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_LOW);
     rtcSetGeometryBuildQuality(user_, RTC_BUILD_QUALITY_REFIT);
     update();
   }
