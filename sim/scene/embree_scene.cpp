@@ -152,14 +152,13 @@ void EmbreeScene::bounds_of(const RTCBoundsFunctionArguments* arguments) {
 /// A packet on its way through a layer.  Callbacks know it by its first member.
 struct EmbreeScene::Query {
   Query(const Layer& layer, RayPacket& rays_, unsigned lanes, const RayFilter& filter_)
-      : rays(rays_), filter(filter_), floats(layer.radius_m, lanes) {
+      : rays(rays_), filter(filter_), floats(layer.radius_m) {
     rtcInitIntersectContext(&context);
-    for (unsigned left = lanes; left != 0; left &= left - 1) {
-      const int lane = std::countr_zero(left);
-      floats.aim(lane, rays.origin[0][lane] - layer.origin_W.x(), rays.origin[1][lane] - layer.origin_W.y(),
-                 rays.origin[2][lane] - layer.origin_W.z(), rays.direction[0][lane], rays.direction[1][lane],
-                 rays.direction[2][lane], rays.range_m[lane]);
-    }
+    if (rays.coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    double from[3][RayPacket::size];
+    for (int axis = 0; axis < 3; ++axis)
+      for (int i = 0; i < RayPacket::size; ++i) from[axis][i] = rays.origin[axis][i] - layer.origin_W[axis];
+    floats.aim(from, rays.direction, rays.range_m, lanes);
   }
 
   RTCIntersectContext context;
@@ -286,6 +285,7 @@ std::optional<RayHit> EmbreeScene::cast(const Vector3d& origin_W, const Vector3d
   prepare();
   RayPacket rays;
   rays.set(0, origin_W, direction_W, range_max_m);
+  for (int lane = 1; lane < RayPacket::size; ++lane) rays.repeat(0, lane);
   cast_packet(rays, 1, filter);
   if (rays.part[0] == RayPacket::no_part) return std::nullopt;
   return hit_of(rays, 0);
@@ -296,8 +296,9 @@ namespace {
 /// Calls use(first, rays, lanes) for packets of the rays that set(lane, number) gives.  Rays without length are left
 /// out.
 template <typename Set, typename Use>
-void for_packets(std::size_t count, Set&& set, Use&& use) {
+void for_packets(std::size_t count, bool coherent, Set&& set, Use&& use) {
   RayPacket rays;
+  rays.coherent = coherent;
   for (std::size_t first = 0; first < count; first += RayPacket::size) {
     const int used = static_cast<int>(std::min<std::size_t>(RayPacket::size, count - first));
     unsigned lanes = 0;
@@ -338,7 +339,7 @@ void EmbreeScene::cast_fan(const Fan& fan, const RayFilter& filter, std::span<Ra
   const Matrix3d R_WS = fan.X_WS.linear();
   const Vector3d p_WS = fan.X_WS.translation();
   for_packets(
-      static_cast<std::size_t>(fan.count),
+      static_cast<std::size_t>(fan.count), false,
       [&](RayPacket& rays, int lane, std::size_t i) {
         const auto [c, s] = directions.cos_sin[i];
         rays.set(lane, p_WS, R_WS * Vector3d(c, s, 0), fan.range_max_m);
@@ -353,7 +354,7 @@ void EmbreeScene::cast_fan(const Fan& fan, const RayFilter& filter, std::span<Ra
 void EmbreeScene::cast(std::span<const Ray> rays_, const RayFilter& filter, std::span<RayHit> hits) const {
   prepare();
   for_packets(
-      rays_.size(),
+      rays_.size(), true,
       [&](RayPacket& rays, int lane, std::size_t i) {
         rays.set(lane, rays_[i].origin_W, rays_[i].direction_W, rays_[i].range_max_m);
       },
@@ -368,7 +369,7 @@ void EmbreeScene::find_blocked(std::span<const Ray> rays_, const RayFilter& filt
                                std::span<std::uint8_t> blocked) const {
   prepare();
   for_packets(
-      rays_.size(),
+      rays_.size(), true,
       [&](RayPacket& rays, int lane, std::size_t i) {
         rays.set(lane, rays_[i].origin_W, rays_[i].direction_W, rays_[i].range_max_m);
       },

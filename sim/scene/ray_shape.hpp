@@ -59,6 +59,7 @@ struct alignas(64) RayPacket {
   const RayShape* shape[size];
   std::uint32_t triangle[size];  ///< of a hit mesh
   int part[size];
+  bool coherent = false;  ///< neighbours go nearly the same way
 
   void set(int lane, const Vector3d& origin_W, const Vector3d& direction_W, double range_max_m) {
     for (int i = 0; i < 3; ++i) {

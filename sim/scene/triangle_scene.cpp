@@ -10,33 +10,66 @@ namespace sim {
 
 /// Rays in the frame of the mesh, from its centre.  Callbacks know it by its first member.
 struct TriangleScene::Query {
-  Query(const TriangleScene& scene_, const RayShape& shape_, RayPacket& rays_, unsigned lanes)
-      : scene(scene_), shape(shape_), rays(rays_), floats(scene_.radius_m_, lanes) {
+  Query(const TriangleScene& scene_, const RayShape& shape, const RayPacket& rays_, unsigned lanes)
+      : scene(scene_), rays(rays_), floats(scene_.radius_m_) {
     rtcInitIntersectContext(&context);
+    if (rays.coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     const auto& a = shape.axes;
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const int lane = std::countr_zero(lanes);
-      const double x = rays.origin[0][lane] - shape.center[0];
-      const double y = rays.origin[1][lane] - shape.center[1];
-      const double z = rays.origin[2][lane] - shape.center[2];
-      const double vx = rays.direction[0][lane], vy = rays.direction[1][lane], vz = rays.direction[2][lane];
-      for (int i = 0; i < 3; ++i) {
-        from[lane][i] = a[3 * i] * x + a[3 * i + 1] * y + a[3 * i + 2] * z;
-        direction[lane][i] = a[3 * i] * vx + a[3 * i + 1] * vy + a[3 * i + 2] * vz;
+    const auto& c = shape.center;
+    for (int axis = 0; axis < 3; ++axis)
+      for (int i = 0; i < RayPacket::size; ++i) {
+        from[axis][i] = a[3 * axis] * (rays.origin[0][i] - c[0]) + a[3 * axis + 1] * (rays.origin[1][i] - c[1]) +
+                        a[3 * axis + 2] * (rays.origin[2][i] - c[2]);
+        direction[axis][i] = a[3 * axis] * rays.direction[0][i] + a[3 * axis + 1] * rays.direction[1][i] +
+                             a[3 * axis + 2] * rays.direction[2][i];
       }
-      floats.aim(lane, from[lane][0], from[lane][1], from[lane][2], direction[lane][0], direction[lane][1],
-                 direction[lane][2], rays.range_m[lane]);
+    floats.aim(from, direction, rays.range_m, lanes);
+    for (int i = 0; i < RayPacket::size; ++i) {
+      nearest[i] = std::numeric_limits<float>::infinity();
+      found[i] = 0;
     }
   }
+  Vector3d from_M(int lane) const { return {from[0][lane], from[1][lane], from[2][lane]}; }
+  Vector3d direction_M(int lane) const { return {direction[0][lane], direction[1][lane], direction[2][lane]}; }
+  /// So near to the start that rounding may hide on which side of it the triangle is.
+  bool at_start(float tfar) const { return tfar <= 4 * floats.margin_m(); }
+  void note(int lane, float tfar, std::uint32_t triangle);
 
   RTCIntersectContext context;
   const TriangleScene& scene;
-  const RayShape& shape;
-  RayPacket& rays;
+  const RayPacket& rays;
   unsigned hit = 0;  // lanes
-  double from[RayPacket::size][3], direction[RayPacket::size][3];
+  double from[3][RayPacket::size], direction[3][RayPacket::size];
   FloatRays floats;
+
+  /// Triangles that a ray hits at about the same range: those that share the edge or the corner that it hits.  Which
+  /// of them is the nearest is found in double when all are known; what Embree finds first must not count.
+  struct Candidate {
+    float tfar;
+    std::uint32_t triangle;
+    bool operator<(const Candidate& other) const {
+      return tfar != other.tfar ? tfar < other.tfar : triangle < other.triangle;
+    }
+  };
+  static constexpr int most = 8;
+  Candidate candidates[RayPacket::size][most];
+  int found[RayPacket::size];
+  float nearest[RayPacket::size];
 };
+
+void TriangleScene::Query::note(int lane, float tfar, std::uint32_t triangle) {
+  Candidate* const all = candidates[lane];
+  int& count = found[lane];
+  if (tfar + floats.margin_m() < nearest[lane]) count = 0;
+  nearest[lane] = std::min(nearest[lane], tfar);
+  if (count < most) {
+    all[count++] = {tfar, triangle};
+    return;
+  }
+  // The last of them gives way, whatever the order in which they come.
+  Candidate* const last = std::max_element(all, all + most);
+  *last = std::min(*last, Candidate{tfar, triangle});
+}
 
 TriangleScene::TriangleScene(const Mesh& mesh) : mesh_(mesh), scene_(rtcNewScene(embree_device())) {
   check_embree();
@@ -65,43 +98,61 @@ TriangleScene::TriangleScene(const Mesh& mesh) : mesh_(mesh), scene_(rtcNewScene
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometry(scene_.get(), geometry.get());
   // Robust: no ray slips through between two triangles.
-  if (!getenv("NOROBUST")) rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
   commit_alone(scene_.get());
 }
 
 /// Range to the plane of the triangle, and within what the triangle takes up along the ray: of a triangle seen
-/// edge-on the plane alone says little.  -1 when there is none.
-double TriangleScene::find_range(const Query& query, int lane, std::uint32_t triangle) const {
+/// edge-on the plane alone says little.
+double TriangleScene::find_range(const Vector3d& from_M, const Vector3d& direction_M, std::uint32_t triangle) const {
   const auto& corners = mesh_.triangles[triangle];
-  const Vector3d from = Vector3d::Map(query.from[lane]) + center_m_, direction = Vector3d::Map(query.direction[lane]);
+  const Vector3d from = from_M + center_m_;
   const Vector3d a = mesh_.vertices_m[corners[0]] - from, b = mesh_.vertices_m[corners[1]] - from,
                  c = mesh_.vertices_m[corners[2]] - from;
   const Vector3d normal = (b - a).cross(c - a);
-  const double rate = normal.dot(direction);
-  if (rate == 0) return -1;
-  const double da = a.dot(direction), db = b.dot(direction), dc = c.dot(direction);
-  return std::clamp(normal.dot(a) / rate, std::min({da, db, dc}), std::max({da, db, dc}));
+  const double rate = normal.dot(direction_M);
+  const double da = a.dot(direction_M), db = b.dot(direction_M), dc = c.dot(direction_M);
+  const double low = std::min(std::min(da, db), dc), high = std::max(std::max(da, db), dc);
+  return rate == 0 ? (low + high) / 2 : std::clamp(normal.dot(a) / rate, low, high);
 }
 
 void TriangleScene::filter_cast(const RTCFilterFunctionNArguments* arguments) {
   Query& query = *reinterpret_cast<Query*>(arguments->context);
-  RayPacket& rays = query.rays;
   const unsigned n = arguments->N;
   for (unsigned i = 0; i < n; ++i) {
     if (arguments->valid[i] == 0) continue;
-    arguments->valid[i] = 0;
     const int lane = static_cast<int>(RTCRayN_id(arguments->ray, n, i));
     const std::uint32_t triangle = RTCHitN_primID(arguments->hit, n, i);
-    const double range_m = query.scene.find_range(query, lane, triangle);
-    if (!(range_m >= 0)) continue;
-    // Of two triangles at one range the lower number counts: an answer must not depend on the order of looking.
-    const bool same = range_m == rays.range_m[lane] && rays.part[lane] == query.shape.part;
-    if (!(rays.nearer(lane, range_m, query.shape.part) || (same && triangle < rays.triangle[lane]))) continue;
-    rays.hit(lane, range_m, query.shape, triangle);
-    query.hit |= 1u << lane;
-    RTCRayN_tfar(arguments->ray, n, i) = query.floats.limit_m(lane, range_m);
-    arguments->valid[i] = -1;
+    float& tfar = RTCRayN_tfar(arguments->ray, n, i);
+    if (query.at_start(tfar) && !(query.scene.find_range(query.from_M(lane), query.direction_M(lane), triangle) >= 0)) {
+      arguments->valid[i] = 0;
+      continue;
+    }
+    query.note(lane, tfar, triangle);
+    // Long enough for all candidates.
+    tfar = query.nearest[lane] + query.floats.margin_m();
   }
+}
+
+unsigned TriangleScene::cast(const RayShape& shape, RayPacket& rays, unsigned lanes) const {
+  Query query(*this, shape, rays, lanes);
+  query.floats.intersect(scene_.get(), query.context);
+  unsigned hit = 0;
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    for (int i = 0; i < query.found[lane]; ++i) {
+      const auto [tfar, triangle] = query.candidates[lane][i];
+      if (tfar > query.nearest[lane] + query.floats.margin_m()) continue;
+      const double range_m = find_range(query.from_M(lane), query.direction_M(lane), triangle);
+      // Of two triangles at one range the lower number counts.
+      const bool same = range_m == rays.range_m[lane] && rays.part[lane] == shape.part;
+      if (!(range_m >= 0) || !(rays.nearer(lane, range_m, shape.part) || (same && triangle < rays.triangle[lane])))
+        continue;
+      rays.hit(lane, range_m, shape, triangle);
+      hit |= 1u << lane;
+    }
+  }
+  return hit;
 }
 
 void TriangleScene::filter_blocked(const RTCFilterFunctionNArguments* arguments) {
@@ -110,20 +161,21 @@ void TriangleScene::filter_blocked(const RTCFilterFunctionNArguments* arguments)
   for (unsigned i = 0; i < n; ++i) {
     if (arguments->valid[i] == 0) continue;
     const int lane = static_cast<int>(RTCRayN_id(arguments->ray, n, i));
-    const double range_m = query.scene.find_range(query, lane, RTCHitN_primID(arguments->hit, n, i));
-    const bool blocked = range_m >= 0 && range_m <= query.rays.range_m[lane];
+    const float tfar = RTCRayN_tfar(arguments->ray, n, i);
+    const double limit_m = query.rays.range_m[lane];
+    bool blocked = true;
+    // In the middle of the ray rounding decides nothing.
+    if (query.at_start(tfar) || tfar + 4 * query.floats.margin_m() >= query.floats.limit_m(lane, limit_m)) {
+      const double range_m =
+          query.scene.find_range(query.from_M(lane), query.direction_M(lane), RTCHitN_primID(arguments->hit, n, i));
+      blocked = range_m >= 0 && range_m <= limit_m;
+    }
     if (blocked) query.hit |= 1u << lane;
     arguments->valid[i] = blocked ? -1 : 0;
   }
 }
 
-unsigned TriangleScene::cast(const RayShape& shape, RayPacket& rays, unsigned lanes) const {
-  Query query(*this, shape, rays, lanes);
-  query.floats.intersect(scene_.get(), query.context);
-  return query.hit;
-}
-
-unsigned TriangleScene::find_blocked(const RayShape& shape, RayPacket& rays, unsigned lanes) const {
+unsigned TriangleScene::find_blocked(const RayShape& shape, const RayPacket& rays, unsigned lanes) const {
   Query query(*this, shape, rays, lanes);
   query.floats.find_occluded(scene_.get(), query.context);
   return query.hit;

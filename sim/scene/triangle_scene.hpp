@@ -23,7 +23,7 @@ class TriangleScene {
   /// Notes nearer hits on the part `shape` in the packet; returns the lanes (bits) that have one.
   unsigned cast(const RayShape& shape, RayPacket& rays, unsigned lanes) const;
   /// The lanes of `lanes` that hit the part within their range.
-  unsigned find_blocked(const RayShape& shape, RayPacket& rays, unsigned lanes) const;
+  unsigned find_blocked(const RayShape& shape, const RayPacket& rays, unsigned lanes) const;
   /// Of unit length, in the frame of the mesh.
   Vector3d normal(std::uint32_t triangle) const;
 
@@ -31,7 +31,7 @@ class TriangleScene {
   struct Query;
   static void filter_cast(const RTCFilterFunctionNArguments* arguments);
   static void filter_blocked(const RTCFilterFunctionNArguments* arguments);
-  double find_range(const Query& query, int lane, std::uint32_t triangle) const;
+  double find_range(const Vector3d& from_M, const Vector3d& direction_M, std::uint32_t triangle) const;
 
   const Mesh& mesh_;
   Vector3d center_m_ = Vector3d::Zero(), half_extents_m_ = Vector3d::Zero();
