@@ -162,8 +162,10 @@ struct ScaleScene::Wanderer {
   sim::Bytes buffer;
 };
 
-ScaleScene::ScaleScene(int robots) : loaded_(sim::load_world_text(scale_scene_text(robots), "scale.yaml")) {
+ScaleScene::ScaleScene(int robots, const std::vector<std::string>& sets, int threads)
+    : loaded_(sim::load_world_text(scale_scene_text(robots), "scale.yaml", {sets, {}, false, {}})) {
   world_ = std::make_unique<sim::World>(loaded_.config, bus_);
+  world_->use_threads(threads);
   for (const auto& vehicle : world_->vehicles())
     wanderers_.push_back(std::make_unique<Wanderer>(bus_, vehicle->name()));
 }
@@ -180,18 +182,18 @@ void ScaleScene::run_for(double time_s) {
   while (world_->now() < end) step();
 }
 
-ScaleFigures measure_scale(int robots, double warm_up_s, double measure_s) {
+ScaleFigures measure_scale(int robots, const ScaleOptions& options) {
   ScaleFigures figures;
   figures.robots = robots;
   const double begin_s = wall_seconds();
-  ScaleScene scene(robots);
+  ScaleScene scene(robots, options.sets, options.threads);
   figures.load_s = wall_seconds() - begin_s;
-  scene.run_for(warm_up_s);
+  scene.run_for(options.warm_up_s);
   const double cpu_s = cpu_seconds();
   const double wall_s = wall_seconds();
-  scene.run_for(measure_s);
-  figures.cpu_ms_per_robot_second = 1e3 * (cpu_seconds() - cpu_s) / robots / measure_s;
-  figures.real_time_factor = measure_s / (wall_seconds() - wall_s);
+  scene.run_for(options.measure_s);
+  figures.cpu_ms_per_robot_second = 1e3 * (cpu_seconds() - cpu_s) / robots / options.measure_s;
+  figures.real_time_factor = options.measure_s / (wall_seconds() - wall_s);
   figures.state_hash = scene.world().state_hash();
   return figures;
 }
