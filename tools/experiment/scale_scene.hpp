@@ -27,6 +27,7 @@ class ScaleScene {
   void step();
   void run_for(double time_s);
   sim::World& world() { return *world_; }
+  const sim::World& world() const { return *world_; }
   const sim::InProcessBus& bus() const { return bus_; }
 
  private:
