@@ -23,7 +23,7 @@ struct PhysicsConfig {
   double contact_surface_layer_m = 0.0005;
   int max_contacts_per_pair = 8;
   std::string space = "sap";    ///< sap, quadtree, hash, simple
-  std::string rays = "ode";     ///< embree, ode: which library follows rays
+  std::string rays = "embree";  ///< embree, ode: which library follows rays
   double max_speed_mps = 1000;  ///< a body faster than this has exploded
   double max_distance_m = 1e7;  ///< a body farther from the origin than this has exploded
 

@@ -39,7 +39,7 @@ PhysicsWorld::PhysicsWorld(const PhysicsConfig& config, const std::vector<Materi
   dWorldSetQuickStepNumIterations(world, config.quick_iterations);
   // ODE's auto-disable keeps hidden counters, which a snapshot could not restore.
   dWorldSetAutoDisableFlag(world, 0);
-  impl_->scene = std::make_unique<OdeScene>(impl_->moves);
+  impl_->scene = make_world_scene(config.rays, impl_->moves);
 }
 
 PhysicsWorld::~PhysicsWorld() {

@@ -11,7 +11,7 @@
 #include "sim/physics/ode_library.hpp"
 #include "sim/physics/part_shape.hpp"
 #include "sim/physics/physics_world.hpp"
-#include "sim/scene/ode_scene.hpp"
+#include "sim/scene/world_scene.hpp"
 
 namespace sim {
 
