@@ -15,7 +15,7 @@ struct PhysicsConfig {
   double step_s = 0.01;           ///< a whole number of microseconds
   double gravity_mps2 = 9.80665;  ///< downwards (ISO 80000-3 standard gravity)
   std::string solver = "auto";    ///< auto, step, quick
-  int quick_above_rows = 200;     ///< auto: QuickStep when the largest island has more constraint rows
+  int quick_above_rows = 100;     ///< auto: QuickStep for islands with more constraint rows
   int quick_iterations = 20;
   double erp = 0.2;
   double cfm = 1e-9;
