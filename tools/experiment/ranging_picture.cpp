@@ -38,7 +38,7 @@ struct Drawing {
 template <typename Message>
 std::vector<Message> decode_all(const std::vector<sim::Bytes>& payloads) {
   std::vector<Message> all;
-  for (const sim::Bytes& payload : payloads) all.push_back(shoal::decode<Message>(payload, shoal::Finite::any));
+  for (const sim::Bytes& payload : payloads) all.push_back(shoal::decode<Message>(payload, shoal::Finite::required));
   return all;
 }
 
@@ -48,7 +48,7 @@ Message pick(const std::vector<sim::Bytes>& payloads, std::optional<int> number)
   const int index = number.value_or(count - 1);
   if (index < 0 || index >= count)
     throw std::runtime_error(fmt::format("there is no message {}; there are {}, from 0", index, count));
-  return shoal::decode<Message>(payloads[static_cast<std::size_t>(index)], shoal::Finite::any);
+  return shoal::decode<Message>(payloads[static_cast<std::size_t>(index)], shoal::Finite::required);
 }
 
 /// A raster of bytes with its lower left corner at (x, y).
@@ -61,7 +61,8 @@ Drawing draw(const shoal::sonar_image_t& image) {
   if (image.nbins < 1 || image.nbeams < 1 || image.size != image.nbins * image.nbeams ||
       !(image.range_max_m > image.range_min_m) || !(image.range_min_m >= 0))
     throw std::runtime_error("the picture has no sensible size");
-  const double half_rad = std::min(std::numbers::pi, 0.5 * std::abs(image.radstep) * image.nbeams);
+  // A single beam is drawn as a narrow wedge.
+  const double half_rad = std::clamp(0.5 * std::abs(image.radstep) * image.nbeams, 0.05, std::numbers::pi);
   const double half_width_m = image.range_max_m * (half_rad < std::numbers::pi / 2 ? std::sin(half_rad) : 1);
   const double low_m = half_rad < std::numbers::pi / 2 ? 0 : -image.range_max_m;
   const double cell_m = 2 * half_width_m / 500;
@@ -72,13 +73,12 @@ Drawing draw(const shoal::sonar_image_t& image) {
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column) {
       const double right_m = -half_width_m + (column + 0.5) * cell_m, forward_m = low_m + (row + 0.5) * cell_m;
-      const auto bin = static_cast<int>(std::floor((std::hypot(right_m, forward_m) - image.range_min_m) / bin_m));
+      const double bin = std::floor((std::hypot(right_m, forward_m) - image.range_min_m) / bin_m);
       const double bearing_rad = std::atan2(-right_m, forward_m);
-      const int beam =
-          image.radstep != 0 ? static_cast<int>(std::lround((bearing_rad - image.rad0) / image.radstep)) : 0;
+      const double beam = image.radstep != 0 ? std::round((bearing_rad - image.rad0) / image.radstep) : 0;
       const bool inside = bin >= 0 && bin < image.nbins && beam >= 0 && beam < image.nbeams;
-      drawing.data +=
-          inside ? static_cast<char>(image.data[static_cast<std::size_t>(bin * image.nbeams + beam)]) : '\0';
+      const std::size_t at = inside ? static_cast<std::size_t>(bin * image.nbeams + beam) : 0;
+      drawing.data += inside ? static_cast<char>(image.data[at]) : '\0';
     }
   drawing.commands = fmt::format("{}set size ratio -1\nset xlabel 'right (m)'\nset ylabel 'forward (m)'\n{}",
                                  sonar_palette, image_command(width, height, -half_width_m, low_m, cell_m, cell_m));
@@ -88,16 +88,20 @@ Drawing draw(const shoal::sonar_image_t& image) {
 Drawing draw(const std::vector<shoal::side_scan_t>& lines) {
   const int bins = lines.front().nbins;
   const double range_m = lines.front().range_max_m, near_m = lines.front().range_min_m;
+  if (bins < 1 || !(range_m > near_m) || !(near_m >= 0)) throw std::runtime_error("the lines have no sensible size");
+  const double bin_m = (range_m - near_m) / bins;
+  const double unheard = std::round(2 * near_m / bin_m);  // between the two sides
+  if (unheard > 10000) throw std::runtime_error("the lines have no sensible size");
   Drawing drawing;
   for (const auto& line : lines) {
-    if (line.nbins != bins || bins < 1) throw std::runtime_error("the number of bins changes");
+    if (line.nbins != bins) throw std::runtime_error("the number of bins changes");
     drawing.data.append(line.port.rbegin(), line.port.rend());
+    drawing.data.append(static_cast<std::size_t>(unheard), '\0');
     drawing.data.append(line.starboard.begin(), line.starboard.end());
   }
-  const double bin_m = (range_m - near_m) / bins;
-  drawing.commands =
-      fmt::format("{}set xlabel 'slant range (m): port to the left'\nset ylabel 'ping'\n{}", sonar_palette,
-                  image_command(2 * bins, static_cast<int>(lines.size()), -bins * bin_m, -0.5, bin_m, 1));
+  drawing.commands = fmt::format(
+      "{}set xlabel 'slant range (m): port to the left'\nset ylabel 'ping'\n{}", sonar_palette,
+      image_command(2 * bins + static_cast<int>(unheard), static_cast<int>(lines.size()), -range_m, -0.5, bin_m, 1));
   return drawing;
 }
 
