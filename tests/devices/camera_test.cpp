@@ -191,7 +191,7 @@ vehicles:
         - {name: base, parts: [{shape: box, mass_kg: 1e6, size_m: [0.1, 0.1, 0.1], position_m: [0, 0, -3]}]}
         - {name: table, parts: [{shape: cylinder, radius_m: 0.1, length_m: 0.1, mass_kg: 1, position_m: [0, 0, -2]}]}
       joints: [{name: axle, type: hinge, bodies: [base, table], axis: [0, 0, 1],
-                motor_velocity: -2, motor_max_force: 1000}]
+                motor_velocity: 2, motor_max_force: 1000}]
       devices:
         - {name: camera, type: camera, body: table, rate_hz: 5, phase_s: 0.2, image: segmentation_vehicles,
            focal_px: [200], width: 200, height: 101)" +
