@@ -25,6 +25,8 @@ class Islands {
   /// A contact between two bodies; either may be -1: fixed.
   void add_contact(int first, int second, int rows);
   int largest_rows() const { return largest_; }
+  /// Of the island that a moving body is in, with the contacts of this step.
+  int rows_of(int body) { return rows_[static_cast<std::size_t>(root(parent_, body))]; }
 
  private:
   static int root(std::vector<int>& parent, int body);

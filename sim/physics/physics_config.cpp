@@ -16,9 +16,9 @@ void PhysicsConfig::read(ParamReader& in) {
     in.error("step_s", "'step_s' must be a whole number of microseconds, got " + number_text(step_s) + " s");
   in.read("gravity_mps2", gravity_mps2, any_number(), "gravity, downwards");
   in.read_choice("solver", solver, {"auto", "step", "quick"},
-                 "step: exact; quick: iterative; auto: step, but quick for large islands");
+                 "step: exact; quick: iterative; auto: quick for large islands, step for the others");
   in.read("quick_above_rows", quick_above_rows, at_least(0),
-          "auto: quick when the largest island has more constraint rows");
+          "auto: islands with more constraint rows are stepped by quick");
   in.read("quick_iterations", quick_iterations, between(1, 10000), "iterations of the quick solver");
   in.read("erp", erp, between(0, 1), "part of a joint's or contact's error put right in each step");
   in.read("cfm", cfm, between(0, 1), "softness of joints and contacts, (m/s)/N s");

@@ -16,7 +16,7 @@ struct PhysicsConfig {
   double step_s = 0.01;           ///< a whole number of microseconds
   double gravity_mps2 = 9.80665;  ///< downwards (ISO 80000-3 standard gravity)
   std::string solver = "auto";    ///< auto, step, quick
-  int quick_above_rows = 200;     ///< auto: QuickStep when the largest island has more constraint rows
+  int quick_above_rows = 100;     ///< auto: QuickStep for islands with more constraint rows
   int quick_iterations = 20;
   double erp = 0.2;
   double cfm = 1e-9;
@@ -24,7 +24,7 @@ struct PhysicsConfig {
   double contact_surface_layer_m = 0.0005;
   int max_contacts_per_pair = 8;
   std::string space = "sap";    ///< sap, quadtree, hash, simple
-  std::string rays = "ode";     ///< embree, ode: which library follows rays
+  std::string rays = "embree";  ///< embree, ode: which library follows rays
   double max_speed_mps = 1000;  ///< a body faster than this has exploded
   double max_distance_m = 1e7;  ///< a body farther from the origin than this has exploded
 

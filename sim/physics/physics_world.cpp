@@ -39,7 +39,7 @@ PhysicsWorld::PhysicsWorld(const PhysicsConfig& config, const std::vector<Materi
   dWorldSetQuickStepNumIterations(world, config.quick_iterations);
   // ODE's auto-disable keeps hidden counters, which a snapshot could not restore.
   dWorldSetAutoDisableFlag(world, 0);
-  impl_->scene = std::make_unique<OdeScene>(impl_->moves);
+  impl_->scene = make_world_scene(config.rays, impl_->moves);
 }
 
 PhysicsWorld::~PhysicsWorld() {
@@ -119,18 +119,35 @@ void PhysicsWorld::Impl::solve(std::int64_t step_number) {
     if (body->gyroscopic_) body->add_gyroscopic_torque(step_s);
   for (Joint* joint : measured_joints) joint->note_before_step();
   // WorldStep is exact and costs the cube of an island's rows; the rows decide, never the time it takes.
-  const bool too_large = config.solver == "auto" && counts.largest_island_rows > config.quick_above_rows;
-  counts.quick = config.solver == "quick" || too_large;
-  if (too_large) ++quick_steps;
-  if (counts.quick) {
-    dRandSetSeed(step_seed(seed, step_number));
+  const bool some_too_large = config.solver == "auto" && counts.largest_island_rows > config.quick_above_rows;
+  counts.quick = config.solver == "quick" || some_too_large;
+  if (counts.quick) dRandSetSeed(step_seed(seed, step_number));
+  if (some_too_large)
+    step_islands_by_size();
+  else if (counts.quick)
     dWorldQuickStep(world.get(), step_s);
-  } else {
+  else
     dWorldStep(world.get(), step_s);
-  }
   collider.read_forces(contact_reports);
   dJointGroupEmpty(contacts.get());
   for (Joint* joint : measured_joints) joint->note_load();
+}
+
+/// QuickStep for the islands with too many rows, WorldStep for the others.  ODE leaves out the bodies that are
+/// disabled, and nothing connects two islands.
+void PhysicsWorld::Impl::step_islands_by_size() {
+  ++quick_steps;
+  large_.clear();
+  small_.clear();
+  for (const Body* body : moving)
+    (islands.rows_of(body->number_) > config.quick_above_rows ? large_ : small_).push_back(body->ode_.get());
+  const auto step_all_but = [](const std::vector<dBodyID>& others, const auto& step) {
+    for (const dBodyID body : others) dBodyDisable(body);
+    step();
+    for (const dBodyID body : others) dBodyEnable(body);
+  };
+  step_all_but(large_, [this] { dWorldStep(world.get(), config.step_s); });
+  step_all_but(small_, [this] { dWorldQuickStep(world.get(), config.step_s); });
 }
 
 /// Checks the bodies and lets the joints follow: a group's joints right after its bodies, which are in the

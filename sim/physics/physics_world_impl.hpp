@@ -12,8 +12,12 @@
 #include "sim/physics/ode_library.hpp"
 #include "sim/physics/part_shape.hpp"
 #include "sim/physics/physics_world.hpp"
+<<<<<<< HEAD
 #include "sim/physics/terrain_geom.hpp"
 #include "sim/scene/ode_scene.hpp"
+=======
+#include "sim/scene/world_scene.hpp"
+>>>>>>> main
 
 namespace sim {
 
@@ -54,6 +58,7 @@ struct PhysicsWorld::Impl {
   double gravity_mps2 = config.gravity_mps2;
   SceneMoves moves;
   std::unique_ptr<WorldScene> scene;
+  std::vector<dBodyID> large_, small_;  // by the rows of their islands, used from step to step
   StepCounts counts;
   std::int64_t quick_steps = 0;
   bool broken = false;  ///< ODE threw in mid-step
@@ -75,6 +80,7 @@ struct PhysicsWorld::Impl {
   void set_mass(Body& body, const BodyConfig& config, const dMass& total);
   void collide();
   void solve(std::int64_t step_number);
+  void step_islands_by_size();
   void finish(std::int64_t step_number);
   bool out_of_bounds(const Body& body) const;
   [[noreturn]] void fault(const Body& body, std::int64_t step_number) const;

@@ -43,4 +43,8 @@ class WorldScene : public Scene {
   virtual void remove_group(int group, std::span<const int> parts) = 0;
 };
 
+/// By the name of the library that follows the rays, see PhysicsConfig::rays: embree or ode.
+/// Throws std::invalid_argument for another name.
+std::unique_ptr<WorldScene> make_world_scene(const std::string& library, const SceneMoves& moves);
+
 }  // namespace sim

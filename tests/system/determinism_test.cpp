@@ -37,12 +37,13 @@ class Determinism : public testing::TestWithParam<Case> {
     return state_hash_in(run_shoal(run_arguments(more)));
   }
   /// The hash after every step, in this process.
-  std::vector<std::uint64_t> hashes_here() const {
+  std::vector<std::uint64_t> hashes_here(int threads = 1) const {
     sim::LoadOptions options;
     options.encode_message = shoal::encode_own_message;
     const auto loaded = sim::load_world(source(GetParam().world), options);
     sim::InProcessBus bus;
     sim::World world(loaded.config, bus);
+    world.use_threads(threads);
     std::vector<std::uint64_t> hashes;
     while (world.now() < sim::from_seconds(std::stod(GetParam().duration_s))) {
       world.step();
@@ -64,6 +65,12 @@ TEST_P(Determinism, HoldsForASecondRunInOneProcessAndInAnotherProcess) {
   EXPECT_EQ(hash_of({"--bus", "none", "--speed", "max"}), hexadecimal(first.back()));
 }
 
+TEST_P(Determinism, HoldsForAnyNumberOfThreads) {
+  const auto expected = hashes_here(1);
+  EXPECT_EQ(hashes_here(2), expected);
+  EXPECT_EQ(hashes_here(8), expected);
+}
+
 TEST_P(Determinism, HoldsForAnySpeedBusRecordAndListener) {
   const ScratchFolder folder;
   const std::string expected = hash_of({"--bus", "none", "--speed", "max"});
@@ -83,8 +90,8 @@ TEST_P(Determinism, HoldsForAnySpeedBusRecordAndListener) {
 
 TEST_P(Determinism, HoldsForRecordsByteByByte) {
   const ScratchFolder folder;
-  hash_of({"--bus", "none", "--speed", "max", "--record", folder.file("a.lcm")});
-  hash_of({"--lcm-url", own_url(1), "--speed", "50", "--record", folder.file("b.lcm")});
+  hash_of({"--bus", "none", "--speed", "max", "--threads", "1", "--record", folder.file("a.lcm")});
+  hash_of({"--lcm-url", own_url(1), "--speed", "50", "--threads", "8", "--record", folder.file("b.lcm")});
   const std::string record = text_of_file(folder.file("a.lcm"));
   EXPECT_GT(record.size(), 1000u);
   EXPECT_TRUE(record == text_of_file(folder.file("b.lcm")));

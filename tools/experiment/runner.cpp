@@ -90,6 +90,7 @@ class Run {
         scoring_(world_),
         duration_s_(options.duration_s.value_or(loaded.config.run.duration_s)),
         progress_(duration_s_, options.quiet) {
+    world_.use_threads(options.threads);
     for (sim::Bus* bus : buses_.other_networks()) service_.serve_vehicles(*bus);
     control_.speed = options.speed.value_or(loaded.config.run.speed);
     control_.paused = options.paused;

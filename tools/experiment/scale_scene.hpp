@@ -20,12 +20,14 @@ std::string scale_scene_text(int robots, bool one_entry_each = false);
 /// The scale scene as it runs: rovers that wander in process at 10 Hz, all reports published on the in-process bus.
 class ScaleScene {
  public:
-  explicit ScaleScene(int robots);
+  /// Throws ConfigError for `sets` (path=value) that do not fit.
+  explicit ScaleScene(int robots, const std::vector<std::string>& sets = {}, int threads = 1);
   ~ScaleScene();
   /// One step of the world, and what the wanderers do about the scans that came.
   void step();
   void run_for(double time_s);
   sim::World& world() { return *world_; }
+  const sim::World& world() const { return *world_; }
   const sim::InProcessBus& bus() const { return bus_; }
 
  private:
@@ -45,7 +47,14 @@ struct ScaleFigures {
   std::uint64_t state_hash = 0;
 };
 
-/// Loads, warms up for `warm_up_s` of simulated time, measures over `measure_s`.
-ScaleFigures measure_scale(int robots, double warm_up_s, double measure_s);
+struct ScaleOptions {
+  double warm_up_s = 10;          ///< simulated time before the measurement
+  double measure_s = 20;          ///< simulated time measured
+  int threads = 1;                ///< see World::use_threads
+  std::vector<std::string> sets;  ///< path=value
+};
+
+/// Loads, warms up, measures.
+ScaleFigures measure_scale(int robots, const ScaleOptions& options);
 
 }  // namespace tools

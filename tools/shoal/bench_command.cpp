@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 
+#include "sim/thread_pool.hpp"
 #include "tools/experiment/scale_scene.hpp"
 #include "tools/shoal/commands.hpp"
 
@@ -12,16 +13,17 @@ namespace {
 
 struct BenchArguments {
   std::vector<int> robots{1, 10, 100, 1000};
-  double warm_up_s = 10;
-  double measure_s = 20;
+  ScaleOptions scale;
 };
 
 void bench(const BenchArguments& arguments) {
-  std::cout << "scale scene: wandering rovers, 180 rays at 10 Hz each, step 0.01 s, one thread, in-process bus\n"
+  const int threads = sim::ThreadPool(arguments.scale.threads).threads();
+  std::cout << fmt::format("scale scene: wandering rovers, 180 rays at 10 Hz each, step 0.01 s, {}, in-process bus\n",
+                           threads == 1 ? "one thread" : fmt::format("{} threads", threads))
             << fmt::format("{:>7} {:>9} {:>28} {:>18} {:>18}\n", "robots", "load s", "CPU ms per robot second",
                            "real-time factor", "state hash");
   for (const int robots : arguments.robots) {
-    const ScaleFigures figures = measure_scale(robots, arguments.warm_up_s, arguments.measure_s);
+    const ScaleFigures figures = measure_scale(robots, arguments.scale);
     std::cout << fmt::format("{:>7} {:>9.3f} {:>28.3f} {:>18.2f}   {:016x}\n", robots, figures.load_s,
                              figures.cpu_ms_per_robot_second, figures.real_time_factor, figures.state_hash)
               << std::flush;
@@ -36,10 +38,18 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->add_option("--robots", arguments->robots, "how many; several runs one after the other")
       ->delimiter(',')
       ->check(CLI::Range(1, 100000));
-  command->add_option("--warm-up", arguments->warm_up_s, "simulated seconds before the measurement")
+  command->add_option("--warm-up", arguments->scale.warm_up_s, "simulated seconds before the measurement")
       ->check(number_from(0, 1e9));
-  command->add_option("--measure", arguments->measure_s, "simulated seconds measured")->check(number_from(0.001, 1e9));
-  command->footer("Examples:\n  shoal bench\n  shoal bench --robots 100 --measure 60");
+  command->add_option("--measure", arguments->scale.measure_s, "simulated seconds measured")
+      ->check(number_from(0.001, 1e9));
+  command->add_option("--threads", arguments->scale.threads, "threads that follow rays; 0: one for each processor")
+      ->check(CLI::Range(0, 256));
+  command->add_option("--set", arguments->scale.sets, "path=value: change a value of the scene")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command->footer(
+      "Examples:\n  shoal bench\n  shoal bench --robots 100 --measure 60\n"
+      "  shoal bench --robots 1000 --threads 2 --set physics.rays=ode");
   command->callback([arguments, &exit_code] {
     bench(*arguments);
     exit_code = exit_ok;

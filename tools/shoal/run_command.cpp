@@ -79,6 +79,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--results", arguments->run.results, "directory for summary.json, CSV files and plots");
   command->add_flag("--paused", arguments->run.paused, "wait for a resume on sim.control");
   command->add_flag("--launch", arguments->run.launch, "start the programs that the world names");
+  command->add_option("--threads", arguments->run.threads, "threads that follow rays; 0: one for each processor")
+      ->check(CLI::Range(0, 256));
   command->add_option("--await", arguments->run.await, "lockstep clients, started by hand, to wait for")
       ->delimiter(',')
       ->type_size(1)

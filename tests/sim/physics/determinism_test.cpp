@@ -114,6 +114,27 @@ TEST(QuickFallback, IsTakenForLargeIslandsOnlyAndCounted) {
   EXPECT_EQ(world->quick_steps(), 10);
 }
 
+TEST(QuickFallback, LeavesTheOtherIslandsToTheExactSolver) {
+  PhysicsConfig config;
+  config.quick_above_rows = 60;
+  // A box that slides, once alone and once beside a stack that is too large.
+  const auto slide = [&](bool with_stack) {
+    const auto world = make_world(config);
+    add_ground(*world);
+    sim::Body& sliding = add(*world, body("sliding", {box({0.5, 0.5, 0.5}, 1)}), translation(0, 0, 0.2495));
+    sliding.set_velocity_W({2, 1, 0}, {0, 0, 0.3});
+    for (int i = 0; with_stack && i < 8; ++i)
+      add(*world, body("stacked" + std::to_string(i), {box({0.5, 0.5, 0.5}, 1)}),
+          translation(0, 9, 0.2495 + 0.4995 * i));
+    for (int i = 0; i < 20; ++i) world->step(i);
+    EXPECT_EQ(world->quick_steps(), with_stack ? 20 : 0);
+    sim::StateHash hash;
+    sliding.hash_state(hash);
+    return hash.value();
+  };
+  EXPECT_EQ(slide(true), slide(false));
+}
+
 TEST(QuickFallback, NeverHappensWithSolverStep) {
   PhysicsConfig config;
   config.solver = "step";

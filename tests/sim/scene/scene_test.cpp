@@ -1,4 +1,4 @@
-#include "sim/scene/ode_scene.hpp"
+#include "sim/scene/scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,6 @@
 namespace {
 
 using namespace small_worlds;
-using sim::Fan;
 using sim::RayFilter;
 using sim::RayHit;
 
@@ -23,8 +22,33 @@ struct Hit {
   Vector3d normal;
 };
 
+/// Each test runs with each library.
+class RayTest : public testing::TestWithParam<const char*> {
+ protected:
+  std::unique_ptr<PhysicsWorld> make_world(PhysicsConfig config = {}) const {
+    config.rays = GetParam();
+    return small_worlds::make_world(config);
+  }
+  std::optional<RayHit> look_at(const PartConfig& part, const Vector3d& from, const Vector3d& direction) const;
+  std::unique_ptr<PhysicsWorld> random_scene(std::mt19937& random) const;
+};
+
+const auto libraries = testing::Values("embree", "ode");
+const auto library_name = [](const auto& info) { return std::string(info.param); };
+
+class Ray : public RayTest {};
+class Filter : public RayTest {};
+class SceneOf : public RayTest {};
+class Fan : public RayTest {};
+class Cast : public RayTest {};
+INSTANTIATE_TEST_SUITE_P(With, Ray, libraries, library_name);
+INSTANTIATE_TEST_SUITE_P(With, Filter, libraries, library_name);
+INSTANTIATE_TEST_SUITE_P(With, SceneOf, libraries, library_name);
+INSTANTIATE_TEST_SUITE_P(With, Fan, libraries, library_name);
+INSTANTIATE_TEST_SUITE_P(With, Cast, libraries, library_name);
+
 /// One fixed body of one part at (5, 0, 0), seen from the origin.
-std::optional<RayHit> look_at(const PartConfig& part, const Vector3d& from, const Vector3d& direction) {
+std::optional<RayHit> RayTest::look_at(const PartConfig& part, const Vector3d& from, const Vector3d& direction) const {
   const auto world = make_world();
   add(*world, body("target", {part}), translation(5, 0, 0), Motion::fixed);
   return world->scene().cast(from, direction.normalized(), 100, {});
@@ -37,7 +61,7 @@ void expect_hit(const std::optional<RayHit>& found, const Hit& expected) {
   EXPECT_EQ(found->part, 0);
 }
 
-TEST(Ray, HitsTheNearFaceOfABox) {
+TEST_P(Ray, HitsTheNearFaceOfABox) {
   expect_hit(look_at(box({2, 4, 6}, 0), {0, 1, 2}, {1, 0, 0}), {4, {-1, 0, 0}});
   expect_hit(look_at(box({2, 4, 6}, 0), {5, 10, 0}, {0, -1, 0}), {8, {0, 1, 0}});
   // Turned by 45 degrees a cube of side 2 shows its edge, beside which the ray runs down a face.
@@ -45,19 +69,19 @@ TEST(Ray, HitsTheNearFaceOfABox) {
              {5 - std::sqrt(2) + 0.5, {-std::sqrt(0.5), std::sqrt(0.5), 0}});
 }
 
-TEST(Ray, HitsASphere) {
+TEST_P(Ray, HitsASphere) {
   expect_hit(look_at(sphere(1, 0), {0, 0, 0}, {1, 0, 0}), {4, {-1, 0, 0}});
   expect_hit(look_at(sphere(1, 0), {0, 0.6, 0}, {1, 0, 0}), {5 - 0.8, {-0.8, 0.6, 0}});
 }
 
-TEST(Ray, HitsTheSideAndTheCapOfACapsule) {
+TEST_P(Ray, HitsTheSideAndTheCapOfACapsule) {
   const PartConfig capsule = round("capsule", 1, 4, 0);
   expect_hit(look_at(capsule, {0, 0.6, 1}, {1, 0, 0}), {5 - 0.8, {-0.8, 0.6, 0}});
   expect_hit(look_at(capsule, {0, 0, 2.6}, {1, 0, 0}), {5 - 0.8, {-0.8, 0, 0.6}});
   expect_hit(look_at(capsule, {5, 0, 10}, {0, 0, -1}), {7, {0, 0, 1}});
 }
 
-TEST(Ray, HitsTheSideAndTheEndOfACylinder) {
+TEST_P(Ray, HitsTheSideAndTheEndOfACylinder) {
   const PartConfig cylinder = round("cylinder", 1, 4, 0);
   expect_hit(look_at(cylinder, {0, 0.6, 1}, {1, 0, 0}), {5 - 0.8, {-0.8, 0.6, 0}});
   expect_hit(look_at(cylinder, {5.5, 0, 10}, {0, 0, -1}), {8, {0, 0, 1}});
@@ -66,13 +90,13 @@ TEST(Ray, HitsTheSideAndTheEndOfACylinder) {
   expect_hit(look_at(at(cylinder, {0, 0, 0}, {pi / 2, 0, 0}), {0, 1.9, 0.6}, {1, 0, 0}), {5 - 0.8, {-0.8, 0, 0.6}});
 }
 
-TEST(Ray, HitsAPlaneAtAnAngle) {
+TEST_P(Ray, HitsAPlaneAtAnAngle) {
   // 45 degrees down from 3 m.
   expect_hit(look_at(plane(), {0, 0, 3}, {1, 0, -1}), {3 * std::sqrt(2), {0, 0, 1}});
   EXPECT_FALSE(look_at(plane(), {0, 0, 3}, {1, 0, 1}).has_value());
 }
 
-TEST(Ray, EndsAtItsRange) {
+TEST_P(Ray, EndsAtItsRange) {
   const auto world = make_world();
   add(*world, body("target", {sphere(1, 0)}), translation(5, 0, 0), Motion::fixed);
   EXPECT_TRUE(world->scene().cast({0, 0, 0}, {1, 0, 0}, 4.001, {}).has_value());
@@ -81,7 +105,7 @@ TEST(Ray, EndsAtItsRange) {
   EXPECT_FALSE(world->scene().occluded({0, 0, 0}, {0, 10, 0}, {}));
 }
 
-TEST(Ray, HitsTheNearestOfMany) {
+TEST_P(Ray, HitsTheNearestOfMany) {
   const auto world = make_world();
   for (const double x : {30.0, 10.0, 20.0})
     add(*world, body("b" + std::to_string(x), {box({2, 2, 2}, 0)}), translation(x, 0, 0), Motion::fixed);
@@ -92,17 +116,17 @@ TEST(Ray, HitsTheNearestOfMany) {
   EXPECT_EQ(world->parts()[1].name, "b10.000000/b10.000000/1");
 }
 
-TEST(Ray, OfTwoPartsInOnePlaceHitsTheLowerNumber) {
+TEST_P(Ray, OfTwoPartsInOnePlaceHitsTheLowerNumber) {
   const auto world = make_world();
   for (const char* name : {"a", "b"}) add(*world, body(name, {box({2, 2, 2}, 0)}), translation(5, 0, 0), Motion::fixed);
   EXPECT_EQ(world->scene().cast({0, 0, 0}, {1, 0, 0}, 100, {})->part, 0);
 }
 
-TEST(Ray, HitsAMesh) {
+TEST_P(Ray, HitsAMesh) {
   // A tetrahedron standing on z = 0, its slope towards -x through (-1, y, 0) and (0, 0, 1).
   PartConfig part;
   part.shape = "mesh";
-  part.mesh = testing::TempDir() + "/ode_scene_test.obj";
+  part.mesh = testing::TempDir() + "/scene_test.obj";
   FILE* file = std::fopen(part.mesh.c_str(), "w");
   ASSERT_NE(file, nullptr);
   std::fputs("v -1 -1 0\nv -1 1 0\nv 2 0 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n", file);
@@ -117,8 +141,10 @@ TEST(Ray, HitsAMesh) {
   EXPECT_EQ(seen[0].range_m, hit->range_m);
 }
 
-TEST(Filter, SeesOnlyItsCategoriesAndNotItsOwnGroup) {
-  PhysicsWorld world({}, {}, {}, {"glass"}, 1);
+TEST_P(Filter, SeesOnlyItsCategoriesAndNotItsOwnGroup) {
+  PhysicsConfig config;
+  config.rays = GetParam();
+  PhysicsWorld world(config, {}, {}, {"glass"}, 1);
   PartConfig pane = box({0.1, 2, 2}, 0);
   pane.category = "glass";
   add(world, body("pane", {pane}), translation(2, 0, 0), Motion::fixed);
@@ -140,7 +166,7 @@ TEST(Filter, SeesOnlyItsCategoriesAndNotItsOwnGroup) {
   EXPECT_EQ(part_seen({0, -1}), -1);
 }
 
-TEST(Scene, SeesBodiesWhereTheyAreAfterTheStep) {
+TEST_P(SceneOf, SeesBodiesWhereTheyAreAfterTheStep) {
   PhysicsConfig config;
   config.gravity_mps2 = 0;
   const auto world = make_world(config);
@@ -157,7 +183,7 @@ TEST(Scene, SeesBodiesWhereTheyAreAfterTheStep) {
   EXPECT_NEAR(range(), 29.5, 1e-12);
 }
 
-TEST(Fan, SeesASquareRoom) {
+TEST_P(Fan, SeesASquareRoom) {
   const auto world = make_world();
   add_ground(*world);
   const Pose walls[] = {translation(2.5, 0, 0), translation(-2.5, 0, 0), translation(0, 2.5, 0),
@@ -165,7 +191,7 @@ TEST(Fan, SeesASquareRoom) {
   for (int i = 0; i < 4; ++i)
     add(*world, body("wall" + std::to_string(i), {box(i < 2 ? Vector3d(1, 6, 2) : Vector3d(6, 1, 2), 0)}),
         walls[i] * translation(0, 0, 1), Motion::fixed);
-  Fan fan;
+  sim::Fan fan;
   fan.X_WS = translation(0, 0, 0.5);
   fan.first_angle_rad = -pi;
   fan.count = 360;
@@ -179,7 +205,7 @@ TEST(Fan, SeesASquareRoom) {
   }
 }
 
-TEST(Fan, TiltedDownSeesTheGround) {
+TEST_P(Fan, TiltedDownSeesTheGround) {
   const auto world = make_world();
   add_ground(*world);
   std::vector<RayHit> hits(3);
@@ -191,7 +217,7 @@ TEST(Fan, TiltedDownSeesTheGround) {
 }
 
 /// Parts of every shape in a heap, fixed and moving, some close together, some around the sensor.
-std::unique_ptr<PhysicsWorld> random_scene(std::mt19937& random) {
+std::unique_ptr<PhysicsWorld> RayTest::random_scene(std::mt19937& random) const {
   const auto uniform = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
   PhysicsConfig config;
   config.gravity_mps2 = 0;
@@ -213,7 +239,7 @@ std::unique_ptr<PhysicsWorld> random_scene(std::mt19937& random) {
   return world;
 }
 
-TEST(Fan, EqualsSingleCastsInRandomScenes) {
+TEST_P(Fan, EqualsSingleCastsInRandomScenes) {
   std::mt19937 random(1);
   const auto uniform = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
   int count = 0;
@@ -221,7 +247,7 @@ TEST(Fan, EqualsSingleCastsInRandomScenes) {
     const auto world = random_scene(random);
     for (int k = 0; k < 20; ++k) {
       const bool level = k % 2 == 0;
-      Fan fan;
+      sim::Fan fan;
       fan.X_WS = sim::make_pose({uniform(-15, 15), uniform(-15, 15), uniform(-1, 1)},
                                 {level ? 0 : uniform(-3, 3), level ? 0 : uniform(-1.5, 1.5), uniform(-3, 3)});
       fan.count = 1 + static_cast<int>(random() % 200);
@@ -245,7 +271,7 @@ TEST(Fan, EqualsSingleCastsInRandomScenes) {
   EXPECT_GT(count, 1000);  // the test saw something
 }
 
-TEST(Cast, EqualsLookingAtEveryPart) {
+TEST_P(Cast, EqualsLookingAtEveryPart) {
   std::mt19937 random(2);
   const auto uniform = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
   const auto world = random_scene(random);
