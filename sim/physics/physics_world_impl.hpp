@@ -12,12 +12,8 @@
 #include "sim/physics/ode_library.hpp"
 #include "sim/physics/part_shape.hpp"
 #include "sim/physics/physics_world.hpp"
-<<<<<<< HEAD
 #include "sim/physics/terrain_geom.hpp"
-#include "sim/scene/ode_scene.hpp"
-=======
 #include "sim/scene/world_scene.hpp"
->>>>>>> main
 
 namespace sim {
 
