@@ -6,6 +6,7 @@
 
 #include "sim/physics/free_numbers.hpp"
 #include "sim/physics/ode_math.hpp"
+#include "sim/physics/terrain_geom.hpp"
 
 namespace sim {
 namespace {
@@ -32,6 +33,7 @@ SpaceHandle make_space(const std::string& kind) {
 Collider::Collider(const PhysicsConfig& config, ContactTable table)
     : table_(std::move(table)),
       step_s_(config.step_s),
+      surface_layer_m_(config.contact_surface_layer_m),
       space_(make_space(config.space)),
       touching_(static_cast<std::size_t>(config.max_contacts_per_pair)) {
   set_gravity(config.gravity_mps2);
@@ -205,20 +207,32 @@ void Collider::sort_pairs() {
   }
 }
 
+const Surface& Collider::surface_at(const CollisionPart& a, const CollisionPart& b, const dContactGeom& contact) const {
+  const auto material = [&](const CollisionPart& part) {
+    return part.terrain ? part.terrain->material_at(part.geom, to_eigen(contact.pos)) : part.material;
+  };
+  return table_.of(material(a), material(b));
+}
+
 int Collider::touch(int first, int second, dWorldID world, dJointGroupID contacts, Islands& islands) {
   const CollisionPart& part_a = parts_[first];
   const CollisionPart& part_b = parts_[second];
   const int count =
       dCollide(part_a.geom, part_b.geom, static_cast<int>(touching_.size()), &touching_[0].geom, sizeof(dContact));
   if (count == 0) return 0;
-  const Surface& surface = table_.of(part_a.material, part_b.material);
+  const Surface* surface = &table_.of(part_a.material, part_b.material);
+  const bool by_place = part_a.terrain || part_b.terrain;
   const CollisionBody& a = bodies_[part_a.body];
   const CollisionBody& b = bodies_[part_b.body];
   const bool note = watchers_ > 0 && watched(part_a, part_b);
+  int rows = 0;
   for (int i = 0; i < count; ++i) {
     dContact& contact = touching_[i];
-    contact.surface = surface.parameters;
-    if (surface.friction) align_friction(contact, a, b);
+    if (by_place) surface = &surface_at(part_a, part_b, contact.geom);
+    rows += surface->rows;
+    contact.surface = surface->parameters;
+    if (by_place) follow_ground(contact);
+    if (surface->friction) align_friction(contact, a, b);
     const dJointID joint = dJointCreateContact(world, contacts, &contact);
     dJointAttach(joint, a.ode, b.ode);
     if (!note) continue;
@@ -228,8 +242,18 @@ int Collider::touch(int first, int second, dWorldID world, dJointGroupID contact
                         {{first, second}, to_eigen(at.pos), to_eigen(at.normal), at.depth, Vector3d::Zero()},
                         a.ode == nullptr});
   }
-  islands.add_contact(a.ode ? part_a.body : -1, b.ode ? part_b.body : -1, count * surface.rows);
+  islands.add_contact(a.ode ? part_a.body : -1, b.ode ? part_b.body : -1, rows);
   return count;
+}
+
+// ODE keeps a part that has sunk in less than the surface layer from sinking further, and nothing brings it back to
+// that layer: where the ground bends away it drifts off within steps, falls, and lands, over and over.  Free to sink
+// back to the layer within the step it follows the ground as long as its weight holds it there.
+void Collider::follow_ground(dContact& contact) const {
+  const double to_layer_m = surface_layer_m_ - contact.geom.depth;
+  if (!(to_layer_m > 0)) return;
+  contact.surface.mode |= dContactMotionN;
+  contact.surface.motionN = -to_layer_m / step_s_;
 }
 
 // ODE bounds friction along two axes by itself (a pyramid), which across the corners is up to 1.41 times too

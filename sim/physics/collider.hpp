@@ -15,6 +15,8 @@
 
 namespace sim {
 
+struct CollisionTerrain;
+
 /// What the collider needs to know of a part.
 struct CollisionPart {
   dGeomID geom = nullptr;
@@ -23,6 +25,7 @@ struct CollisionPart {
   int material = 0;
   std::uint32_t category = 1;
   std::uint32_t collides_with = ~0u;
+  const CollisionTerrain* terrain = nullptr;  ///< of a part of shape terrain, whose material depends on the place
 };
 
 /// The moving state of a body, for the speed of a contact point; all null for a fixed body.
@@ -91,6 +94,7 @@ class Collider {
     bool turned;  // ODE's first body is that of the second part
   };
 
+  const Surface& surface_at(const CollisionPart& a, const CollisionPart& b, const dContactGeom& contact) const;
   static void on_near(void* self, dGeomID first, dGeomID second);
   void add_pair(int first, int second);
   void sort_pairs();
@@ -98,11 +102,13 @@ class Collider {
   bool watched(const CollisionPart& a, const CollisionPart& b) const {
     return groups_[a.group].watchers > 0 || groups_[b.group].watchers > 0;
   }
+  void follow_ground(dContact& contact) const;
   void align_friction(dContact& contact, const CollisionBody& a, const CollisionBody& b) const;
   bool free(const CollisionPart& part) const { return bodies_[part.body].free; }
 
   ContactTable table_;
   double step_s_;
+  double surface_layer_m_;
   double gravity_mps2_;
   double still_mps_;  // slower slip has no direction worth following
   SpaceHandle space_;

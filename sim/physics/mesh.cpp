@@ -79,7 +79,10 @@ class Welder {
 };
 
 void add_triangle(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  if (a != b && b != c && c != a) mesh.triangles.push_back({a, b, c});
+  if (a == b || b == c || c == a) return;
+  if (mesh.triangles.size() >= max_mesh_triangles)
+    throw MeshError("has more than 4 million triangles: make a coarser one for collision");
+  mesh.triangles.push_back({a, b, c});
 }
 
 Mesh parse_binary_stl(std::string_view bytes, std::uint32_t count) {
@@ -103,7 +106,9 @@ Mesh parse_ascii_stl(std::string_view text) {
   Words words(text);
   words.next_line();  // `solid` and a name that may be anything
   std::vector<std::uint32_t> corners;
+  bool ended = false;
   for (auto word = words.any(); !word.empty(); word = words.any()) {
+    ended = word == "endsolid";
     if (word == "facet") {
       words.next_line();  // the normal is not used
     } else if (word == "vertex") {
@@ -122,11 +127,18 @@ Mesh parse_ascii_stl(std::string_view text) {
     }
   }
   if (!corners.empty()) throw MeshError("ends inside a facet");
+  if (!ended) throw MeshError("is cut off: it ends without 'endsolid'");
   return mesh;
 }
 
 Mesh not_empty(Mesh mesh) {
   if (mesh.triangles.empty()) throw MeshError("has no triangles");
+  const auto has_area = [&](const auto& t) {
+    const Vector3d &a = mesh.vertices_m[t[0]], &b = mesh.vertices_m[t[1]], &c = mesh.vertices_m[t[2]];
+    return (b - a).cross(c - a).squaredNorm() > 0;
+  };
+  if (std::none_of(mesh.triangles.begin(), mesh.triangles.end(), has_area))
+    throw MeshError("has no triangle with an area");
   return mesh;
 }
 
@@ -171,6 +183,8 @@ Mesh parse_stl(std::string_view bytes) {
   // Some binary files begin with `solid` too: the size decides first.
   if (!size_fits && bytes.substr(0, 5) == "solid") return not_empty(parse_ascii_stl(bytes));
   if (bytes.size() < 84) throw MeshError("is not a mesh: too short for an STL file");
+  if (count > max_mesh_triangles && bytes.size() >= 84 + 50 * std::size_t{count})
+    throw MeshError("has more than 4 million triangles: make a coarser one for collision");
   if (bytes.size() < 84 + 50 * std::size_t{count})
     throw MeshError("says it has " + std::to_string(count) + " triangles, but there is room for " +
                     std::to_string((bytes.size() - 84) / 50));

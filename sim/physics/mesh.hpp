@@ -17,6 +17,9 @@ class MeshError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// More than ODE and a scene of rays can be expected to take.
+constexpr std::size_t max_mesh_triangles = 4'000'000;
+
 struct Mesh {
   std::vector<Vector3d> vertices_m;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
@@ -29,8 +32,9 @@ struct MeshSolid {
   Matrix3d inertia = Matrix3d::Zero();
 };
 
-/// Reads STL (binary or ASCII) or OBJ, whichever the name ends in.  Vertices are multiplied by `scale`.
-/// Throws MeshError.
+/// Reads STL (binary or ASCII) or OBJ, whichever the name ends in.  Vertices are multiplied by `scale`.  Triangles with
+/// two equal corners are left out; others without area stay, for leaving them out could open a surface.  Throws
+/// MeshError: no file, too large, cut off, not this format, numbers that are not finite, no triangle with an area.
 Mesh load_mesh(const std::string& path, double scale);
 /// The same from the bytes of a file.
 Mesh parse_stl(std::string_view bytes);

@@ -31,11 +31,15 @@ struct ThreadingDeleter {
 struct TriMeshDataDeleter {
   void operator()(dTriMeshDataID data) const { dGeomTriMeshDataDestroy(data); }
 };
+struct HeightfieldDataDeleter {
+  void operator()(dHeightfieldDataID data) const { dGeomHeightfieldDataDestroy(data); }
+};
 using WorldHandle = std::unique_ptr<dxWorld, WorldDeleter>;
 using SpaceHandle = std::unique_ptr<dxSpace, SpaceDeleter>;
 using GeomHandle = std::unique_ptr<dxGeom, GeomDeleter>;
 using JointGroupHandle = std::unique_ptr<dxJointGroup, JointGroupDeleter>;
 using ThreadingHandle = std::unique_ptr<dxThreadingImplementation, ThreadingDeleter>;
 using TriMeshDataHandle = std::unique_ptr<dxTriMeshData, TriMeshDataDeleter>;
+using HeightfieldDataHandle = std::unique_ptr<dxHeightfieldData, HeightfieldDataDeleter>;
 
 }  // namespace sim

@@ -1,11 +1,49 @@
 #include "sim/physics/part_shape.hpp"
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 
 #include "sim/physics/ode_math.hpp"
 
 namespace sim {
+
+TriMeshDataHandle make_trimesh_data(const Mesh& mesh) {
+  TriMeshDataHandle data(dGeomTriMeshDataCreate());
+  static_assert(sizeof(dTriIndex) == sizeof(mesh.triangles[0][0]) && sizeof(Vector3d) == 3 * sizeof(double));
+  dGeomTriMeshDataBuildDouble(data.get(), mesh.vertices_m.data(), sizeof(Vector3d),
+                              static_cast<int>(mesh.vertices_m.size()), mesh.triangles.data(),
+                              static_cast<int>(3 * mesh.triangles.size()), sizeof(mesh.triangles[0]));
+  return data;
+}
+
+namespace {
+
+/// The outermost vertices of a mesh in directions that are spread evenly over the sphere (Fibonacci lattice): what it
+/// stands on, whatever way up it lies.
+std::vector<Vector3d> extremes_of(const Mesh& mesh) {
+  constexpr int directions = 64;
+  std::vector<std::uint32_t> found;
+  for (int i = 0; i < directions; ++i) {
+    const double z = 1 - (2 * i + 1.0) / directions, level = std::sqrt(1 - z * z);
+    const double turn = 2 * std::numbers::pi * i * (std::numbers::phi - 1);
+    const Vector3d direction(level * std::cos(turn), level * std::sin(turn), z);
+    std::uint32_t best = mesh.triangles.front()[0];
+    for (const auto& triangle : mesh.triangles)
+      for (const std::uint32_t corner : triangle)
+        if (direction.dot(mesh.vertices_m[corner]) > direction.dot(mesh.vertices_m[best])) best = corner;
+    found.push_back(best);
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  std::vector<Vector3d> extremes;
+  for (const std::uint32_t vertex : found) extremes.push_back(mesh.vertices_m[vertex]);
+  return extremes;
+}
+
+}  // namespace
 
 CollisionMesh::CollisionMesh(Mesh loaded) : mesh(std::move(loaded)), closed(is_closed(mesh)) {
   if (closed) solid = solid_of(mesh);
@@ -14,11 +52,8 @@ CollisionMesh::CollisionMesh(Mesh loaded) : mesh(std::move(loaded)), closed(is_c
     turn_inside_out(mesh);
     solid = solid_of(mesh);
   }
-  data.reset(dGeomTriMeshDataCreate());
-  static_assert(sizeof(dTriIndex) == sizeof(mesh.triangles[0][0]) && sizeof(Vector3d) == 3 * sizeof(double));
-  dGeomTriMeshDataBuildDouble(data.get(), mesh.vertices_m.data(), sizeof(Vector3d),
-                              static_cast<int>(mesh.vertices_m.size()), mesh.triangles.data(),
-                              static_cast<int>(3 * mesh.triangles.size()), sizeof(mesh.triangles[0]));
+  data = make_trimesh_data(mesh);
+  extremes_m = extremes_of(mesh);
 }
 
 const CollisionMesh& MeshCache::get(const PartConfig& part, const std::string& who) {
@@ -30,6 +65,12 @@ const CollisionMesh& MeshCache::get(const PartConfig& part, const std::string& w
     throw_config_error(part.place, who, "mesh '" + path + "' " + error.what());
   }
   return *cached;
+}
+
+const CollisionMesh* MeshCache::find(dTriMeshDataID data) const {
+  for (const auto& [name, mesh] : meshes_)
+    if (mesh && mesh->data.get() == data) return mesh.get();
+  return nullptr;
 }
 
 GeomHandle make_geom(const PartConfig& part, const CollisionMesh* mesh) {

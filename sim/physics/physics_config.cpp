@@ -65,6 +65,7 @@ void check_keys_of_shape(ParamReader& in, const std::string& shape) {
   only_for("length_m", {"capsule", "cylinder"});
   only_for("mesh", {"mesh"});
   only_for("scale", {"mesh"});
+  only_for("terrain", {"terrain"});
   only_for("mass_kg", {"box", "sphere", "capsule", "cylinder", "mesh"});
   only_for("density_kgpm3", {"box", "sphere", "capsule", "cylinder", "mesh"});
 }
@@ -77,12 +78,14 @@ void PartConfig::read(ParamReader& in) {
     if (place.file) directory = std::filesystem::path(*place.file).parent_path().string();
   }
   in.read("name", name, "name of the part");
-  in.read_choice("shape", shape, {"box", "sphere", "capsule", "cylinder", "plane", "mesh"}, "shape of the part");
+  in.read_choice("shape", shape, {"box", "sphere", "capsule", "cylinder", "plane", "mesh", "terrain"},
+                 "shape of the part");
   in.read("size_m", size_m, above(0), "box: lengths along x, y and z");
   in.read("radius_m", radius_m, above(0), "sphere, capsule, cylinder");
   in.read("length_m", length_m, above(0), "capsule (without its caps) and cylinder: length along z");
   in.read("mesh", mesh, "mesh: an STL or OBJ file, relative to this file");
   in.read("scale", scale, above(0), "mesh: its numbers times this are metres");
+  in.read("terrain", terrain, "terrain: its heights; see docs/terrain.md");
   in.read("position_m", position_m, any_place(), "centre of the part in the frame of the body");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch and yaw of the part in the frame of the body");
   in.read("mass_kg", mass_kg, above(0), "mass; a part with neither mass nor density weighs nothing");
@@ -96,6 +99,7 @@ void PartConfig::read(ParamReader& in) {
   check_keys_of_shape(in, shape);
   if (mass_kg && density_kgpm3) in.error("density_kgpm3", "give 'mass_kg' or 'density_kgpm3', not both");
   if (shape == "mesh" && mesh.empty()) in.error("a part of shape mesh needs the key 'mesh'");
+  if (shape == "terrain" && !terrain) in.error("a part of shape terrain needs the key 'terrain'");
   if (!color.empty() && !parse_color(color)) in.error("color", "'color' must look like #rrggbb, got '" + color + "'");
 }
 

@@ -7,6 +7,7 @@
 #include "sim/config/param_reader.hpp"
 #include "sim/math.hpp"
 #include "sim/scene/material.hpp"
+#include "sim/terrain/terrain_config.hpp"
 
 namespace sim {
 
@@ -50,12 +51,13 @@ struct ContactConfig {
 /// A solid: shape, mass, material, and its pose in the body frame.
 struct PartConfig {
   std::string name;
-  std::string shape = "box";           ///< box, sphere, capsule, cylinder, plane, mesh
+  std::string shape = "box";           ///< box, sphere, capsule, cylinder, plane, mesh, terrain
   Vector3d size_m = Vector3d::Ones();  ///< box: x, y, z
   double radius_m = 0.5;               ///< sphere, capsule, cylinder
   double length_m = 1.0;               ///< along z: capsule without its caps, cylinder
   std::string mesh;                    ///< mesh: STL or OBJ file, relative to the YAML file
   double scale = 1.0;                  ///< mesh
+  std::optional<TerrainConfig> terrain;
   Vector3d position_m = Vector3d::Zero();
   Vector3d rpy_rad = Vector3d::Zero();
   std::optional<double> mass_kg;

@@ -82,6 +82,10 @@ class PhysicsWorld {
   /// Names the group that a group stands deepest in, and how deep; empty: in none.
   std::pair<std::string, double> deepest_overlap(int group) const;
 
+  /// Pairs of terrain and parts on it that are known to drive badly or to cost much, a line each, in order of the
+  /// terrain; parts of equal shape and size are named once.  See docs/terrain.md.
+  std::vector<std::string> ground_warnings() const;
+
   /// New materials get new numbers, and keep them.  What the constructor got wins over these contacts, and of these
   /// the last one wins.  Materials known already and equal contacts are ignored.
   void add_surfaces(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts);

@@ -76,31 +76,40 @@ void PhysicsWorld::Impl::attach_ode_body(Body& body) {
 
 void PhysicsWorld::Impl::add_parts(Body& body, const BodyConfig& config_) {
   // Checked and made first, added after: an exception leaves no half body behind.
-  std::vector<GeomHandle> geoms;
-  std::vector<const CollisionMesh*> part_meshes;
+  std::vector<NewPart> made;
   dMass total;
   dMassSetZero(&total);
   for (std::size_t i = 0; i < config_.parts.size(); ++i) {
     const PartConfig& part = config_.parts[i];
     const std::string who =
         "body '" + body.name() + "': part " + (part.name.empty() ? std::to_string(i + 1) : "'" + part.name + "'");
-    if (part.shape == "plane" && !body.fixed())
-      throw_config_error(part.place, who, "a plane can only be part of a fixed body");
-    const CollisionMesh* mesh = part.shape == "mesh" ? &meshes.get(part, who) : nullptr;
-    geoms.push_back(make_geom(part, mesh));
-    part_meshes.push_back(mesh);
+    made.push_back(make_part(body, part, who));
     if (!body.free()) continue;
-    const dMass mass = part_mass(part, mesh, who);
+    const dMass mass = part_mass(part, made.back().mesh, who);
     if (mass.mass > 0) dMassAdd(&total, &mass);
   }
   if (body.free()) set_mass(body, config_, total);
-  for (std::size_t i = 0; i < geoms.size(); ++i) add_part(body, config_, i, std::move(geoms[i]), part_meshes[i]);
+  for (std::size_t i = 0; i < made.size(); ++i) add_part(body, config_, i, std::move(made[i]));
 }
 
-void PhysicsWorld::Impl::add_part(Body& body, const BodyConfig& config_, std::size_t index, GeomHandle owned,
-                                  const CollisionMesh* mesh) {
+PhysicsWorld::Impl::NewPart PhysicsWorld::Impl::make_part(const Body& body, const PartConfig& part,
+                                                          const std::string& who) {
+  if ((part.shape == "plane" || part.shape == "terrain") && !body.fixed())
+    throw_config_error(part.place, who, "a " + part.shape + " can only be part of a fixed body");
+  NewPart made;
+  if (part.shape == "terrain") {
+    made.terrain = std::make_unique<CollisionTerrain>(part, who, collider.table(), meshes);
+    made.geom = make_terrain_geom(*made.terrain);
+  } else {
+    made.mesh = part.shape == "mesh" ? &meshes.get(part, who) : nullptr;
+    made.geom = make_geom(part, made.mesh);
+  }
+  return made;
+}
+
+void PhysicsWorld::Impl::add_part(Body& body, const BodyConfig& config_, std::size_t index, NewPart made) {
   const PartConfig& part = config_.parts[index];
-  const dGeomID geom = owned.get();
+  const dGeomID geom = made.geom.get();
   const Pose X_BG = make_pose(part.position_m, part.rpy_rad);
   if (body.fixed()) {
     body.fixed_geoms_.push_back({geom, X_BG, part.shape == "plane"});
@@ -118,21 +127,22 @@ void PhysicsWorld::Impl::add_part(Body& body, const BodyConfig& config_, std::si
                                 body.group_,
                                 collider.table().number_of(part.material),
                                 category_bit(part.category),
-                                category_bits(part.collides_with)};
+                                category_bits(part.collides_with),
+                                made.terrain.get()};
   const int number = part_numbers.take();
   groups[body.group_].parts.push_back(number);
   slot(parts, number) = {part_name(body, part, index), body.group_,          body.number_,
                          collision.material,           collision.category,   X_BG,
                          parse_color(part.color),      part.shape == "plane"};
-  scene->add_part(number, {geom,
-                           body.group_,
-                           collision.category,
-                           collision.material,
-                           collider.table().material(collision.material).transmits(),
-                           !body.fixed(),
-                           mesh ? &mesh->mesh : nullptr,
-                           {}});
-  collider.add_part(number, collision, std::move(owned), body.motion_);
+  scene->add_part(number,
+                  {geom, body.group_, collision.category, collision.material,
+                   collider.table().material(collision.material).transmits(), !body.fixed(),
+                   made.mesh      ? &made.mesh->mesh
+                   : made.terrain ? &made.terrain->mesh
+                                  : nullptr,
+                   made.terrain ? std::span<const int>(made.terrain->triangle_materials) : std::span<const int>{}});
+  collider.add_part(number, collision, std::move(made.geom), body.motion_);
+  if (made.terrain) terrains[number] = std::move(made.terrain);
 }
 
 void PhysicsWorld::Impl::set_mass(Body& body, const BodyConfig& config_, const dMass& total) {
@@ -192,7 +202,10 @@ void PhysicsWorld::remove_group(int group) {
   all.collider.remove_group(group, gone.bodies, gone.parts);
   all.islands.remove_bodies(gone.bodies);
   for (const int body : gone.bodies) all.bodies[body].reset();
-  for (const int part : gone.parts) all.parts[part] = {};
+  for (const int part : gone.parts) {
+    all.terrains.erase(part);
+    all.parts[part] = {};
+  }
   for (const int number : gone.joints) all.joint_numbers.give_back(number);
   for (const int number : gone.bodies) all.body_numbers.give_back(number);
   for (const int number : gone.parts) all.part_numbers.give_back(number);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "sim/physics/ode_library.hpp"
 #include "sim/physics/part_shape.hpp"
 #include "sim/physics/physics_world.hpp"
+#include "sim/physics/terrain_geom.hpp"
 #include "sim/scene/world_scene.hpp"
 
 namespace sim {
@@ -31,6 +33,7 @@ struct PhysicsWorld::Impl {
   std::uint64_t seed;
   std::vector<std::string> categories = {"solid"};
   MeshCache meshes;
+  std::map<int, std::unique_ptr<CollisionTerrain>> terrains;  // by part; outlive the geoms of collider and scene
   // ODE's default threading is shared by all worlds of the process; two worlds in two threads then abort.
   ThreadingHandle threading{dThreadingAllocateSelfThreadedImplementation()};
   WorldHandle world{dWorldCreate()};
@@ -61,7 +64,14 @@ struct PhysicsWorld::Impl {
   Group& group(int number);
   void attach_ode_body(Body& body);
   void add_parts(Body& body, const BodyConfig& config);
-  void add_part(Body& body, const BodyConfig& config, std::size_t index, GeomHandle geom, const CollisionMesh* mesh);
+  /// A part that was checked, on its way into the world.
+  struct NewPart {
+    GeomHandle geom;
+    const CollisionMesh* mesh = nullptr;
+    std::unique_ptr<CollisionTerrain> terrain;
+  };
+  NewPart make_part(const Body& body, const PartConfig& part, const std::string& who);
+  void add_part(Body& body, const BodyConfig& config, std::size_t index, NewPart made);
   void forget_in_lists(int group_number);
   void set_mass(Body& body, const BodyConfig& config, const dMass& total);
   void collide();

@@ -7,6 +7,7 @@
 
 #include "sim/physics/free_numbers.hpp"
 #include "sim/physics/ode_math.hpp"
+#include "sim/physics/part_shape.hpp"
 
 namespace sim {
 namespace {
@@ -49,7 +50,7 @@ void OdeScene::add_group(int group) {
 }
 
 void OdeScene::add_part(int number, const ScenePart& part) {
-  slot(parts_, number) = {part, dGeomGetClass(part.geom)};
+  slot(parts_, number) = {part, dGeomGetClass(part.geom), -1, -1, nullptr};
   if (part.moving)
     open_[part.group].push_back(number);
   else
@@ -109,13 +110,30 @@ void OdeScene::refresh() const {
   refresh(layers_[1], moves_.fixed);
 }
 
+/// Terrain collides by geoms of our own or by ODE's heightfield, which rays cannot use.
+void OdeScene::place_triangles(Part& part) {
+  if (part.mesh == nullptr || part.kind < dFirstUserClass) return;
+  if (!part.triangles) {
+    auto made = std::make_shared<TriangleGeom>();
+    made->data = make_trimesh_data(*part.mesh);
+    made->geom.reset(dCreateTriMesh(nullptr, made->data.get(), nullptr, nullptr, nullptr));
+    part.triangles = std::move(made);
+  }
+  const dReal* p = dGeomGetPosition(part.geom);
+  dGeomSetPosition(part.triangles->geom.get(), p[0], p[1], p[2]);
+  dGeomSetRotation(part.triangles->geom.get(), dGeomGetRotation(part.geom));
+}
+
 void OdeScene::refresh(Layer& layer, std::uint64_t moves) const {
   if (layer.seen == moves) return;
   layer.seen = moves;
   part_boxes_.resize(parts_.size());
   cluster_boxes_.clear();
   for (const Cluster& cluster : layer.clusters) {
-    for (const int part : cluster.parts) part_boxes_[part] = box_of(parts_[part].geom);
+    for (const int part : cluster.parts) {
+      part_boxes_[part] = box_of(parts_[part].geom);
+      place_triangles(parts_[part]);
+    }
     AlignedBox box = part_boxes_[cluster.parts.front()];
     for (const int part : cluster.parts) {
       box.low = box.low.cwiseMin(part_boxes_[part].low);
@@ -130,14 +148,16 @@ bool OdeScene::hit(int part, const Vector3d& origin_W, const Vector3d& direction
   dGeomRaySetLength(ray_.get(), nearest.range_m);
   dGeomRaySet(ray_.get(), origin_W.x(), origin_W.y(), origin_W.z(), direction_W.x(), direction_W.y(), direction_W.z());
   dContactGeom contact;
-  if (dCollide(ray_.get(), parts_[part].geom, 1, &contact, sizeof contact) == 0) return false;
+  const Part& target = parts_[part];
+  const dGeomID geom = target.triangles ? target.triangles->geom.get() : target.geom;
+  if (dCollide(ray_.get(), geom, 1, &contact, sizeof contact) == 0) return false;
   // Of two parts that share a surface the one with the lower number is hit, whatever the order of looking.
   if (contact.depth > nearest.range_m ||
       (contact.depth == nearest.range_m && part >= nearest.part && nearest.part >= 0))
     return false;
   const Vector3d normal_W = to_eigen(contact.normal);
-  nearest = {contact.depth, normal_W.dot(direction_W) > 0 ? Vector3d(-normal_W) : normal_W, part,
-             parts_[part].material};
+  const int material = target.triangle_materials.empty() ? target.material : target.triangle_materials[contact.side2];
+  nearest = {contact.depth, normal_W.dot(direction_W) > 0 ? Vector3d(-normal_W) : normal_W, part, material};
   return true;
 }
 

@@ -3,6 +3,7 @@
 #include <ode/ode.h>
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -34,9 +35,15 @@ class OdeScene final : public WorldScene {
   void prepare() const override { refresh(); }
 
  private:
+  /// Triangles for rays alone.
+  struct TriangleGeom {
+    TriMeshDataHandle data;
+    GeomHandle geom;
+  };
   struct Part : ScenePart {
-    int kind = -1;                 // ODE's class of geom
-    int layer = -1, cluster = -1;  // where rays find it; -1: not closed yet, a plane, or removed
+    int kind = -1;                            // ODE's class of geom
+    int layer = -1, cluster = -1;             // where rays find it; -1: not closed yet, a plane, or removed
+    std::shared_ptr<TriangleGeom> triangles;  // of terrain, whose geom rays cannot hit; made by the first query
   };
   /// Parts that are found together: the moving ones of a group, or one fixed part.
   struct Cluster {
@@ -58,6 +65,7 @@ class OdeScene final : public WorldScene {
 
   void add_cluster(int layer, Cluster cluster);
   void remove_cluster(int layer, int number);
+  static void place_triangles(Part& part);
   void refresh(Layer& layer, std::uint64_t moves) const;
   void refresh() const;
   static bool stops(const Cluster& cluster, const RayFilter& filter) {
@@ -73,7 +81,7 @@ class OdeScene final : public WorldScene {
   const std::vector<Vector3d>& directions(const Fan& fan) const;
 
   const SceneMoves& moves_;
-  std::vector<Part> parts_;
+  mutable std::vector<Part> parts_;
   std::vector<std::vector<int>> open_;  // by group: moving parts not yet seen
   std::vector<int> open_fixed_;
   std::vector<int> planes_;

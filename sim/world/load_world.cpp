@@ -131,12 +131,13 @@ bool load_plugins(ConfigNode& root, const LoadOptions& options, Diagnostics& dia
   return diagnostics.lines().size() == before;
 }
 
-/// The resolved world may be written anywhere: mesh files are named by their whole path.
-void make_mesh_paths_absolute(ConfigNode& node) {
-  for (ConfigNode& item : node.items) make_mesh_paths_absolute(item);
+/// The resolved world may be written anywhere: files of meshes and terrain are named by their whole path.
+void make_paths_absolute(ConfigNode& node, bool of_terrain = false) {
+  for (ConfigNode& item : node.items) make_paths_absolute(item);
   for (ConfigNode::Entry& entry : node.entries) {
-    if (entry.key != "mesh" || entry.value.scalar.empty() || entry.value.place.file == nullptr) {
-      make_mesh_paths_absolute(entry.value);
+    const bool path_key = entry.key == "mesh" || (of_terrain && entry.key == "file");
+    if (!path_key || entry.value.scalar.empty() || entry.value.place.file == nullptr) {
+      make_paths_absolute(entry.value, entry.key == "terrain");
       continue;
     }
     std::error_code error;
@@ -168,7 +169,7 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   check_script(loaded.config, diagnostics);
   diagnostics.throw_if_any();
   vehicles.resolve(root);
-  make_mesh_paths_absolute(root);
+  make_paths_absolute(root);
   if (options.seed) {
     const SourcePlace place{intern_file_name("--seed"), 0, 0};
     set_config_path(root, "run.seed", scalar_node(std::to_string(*options.seed), place), place, diagnostics);

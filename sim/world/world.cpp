@@ -26,6 +26,7 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
   known_contacts_ = config.contacts;
   add_objects();
   for (const VehicleInstance& instance : config.vehicles) build_vehicle(instance);
+  for (const std::string& warning : physics_->ground_warnings()) spdlog::warn("{}", warning);
   sort_devices();
   script_ = std::make_unique<Script>(*this);
 }

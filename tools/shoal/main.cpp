@@ -42,6 +42,7 @@ int run(int argc, char** argv) {
   tools::add_doctor_command(app, exit_code);
   tools::add_log_command(app, exit_code);
   tools::add_bench_command(app, exit_code);
+  tools::add_mesh_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -138,6 +138,18 @@ TEST(Mesh, ErrorsSayWhatIsWrong) {
             "has a vertex that is not finite");
   EXPECT_EQ(error_of([] { sim::parse_stl("solid x\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3\n"); }),
             "ends inside a facet");
+  EXPECT_EQ(error_of([] {
+              const std::string whole = ascii_stl_of(box_mesh({1, 1, 1}, {0, 0, 0}));
+              sim::parse_stl(whole.substr(0, whole.rfind("endsolid")));
+            }),
+            "is cut off: it ends without 'endsolid'");
+  EXPECT_EQ(error_of([] {
+              const std::string whole = binary_stl_of(box_mesh({1, 1, 1}, {0, 0, 0}));
+              sim::parse_stl(whole.substr(0, whole.size() - 20));
+            }),
+            "says it has 12 triangles, but there is room for 11");
+  EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"); }), "has no triangle with an area");
+  EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0\n"); }), "is not a mesh: '' is no number");
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"); }),
             "has index 4, but 3 vertices so far");
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nf 0 1 1\n"); }), "has index 0, but 1 vertices so far");
@@ -160,6 +172,35 @@ PartConfig mesh_part(const std::string& path, double density_kgpm3) {
   part.place = {sim::intern_file_name("boat.yaml"), 7, 3};
   if (density_kgpm3 > 0) part.density_kgpm3 = density_kgpm3;
   return part;
+}
+
+TEST(Mesh, MoreThanFourMillionTrianglesAreRefusedWhereverTheyAreCounted) {
+  // All alike, so that they take little memory.
+  std::string stl(84 + 50 * (sim::max_mesh_triangles + 1), '\0');
+  const auto count = static_cast<std::uint32_t>(sim::max_mesh_triangles + 1);
+  std::memcpy(stl.data() + 80, &count, sizeof count);
+  EXPECT_EQ(error_of([&] { sim::parse_stl(stl); }),
+            "has more than 4 million triangles: make a coarser one for collision");
+  std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (std::size_t i = 0; i <= sim::max_mesh_triangles; ++i) obj += "f 1 2 3\n";
+  EXPECT_EQ(error_of([&] { sim::parse_obj(obj); }),
+            "has more than 4 million triangles: make a coarser one for collision");
+}
+
+TEST(Mesh, TrianglesWithoutAreaStayOutOrDoNoHarm) {
+  // Two corners alike: left out.
+  EXPECT_EQ(sim::parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n").triangles.size(), 1u);
+  // Three in a row: stays, and what falls on it stays finite.
+  const TemporaryFile file("sliver.obj",
+                           "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv 0 0 0\nf 1 2 3\nf 1 3 4\nf 1 5 3\n");
+  PartConfig part;
+  part.shape = "mesh";
+  part.mesh = file.path();
+  const auto world = make_world();
+  add(*world, body("table", {part}), Pose::Identity(), Motion::fixed);
+  const sim::Body& ball = add(*world, body("ball", {sphere(0.2, 1)}), translation(0, 0, 0.3));
+  for (int step = 0; step < 200; ++step) world->step(step);
+  EXPECT_NEAR(ball.X_WB().translation().z(), 0.2, 2e-3);
 }
 
 TEST(MeshPart, HasTheMassOfTheSameBoxAndRestsLikeIt) {

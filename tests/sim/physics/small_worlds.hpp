@@ -117,7 +117,8 @@ struct Rover {
   sim::Joint* right;
 };
 
-inline Rover add_rover(PhysicsWorld& world, const std::string& name, const Pose& X_WV) {
+inline Rover add_rover(PhysicsWorld& world, const std::string& name, const Pose& X_WV,
+                       const PartConfig& wheel = sphere(Rover::wheel_radius_m, 0.5)) {
   const Vector3d axle = {0, Rover::half_track_m, Rover::wheel_radius_m};
   const Vector3d mirrored = {axle.x(), -axle.y(), axle.z()};
   PartConfig caster = at(sphere(0.05, 0), {-0.2, 0, -0.1});
@@ -125,9 +126,9 @@ inline Rover add_rover(PhysicsWorld& world, const std::string& name, const Pose&
   const int group = world.add_group(name);
   sim::Body& chassis =
       world.add_body(group, body("chassis", {at(box({0.5, 0.3, 0.1}, 5), {-0.05, 0, 0}), caster}, {0, 0, 0.15}), X_WV);
-  sim::Body& left_wheel = world.add_body(group, body("left_wheel", {sphere(Rover::wheel_radius_m, 0.5)}, axle), X_WV);
+  sim::Body& left_wheel = world.add_body(group, body("left_wheel", {wheel}, axle), X_WV);
   sim::Body& right_wheel =
-      world.add_body(group, body("right_wheel", {sphere(Rover::wheel_radius_m, 0.5)}, mirrored), X_WV);
+world.add_body(group, body("right_wheel", {wheel}, mirrored), X_WV);
   Rover rover{&chassis, nullptr, nullptr};
   rover.left = &world.add_joint(group, joint("left", "hinge", axle, Vector3d::UnitY()), chassis, &left_wheel, X_WV);
   rover.right =

@@ -1,0 +1,113 @@
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "sim/config/message_text.hpp"
+#include "sim/physics/ode_math.hpp"
+#include "sim/physics/physics_world_impl.hpp"
+
+// Pairs of terrain and parts that are known to be bad; the figures behind the rules are in docs/terrain.md.
+
+namespace sim {
+namespace {
+
+/// A part that can stand on the ground.
+struct Stander {
+  std::string name;
+  int geom_class = 0;
+  Vector3d size_m = Vector3d::Zero();  ///< box: its lengths; sphere, cylinder: radius first
+  bool wheel = false;
+  bool hard = false;  ///< its contacts with this ground have no softness of their own
+};
+
+/// What is wrong with a part on a ground; `it` stands for the part.
+std::vector<std::string> complaints(const CollisionTerrain& ground, const Stander& it) {
+  const double cell_m = ground.terrain.grid.cell_m;
+  std::vector<std::string> found;
+  if (ground.collision == "facets") {
+    if (it.wheel && cell_m < 2 * it.size_m.x())
+      found.push_back("facets of " + number_text(cell_m) + " m are smaller than a wheel of " +
+                      number_text(2 * it.size_m.x()) + " m, which costs their square: use collision: smooth");
+    if (it.wheel && it.hard)
+      found.push_back(
+          "hard contacts of a wheel jump from facet to facet, and accelerations ring: use collision: smooth, or give "
+          "the contact a soft_cfm");
+    constexpr double most_cells = 64;  // about 20 us a contact
+    const Vector3d cells = it.size_m / cell_m;
+    if (it.geom_class == dBoxClass &&
+        cells.x() * cells.y() * cells.z() / std::min({cells.x(), cells.y(), cells.z()}) > most_cells)
+      found.push_back("a box of " + number_text(it.size_m.maxCoeff()) + " m covers many facets of " +
+                      number_text(cell_m) + " m, which costs their square: use collision: smooth");
+  } else if (ground.collision == "mesh") {
+    if (it.wheel && it.geom_class == dCylinderClass)
+      found.push_back(
+          "a cylinder wheel on triangles has a dozen contacts, and jitters: use collision: smooth, or a "
+          "sphere as wheel");
+  } else if (it.wheel && cell_m < it.size_m.x() / 4) {
+    found.push_back("cells of " + number_text(cell_m) + " m are much smaller than a wheel of radius " +
+                    number_text(it.size_m.x()) + " m, which meets the ground in one place: bumps may be missed");
+  }
+  return found;
+}
+
+Vector3d size_of(dGeomID geom) {
+  dReal a = 0, b = 0;
+  dVector3 lengths = {0, 0, 0, 0};
+  switch (dGeomGetClass(geom)) {
+    case dSphereClass:
+      return {dGeomSphereGetRadius(geom), 0, 0};
+    case dCylinderClass:
+      dGeomCylinderGetParams(geom, &a, &b);
+      return {a, b, 0};
+    case dBoxClass:
+      dGeomBoxGetLengths(geom, lengths);
+      return to_eigen(lengths);
+    default:
+      return Vector3d::Zero();
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> PhysicsWorld::ground_warnings() const {
+  const Impl& all = *impl_;
+  if (all.terrains.empty()) return {};
+  std::set<dBodyID> hinged;  // asked, never iterated
+  for (const auto& joint : all.joints)
+    if (joint && (joint->type() == "hinge" || joint->type() == "hinge2"))
+      for (const int end : {0, 1}) hinged.insert(dJointGetBody(joint->ode_.get(), end));
+
+  std::set<int> angular;  // bodies that have other parts than spheres and cylinders: no wheels
+  for (std::size_t i = 0; i < all.parts.size(); ++i) {
+    if (all.parts[i].group < 0) continue;
+    const int geom_class = dGeomGetClass(all.collider.parts()[i].geom);
+    if (geom_class != dSphereClass && geom_class != dCylinderClass) angular.insert(all.parts[i].body);
+  }
+
+  std::vector<std::string> warnings;
+  for (const auto& [number, ground] : all.terrains) {
+    std::map<std::string, std::pair<std::string, int>> named;  // complaint: the first part, how many
+    const CollisionPart& under = all.collider.parts()[static_cast<std::size_t>(number)];
+    for (std::size_t i = 0; i < all.parts.size(); ++i) {
+      const CollisionPart& part = all.collider.parts()[i];
+      if (all.parts[i].group < 0 || !all.bodies[static_cast<std::size_t>(part.body)]->free()) continue;
+      if ((part.category & under.collides_with) == 0 || (under.category & part.collides_with) == 0) continue;
+      Stander it{all.parts[i].name, dGeomGetClass(part.geom), size_of(part.geom), false, false};
+      it.wheel = hinged.contains(dGeomGetBody(part.geom)) && !angular.contains(part.body);
+      for (const int material : ground->area_materials)
+        it.hard |= (all.collider.table().of(part.material, material).parameters.mode & dContactSoftCFM) == 0;
+      for (std::string& complaint : complaints(*ground, it)) {
+        auto& [first, count] = named[std::move(complaint)];
+        if (count++ == 0) first = it.name;
+      }
+    }
+    for (const auto& [complaint, parts] : named)
+      warnings.push_back("terrain '" + all.parts[static_cast<std::size_t>(number)].name + "' under '" + parts.first +
+                         "'" + (parts.second > 1 ? " and " + std::to_string(parts.second - 1) + " more" : "") + ": " +
+                         complaint);
+  }
+  return warnings;
+}
+
+}  // namespace sim

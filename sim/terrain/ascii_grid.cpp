@@ -1,0 +1,200 @@
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "sim/config/message_text.hpp"
+#include "sim/terrain/terrain.hpp"
+
+namespace sim {
+namespace {
+
+constexpr double hole = std::numeric_limits<double>::quiet_NaN();
+
+/// Words of a text, with the line they stand in.
+class Words {
+ public:
+  explicit Words(std::string_view text) : rest_(text) {}
+  int line() const { return line_; }
+  /// Empty at the end.
+  std::string_view next() {
+    std::size_t begin = 0;
+    while (begin < rest_.size() && is_space(rest_[begin])) line_ += rest_[begin++] == '\n';
+    std::size_t end = begin;
+    while (end < rest_.size() && !is_space(rest_[end])) ++end;
+    const std::string_view word = rest_.substr(begin, end - begin);
+    rest_.remove_prefix(end);
+    return word;
+  }
+  /// The next word, which stays.
+  std::string_view peek() const { return Words(*this).next(); }
+  [[noreturn]] void fail(const std::string& text) const {
+    throw TerrainError("line " + std::to_string(line_) + ": " + text);
+  }
+  double number(const std::string& what) {
+    std::string_view word = next();
+    if (word.empty()) fail("the file ends before " + what);
+    if (word[0] == '+') word.remove_prefix(1);
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc{} || end != word.data() + word.size())
+      fail(what + " is '" + shortened(std::string(word)) + "', which is no number");
+    if (!std::isfinite(value)) fail(what + " is not finite");
+    return value;
+  }
+
+ private:
+  static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+  std::string_view rest_;
+  int line_ = 1;
+};
+
+std::string lower_case(std::string_view word) {
+  std::string lower(word);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  return lower;
+}
+
+struct Header {
+  std::optional<double> ncols, nrows, xllcorner, yllcorner, xllcenter, yllcenter, cellsize, nodata_value;
+
+  std::optional<double>* find(const std::string& key) {
+    const std::pair<const char*, std::optional<double>*> keys[] = {
+        {"ncols", &ncols},         {"nrows", &nrows},
+        {"xllcorner", &xllcorner}, {"yllcorner", &yllcorner},
+        {"xllcenter", &xllcenter}, {"yllcenter", &yllcenter},
+        {"cellsize", &cellsize},   {"nodata_value", &nodata_value}};
+    for (const auto& [name, value] : keys)
+      if (key == name) return value;
+    return nullptr;
+  }
+};
+
+bool is_word(std::string_view word) {
+  return !word.empty() && ((word[0] >= 'a' && word[0] <= 'z') || (word[0] >= 'A' && word[0] <= 'Z')) &&
+         lower_case(word) != "nan" && lower_case(word) != "inf";
+}
+
+Header read_header(Words& words) {
+  Header header;
+  while (is_word(words.peek())) {
+    const std::string key = lower_case(words.next());
+    std::optional<double>* value = header.find(key);
+    if (value == nullptr) words.fail("'" + shortened(key) + "' is no key of an ESRI ASCII grid");
+    if (*value) words.fail("'" + key + "' comes twice");
+    *value = words.number(key);
+  }
+  const auto need = [&](const std::optional<double>& value, const char* name) {
+    if (!value) words.fail("is no ESRI ASCII grid: '" + std::string(name) + "' is missing before the heights");
+  };
+  need(header.ncols, "ncols");
+  need(header.nrows, "nrows");
+  need(header.cellsize, "cellsize");
+  need(header.xllcorner ? header.xllcorner : header.xllcenter, "xllcorner");
+  need(header.yllcorner ? header.yllcorner : header.yllcenter, "yllcorner");
+  if (!(*header.cellsize > 0)) words.fail("cellsize must be > 0, got " + number_text(*header.cellsize));
+  for (const double count : {*header.ncols, *header.nrows})
+    if (count != std::floor(count) || std::abs(count) > 1e15)
+      words.fail("ncols and nrows must be whole numbers, got " + number_text(count));
+  check_grid_size(static_cast<std::int64_t>(*header.ncols), static_cast<std::int64_t>(*header.nrows));
+  return header;
+}
+
+/// The value of the nearest point that is no hole, by rings of points around; of equals the first found.
+void fill_nearest(HeightGrid& grid) {
+  const HeightGrid before = grid;
+  // Two passes over distances that neighbours hand on (Danielsson, Euclidean distance mapping, 1980).
+  std::vector<std::pair<int, int>> nearest(grid.heights_m.size(), {-1, -1});
+  const auto index = [&](int i, int j) { return static_cast<std::size_t>(j) * grid.columns + i; };
+  for (int j = 0; j < grid.rows; ++j)
+    for (int i = 0; i < grid.columns; ++i)
+      if (!std::isnan(grid.at(i, j))) nearest[index(i, j)] = {i, j};
+  const auto offer = [&](int i, int j, int from_i, int from_j) {
+    if (from_i < 0 || from_j < 0 || from_i >= grid.columns || from_j >= grid.rows) return;
+    const auto [a, b] = nearest[index(from_i, from_j)];
+    if (a < 0) return;
+    auto& best = nearest[index(i, j)];
+    const double now = std::hypot(best.first - i, best.second - j), offered = std::hypot(a - i, b - j);
+    if (best.first < 0 || offered < now) best = {a, b};
+  };
+  for (int j = 0; j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i)
+      for (const auto& [di, dj] : {std::pair{-1, 0}, {0, -1}, {-1, -1}, {1, -1}}) offer(i, j, i + di, j + dj);
+    for (int i = grid.columns - 1; i >= 0; --i) offer(i, j, i + 1, j);
+  }
+  for (int j = grid.rows - 1; j >= 0; --j) {
+    for (int i = grid.columns - 1; i >= 0; --i)
+      for (const auto& [di, dj] : {std::pair{1, 0}, {0, 1}, {1, 1}, {-1, 1}}) offer(i, j, i + di, j + dj);
+    for (int i = 0; i < grid.columns; ++i) offer(i, j, i - 1, j);
+  }
+  for (std::size_t k = 0; k < grid.heights_m.size(); ++k)
+    grid.heights_m[k] = before.at(nearest[k].first, nearest[k].second);
+}
+
+/// Each hole lies in a gap of its row and of its column: the mean of the lines across those that have two ends, by
+/// their shortness.  Holes without such a gap take the nearest height.
+void fill_linear(HeightGrid& grid) {
+  const HeightGrid before = grid;
+  std::vector<double> sums(grid.heights_m.size(), 0), weights(grid.heights_m.size(), 0);
+  const auto cross = [&](int lines, int points, auto&& index) {
+    for (int line = 0; line < lines; ++line) {
+      int last = -1;
+      for (int k = 0; k < points; ++k) {
+        if (std::isnan(before.heights_m[index(line, k)])) continue;
+        const double from = last < 0 ? 0 : before.heights_m[index(line, last)];
+        const double to = before.heights_m[index(line, k)];
+        for (int m = last + 1; last >= 0 && m < k; ++m) {
+          const double weight = 1.0 / (k - last);
+          sums[index(line, m)] += weight * (from + (to - from) * (m - last) / (k - last));
+          weights[index(line, m)] += weight;
+        }
+        last = k;
+      }
+    }
+  };
+  const auto columns = static_cast<std::size_t>(grid.columns);
+  cross(grid.rows, grid.columns, [&](int row, int k) { return row * columns + k; });
+  cross(grid.columns, grid.rows, [&](int column, int k) { return k * columns + column; });
+  for (std::size_t k = 0; k < sums.size(); ++k)
+    if (std::isnan(grid.heights_m[k]) && weights[k] > 0) grid.heights_m[k] = sums[k] / weights[k];
+  fill_nearest(grid);
+}
+
+}  // namespace
+
+HeightGrid parse_ascii_grid(std::string_view text, double vertical_scale, Holes holes) {
+  Words words(text);
+  const Header header = read_header(words);
+  HeightGrid grid;
+  grid.columns = static_cast<int>(*header.ncols);
+  grid.rows = static_cast<int>(*header.nrows);
+  grid.cell_m = *header.cellsize;
+  grid.west_m = header.xllcenter ? *header.xllcenter : *header.xllcorner + grid.cell_m / 2;
+  grid.south_m = header.yllcenter ? *header.yllcenter : *header.yllcorner + grid.cell_m / 2;
+  // A number and a space each: a header that promises more than the file has must not cost its memory.
+  const std::size_t count = static_cast<std::size_t>(grid.columns) * grid.rows;
+  if (text.size() < 2 * count - 1)
+    throw TerrainError("is too short for " + std::to_string(grid.columns) + " x " + std::to_string(grid.rows) +
+                       " heights");
+  grid.heights_m.resize(count);
+  const double nodata = header.nodata_value.value_or(-9999);
+  std::size_t holes_found = 0;
+  for (int row = grid.rows - 1; row >= 0; --row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const double value =
+          words.number("height " + std::to_string(column + 1) + " of row " + std::to_string(grid.rows - row));
+      const bool is_hole = value == nodata;
+      if (is_hole && ++holes_found == 1 && holes == Holes::error)
+        words.fail("a hole (NODATA) at column " + std::to_string(column + 1) + " of row " +
+                   std::to_string(grid.rows - row) + ": fill holes with 'holes: nearest' or 'holes: linear'");
+      grid.at(column, row) = is_hole ? hole : value * vertical_scale;
+    }
+  if (!words.next().empty()) words.fail("there are more heights than ncols times nrows");
+  if (holes_found == count) throw TerrainError("has nothing but holes");
+  if (holes_found > 0) holes == Holes::nearest ? fill_nearest(grid) : fill_linear(grid);
+  return grid;
+}
+
+}  // namespace sim

@@ -1,0 +1,93 @@
+#include "sim/terrain/terrain.hpp"
+
+#include <filesystem>
+#include <fstream>
+
+#include "sim/script/zone.hpp"
+
+namespace sim {
+namespace {
+
+constexpr std::uintmax_t max_file_bytes = 1u << 30;
+
+std::string read_text(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) throw TerrainError("does not exist");
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error || size > max_file_bytes) throw TerrainError("is larger than 1 GB");
+  std::string text(size, '\0');
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(text.data(), static_cast<std::streamsize>(size))) throw TerrainError("cannot be read");
+  return text;
+}
+
+HeightGrid read_grid(const TerrainConfig& config) {
+  if (config.source != "ascii" && config.source != "png") return generate_grid(config);
+  const std::string path = (std::filesystem::path(config.directory) / config.file).string();
+  try {
+    if (config.source == "png") {
+      if (std::error_code error; !std::filesystem::is_regular_file(path, error)) throw TerrainError("does not exist");
+      return read_png_grid(path, config.cell_m, config.height_min_m, config.height_max_m);
+    }
+    const Holes holes = config.holes == "error"     ? Holes::error
+                        : config.holes == "nearest" ? Holes::nearest
+                                                    : Holes::linear;
+    return parse_ascii_grid(read_text(path), config.vertical_scale, holes);
+  } catch (const TerrainError& error) {
+    throw TerrainError("file '" + path + "' " + error.what());
+  }
+}
+
+/// Puts the origin where the configuration says.
+void place(HeightGrid& grid, const TerrainConfig& config) {
+  if (config.origin == "map") {
+    grid.west_m -= config.map_origin_m[0];
+    grid.south_m -= config.map_origin_m[1];
+  } else {
+    const bool corner = config.origin == "corner";
+    grid.west_m = corner ? 0 : -grid.width_m() / 2;
+    grid.south_m = corner ? 0 : -grid.depth_m() / 2;
+  }
+}
+
+Zone zone_of(const TerrainAreaConfig& area) {
+  constexpr double any_height_m = 1e9;
+  ZoneConfig zone;
+  zone.shape = area.shape == "box" ? ZoneShape::box : area.shape == "circle" ? ZoneShape::cylinder : ZoneShape::polygon;
+  zone.position_m = area.center_m;
+  zone.rpy_rad.z() = area.yaw_rad;
+  zone.size_m = {area.size_m.x(), area.size_m.y(), any_height_m};
+  zone.radius_m = area.radius_m;
+  zone.height_m = any_height_m;
+  zone.points_m = area.points_m;
+  return Zone(zone);
+}
+
+/// A cell belongs to the last area that its middle lies in.
+std::vector<std::uint8_t> areas_of_cells(const HeightGrid& grid, const std::vector<TerrainAreaConfig>& areas) {
+  if (areas.empty()) return {};
+  std::vector<Zone> zones;
+  for (const TerrainAreaConfig& area : areas) zones.push_back(zone_of(area));
+  std::vector<std::uint8_t> numbers(grid.cells(), 0);
+  std::size_t cell = 0;
+  for (int j = 0; j + 1 < grid.rows; ++j)
+    for (int i = 0; i + 1 < grid.columns; ++i, ++cell) {
+      const Vector3d middle(grid.west_m + (i + 0.5) * grid.cell_m, grid.south_m + (j + 0.5) * grid.cell_m, 0);
+      for (std::size_t k = zones.size(); k > 0 && numbers[cell] == 0; --k)
+        if (zones[k - 1].contains(middle)) numbers[cell] = static_cast<std::uint8_t>(k);
+    }
+  return numbers;
+}
+
+}  // namespace
+
+Terrain load_terrain(const TerrainConfig& config) {
+  Terrain terrain{read_grid(config), {}};
+  for (double& height_m : terrain.grid.heights_m) height_m += config.vertical_offset_m;
+  place(terrain.grid, config);
+  check_heights(terrain.grid);
+  terrain.area_of_cell = areas_of_cells(terrain.grid, config.areas);
+  return terrain;
+}
+
+}  // namespace sim

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/config/param_reader.hpp"
+#include "sim/math.hpp"
+
+namespace sim {
+
+/// A region of terrain of another material, in the frame of the terrain, seen from above.
+struct TerrainAreaConfig {
+  std::string shape = "box";  ///< box, circle, polygon
+  std::string material = "default";
+  Vector3d center_m = Vector3d::Zero();  ///< z is not used
+  Vector3d size_m = Vector3d::Ones();    ///< box; z is not used
+  double yaw_rad = 0;                    ///< box
+  double radius_m = 1;                   ///< circle
+  std::vector<Vector3d> points_m;        ///< polygon: corners; z is 0
+
+  void read(ParamReader& in);
+};
+
+/// `terrain:` of a part of shape terrain.
+struct TerrainConfig {
+  std::string source = "slope";            ///< ascii, png, slope, sine, fractal
+  std::string collision = "smooth";        ///< smooth, facets, mesh
+  std::string file;                        ///< ascii, png: relative to the YAML file
+  double cell_m = 1;                       ///< all but ascii, whose file says it
+  std::vector<double> size_m{100, 100};    ///< slope, sine, fractal: along x and y
+  double vertical_scale = 1;               ///< ascii: its heights times this are metres
+  double vertical_offset_m = 0;            ///< ascii, png: added to the heights
+  double height_min_m = 0;                 ///< png: of black
+  double height_max_m = 1;                 ///< png: of white
+  std::string holes = "error";             ///< ascii: error, nearest, linear
+  std::string origin = "center";           ///< center, corner, map
+  std::vector<double> map_origin_m{0, 0};  ///< origin map: easting and northing of the part's frame
+  double angle_rad = 0;                    ///< slope: it climbs to +x
+  double direction_rad = 0;                ///< slope, sine: +x of the pattern, counter-clockwise from +x
+  double amplitude_m = 1;                  ///< sine; fractal: half of the span of the heights
+  double wavelength_m = 10;                ///< sine; fractal: of its largest hills
+  double roughness = 0.45;                 ///< fractal: height of each octave by that of the one twice as long
+  std::int64_t seed = 1;                   ///< fractal
+  std::vector<TerrainAreaConfig> areas;
+
+  SourcePlace place;
+  std::string directory;  ///< of the YAML file
+
+  void read(ParamReader& in);
+};
+
+}  // namespace sim

@@ -1,0 +1,197 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "sim/terrain/terrain.hpp"
+
+namespace {
+
+using sim::HeightGrid;
+using sim::Holes;
+using testing::HasSubstr;
+
+template <typename Action>
+std::string error_of(Action&& action) {
+  try {
+    action();
+  } catch (const sim::TerrainError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+const std::string header = "ncols 3\nnrows 2\nxllcorner 100\nyllcorner 200\ncellsize 10\n";
+
+std::string error_of_ascii(const std::string& text) {
+  return error_of([&] { sim::parse_ascii_grid(text, 1, Holes::error); });
+}
+
+TEST(AsciiGrid, RowsRunFromNorthToSouthAndTheCornerIsHalfACellOut) {
+  const HeightGrid grid = sim::parse_ascii_grid(header + "1 2 3\n4 5 6\n", 0.5, Holes::error);
+  EXPECT_EQ(grid.columns, 3);
+  EXPECT_EQ(grid.rows, 2);
+  EXPECT_EQ(grid.cell_m, 10);
+  EXPECT_EQ(grid.west_m, 105);
+  EXPECT_EQ(grid.south_m, 205);
+  EXPECT_EQ(grid.at(0, 1), 0.5);
+  EXPECT_EQ(grid.at(2, 0), 3);
+}
+
+TEST(AsciiGrid, KeywordsMayComeInAnyCaseAndOrderAndTheCentreIsThePoint) {
+  const HeightGrid grid = sim::parse_ascii_grid(
+      "NROWS 2\r\nNCols 2\r\nCELLSIZE 2.5\r\nYLLCENTER 7\r\nXLLCENTER -1e1\r\nNODATA_value -1\r\n+1 2 3e0\r\n4", 1,
+      Holes::error);
+  EXPECT_EQ(grid.west_m, -10);
+  EXPECT_EQ(grid.south_m, 7);
+  EXPECT_EQ(grid.at(1, 0), 4);
+}
+
+TEST(AsciiGrid, HolesAreAnErrorOrFilled) {
+  const std::string text =
+      "ncols 4\nnrows 3\nxllcenter 0\nyllcenter 0\ncellsize 1\nNODATA_value -9999\n"
+      "0 3 6 9\n0 -9999 -9999 9\n0 3 6 -9999\n";
+  EXPECT_EQ(error_of_ascii(text),
+            "line 8: a hole (NODATA) at column 2 of row 2: fill holes with 'holes: nearest' or 'holes: linear'");
+  const HeightGrid linear = sim::parse_ascii_grid(text, 1, Holes::linear);
+  EXPECT_NEAR(linear.at(1, 1), 3, 1e-12);  // both of the row, 0 3 6 9, and of the column, 3 3
+  EXPECT_NEAR(linear.at(2, 1), 6, 1e-12);
+  EXPECT_EQ(linear.at(3, 0), 6);  // in a corner: the nearest, which was filled itself or not
+  const HeightGrid nearest = sim::parse_ascii_grid(
+      "ncols 4\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 1\n1 2 -9999 -9999\n3 4 -9999 -9999\n", 1, Holes::nearest);
+  EXPECT_EQ(nearest.at(3, 1), 2);
+  EXPECT_EQ(nearest.at(2, 0), 4);
+  EXPECT_EQ(error_of([] {
+              sim::parse_ascii_grid("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n-9999 -9999 -9999 -9999",
+                                    1, Holes::nearest);
+            }),
+            "has nothing but holes");
+}
+
+TEST(AsciiGrid, ErrorsSayTheLineAndWhatIsWrong) {
+  EXPECT_EQ(error_of_ascii(""), "line 1: is no ESRI ASCII grid: 'ncols' is missing before the heights");
+  EXPECT_EQ(error_of_ascii("solid hill\n"), "line 1: 'solid' is no key of an ESRI ASCII grid");
+  EXPECT_EQ(error_of_ascii("ncols 3\nncols 3\n"), "line 2: 'ncols' comes twice");
+  EXPECT_EQ(error_of_ascii("ncols three\n"), "line 1: ncols is 'three', which is no number");
+  EXPECT_EQ(error_of_ascii("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize -10\n1 2 3 4 5 6"),
+            "line 5: cellsize must be > 0, got -10");
+  EXPECT_EQ(error_of_ascii("ncols 2.5\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3 4 5 6"),
+            "line 5: ncols and nrows must be whole numbers, got 2.5");
+  EXPECT_EQ(error_of_ascii("ncols 1e9\nnrows 1e9\nxllcorner 0\nyllcorner 0\ncellsize 1\n1"),
+            "is too large: it has 1000000000 x 1000000000 points, and may have 16 million");
+  EXPECT_EQ(error_of_ascii("ncols 1000\nnrows 1000\nxllcorner 0\nyllcorner 0\ncellsize 1\n1"),
+            "is too short for 1000 x 1000 heights");
+  EXPECT_EQ(error_of_ascii(header + "1 2 3\n4 5\n"), "line 8: the file ends before height 3 of row 2");
+  EXPECT_EQ(error_of_ascii(header + "1 2 3\n4 5 6 7\n"), "line 7: there are more heights than ncols times nrows");
+  EXPECT_EQ(error_of_ascii(header + "1 2 3\n4 nan 6\n"), "line 7: height 2 of row 2 is not finite");
+  EXPECT_EQ(error_of_ascii(header + "1 2 3\n4 1,5 6\n"), "line 7: height 2 of row 2 is '1,5', which is no number");
+}
+
+/// A PNG that is removed again.
+class Picture {
+ public:
+  Picture(int width, int height, int bits, int color_type, const std::vector<unsigned char>& bytes)
+      : path_(std::filesystem::temp_directory_path() / ("shoal_terrain_" + std::to_string(next_++) + ".png")) {
+    std::FILE* file = std::fopen(path_.c_str(), "wb");
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+    png_infop info = png_create_info_struct(png);
+    png_init_io(png, file);
+    png_set_IHDR(png, info, width, height, bits, color_type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
+    png_write_info(png, info);
+    for (int row = 0; row < height; ++row)
+      png_write_row(png, bytes.data() + static_cast<std::size_t>(row) * (bytes.size() / height));
+    png_write_end(png, nullptr);
+    png_destroy_write_struct(&png, &info);
+    std::fclose(file);
+  }
+  ~Picture() { std::filesystem::remove(path_); }
+  std::string path() const { return path_.string(); }
+
+ private:
+  static inline int next_ = 0;
+  std::filesystem::path path_;
+};
+
+TEST(PngGrid, EightAndSixteenBitsGoFromBlackToWhiteWithNorthOnTop) {
+  const Picture small(2, 2, 8, PNG_COLOR_TYPE_GRAY, {0, 255, 51, 102});
+  const HeightGrid grid = sim::read_png_grid(small.path(), 0.5, 10, 20);
+  EXPECT_EQ(grid.at(0, 1), 10);
+  EXPECT_EQ(grid.at(1, 1), 20);
+  EXPECT_NEAR(grid.at(0, 0), 12, 1e-12);
+  EXPECT_NEAR(grid.at(1, 0), 14, 1e-12);
+  const Picture deep(2, 2, 16, PNG_COLOR_TYPE_GRAY, {0, 0, 0, 1, 255, 255, 1, 0});
+  const HeightGrid fine = sim::read_png_grid(deep.path(), 0.5, 0, 65535);
+  EXPECT_EQ(fine.at(0, 1), 0);
+  EXPECT_EQ(fine.at(1, 1), 1);
+  EXPECT_EQ(fine.at(0, 0), 65535);
+  EXPECT_EQ(fine.at(1, 0), 256);
+}
+
+TEST(PngGrid, ColorsAndBrokenFilesAreErrors) {
+  const Picture color(2, 2, 8, PNG_COLOR_TYPE_RGB, std::vector<unsigned char>(12, 7));
+  EXPECT_EQ(error_of([&] { sim::read_png_grid(color.path(), 1, 0, 1); }),
+            "is a picture with colors or transparency: heights must be plain grey");
+  const Picture whole(64, 64, 8, PNG_COLOR_TYPE_GRAY, std::vector<unsigned char>(4096, 7));
+  std::filesystem::resize_file(whole.path(), std::filesystem::file_size(whole.path()) - 20);
+  EXPECT_THAT(error_of([&] { sim::read_png_grid(whole.path(), 1, 0, 1); }), HasSubstr("is no readable PNG: "));
+  std::ofstream(whole.path()) << "no picture at all";
+  EXPECT_THAT(error_of([&] { sim::read_png_grid(whole.path(), 1, 0, 1); }), HasSubstr("is no readable PNG: "));
+}
+
+TEST(Terrain, OriginIsTheMiddleTheCornerOrAPlaceOnTheMap) {
+  const std::string path = (std::filesystem::temp_directory_path() / "shoal_terrain_origin.asc").string();
+  std::ofstream(path) << header << "1 2 3\n4 5 6\n";
+  sim::TerrainConfig config;
+  config.source = "ascii";
+  config.file = path;
+  EXPECT_EQ(sim::load_terrain(config).grid.west_m, -10);
+  EXPECT_EQ(sim::load_terrain(config).grid.south_m, -5);
+  config.origin = "corner";
+  EXPECT_EQ(sim::load_terrain(config).grid.west_m, 0);
+  config.origin = "map";
+  config.map_origin_m = {110, 200};
+  EXPECT_EQ(sim::load_terrain(config).grid.west_m, -5);
+  EXPECT_EQ(sim::load_terrain(config).grid.south_m, 5);
+  config.vertical_offset_m = -1;
+  EXPECT_EQ(sim::load_terrain(config).grid.at(0, 1), 0);
+  std::filesystem::remove(path);
+  EXPECT_EQ(error_of([&] { sim::load_terrain(config); }), "file '" + path + "' does not exist");
+}
+
+TEST(Terrain, FractalDependsOnItsSeedAloneAndSpansTwiceItsAmplitude) {
+  sim::TerrainConfig config;
+  config.source = "fractal";
+  config.size_m = {40, 20};
+  config.amplitude_m = 3;
+  const auto heights = [&] { return sim::load_terrain(config).grid.heights_m; };
+  const std::vector<double> first = heights();
+  EXPECT_EQ(first.size(), 41u * 21u);
+  EXPECT_EQ(first, heights());
+  EXPECT_NEAR(*std::max_element(first.begin(), first.end()), 3, 1e-12);
+  EXPECT_NEAR(*std::min_element(first.begin(), first.end()), -3, 1e-12);
+  config.seed = 2;
+  EXPECT_NE(first, heights());
+}
+
+TEST(Terrain, TheLastAreaOverTheMiddleOfACellWins) {
+  sim::TerrainConfig config;
+  config.source = "slope";
+  config.size_m = {10, 10};
+  config.areas.resize(3);
+  config.areas[0].size_m = {6, 6, 0};
+  config.areas[1].shape = "circle";
+  config.areas[1].radius_m = 1.5;
+  config.areas[2].shape = "polygon";
+  config.areas[2].points_m = {{2, 2, 0}, {5, 2, 0}, {5, 5, 0}};
+  const sim::Terrain terrain = sim::load_terrain(config);
+  EXPECT_EQ(terrain.area_at(-4.5, 0), 0);
+  EXPECT_EQ(terrain.area_at(-2.5, 2.5), 1);
+  EXPECT_EQ(terrain.area_at(0.5, 0.5), 2);
+  EXPECT_EQ(terrain.area_at(4.5, 2.7), 3);
+  EXPECT_EQ(terrain.area_at(100, -100), 0);  // outside: as the nearest cell
+}
+
+}  // namespace

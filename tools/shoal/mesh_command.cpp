@@ -1,0 +1,78 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <iostream>
+#include <memory>
+
+#include "tools/shoal/commands.hpp"
+#include "tools/shoal/mesh_import.hpp"
+
+namespace tools {
+
+namespace {
+
+struct MeshOptions {
+  std::string file;
+  std::string out;
+  std::string up = "z";
+  double scale = 1;
+};
+
+std::string vector_text(const sim::Vector3d& v) {
+  return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x(), v.y(), v.z());
+}
+
+void print(const std::string& file, const sim::Mesh& mesh) {
+  sim::Vector3d low = mesh.vertices_m.front(), high = low;
+  for (const sim::Vector3d& p : mesh.vertices_m) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  std::cout << fmt::format("{}: {} triangles, {} vertices\n", file, mesh.triangles.size(), mesh.vertices_m.size())
+            << fmt::format("bounds: {} to {} m, size {} m\n", vector_text(low), vector_text(high),
+                           vector_text(high - low));
+  if (!sim::is_closed(mesh)) {
+    std::cout << "surface: open; it can stand in a world, but has no mass of its own\n";
+    return;
+  }
+  const sim::MeshSolid solid = sim::solid_of(mesh);
+  std::cout << fmt::format("surface: closed, volume {:.6g} m3, centroid {} m{}\n", std::abs(solid.volume_m3),
+                           vector_text(solid.centroid_m),
+                           solid.volume_m3 < 0 ? "; inside out, which Shoal turns by itself" : "");
+}
+
+int describe_and_convert(const MeshOptions& options) {
+  std::string about = options.file;
+  try {
+    const sim::Mesh mesh = import_mesh(options.file, options.scale, options.up == "y");
+    print(options.file, mesh);
+    about = options.out;
+    if (!options.out.empty()) save_mesh(mesh, options.out);
+  } catch (const sim::MeshError& error) {
+    std::cerr << fmt::format("mesh '{}' {}\n", about, error.what());
+    return exit_usage;
+  }
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_mesh_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("mesh", "Tell what a mesh file is, and convert it for worlds and vehicles");
+  const auto options = std::make_shared<MeshOptions>();
+  command->add_option("FILE", options->file, "mesh of any format that Assimp reads: DAE, FBX, GLB, OBJ, PLY, STL, ...")
+      ->required();
+  command->add_option("--out", options->out, "write it as this file, .stl (binary) or .obj");
+  command->add_option("--scale", options->scale, "numbers of the file times this are metres")
+      ->check(number_from(1e-9, 1e9));
+  command->add_option("--up", options->up, "axis of the file that points up: z, or y as in glTF and Collada")
+      ->check(CLI::IsMember({"y", "z"}));
+  command->footer(
+      "Examples:\n"
+      "  shoal mesh hull.stl\n"
+      "  shoal mesh hull.glb --up y --out hull.stl\n"
+      "  shoal mesh rock_mm.fbx --scale 0.001 --out rock.obj\n"
+      "Worlds and vehicles read STL and OBJ.  A mesh with mass must be closed.");
+  command->callback([options, &exit_code] { exit_code = describe_and_convert(*options); });
+}
+
+}  // namespace tools
