@@ -81,7 +81,8 @@ TEST(Snap, SaysWhatIsWrong) {
       {{world, "--out", out, "--size", "0x10"}, "--size: must be 1 to 8192 pixels a side, got '0x10'"},
       {{world, "--out", out, "--size", "8000x8000"}, "more than 64000000 rays"},
       {{world, "--out", out, "--fov", "180"}, "--fov: must be from 1 to 170"},
-      {{world, "--out", out, "--every", "1"}, "needs --until"},
+      {{world, "--out", out, "--every", "1"}, "--until"},
+      {{world, "--out", out, "--at", "3", "--every", "1", "--until", "2"}, "--until: must not be before --at"},
       {{world, "--out", out, "--image", "heat"}, "--image"},
       {{"nothing.yaml", "--out", out}, "nothing.yaml"}};
   for (const auto& [arguments, error] : wrong) {

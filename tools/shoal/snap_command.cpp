@@ -217,7 +217,7 @@ int snap(SnapArguments& arguments) {
   if (!sim::is_image_name(arguments.out))
     throw CLI::ValidationError("--out", "must end in .png, .jpg or .jpeg, got '" + arguments.out + "'");
   if (arguments.every_s && arguments.until_s < arguments.at_s)
-    throw CLI::ValidationError("--every", "needs --until, not before --at");
+    throw CLI::ValidationError("--until", "must not be before --at");
   arguments.load.encode_message = shoal::encode_own_message;
   const sim::LoadedWorld loaded = sim::load_world(arguments.world, arguments.load);
   sim::InProcessBus bus;
@@ -256,9 +256,11 @@ void add_snap_command(CLI::App& app, int& exit_code) {
   command->add_option("WORLD", arguments->world, "world file")->required();
   command->add_option("--out", arguments->out, "the picture: .png, .jpg or .jpeg")->required();
   command->add_option("--at", arguments->at_s, "simulated time, s")->check(number_from(0, 1e9));
-  command->add_option("--every", arguments->every_s, "more pictures, so many seconds apart: NAME_0000.png and on")
-      ->check(number_from(1e-6, 1e9));
-  command->add_option("--until", arguments->until_s, "time of the last of them, s")->check(number_from(0, 1e9));
+  CLI::Option* every =
+      command->add_option("--every", arguments->every_s, "more pictures, so many seconds apart: NAME_0000.png and on");
+  CLI::Option* until = command->add_option("--until", arguments->until_s, "time of the last of them, s");
+  every->check(number_from(1e-6, 1e9))->needs(until);
+  until->check(number_from(0, 1e9))->needs(every);
   CLI::Option* from = command->add_option("--from", arguments->from, "a camera of the world: VEHICLE.DEVICE");
   CLI::Option* eye = command->add_option("--eye", arguments->eye, "x,y,z: where a camera stands; else all is seen");
   CLI::Option* look = command->add_option("--look", arguments->look, "x,y,z: where it looks");
