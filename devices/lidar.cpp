@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devices/lidar_presets.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "sim/world/world.hpp"
@@ -10,71 +11,106 @@
 namespace devices {
 
 void Lidar::Params::read(sim::ParamReader& in) {
+  std::vector<std::string> names{"none"};
+  for (const LidarPreset& unit : lidar_presets()) names.push_back(unit.name);
+  in.read_choice("preset", preset, names, "a unit by its data sheet; the keys below win over it");
+  // The preset is the default of the keys that follow.
+  for (const LidarPreset& unit : lidar_presets()) {
+    if (unit.name != preset || in.describing()) continue;
+    beams = unit.beams;
+    fov_rad = unit.fov_rad;
+    laser = unit.laser;
+  }
   in.read("beams", beams, sim::between(1, 100000), "rays per scan");
   in.read_deg("fov_deg", fov_rad, sim::between(0, 360), "angle the fan covers");
-  in.read("range_min_m", range_min_m, sim::at_least(0), "anything nearer reports this");
-  in.read("range_max_m", range_max_m, sim::above(0), "a ray that hits nothing reports this");
-  in.read("resolution_m", resolution_m, sim::at_least(0), "ranges are rounded to multiples of this; 0: not");
-  in.read("sees_own_vehicle", sees_own_vehicle, "rays hit the parts of the own vehicle");
-  in.read_references("see_through", see_through, "category", "categories of parts that rays pass");
-  in.read("noise", noise, "error of each range, m");
-  if (!in.describing() && range_min_m >= range_max_m) in.error("range_min_m", "'range_min_m' must be < range_max_m");
+  in.read("intensities", intensities, "the message has the strength of each return, too");
+  laser.read(in);
 }
 
-Lidar::Lidar(const Params& params, const sim::DeviceContext& context)
-    : physics_(context.world.physics()),
-      own_group_(context.vehicle.group()),
-      noise_(context.noise(params.noise, 1, "noise")) {
+Lidar::Lidar(const Params& params, const sim::DeviceContext& context) : receiver_(params.laser, context) {
   change(params);
 }
 
 void Lidar::change(const Params& params) {
   params_ = params;
-  noise_.change(params.noise);
-  ranges_m_.assign(static_cast<std::size_t>(params.beams), params.range_max_m);
-  hits_.assign(ranges_m_.size(), {});
+  receiver_.change(params.laser);
+  const auto beams = static_cast<std::size_t>(params.beams);
+  returns_.assign(beams, params.laser.range_max_m);
   fan_.count = params.beams;
-  fan_.range_max_m = params.range_max_m;
+  fan_.range_max_m = params.laser.range_max_m;
   fan_.first_angle_rad = params.beams == 1 ? 0.0 : -0.5 * params.fov_rad;
   // A full circle has no last beam on top of the first.
   const bool full_circle = params.fov_rad >= 2 * std::numbers::pi - 1e-9;
   const int gaps = full_circle ? params.beams : params.beams - 1;
   fan_.step_rad = gaps > 0 ? params.fov_rad / gaps : 0.0;
-  filter_ = {};
-  for (const std::string& category : params.see_through) filter_.categories &= ~physics_.category_bit(category);
-  if (!params.sees_own_vehicle) filter_.exclude_group = own_group_;
+
+  directions_S_.clear();
+  for (std::size_t i = 0; i < beams; ++i) {
+    const double angle_rad = fan_.first_angle_rad + static_cast<double>(i) * fan_.step_rad;
+    const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+    for (const sim::Vector3d& d : receiver_.beam_pattern())
+      directions_S_.emplace_back(c * d.x() - s * d.y(), s * d.x() + c * d.y(), d.z());
+  }
+  hits_.assign(directions_S_.size(), {});
+  rays_.assign(receiver_.beam_pattern().size() > 1 ? directions_S_.size() : 0, {});
 }
 
 void Lidar::measure(const sim::SenseContext& context) {
+  if (rays_.empty())
+    measure_axes(context);
+  else
+    measure_beams(context);
+}
+
+void Lidar::measure_axes(const sim::SenseContext& context) {
   fan_.X_WS = context.X_WS;
-  context.world.scene().cast_fan(fan_, filter_, hits_);
-  for (std::size_t i = 0; i < ranges_m_.size(); ++i) {
-    ranges_m_[i] = std::clamp(hits_[i].range_m, params_.range_min_m, params_.range_max_m);
+  context.world.scene().cast_fan(fan_, receiver_.filter(), hits_);
+  if (!params_.intensities && receiver_.sees_all()) {
+    for (std::size_t i = 0; i < hits_.size(); ++i) {
+      returns_.ranges_m[i] = std::clamp(hits_[i].range_m, params_.laser.range_min_m, params_.laser.range_max_m);
+      returns_.returned[i] = hits_[i].hit();
+    }
+    return;
   }
+  for (std::size_t i = 0; i < hits_.size(); ++i)
+    receiver_.receive(hits_[i], context.X_WS.linear() * directions_S_[i], returns_, i);
+}
+
+void Lidar::measure_beams(const sim::SenseContext& context) {
+  for (std::size_t k = 0; k < rays_.size(); ++k)
+    rays_[k] = {context.X_WS.translation(), context.X_WS.linear() * directions_S_[k], params_.laser.range_max_m};
+  context.world.scene().cast(rays_, receiver_.filter(), hits_);
+  const std::size_t samples = receiver_.beam_pattern().size();
+  for (std::size_t i = 0; i < returns_.size(); ++i)
+    receiver_.receive(std::span(hits_).subspan(i * samples, samples), std::span(rays_).subspan(i * samples, samples),
+                      returns_, i);
 }
 
 void Lidar::disturb(double dt_s, sim::Random& random) {
-  noise_.apply(std::span<double>(ranges_m_), dt_s, random);
-  for (std::size_t i = 0; i < ranges_m_.size(); ++i) {
-    if (params_.resolution_m > 0) ranges_m_[i] = std::round(ranges_m_[i] / params_.resolution_m) * params_.resolution_m;
-    ranges_m_[i] =
-        hits_[i].hit() ? std::clamp(ranges_m_[i], params_.range_min_m, params_.range_max_m) : params_.range_max_m;
-  }
+  receiver_.disturb(returns_, dt_s, random);
+}
+
+std::span<const double> Lidar::intensities() const {
+  return params_.intensities ? std::span<const double>(returns_.intensities) : std::span<const double>();
 }
 
 void Lidar::hash_state(sim::StateHash& hash) const {
-  hash.add(std::span<const double>(ranges_m_));
-  noise_.hash_state(hash);
+  hash.add(std::span<const double>(returns_.ranges_m));
+  if (params_.intensities) hash.add(intensities());
+  receiver_.hash_state(hash);
 }
 
 void LidarReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   static thread_local shoal::planar_lidar_t message;  // keeps its vectors from scan to scan
   const std::vector<double>& ranges_m = lidar_.ranges_m();
+  const std::span<const double> intensities = lidar_.intensities();
   message.utime = out.utime(sampled_at);
   message.nranges = static_cast<std::int32_t>(ranges_m.size());
   message.ranges.resize(ranges_m.size());
   for (std::size_t i = 0; i < ranges_m.size(); ++i) message.ranges[i] = static_cast<float>(ranges_m[i]);
-  message.nintensities = 0;
+  message.nintensities = static_cast<std::int32_t>(intensities.size());
+  message.intensities.resize(intensities.size());
+  for (std::size_t i = 0; i < intensities.size(); ++i) message.intensities[i] = static_cast<float>(intensities[i]);
   message.rad0 = static_cast<float>(lidar_.first_angle_rad());
   message.radstep = static_cast<float>(lidar_.step_rad());
   shoal::encode_into(message, out.buffer());

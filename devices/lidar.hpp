@@ -2,29 +2,23 @@
 
 #include <vector>
 
-#include "sim/device/device_registry.hpp"
-#include "sim/physics/physics_world.hpp"
-#include "sim/random/noise.hpp"
-#include "sim/scene/scene.hpp"
+#include "devices/laser_return.hpp"
 
 namespace devices {
 
 /// Planar laser scanner.  The beams fan out in the xy-plane of the sensor frame S, from -fov/2 to +fov/2 about +x,
-/// counter-clockwise seen from +z.
+/// counter-clockwise seen from +z, all at one instant.  A beam that begins inside a solid ends where it leaves it.
 class Lidar final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Planar laser scanner: ranges over a fan of beams.";
   static constexpr double default_rate_hz = 10;
   static constexpr bool casts_rays = true;
   struct Params {
+    std::string preset = "none";
     int beams = 180;
     double fov_rad = std::numbers::pi;
-    double range_min_m = 0.05;
-    double range_max_m = 30.0;
-    double resolution_m = 0;
-    bool sees_own_vehicle = false;
-    std::vector<std::string> see_through;  ///< part categories
-    sim::NoiseParams noise;                ///< of each range, m
+    bool intensities = false;
+    LaserParams laser;
     void read(sim::ParamReader& in);
   };
 
@@ -34,19 +28,23 @@ class Lidar final : public sim::Sensor {
   void disturb(double dt_s, sim::Random& random) override;
   void hash_state(sim::StateHash& hash) const override;
 
-  /// From right to left; range_max_m where nothing was hit, and range_min_m where something is nearer.
-  const std::vector<double>& ranges_m() const { return ranges_m_; }
+  /// From right to left; range_max_m where nothing came back, and range_min_m where something is nearer.
+  const std::vector<double>& ranges_m() const { return returns_.ranges_m; }
+  /// See LaserReturns; empty unless asked for.
+  std::span<const double> intensities() const;
   double first_angle_rad() const { return fan_.first_angle_rad; }
   double step_rad() const { return fan_.step_rad; }
 
  private:
-  const sim::PhysicsWorld& physics_;
-  int own_group_;
+  void measure_axes(const sim::SenseContext& context);
+  void measure_beams(const sim::SenseContext& context);
+
   Params params_;
   sim::Fan fan_;
-  sim::RayFilter filter_;
-  sim::Noise noise_;
-  std::vector<double> ranges_m_;
+  LaserReceiver receiver_;
+  LaserReturns returns_;
+  std::vector<sim::Vector3d> directions_S_;  ///< of the beams; of all their rays when several sample one
+  std::vector<sim::Ray> rays_;
   std::vector<sim::RayHit> hits_;
 };
 

@@ -213,6 +213,12 @@ Pose PhysicsWorld::X_WP(int part) const {
   const PartInfo& info = impl_->parts[static_cast<std::size_t>(part)];
   return impl_->bodies[static_cast<std::size_t>(info.body)]->X_WB() * info.X_BP;
 }
+std::optional<Eigen::AlignedBox3d> PhysicsWorld::bounds_W(int part) const {
+  if (impl_->parts[static_cast<std::size_t>(part)].plane) return std::nullopt;
+  dReal sides[6];
+  dGeomGetAABB(impl_->collider.parts()[static_cast<std::size_t>(part)].geom, sides);
+  return Eigen::AlignedBox3d(Vector3d(sides[0], sides[2], sides[4]), Vector3d(sides[1], sides[3], sides[5]));
+}
 const std::string& PhysicsWorld::group_name(int group) const {
   return impl_->groups.at(static_cast<std::size_t>(group)).name;
 }

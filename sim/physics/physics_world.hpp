@@ -36,6 +36,7 @@ struct PartInfo {
   std::uint32_t category = 1;
   Pose X_BP = Pose::Identity();  ///< of the part in its body
   std::optional<Color> color;    ///< of its own; else the material's
+  bool plane = false;            ///< has no end
 };
 
 /// Work done by the last step, the same in every run.
@@ -118,6 +119,8 @@ class PhysicsWorld {
   const MaterialConfig& material(int number) const;
   /// Where a part is now.
   Pose X_WP(int part) const;
+  /// A box around a part, along the axes of the world; empty for a plane.  Not from several threads.
+  std::optional<Eigen::AlignedBox3d> bounds_W(int part) const;
   /// Empty when the group was removed.
   const std::string& group_name(int group) const;
   const StepCounts& last_step() const;

@@ -131,8 +131,9 @@ void PhysicsWorld::Impl::add_part(Body& body, const BodyConfig& config_, std::si
                                 made.terrain.get()};
   const int number = part_numbers.take();
   groups[body.group_].parts.push_back(number);
-  slot(parts, number) = {part_name(body, part, index), body.group_, body.number_,           collision.material,
-                         collision.category,           X_BG,        parse_color(part.color)};
+  slot(parts, number) = {part_name(body, part, index), body.group_,          body.number_,
+                         collision.material,           collision.category,   X_BG,
+                         parse_color(part.color),      part.shape == "plane"};
   scene->add_part(number,
                   {geom, body.group_, collision.category, collision.material,
                    collider.table().material(collision.material).transmits(), !body.fixed(),

@@ -46,8 +46,7 @@ class FloatRays {
     for (int i = 0; i < RayPacket::size; ++i) {
       RTCRayN_id(rays(), RayPacket::size, static_cast<unsigned>(i)) = static_cast<unsigned>(i);
       if ((lanes >> i & 1) == 0) valid_[i] = 0;
-      // Besides the mask: where Embree has no packets of eight it ignores the mask.
-      if (valid_[i] == 0) RTCRayN_tfar(rays(), RayPacket::size, static_cast<unsigned>(i)) = -1;
+      if (valid_[i] == 0) blank(static_cast<unsigned>(i));
     }
   }
 
@@ -62,12 +61,14 @@ class FloatRays {
 
   /// `context` starts a struct of the caller's, which the callbacks get.
   void intersect(RTCScene scene, RTCIntersectContext& context) {
+    if (none()) return;
     if (count_ == 1)
       rtcIntersect1(scene, &context, reinterpret_cast<RTCRayHit*>(data_));
     else
       rtcIntersect8(valid_, scene, &context, reinterpret_cast<RTCRayHit8*>(data_));
   }
   void find_occluded(RTCScene scene, RTCIntersectContext& context) {
+    if (none()) return;
     if (count_ == 1)
       rtcOccluded1(scene, &context, reinterpret_cast<RTCRay*>(data_));
     else
@@ -106,6 +107,17 @@ class FloatRays {
       valid_[i - first] = good ? -1 : 0;
       RTCRayN_tfar(rays(), count, at) = good ? limit : -1;
     }
+  }
+  /// Embree checks even numbers that it is told to ignore, and where it has no packets of eight it ignores the mask.
+  void blank(unsigned i) {
+    for (unsigned k = 0; k < 7; ++k) data_[k * count_ + i] = 0;
+    RTCRayN_dir_x(rays(), count_, i) = 1;
+    RTCRayN_tfar(rays(), count_, i) = -1;
+  }
+  bool none() const {
+    int any = 0;
+    for (unsigned i = 0; i < count_; ++i) any |= valid_[i];
+    return any == 0;
   }
   RTCRayN* rays() { return reinterpret_cast<RTCRayN*>(data_); }
 

@@ -212,6 +212,7 @@ void WorldConfig::read(ParamReader& in) {
   in.read("categories", categories, "categories of parts, beside `solid`; at most 30");
   for (const std::string& category : categories) in.declare("category", category);
   if (categories.size() > 30) in.error("categories", "'categories' must have at most 30 names");
+  in.read("light", light, "sun and sky, for pictures; see docs/cameras.md");
   in.read("channels", channels, "names of the channels");
   in.read("run", run, "how a run goes when the command line says nothing else");
   in.read("state_rate_hz", state_rate_hz, between(0, 1e6), "of sim.state and sim.clock; 0: never");

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/camera/light.hpp"
 #include "sim/config/param_reader.hpp"
 #include "sim/geodesy.hpp"
 #include "sim/physics/physics_config.hpp"
@@ -144,6 +145,7 @@ struct WorldConfig {
   std::vector<MaterialConfig> materials;
   std::vector<ContactConfig> contacts;
   std::vector<std::string> categories;
+  LightConfig light;
   ChannelConfig channels;
   RunConfig run;
   std::vector<std::string> plugins;  ///< loaded by load_world

@@ -3,6 +3,7 @@
 
 #include "shoal/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
+#include "sim/camera/texture.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/vehicle_loader.hpp"
 #include "sim/world/world.hpp"
@@ -18,6 +19,17 @@ bool is_vehicle_file(const std::string& path) {
   return node.find("vehicle") != nullptr || (node.find("bodies") != nullptr && node.find("vehicles") == nullptr);
 }
 
+/// Decodes every texture, as the first camera would.
+void check_textures(const sim::WorldConfig& world) {
+  sim::TextureLibrary textures;
+  const auto check_all = [&](const std::vector<sim::MaterialConfig>& materials) {
+    for (const sim::MaterialConfig& material : materials)
+      textures.get(material.texture, "material '" + material.name + "'");
+  };
+  check_all(world.materials);
+  for (const sim::VehicleInstance& vehicle : world.vehicles) check_all(vehicle.config->materials);
+}
+
 void check(const std::string& path, const sim::LoadOptions& options) {
   if (is_vehicle_file(path)) {
     const sim::VehicleConfig vehicle = sim::load_vehicle(path);
@@ -31,6 +43,7 @@ void check(const std::string& path, const sim::LoadOptions& options) {
   // Building finds what reading cannot: mesh files, bodies without mass.
   sim::InProcessBus bus;
   const sim::World world(loaded.config, bus);
+  check_textures(loaded.config);
   std::cout << path << ": world '" << loaded.config.name << "': " << world.vehicles().size() << " vehicles, "
             << loaded.config.objects.size() << " objects, " << world.devices().size() << " devices, "
             << world.physics().bodies().size() << " bodies\n";

@@ -4,12 +4,14 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <regex>
 
 #include "bridges/lcm/event_log.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "tools/experiment/allan_table.hpp"
+#include "tools/experiment/ranging_picture.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {
@@ -139,6 +141,16 @@ int allan(const std::string& path, const std::string& channel, const std::string
   return exit_ok;
 }
 
+int picture(const std::string& path, const std::string& channel, const std::string& png, std::optional<int> number) {
+  try {
+    draw_ranging(path, channel, png, number);
+  } catch (const std::runtime_error& error) {
+    std::cerr << path << ": " << error.what() << '\n';
+    return exit_bus;
+  }
+  return exit_ok;
+}
+
 }  // namespace
 
 void add_log_command(CLI::App& app, int& exit_code) {
@@ -147,13 +159,16 @@ void add_log_command(CLI::App& app, int& exit_code) {
   struct Arguments {
     std::string path, channel, out, png;
     std::vector<std::string> lcm_files;
+    std::optional<int> number;
   };
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* info_command = command->add_subcommand("info", "Channels, rates, types, and the run that made it");
   CLI::App* csv_command = command->add_subcommand("csv", "The messages of one channel as CSV on stdout");
   CLI::App* allan_command = command->add_subcommand(
       "allan", "Allan deviation of each double array of one channel, from an instrument at rest");
-  for (CLI::App* each : {info_command, csv_command, allan_command}) {
+  CLI::App* picture_command =
+      command->add_subcommand("picture", "What a range sensor recorded on one channel, as a picture");
+  for (CLI::App* each : {info_command, csv_command, allan_command, picture_command}) {
     each->add_option("LOG", arguments->path, "LCM event log")->required();
     each->add_option("--types", arguments->lcm_files, ".lcm files of types that are not Shoal's");
     add_plugin_option(*each);
@@ -162,9 +177,14 @@ void add_log_command(CLI::App& app, int& exit_code) {
   allan_command->add_option("CHANNEL", arguments->channel, "such as rover1.imu")->required();
   allan_command->add_option("--out", arguments->out, "CSV file; without --out and --png the CSV goes to stdout");
   allan_command->add_option("--png", arguments->png, "picture, drawn by gnuplot");
+  picture_command->add_option("CHANNEL", arguments->channel, "such as auv1.side_scan")->required();
+  picture_command->add_option("--png", arguments->png, "the picture's file, drawn by gnuplot")->required();
+  picture_command->add_option("--number", arguments->number,
+                              "which message, from 0, where one is drawn; without it the last");
   command->footer(
       "Examples:\n  shoal log info run.lcm\n  shoal log csv run.lcm rover1.odometry > odometry.csv\n"
-      "  shoal log allan run.lcm bench.imu --png allan.png");
+      "  shoal log allan run.lcm bench.imu --png allan.png\n"
+      "  shoal log picture run.lcm auv1.side_scan --png side_scan.png");
   info_command->callback(
       [arguments, &exit_code] { exit_code = info(arguments->path, shoal::types_with(arguments->lcm_files)); });
   csv_command->callback([arguments, &exit_code] {
@@ -173,6 +193,9 @@ void add_log_command(CLI::App& app, int& exit_code) {
   allan_command->callback([arguments, &exit_code] {
     exit_code = allan(arguments->path, arguments->channel, arguments->out, arguments->png,
                       shoal::types_with(arguments->lcm_files));
+  });
+  picture_command->callback([arguments, &exit_code] {
+    exit_code = picture(arguments->path, arguments->channel, arguments->png, arguments->number);
   });
 }
 

@@ -24,6 +24,7 @@ int run(int argc, char** argv) {
       "  shoal run worlds/minimal.yaml --duration 10\n"
       "  shoal run worlds/coop_land.yaml --launch --results results/coop_land\n"
       "  shoal check worlds/coop_land.yaml\n"
+      "  shoal snap worlds/coop_land.yaml --at 10 --out coop_land.png\n"
       "  shoal describe lidar\n"
       "`shoal COMMAND --help` tells more.\n"
       "Exit codes: 0 ok, 1 a pass rule of the world failed, 2 usage or configuration, 3 physics fault,\n"
@@ -33,6 +34,7 @@ int run(int argc, char** argv) {
   int exit_code = tools::exit_ok;
   tools::add_run_command(app, exit_code);
   tools::add_check_command(app, exit_code);
+  tools::add_snap_command(app, exit_code);
   tools::add_describe_command(app, exit_code);
   tools::add_list_command(app, exit_code);
   tools::add_spy_command(app, exit_code);

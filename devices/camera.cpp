@@ -1,0 +1,225 @@
+#include "devices/camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+namespace {
+
+/// What the cameras of a world share: decoded textures, and the rays of lenses that are alike.
+struct SharedByCameras {
+  std::shared_ptr<sim::TextureLibrary> textures = std::make_shared<sim::TextureLibrary>();
+  std::map<std::string, std::weak_ptr<const sim::PixelRays>> rays;
+
+  std::shared_ptr<const sim::PixelRays> rays_of(const sim::OpticsConfig& config, int per_side) {
+    auto& known = rays[config.text() + " " + std::to_string(per_side)];
+    auto found = known.lock();
+    if (!found) known = found = sim::make_pixel_rays(sim::Optics(config), per_side);
+    return found;
+  }
+};
+
+bool takes_light(Camera::Kind kind) {
+  return kind == Camera::Kind::rgb || kind == Camera::Kind::grey;
+}
+
+sim::ImageKind render_kind(Camera::Kind kind) {
+  switch (kind) {
+    case Camera::Kind::depth:
+      return sim::ImageKind::depth;
+    case Camera::Kind::parts:
+      return sim::ImageKind::parts;
+    case Camera::Kind::vehicles:
+      return sim::ImageKind::groups;
+    default:
+      return sim::ImageKind::color;
+  }
+}
+
+}  // namespace
+
+void ExposureParams::read(sim::ParamReader& in) {
+  in.read("auto", automatic, "each picture is made as bright as a middle grey");
+  in.read("gain", gain, sim::above_to(0, 1000), "times the light, on top of auto");
+}
+
+void Camera::Params::read(sim::ParamReader& in) {
+  in.read_choice("image", image,
+                 {{"rgb", Kind::rgb},
+                  {"grey", Kind::grey},
+                  {"depth", Kind::depth},
+                  {"segmentation_parts", Kind::parts},
+                  {"segmentation_vehicles", Kind::vehicles}},
+                 "what it takes");
+  optics.read(in);
+  in.read_choice("encoding", encoding,
+                 {{"raw", Encoding::raw}, {"raw16", Encoding::raw16}, {"png", Encoding::png}, {"jpeg", Encoding::jpeg}},
+                 "of the message; raw16: depth in mm, 0 where there is none; png of depth too");
+  in.read("jpeg_quality", jpeg_quality, sim::between(1, 100), "of jpeg");
+  in.read("range_max_m", range_max_m, sim::above_to(0, 100'000), "what is farther along the ray is not seen");
+  std::string along = depth_along_ray ? "ray" : "axis";
+  in.read_choice("depth_along", along, {"axis", "ray"}, "depth: distance along the optical axis, or range of the ray");
+  depth_along_ray = along == "ray";
+  in.read("antialias", antialias, sim::between(1, 4), "rgb, grey: so many rays along each side of a pixel");
+  in.read("exposure", exposure, "rgb, grey: how bright it becomes");
+  in.read("noise", noise, "rgb, grey: error of each level from 0 to 255; depth: of each depth, m");
+  in.read("depth_noise_per_m", depth_noise_per_m, sim::at_least(0),
+          "depth: a standard deviation of this times depth squared, 1/m, as stereo has it");
+  in.read("full_well_electrons", full_well_electrons, sim::at_least(0),
+          "rgb, grey: electrons of a white pixel, for shot noise; 0: none");
+  in.read("read_noise_electrons", read_noise_electrons, sim::at_least(0), "rgb, grey: with full_well_electrons");
+  in.read("readout_s", readout_s, sim::between(0, 10),
+          "rolling shutter: the first row is exposed this long before the last, which is at the sample time");
+  in.read("exposure_time_s", exposure_time_s, sim::between(0, 10),
+          "rgb, grey: motion blur over this time up to the sample");
+  in.read("blur_samples", blur_samples, sim::between(2, 64), "images that a blurred one is made of");
+  in.read("sees_own_vehicle", sees_own_vehicle, "the own vehicle is in the picture");
+  in.read_references("see_through", see_through, "category", "categories of parts that are not in the picture");
+  if (in.describing()) return;
+  if (encoding == Encoding::raw16 && image != Kind::depth) in.error("encoding", "'raw16' is for images of depth");
+  if (encoding == Encoding::jpeg && !takes_light(image)) in.error("encoding", "'jpeg' is for images rgb and grey");
+  if (static_cast<double>(optics.width) * optics.height * antialias * antialias > 16e6)
+    in.error("antialias", "'antialias' makes more than 16000000 rays in an image");
+  if (exposure_time_s > 0 && readout_s > 0)
+    in.error("exposure_time_s", "needs either 'readout_s' or 'exposure_time_s', not both");
+  if (exposure_time_s > 0 && !takes_light(image)) in.error("exposure_time_s", "is for images rgb and grey");
+  if (read_noise_electrons > 0 && full_well_electrons == 0)
+    in.error("read_noise_electrons", "'read_noise_electrons' needs 'full_well_electrons'");
+}
+
+Camera::Camera(const Params& params, const sim::DeviceContext& context)
+    : world_(context.world),
+      physics_(context.world.physics()),
+      own_group_(context.vehicle.group()),
+      noise_(context.noise(params.noise, params.image == Kind::rgb ? 3 : 1, "noise")) {
+  const double longest_s = std::max(params.readout_s, params.exposure_time_s);
+  if (longest_s > 0 && longest_s * context.config.rate_hz > 1 + 1e-9)
+    sim::throw_config_error(context.config.place, "device '" + context.full_name() + "'",
+                            "'readout_s' and 'exposure_time_s' must be at most 1 / rate_hz");
+  change(params);
+  renderer_->clear(frame_);
+  levels_ = sim::develop(params_.image == Kind::grey ? sim::grey_of(frame_.light) : frame_.light, 1);
+  depth_m_ = frame_.depth_m;
+}
+
+void Camera::change(const Params& params) {
+  params_ = params;
+  noise_.change(params.noise);
+  auto& shared = world_.shared<SharedByCameras>();
+  sim::RenderOptions options;
+  options.kind = render_kind(params.image);
+  for (const std::string& category : params.see_through) options.filter.categories &= ~physics_.category_bit(category);
+  if (!params.sees_own_vehicle) options.filter.exclude_group = own_group_;
+  options.range_max_m = params.range_max_m;
+  options.depth_along_ray = params.depth_along_ray;
+  options.light = world_.config().light;
+  // A mean of depths or labels is neither.
+  const int per_side = takes_light(params.image) ? params.antialias : 1;
+  renderer_ =
+      std::make_unique<sim::Renderer>(physics_, shared.rays_of(params.optics, per_side), options, shared.textures);
+  renderer_->clear(under_way_);
+  next_exposure_ = 0;
+}
+
+int Camera::exposures() const {
+  if (params_.readout_s > 0) return params_.optics.height;
+  return params_.exposure_time_s > 0 ? params_.blur_samples : 1;
+}
+
+void Camera::expose(int exposure, const sim::Pose& X_WS) {
+  if (params_.readout_s > 0)
+    renderer_->render_rows(X_WS, exposure, exposure + 1, 1, under_way_);
+  else
+    renderer_->render_rows(X_WS, 0, params_.optics.height, 1.0F / static_cast<float>(exposures()), under_way_);
+}
+
+void Camera::sweep(const sim::SweepContext& context) {
+  const int count = exposures();
+  if (count < 2) return;
+  const double span_s = params_.readout_s > 0 ? params_.readout_s : params_.exposure_time_s;
+  for (; next_exposure_ < count; ++next_exposure_) {
+    // The last one is at the time of the sample.
+    const double before_s = span_s * (count - 1 - next_exposure_) / (count - 1);
+    const sim::Time at = context.next_sample - sim::from_seconds(before_s);
+    if (at > context.now) return;
+    expose(next_exposure_, context.X_WS_at(std::max(at, context.from)));
+  }
+}
+
+void Camera::measure(const sim::SenseContext& context) {
+  for (; next_exposure_ < exposures(); ++next_exposure_) expose(next_exposure_, context.X_WS);
+  next_exposure_ = 0;
+  std::swap(frame_, under_way_);
+  renderer_->clear(under_way_);
+  if (params_.image == Kind::depth) depth_m_ = frame_.depth_m;
+  if (!takes_light(params_.image)) return;
+  gain_ = static_cast<float>(params_.exposure.gain);
+  if (params_.exposure.automatic) gain_ *= sim::auto_gain(frame_.light);
+  if (params_.image == Kind::grey)
+    light_ = sim::grey_of(frame_.light);
+  else
+    std::swap(light_, frame_.light);
+  levels_ = sim::develop(light_, gain_);
+}
+
+void Camera::add_sensor_noise(sim::Random& random) {
+  const double full = params_.full_well_electrons;
+  const double read_variance = params_.read_noise_electrons * params_.read_noise_electrons;
+  for (std::size_t i = 0; i < light_.data.size(); ++i) {
+    const double electrons = full * std::clamp(static_cast<double>(gain_ * light_.data[i]), 0.0, 1.0);
+    const double counted = electrons + std::sqrt(electrons + read_variance) * random.gaussian();
+    levels_.data[i] = sim::srgb_from_linear(static_cast<float>(counted / full));
+  }
+}
+
+void Camera::disturb(double dt_s, sim::Random& random) {
+  if (takes_light(params_.image)) {
+    if (params_.full_well_electrons > 0) add_sensor_noise(random);
+    values_.assign(levels_.data.begin(), levels_.data.end());
+    noise_.apply(std::span<double>(values_), dt_s, random);
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      levels_.data[i] = static_cast<std::uint8_t>(std::clamp(values_[i], 0.0, 255.0) + 0.5);
+  } else if (params_.image == Kind::depth) {
+    values_.assign(depth_m_.data.begin(), depth_m_.data.end());
+    if (params_.depth_noise_per_m > 0)
+      for (double& depth : values_)
+        if (std::isfinite(depth)) depth += params_.depth_noise_per_m * depth * depth * random.gaussian();
+    noise_.apply(std::span<double>(values_), dt_s, random);
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      if (std::isfinite(depth_m_.data[i])) depth_m_.data[i] = static_cast<float>(std::max(0.0, values_[i]));
+  }
+}
+
+void Camera::hash_state(sim::StateHash& hash) const {
+  const auto add = [&hash](const auto& values) { hash.add_bytes(values.data(), values.size() * sizeof values[0]); };
+  add(levels_.data);
+  add(depth_m_.data);
+  add(frame_.labels.data);
+  // The part of the next image that is there already.
+  hash.add(next_exposure_);
+  if (next_exposure_ > 0) {
+    add(under_way_.light.data);
+    add(under_way_.depth_m.data);
+    add(under_way_.labels.data);
+  }
+  noise_.hash_state(hash);
+}
+
+std::string Camera::label_text() const {
+  std::vector<std::uint16_t> seen(frame_.labels.data);
+  std::sort(seen.begin(), seen.end());
+  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  std::string text;
+  for (const std::uint16_t label : seen)
+    text += std::to_string(label) + " " + sim::Renderer::label_name(physics_, render_kind(params_.image), label) + "\n";
+  return text;
+}
+
+SHOAL_SENSOR("camera", Camera, CameraReporter);
+
+}  // namespace devices

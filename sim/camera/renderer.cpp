@@ -1,0 +1,305 @@
+#include "sim/camera/renderer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace sim {
+
+namespace {
+
+/// Rays of a tile go nearly the same way, so that the scene can follow them together.
+constexpr int tile_rays = 64;
+constexpr double shadow_range_m = 10'000;
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// Colors of what has none: fixed things, and things that move, by the number of their group.
+const Color fixed_color = {178, 170, 156};
+const Color ground_color = {196, 198, 196};
+const Color group_colors[] = {{70, 120, 190},  {214, 106, 62}, {92, 156, 88},  {190, 74, 96},
+                              {134, 102, 176}, {58, 150, 158}, {210, 170, 70}, {124, 112, 100}};
+
+float raised_to_64(float x) {
+  for (int i = 0; i < 6; ++i) x *= x;
+  return x;
+}
+
+/// How much of a footprint around x a line of 0.02 at every whole number covers.
+float line_share(double x, float footprint) {
+  constexpr float width = 0.02F;
+  const auto off = static_cast<float>(std::abs(x - std::round(x)));
+  const float seen = std::max(footprint, 0.25F * width);
+  const float covered = std::clamp((0.5F * (width + seen) - off) / seen, 0.0F, std::min(1.0F, width / seen));
+  return covered;
+}
+
+}  // namespace
+
+struct Renderer::Tile {
+  int column = 0, row = 0;    ///< of the first ray, in rays
+  int columns = 0, rows = 0;  ///< of rays
+  int seeing = 0;             ///< rays that see something
+  std::array<Ray, tile_rays> rays;
+  std::array<RayHit, tile_rays> hits;
+  std::array<int, tile_rays> number;  ///< of the ray of a place in the tile; -1: sees nothing
+  std::array<float, tile_rays> along_axis;
+  std::array<Ray, tile_rays> shadow_rays;
+  std::array<int, tile_rays> shadow_of;  ///< number of the ray
+  std::array<std::uint8_t, tile_rays> blocked, in_shadow;
+};
+
+Renderer::Renderer(const PhysicsWorld& physics, std::shared_ptr<const PixelRays> rays, const RenderOptions& options,
+                   std::shared_ptr<TextureLibrary> textures)
+    : physics_(physics),
+      rays_(std::move(rays)),
+      options_(options),
+      textures_(std::move(textures)),
+      to_sun_W_(options.light.to_sun_W()),
+      to_sun_f_W_(to_sun_W_.cast<float>()),
+      sun_is_up_(to_sun_W_.z() > 0 && options.light.sun > 0),
+      // A little warmer than the sky.
+      sun_(LinearColor(1.0F, 0.97F, 0.91F) * static_cast<float>(options.light.sun)),
+      zenith_(linear_color(parse_color(options.light.zenith_color).value_or(Color{}))),
+      horizon_(linear_color(parse_color(options.light.horizon_color).value_or(Color{}))),
+      ground_(linear_color({118, 116, 110})),
+      sky_strength_(static_cast<float>(options.light.sky)) {
+  if (options_.kind != ImageKind::color) return;
+  int materials = 1;
+  for (const PartInfo& part : physics_.parts()) materials = std::max(materials, part.group < 0 ? 0 : part.material + 1);
+  for (int i = 0; i < materials; ++i) surfaces_.push_back(make_surface(i, true));
+}
+
+Renderer::Surface Renderer::make_surface(int material, bool strict) const {
+  const MaterialConfig& config = physics_.material(material);
+  Surface surface;
+  surface.known = true;
+  if (const auto color = parse_color(config.color)) {
+    surface.has_color = true;
+    surface.color = linear_color(*color);
+  }
+  surface.gloss = static_cast<float>(config.gloss);
+  try {
+    surface.texture = textures_->get(config.texture, "material '" + config.name + "'");
+  } catch (const ConfigError&) {
+    if (strict) throw;
+  }
+  return surface;
+}
+
+const Renderer::Surface& Renderer::surface(int material) {
+  const auto number = static_cast<std::size_t>(material);
+  if (number >= surfaces_.size()) surfaces_.resize(number + 1);
+  if (!surfaces_[number].known) surfaces_[number] = make_surface(material, false);
+  return surfaces_[number];
+}
+
+void Renderer::clear(Frame& frame) const {
+  const auto empty = [this](auto& image, int channels, auto value) {
+    image.width = rays_->width, image.height = rays_->height, image.channels = channels;
+    image.data.assign(image.size(), value);
+  };
+  if (options_.kind == ImageKind::color)
+    empty(frame.light, 3, 0.0F);
+  else if (options_.kind == ImageKind::depth)
+    empty(frame.depth_m, 1, infinity);
+  else
+    empty(frame.labels, 1, std::uint16_t{0});
+}
+
+void Renderer::render(const Pose& X_WS, Frame& frame) {
+  clear(frame);
+  render_rows(X_WS, 0, rays_->height, 1, frame);
+}
+
+void Renderer::render_rows(const Pose& X_WS, int first, int end, float weight, Frame& frame) {
+  // A tile holds whole pixels; a single row becomes tiles that are wide and flat.
+  const int n = rays_->per_side;
+  int high = 1;
+  while (2 * high * n <= 8 && 2 * high <= end - first) high *= 2;
+  const int wide = std::max(1, tile_rays / (high * n * n));
+  Tile tile;
+  for (int row = first; row < end; row += high)
+    for (int column = 0; column < rays_->width; column += wide) {
+      tile.column = column * n, tile.row = row * n;
+      tile.columns = std::min(wide, rays_->width - column) * n;
+      tile.rows = std::min(high, end - row) * n;
+      gather(tile, X_WS);
+      cast(tile);
+      if (options_.kind == ImageKind::color) {
+        find_shadows(tile);
+        fill_light(tile, weight, frame);
+      } else {
+        fill_values(tile, frame);
+      }
+    }
+}
+
+void Renderer::gather(Tile& tile, const Pose& X_WS) const {
+  const Matrix3d R_WS = X_WS.linear();
+  tile.seeing = 0;
+  int place = 0;
+  for (int row = 0; row < tile.rows; ++row) {
+    const Eigen::Vector3f* directions_S = rays_->row(tile.row + row) + tile.column;
+    for (int column = 0; column < tile.columns; ++column, ++place) {
+      const Eigen::Vector3f& direction_S = directions_S[column];
+      tile.number[place] = -1;
+      if (direction_S.isZero(0)) continue;
+      Ray& ray = tile.rays[tile.seeing];
+      ray.origin_W = X_WS.translation();
+      ray.direction_W = R_WS * direction_S.cast<double>();
+      ray.range_max_m = options_.range_max_m;
+      tile.along_axis[tile.seeing] = direction_S.x();
+      tile.number[place] = tile.seeing++;
+    }
+  }
+}
+
+void Renderer::cast(Tile& tile) const {
+  const auto count = static_cast<std::size_t>(tile.seeing);
+  physics_.scene().cast(std::span(tile.rays).first(count), options_.filter, std::span(tile.hits).first(count));
+}
+
+void Renderer::find_shadows(Tile& tile) const {
+  std::fill_n(tile.in_shadow.begin(), tile.seeing, std::uint8_t{0});
+  if (!sun_is_up_ || !options_.light.shadows) return;
+  std::size_t count = 0;
+  for (int i = 0; i < tile.seeing; ++i) {
+    const RayHit& hit = tile.hits[i];
+    if (!hit.hit() || hit.normal_W.dot(to_sun_W_) <= 0) continue;
+    // Off the surface by more than its rounding, else it shades itself.
+    const double off_m = 1e-3 + 1e-5 * hit.range_m;
+    Ray& ray = tile.shadow_rays[count];
+    ray.origin_W = tile.rays[i].origin_W + hit.range_m * tile.rays[i].direction_W + off_m * hit.normal_W;
+    ray.direction_W = to_sun_W_;
+    ray.range_max_m = shadow_range_m;
+    tile.shadow_of[count++] = i;
+  }
+  // What the camera does not see, such as its own vehicle, has a shadow all the same.
+  const RayFilter filter{~0u, -1, RayKind::light};
+  physics_.scene().find_blocked(std::span(tile.shadow_rays).first(count), filter, std::span(tile.blocked).first(count));
+  for (std::size_t i = 0; i < count; ++i) tile.in_shadow[tile.shadow_of[i]] = tile.blocked[i];
+}
+
+void Renderer::fill_light(Tile& tile, float weight, Frame& frame) {
+  const int n = rays_->per_side;
+  const float share = weight / static_cast<float>(n * n);
+  int place = 0;
+  for (int row = 0; row < tile.rows; ++row)
+    for (int column = 0; column < tile.columns; ++column, ++place) {
+      const int i = tile.number[place];
+      if (i < 0) continue;
+      const RayHit& hit = tile.hits[i];
+      const Ray& ray = tile.rays[i];
+      LinearColor light;
+      if (hit.hit())
+        light = shade(hit, ray, tile.in_shadow[i] != 0, rays_->pixel_angle * static_cast<float>(hit.range_m));
+      else
+        light = sky(ray.direction_W.cast<float>());
+      float* rgb = frame.light.at((tile.column + column) / n, (tile.row + row) / n);
+      for (int channel = 0; channel < 3; ++channel) rgb[channel] += share * light[channel];
+    }
+}
+
+void Renderer::fill_values(const Tile& tile, Frame& frame) const {
+  const int n = rays_->per_side;
+  int place = 0;
+  for (int row = 0; row < tile.rows; ++row)
+    for (int column = 0; column < tile.columns; ++column, ++place) {
+      const int i = tile.number[place];
+      const int u = (tile.column + column) / n, v = (tile.row + row) / n;
+      const bool seen = i >= 0 && tile.hits[i].hit();
+      if (options_.kind == ImageKind::depth) {
+        const double factor = seen && !options_.depth_along_ray ? static_cast<double>(tile.along_axis[i]) : 1.0;
+        *frame.depth_m.at(u, v) = seen ? static_cast<float>(tile.hits[i].range_m * factor) : infinity;
+        continue;
+      }
+      int label = 0;
+      if (seen && options_.kind == ImageKind::parts) label = tile.hits[i].part + 1;
+      if (seen && options_.kind == ImageKind::groups) label = physics_.parts()[tile.hits[i].part].group + 1;
+      *frame.labels.at(u, v) = static_cast<std::uint16_t>(std::min(label, 65535));
+    }
+}
+
+LinearColor Renderer::sky(const Eigen::Vector3f& direction_W) const {
+  const float up = direction_W.z();
+  LinearColor color = horizon_;
+  if (up >= 0)
+    color += std::sqrt(up) * (zenith_ - horizon_);
+  else
+    color += std::min(1.0F, -8 * up) * (ground_ - horizon_);
+  if (!sun_is_up_) return color;
+  const float toward = direction_W.dot(to_sun_f_W_);
+  constexpr float disc = 0.99996F;  // cosine of half a degree, twice the sun's radius
+  if (toward > disc) return sun_ * 1.5F;
+  if (toward > 0.9F && up > 0) color += raised_to_64(raised_to_64(toward)) * sun_ + 0.15F * raised_to_64(toward) * sun_;
+  return color;
+}
+
+LinearColor Renderer::albedo(const RayHit& hit, const Vector3d& p_W, float footprint_m) {
+  const PartInfo& part = physics_.parts()[static_cast<std::size_t>(hit.part)];
+  const Surface& material = surface(hit.material);
+  if (part.color) return linear_color(*part.color);
+  if (material.texture) {
+    const Pose X_WP = physics_.X_WP(hit.part);
+    return material.texture->color(X_WP.inverse() * p_W, X_WP.linear().transpose() * hit.normal_W, footprint_m);
+  }
+  if (material.has_color) return material.color;
+  const bool fixed = physics_.bodies()[static_cast<std::size_t>(part.body)]->fixed();
+  if (!fixed) return linear_color(group_colors[static_cast<std::size_t>(part.group) % std::size(group_colors)]);
+  if (!part.plane) return linear_color(fixed_color);
+  // A plane: a grid of one metre tells how far things are.
+  const Vector3d p_P = physics_.X_WP(hit.part).inverse() * p_W;
+  const float line = std::max(line_share(p_P.x(), footprint_m), line_share(p_P.y(), footprint_m));
+  return linear_color(ground_color) * (1 - 0.35F * line);
+}
+
+LinearColor Renderer::shade(const RayHit& hit, const Ray& ray, bool in_shadow, float footprint_m) {
+  const Vector3d p_W = ray.origin_W + hit.range_m * ray.direction_W;
+  const Eigen::Vector3f normal = hit.normal_W.cast<float>(), direction = ray.direction_W.cast<float>();
+  // A surface seen at a flat angle fills a pixel with more of its length; half of that keeps patterns sharp across.
+  const float slant = std::max(0.05F, -normal.dot(direction));
+  const LinearColor own = albedo(hit, p_W, footprint_m / std::sqrt(slant));
+  // Half a sphere of sky over the ground lights what lies flat; what hangs over sees the ground's share of it.
+  const float open = 0.5F * (1 + normal.z());
+  LinearColor light = own * (sky_strength_ * (0.45F + 0.55F * open));
+  const float toward = normal.dot(to_sun_f_W_);
+  if (!sun_is_up_ || in_shadow || toward <= 0) return light;
+  light += own.cwiseProduct(sun_) * toward;
+  const float gloss = surface(hit.material).gloss;
+  if (gloss > 0) {
+    const Eigen::Vector3f half = (to_sun_f_W_ - direction).normalized();
+    light += sun_ * (gloss * raised_to_64(std::max(0.0F, normal.dot(half))));
+  }
+  return light;
+}
+
+std::string Renderer::label_name(const PhysicsWorld& physics, ImageKind kind, std::uint16_t label) {
+  if (label == 0) return "nothing";
+  const std::size_t number = label - 1U;
+  if (kind == ImageKind::groups) return physics.group_name(static_cast<int>(number));
+  if (number >= physics.parts().size() || physics.parts()[number].group < 0) return "gone";
+  return physics.parts()[number].name;
+}
+
+Image8 develop(const FloatImage& light, float gain) {
+  Image8 image(light.width, light.height, light.channels);
+  for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = srgb_from_linear(gain * light.data[i]);
+  return image;
+}
+
+float auto_gain(const FloatImage& light) {
+  // Of a sum over all pixels double keeps every bit that matters.
+  double sum = 0;
+  const std::size_t pixels = light.data.size() / 3;
+  for (std::size_t i = 0; i < pixels; ++i) sum += std::min(1.0F, luminance(light.data.data() + 3 * i));
+  const double mean = pixels > 0 ? sum / static_cast<double>(pixels) : 0;
+  return static_cast<float>(std::clamp(0.18 / std::max(mean, 1e-6), 1.0 / 64, 64.0));
+}
+
+FloatImage grey_of(const FloatImage& light) {
+  FloatImage grey(light.width, light.height, 1);
+  for (std::size_t i = 0; i < grey.data.size(); ++i) grey.data[i] = luminance(light.data.data() + 3 * i);
+  return grey;
+}
+
+}  // namespace sim

@@ -1,0 +1,290 @@
+#include <spdlog/spdlog.h>
+
+#include <charconv>
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "devices/camera.hpp"
+#include "shoal/message_writer.hpp"
+#include "sim/bus/in_process_bus.hpp"
+#include "sim/camera/image_file.hpp"
+#include "sim/camera/renderer.hpp"
+#include "sim/world/load_world.hpp"
+#include "sim/world/world.hpp"
+#include "tools/shoal/commands.hpp"
+
+namespace tools {
+
+namespace {
+
+struct SnapArguments {
+  std::string world;
+  sim::LoadOptions load;
+  double at_s = 0;
+  std::optional<double> every_s;
+  double until_s = 0;
+  std::string from, out, size = "1280x720", image, eye, look;
+  double fov_deg = 60;
+  std::optional<int> antialias;
+  int quality = 90;
+};
+
+/// What to look with, and from where.
+struct View {
+  sim::OpticsConfig optics;
+  sim::Pose X_WS = sim::Pose::Identity();
+  sim::RenderOptions options;
+  bool grey = false;
+  int antialias = 2;
+  float gain = 1;
+};
+
+using Numbers = std::vector<double>;
+
+/// `count` numbers with `separator` between them.
+Numbers parse_numbers(const char* option, const std::string& text, char separator, std::size_t count,
+                      const char* form) {
+  Numbers numbers;
+  const char* at = text.data();
+  const char* end = at + text.size();
+  while (at <= end) {
+    double number = 0;
+    const auto [next, error] = std::from_chars(at, end, number);
+    if (error != std::errc{} || !std::isfinite(number)) break;
+    numbers.push_back(number);
+    if (next == end && numbers.size() == count) return numbers;
+    if (next == end || *next != separator) break;
+    at = next + 1;
+  }
+  throw CLI::ValidationError(option, std::string("must be ") + form + ", got '" + text + "'");
+}
+
+sim::Vector3d parse_point(const char* option, const std::string& text) {
+  const Numbers numbers = parse_numbers(option, text, ',', 3, "three numbers in metres such as 4,-3,2.5");
+  for (const double number : numbers)
+    if (std::abs(number) > 1e7) throw CLI::ValidationError(option, "must be within 1e7 m, got '" + text + "'");
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+/// Looks from one point to another, upright; straight up or down, north is up in the picture.
+sim::Pose look_at(const sim::Vector3d& eye_W, const sim::Vector3d& look_W) {
+  const sim::Vector3d x_W = (look_W - eye_W).normalized();
+  const bool upright = std::hypot(x_W.x(), x_W.y()) > 1e-6;
+  const sim::Vector3d up_W = upright ? sim::Vector3d::UnitZ() : sim::Vector3d::UnitY();
+  sim::Pose X_WS = sim::Pose::Identity();
+  const sim::Vector3d y_W = up_W.cross(x_W).normalized();
+  X_WS.linear() << x_W, y_W, x_W.cross(y_W);
+  X_WS.translation() = eye_W;
+  return X_WS;
+}
+
+/// From the south-west and above, so that everything but planes is in the picture.
+sim::Pose view_of_everything(const sim::PhysicsWorld& physics, const sim::OpticsConfig& optics) {
+  Eigen::AlignedBox3d all;
+  for (std::size_t i = 0; i < physics.parts().size(); ++i)
+    if (physics.parts()[i].group >= 0)
+      if (const auto box = physics.bounds_W(static_cast<int>(i))) all.extend(*box);
+  if (all.isEmpty()) all = Eigen::AlignedBox3d(sim::Vector3d(-1, -1, 0), sim::Vector3d(1, 1, 1));
+  const sim::Vector3d back_W = sim::Vector3d(-0.5, -0.75, 0.62).normalized();
+  const sim::Pose X_WS = look_at(all.center() + back_W, all.center());
+  // So far back that every corner of the box is inside the lens's angles, with a little air around.
+  const double wide = 0.93 * std::tan(0.5 * optics.fov_rad), high = wide * optics.height / optics.width;
+  double back_m = 0.5;
+  for (int corner = 0; corner < 8; ++corner) {
+    const sim::Vector3d p_W = all.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
+    const sim::Vector3d p_S = X_WS.linear().transpose() * (p_W - all.center());
+    back_m = std::max({back_m, std::abs(p_S.y()) / wide - p_S.x(), std::abs(p_S.z()) / high - p_S.x()});
+  }
+  return look_at(all.center() + back_m * back_W, all.center());
+}
+
+const devices::Camera& find_camera(const sim::World& world, const std::string& name, const sim::MountedDevice*& found) {
+  std::string cameras;
+  for (const auto& device : world.devices()) {
+    if (!device) continue;
+    const auto* camera = dynamic_cast<const devices::Camera*>(device->sensor());
+    if (!camera) continue;
+    std::string dotted = device->vehicle().name() + "." + device->config().name;
+    if (name == dotted || name == device->full_name()) {
+      found = device.get();
+      return *camera;
+    }
+    cameras += (cameras.empty() ? "" : ", ") + dotted;
+  }
+  throw CLI::ValidationError("--from",
+                             "there is no camera '" + name + "'" +
+                                 (cameras.empty() ? "; this world has none, see --eye" : "; there are: " + cameras));
+}
+
+/// Through a camera as it stands now: its lens and exposure, without noise, blur and rolling shutter.
+View view_of_camera(const sim::World& world, const std::string& name) {
+  const sim::MountedDevice* device = nullptr;
+  const devices::Camera& camera = find_camera(world, name, device);
+  const sim::DeviceConfig& config = device->config();
+  const sim::Vehicle& vehicle = device->vehicle();
+  const sim::Body& body = config.body.empty() ? vehicle.base() : vehicle.body(config.body);
+  View view;
+  view.optics = camera.params().optics;
+  view.X_WS = body.X_WB() * config.X_BS();
+  view.options = camera.render_options();
+  view.grey = camera.params().image == devices::Camera::Kind::grey;
+  view.antialias = camera.params().antialias;
+  view.gain = static_cast<float>(camera.params().exposure.gain);
+  return view;
+}
+
+View free_view(const SnapArguments& arguments, const sim::World& world) {
+  const Numbers size = parse_numbers("--size", arguments.size, 'x', 2, "such as 1280x720");
+  View view;
+  for (const double side : size)
+    if (!(side >= 1 && side <= sim::max_image_side_px) || side != std::floor(side))
+      throw CLI::ValidationError("--size", "must be 1 to 8192 pixels a side, got '" + arguments.size + "'");
+  view.optics.width = static_cast<int>(size[0]);
+  view.optics.height = static_cast<int>(size[1]);
+  view.optics.fov_rad = sim::degrees_to_radians(arguments.fov_deg);
+  view.options.light = world.config().light;
+  if (arguments.eye.empty()) {
+    view.X_WS = view_of_everything(world.physics(), view.optics);
+    return view;
+  }
+  const sim::Vector3d eye_W = parse_point("--eye", arguments.eye), look_W = parse_point("--look", arguments.look);
+  if ((look_W - eye_W).norm() < 1e-6) throw CLI::ValidationError("--look", "must not be the point of --eye");
+  view.X_WS = look_at(eye_W, look_W);
+  return view;
+}
+
+View make_view(const SnapArguments& arguments, const sim::World& world) {
+  View view = arguments.from.empty() ? free_view(arguments, world) : view_of_camera(world, arguments.from);
+  if (!arguments.image.empty()) {
+    view.grey = arguments.image == "grey";
+    view.options.kind = arguments.image == "depth"                   ? sim::ImageKind::depth
+                        : arguments.image == "segmentation_parts"    ? sim::ImageKind::parts
+                        : arguments.image == "segmentation_vehicles" ? sim::ImageKind::groups
+                                                                     : sim::ImageKind::color;
+  }
+  if (arguments.antialias) view.antialias = *arguments.antialias;
+  if (view.options.kind != sim::ImageKind::color) view.antialias = 1;
+  const std::int64_t rays = std::int64_t{view.optics.width} * view.optics.height * view.antialias * view.antialias;
+  if (rays > 4 * sim::max_image_pixels)
+    throw CLI::ValidationError("--size", "with --antialias makes more than 64000000 rays in an image");
+  return view;
+}
+
+sim::Image8 take_picture(const sim::World& world, const View& view, sim::TextureLibrary& textures) {
+  const auto rays = sim::make_pixel_rays(sim::Optics(view.optics), view.antialias);
+  // The library outlives the renderer, which only wants to share it.
+  const std::shared_ptr<sim::TextureLibrary> shared(&textures, [](sim::TextureLibrary*) {});
+  sim::Renderer renderer(world.physics(), rays, view.options, shared);
+  sim::Frame frame;
+  renderer.render(view.X_WS, frame);
+  if (view.options.kind == sim::ImageKind::depth) return sim::picture_of_depth(frame.depth_m);
+  if (view.options.kind != sim::ImageKind::color) return sim::picture_of_labels(frame.labels);
+  return sim::develop(view.grey ? sim::grey_of(frame.light) : frame.light, view.gain);
+}
+
+/// `picture.png`, or `picture_0003.png` when there are several.
+std::string numbered(const std::string& path, int number) {
+  const std::size_t dot = path.rfind('.');
+  return fmt::format("{}_{:04}{}", path.substr(0, dot), number, path.substr(dot));
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void take_one(const SnapArguments& arguments, const sim::World& world, const std::string& path,
+              sim::TextureLibrary& textures) {
+  const View view = make_view(arguments, world);
+  const auto start = std::chrono::steady_clock::now();
+  const sim::Image8 picture = take_picture(world, view, textures);
+  const double render_s = seconds_since(start);
+  try {
+    sim::write_image(path, picture, arguments.quality);
+  } catch (const sim::ImageError& error) {
+    throw std::runtime_error(path + ": " + error.what());  // the main program makes that exit code 4
+  }
+  const sim::Vector3d p_W = view.X_WS.translation();
+  std::cout << fmt::format(
+      "{}: {}x{}, {} at {:.3f} s from {}, rendered in {:.2f} s\n", path, picture.width, picture.height, arguments.world,
+      sim::to_seconds(world.now()),
+      arguments.from.empty() ? fmt::format("({:.2f}, {:.2f}, {:.2f})", p_W.x(), p_W.y(), p_W.z()) : arguments.from,
+      render_s);
+}
+
+int snap(SnapArguments& arguments) {
+  if (!sim::is_image_name(arguments.out))
+    throw CLI::ValidationError("--out", "must end in .png, .jpg or .jpeg, got '" + arguments.out + "'");
+  if (arguments.every_s && arguments.until_s < arguments.at_s)
+    throw CLI::ValidationError("--every", "needs --until, not before --at");
+  arguments.load.encode_message = shoal::encode_own_message;
+  const sim::LoadedWorld loaded = sim::load_world(arguments.world, arguments.load);
+  sim::InProcessBus bus;
+  sim::World world(loaded.config, bus);
+  world.use_threads(0);
+  make_view(arguments, world);  // what is wrong with it shows before a long run
+  sim::TextureLibrary textures;
+  try {
+    int number = 0;
+    for (double at_s = arguments.at_s; number == 0 || at_s <= arguments.until_s + 1e-9; ++number) {
+      while (world.now() < sim::from_seconds(at_s)) world.step();
+      take_one(arguments, world, arguments.every_s ? numbered(arguments.out, number) : arguments.out, textures);
+      if (!arguments.every_s) break;
+      at_s = arguments.at_s + (number + 1) * *arguments.every_s;
+    }
+  } catch (const sim::PhysicsFault& fault) {
+    std::cerr << "shoal: " << fault.what() << '\n';
+    return exit_physics;
+  }
+  return exit_ok;
+}
+
+std::string check_seed(const std::string& text) {
+  std::int64_t seed = 0;
+  const char* end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, seed);
+  const bool good = error == std::errc{} && at == end && seed >= 0;
+  return good ? "" : "must be a whole number from 0 to 9223372036854775807, got '" + text + "'";
+}
+
+}  // namespace
+
+void add_snap_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("snap", "Run a world without bus or clock and take a picture");
+  const auto arguments = std::make_shared<SnapArguments>();
+  command->add_option("WORLD", arguments->world, "world file")->required();
+  command->add_option("--out", arguments->out, "the picture: .png, .jpg or .jpeg")->required();
+  command->add_option("--at", arguments->at_s, "simulated time, s")->check(number_from(0, 1e9));
+  command->add_option("--every", arguments->every_s, "more pictures, so many seconds apart: NAME_0000.png and on")
+      ->check(number_from(1e-6, 1e9));
+  command->add_option("--until", arguments->until_s, "time of the last of them, s")->check(number_from(0, 1e9));
+  CLI::Option* from = command->add_option("--from", arguments->from, "a camera of the world: VEHICLE.DEVICE");
+  CLI::Option* eye = command->add_option("--eye", arguments->eye, "x,y,z: where a camera stands; else all is seen");
+  CLI::Option* look = command->add_option("--look", arguments->look, "x,y,z: where it looks");
+  CLI::Option* fov = command->add_option("--fov", arguments->fov_deg, "its horizontal angle, degrees");
+  CLI::Option* size = command->add_option("--size", arguments->size, "WIDTHxHEIGHT in pixels");
+  eye->needs(look);
+  look->needs(eye);
+  fov->check(number_from(1, 170));
+  for (CLI::Option* option : {eye, fov, size}) option->excludes(from);
+  command->add_option("--image", arguments->image, "what it takes, rgb unless --from is another camera")
+      ->check(CLI::IsMember({"rgb", "grey", "depth", "segmentation_parts", "segmentation_vehicles"}));
+  command->add_option("--antialias", arguments->antialias, "so many rays along each side of a pixel; 2")
+      ->check(CLI::Range(1, 4));
+  command->add_option("--quality", arguments->quality, "of a JPEG")->check(CLI::Range(1, 100));
+  command->add_option("--seed", arguments->load.seed, "of every random stream")->check(check_seed);
+  command->add_option("--set", arguments->load.sets, "path=value: change a value of the world file")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  add_plugin_option(*command);
+  command->footer(
+      "Examples:\n"
+      "  shoal snap worlds/coop_land.yaml --out coop_land.png\n"
+      "  shoal snap worlds/living_warehouse.yaml --at 12.5 --eye -6,-8,5 --look 4,2,0 --out hall.jpg\n"
+      "  shoal snap worlds/proving_ground.yaml --at 3 --from turntable.camera --out seen.png\n"
+      "  shoal snap worlds/arm_reach.yaml --every 0.5 --until 5 --size 640x480 --out reach.png");
+  command->callback([arguments, &exit_code] { exit_code = snap(*arguments); });
+}
+
+}  // namespace tools
