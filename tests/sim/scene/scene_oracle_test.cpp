@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -14,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/scratch_folder.hpp"
 #include "tests/sim/physics/small_worlds.hpp"
 
 namespace {
@@ -43,8 +45,10 @@ class Uniform {
 };
 
 /// A closed mesh of 200 triangles: a sphere with dents.
-std::string dented_ball() {
-  const std::string path = testing::TempDir() + "/scene_oracle_test.obj";
+const std::string& dented_ball() {
+  static const test_support::ScratchFolder folder;
+  static const std::string path = folder.file("dented_ball.obj");
+  if (std::filesystem::exists(path)) return path;
   FILE* file = std::fopen(path.c_str(), "w");
   constexpr int rings = 11, around = 10;
   const auto put = [&](double polar, double turn, double r) {
