@@ -158,6 +158,7 @@ TEST(Terrain, OriginIsTheMiddleTheCornerOrAPlaceOnTheMap) {
   EXPECT_EQ(sim::load_terrain(config).grid.south_m, 5);
   config.vertical_offset_m = -1;
   EXPECT_EQ(sim::load_terrain(config).grid.at(0, 1), 0);
+  std::filesystem::remove(path);
   EXPECT_EQ(error_of([&] { sim::load_terrain(config); }), "file '" + path + "' does not exist");
 }
 
