@@ -64,9 +64,7 @@ Renderer::Renderer(const PhysicsWorld& physics, std::shared_ptr<const PixelRays>
       ground_(linear_color({118, 116, 110})),
       sky_strength_(static_cast<float>(options.light.sky)) {
   if (options_.kind != ImageKind::color) return;
-  int materials = 1;
-  for (const PartInfo& part : physics_.parts()) materials = std::max(materials, part.group < 0 ? 0 : part.material + 1);
-  for (int i = 0; i < materials; ++i) surfaces_.push_back(make_surface(i, true));
+  for (int i = 0; i < physics_.materials(); ++i) surfaces_.push_back(make_surface(i, true));
 }
 
 Renderer::Surface Renderer::make_surface(int material, bool strict) const {
