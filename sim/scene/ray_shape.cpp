@@ -49,7 +49,7 @@ SHOAL_INLINE LocalRay to_local(const RayShape& shape, const RayPacket& rays, int
 /// Cuts off what lies outside -half..half along one axis.  A ray along the face (0 / 0) counts as inside: a comparison
 /// with NaN changes nothing.
 SHOAL_INLINE Inside cut(Inside in, double from, double direction, double half) {
-  const double inverse = 1 / direction;
+  const double inverse = 1 / (direction + 0.0);  // -0 becomes 0, as `ahead` has it
   const double ahead = direction < 0 ? -half : half;
   const double enter = (-ahead - from) * inverse, leave = (ahead - from) * inverse;
   return {larger(enter, in.enter), smaller(leave, in.leave)};
