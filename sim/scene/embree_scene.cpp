@@ -352,7 +352,7 @@ void EmbreeScene::cast_fan(const Fan& fan, const RayFilter& filter, std::span<Ra
       static_cast<std::size_t>(fan.count), std::abs(fan.step_rad) < together_rad,
       [&](RayPacket& rays, int lane, std::size_t i) {
         const auto [c, s] = directions.cos_sin[i];
-        rays.set(lane, p_WS, R_WS * Vector3d(c, s, 0), fan.range_max_m);
+        rays.set(lane, p_WS, R_WS.col(0) * c + R_WS.col(1) * s, fan.range_max_m);
       },
       [&](std::size_t first, RayPacket& rays, unsigned lanes) {
         cast_packet(rays, lanes, filter);

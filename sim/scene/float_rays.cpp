@@ -12,17 +12,25 @@ namespace sim {
   constexpr int n = RayPacket::size;
   const double margin_m = out.margin_m_, square_radius_m2 = out.square_radius_m2_;
   // The same as set_start.
-  double start_m[n];
+  double start_m[n], over[n];
   for (int i = 0; i < n; ++i) {
     const double x = from[0][i], y = from[1][i], z = from[2][i];
-    const double vx = direction[0][i], vy = direction[1][i], vz = direction[2][i];
-    const double along = -(x * vx + y * vy + z * vz);
-    const double px = x + along * vx, py = y + along * vy, pz = z + along * vz;
-    const double rest = square_radius_m2 - (px * px + py * py + pz * pz);
-    const double enter = along - std::sqrt(rest > 0 ? rest : 0) - margin_m;
-    const double outside = (along > 0) & (rest >= 0) ? enter : std::numeric_limits<double>::quiet_NaN();
-    start_m[i] = x * x + y * y + z * z <= square_radius_m2 ? -margin_m : outside;
+    over[i] = x * x + y * y + z * z - square_radius_m2;
+    start_m[i] = -margin_m;
   }
+  double farthest = over[0];
+  for (int i = 1; i < n; ++i) farthest = over[i] <= farthest ? farthest : over[i];
+  if (!(farthest <= 0))
+    for (int i = 0; i < n; ++i) {
+      const double x = from[0][i], y = from[1][i], z = from[2][i];
+      const double vx = direction[0][i], vy = direction[1][i], vz = direction[2][i];
+      const double along = -(x * vx + y * vy + z * vz);
+      const double px = x + along * vx, py = y + along * vy, pz = z + along * vz;
+      const double rest = square_radius_m2 - (px * px + py * py + pz * pz);
+      const double enter = along - std::sqrt(rest > 0 ? rest : 0) - margin_m;
+      const double outside = (along > 0) & (rest >= 0) ? enter : std::numeric_limits<double>::quiet_NaN();
+      start_m[i] = over[i] <= 0 ? -margin_m : outside;
+    }
   float origin[3][n], way[3][n], limit_m[n];
   std::uint32_t good[n];  // all bits or none
   for (int axis = 0; axis < 3; ++axis)
