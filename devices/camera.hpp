@@ -54,6 +54,9 @@ class Camera final : public sim::Sensor {
   void sweep(const sim::SweepContext& context) override;
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
+  std::int64_t rays() const override {
+    return std::int64_t{params_.optics.width} * params_.optics.height * params_.antialias * params_.antialias;
+  }
   void hash_state(sim::StateHash& hash) const override;
 
   const Params& params() const { return params_; }

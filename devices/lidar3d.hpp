@@ -32,6 +32,8 @@ class Lidar3d final : public sim::Sensor {
   void sweep(const sim::SweepContext& context) override;
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
+  /// Of a step, with ten of them in a turn.
+  std::int64_t rays() const override { return static_cast<std::int64_t>(ring_rays_.size()) * params_.columns / 10; }
   void hash_state(sim::StateHash& hash) const override;
 
   /// The last turn, column by column, ring by ring.

@@ -52,6 +52,8 @@ class Sensor {
   virtual void sweep(const SweepContext& /*context*/) {}
   /// Turns the truth into a measurement, in place: noise, quantisation.  Called once after every measure().
   virtual void disturb(double dt_s, Random& random) = 0;
+  /// About how many rays a sample takes: whether it is worth sharing the work among threads.
+  virtual std::int64_t rays() const { return 0; }
   /// Something sent to this device at a simulated time arrives, see World::schedule_arrival.
   virtual void arrive(Time /*at*/, std::span<const std::byte> /*payload*/) {}
   /// The reading and everything that outlasts a sample.

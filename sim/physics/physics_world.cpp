@@ -215,6 +215,13 @@ Pose PhysicsWorld::X_WP(int part) const {
 }
 std::optional<Eigen::AlignedBox3d> PhysicsWorld::bounds_W(int part) const {
   if (impl_->parts[static_cast<std::size_t>(part)].plane) return std::nullopt;
+  if (const auto ground = impl_->terrains.find(part); ground != impl_->terrains.end()) {
+    // Its geom reaches far below the surface.
+    Eigen::AlignedBox3d box;
+    const Pose X_WP_now = X_WP(part);
+    for (const Vector3d& vertex : ground->second->mesh.vertices_m) box.extend(X_WP_now * vertex);
+    return box;
+  }
   dReal sides[6];
   dGeomGetAABB(impl_->collider.parts()[static_cast<std::size_t>(part)].geom, sides);
   return Eigen::AlignedBox3d(Vector3d(sides[0], sides[2], sides[4]), Vector3d(sides[1], sides[3], sides[5]));

@@ -64,6 +64,7 @@ class MountedDevice {
   bool senses() const { return built_.sensor != nullptr; }
   bool sweeps() const { return type_.sweeps; }
   bool casts_rays() const { return type_.casts_rays; }
+  std::int64_t rays() const { return built_.sensor->rays(); }
   bool acts() const { return built_.actuator != nullptr; }
   bool has_mailbox() const { return mailbox_ != nullptr; }
   int number() const { return number_; }

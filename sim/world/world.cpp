@@ -156,7 +156,11 @@ void World::cast_rays() {
     if (casting.device->sweeps()) casting.device->sweep(*this, now());
     if (casting.due) casting.device->sample(*this, now(), step_number_);
   };
-  if (threads_ && scene().concurrent())
+  // Waking threads costs as much as some hundred rays.
+  constexpr std::int64_t worth_sharing = 1500;
+  std::int64_t rays = 0;
+  for (const Casting& casting : casting_) rays += casting.device->rays();
+  if (threads_ && rays >= worth_sharing && scene().concurrent())
     threads_->for_each(casting_.size(), [&](std::size_t i) { sample(casting_[i]); });
   else
     for (const Casting& casting : casting_) sample(casting);

@@ -11,6 +11,7 @@
 #include "bridges/lcm/event_log.hpp"
 #include "shoal/message_codec.hpp"
 #include "tools/experiment/gnuplot.hpp"
+#include "tools/experiment/scratch_directory.hpp"
 
 namespace tools {
 
@@ -106,23 +107,6 @@ std::string script(const AllanTable& table, const std::string& csv, const std::s
   }
   return text + "unset multiplot\n";
 }
-
-/// A directory that goes with its owner.
-class ScratchDirectory {
- public:
-  ScratchDirectory() {
-    std::string name = (std::filesystem::temp_directory_path() / "shoal_allan_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no directory can be made at " + name);
-    path = name;
-  }
-  ~ScratchDirectory() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  ScratchDirectory(const ScratchDirectory&) = delete;
-  ScratchDirectory& operator=(const ScratchDirectory&) = delete;
-  std::filesystem::path path;
-};
 
 }  // namespace
 

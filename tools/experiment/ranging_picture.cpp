@@ -18,6 +18,7 @@
 #include "shoal/side_scan_t.hpp"
 #include "shoal/sonar_image_t.hpp"
 #include "tools/experiment/gnuplot.hpp"
+#include "tools/experiment/scratch_directory.hpp"
 
 namespace tools {
 
@@ -156,23 +157,6 @@ Drawing draw(const std::vector<sim::Bytes>& payloads, std::optional<int> number)
   throw std::runtime_error(
       "its type cannot be drawn; sonar_image_t, side_scan_t, multibeam_t, point_cloud_t and planar_lidar_t can");
 }
-
-/// A directory that goes with its owner.
-class ScratchDirectory {
- public:
-  ScratchDirectory() {
-    std::string name = (std::filesystem::temp_directory_path() / "shoal_picture_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no directory can be made at " + name);
-    path = name;
-  }
-  ~ScratchDirectory() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  ScratchDirectory(const ScratchDirectory&) = delete;
-  ScratchDirectory& operator=(const ScratchDirectory&) = delete;
-  std::filesystem::path path;
-};
 
 }  // namespace
 

@@ -1,11 +1,14 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <iostream>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "bridges/lcm/bus_error.hpp"
 #include "sim/config/diagnostics.hpp"
@@ -14,6 +17,24 @@
 #include "tools/shoal/commands.hpp"
 
 namespace {
+
+/// `--eye -4,2,1` as `--eye=-4,2,1`: CLI11 would take the value for an option.  In the order that CLI11 wants, the last
+/// argument first.
+std::vector<std::string> joined_negative_values(int argc, char** argv) {
+  std::vector<std::string> arguments;
+  for (int i = 1; i < argc; ++i) {
+    const std::string text = argv[i];
+    const bool negative = text.size() > 1 && text[0] == '-' && std::string("0123456789.").find(text[1]) != text.npos;
+    const bool after_option = !arguments.empty() && arguments.back().starts_with("--") && arguments.back() != "--" &&
+                              arguments.back().find('=') == std::string::npos;
+    if (negative && after_option)
+      arguments.back() += "=" + text;
+    else
+      arguments.push_back(text);
+  }
+  std::reverse(arguments.begin(), arguments.end());
+  return arguments;
+}
 
 int run(int argc, char** argv) {
   CLI::App app{"Shoal simulates many vehicles and their devices on LCM channels."};
@@ -44,7 +65,7 @@ int run(int argc, char** argv) {
   tools::add_bench_command(app, exit_code);
   tools::add_mesh_command(app, exit_code);
   try {
-    app.parse(argc, argv);
+    app.parse(joined_negative_values(argc, argv));
   } catch (const CLI::ParseError& error) {
     // CLI11 has exit codes of its own; all that is not help or version is wrong usage.
     return app.exit(error) == 0 ? tools::exit_ok : tools::exit_usage;

@@ -14,6 +14,7 @@
 
 #include "shoal/message_schema.hpp"
 #include "sim/bus/bus.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace lcm_test {
 
@@ -51,21 +52,7 @@ bool await(const Condition& condition, std::chrono::milliseconds limit = 10s) {
   return true;
 }
 
-/// A folder that goes away with the test.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "shoal-lcm-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~ScratchFolder() { std::filesystem::remove_all(path_); }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
+using test_support::ScratchFolder;
 
 /// Makes a valid payload of any type, by its schema alone: arrays of 0 to 3 elements, strings of 0 to 5
 /// characters.

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "sim/random/random.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace {
 
@@ -85,16 +86,16 @@ TEST(ImageFile, JpegIsNearlyThePicture) {
 }
 
 TEST(ImageFile, GoesThroughFiles) {
-  const std::string folder = testing::TempDir();
+  const test_support::ScratchFolder folder;
   const Image8 image = colors(20, 10, 3);
-  sim::write_image(folder + "picture.PNG", image);
-  EXPECT_EQ(sim::read_image(folder + "picture.PNG").data, image.data);
-  sim::write_image(folder + "picture.jpg", image);
-  EXPECT_EQ(sim::read_image(folder + "picture.jpg").width, 20);
-  EXPECT_THROW(sim::write_image(folder + "picture.gif", image), sim::ImageError);
-  EXPECT_THROW(sim::write_image(folder + "no/such/picture.png", image), sim::ImageError);
-  EXPECT_THROW(sim::read_image(folder + "nothing.png"), sim::ImageError);
-  EXPECT_THROW(sim::read_image(folder), sim::ImageError);
+  sim::write_image(folder.file("picture.PNG"), image);
+  EXPECT_EQ(sim::read_image(folder.file("picture.PNG")).data, image.data);
+  sim::write_image(folder.file("picture.jpg"), image);
+  EXPECT_EQ(sim::read_image(folder.file("picture.jpg")).width, 20);
+  EXPECT_THROW(sim::write_image(folder.file("picture.gif"), image), sim::ImageError);
+  EXPECT_THROW(sim::write_image(folder.file("no/such/picture.png"), image), sim::ImageError);
+  EXPECT_THROW(sim::read_image(folder.file("nothing.png")), sim::ImageError);
+  EXPECT_THROW(sim::read_image(folder.file("")), sim::ImageError);
 }
 
 TEST(ImageFile, RefusesWhatIsNoImage) {

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "sim/camera/image_file.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/sim/physics/small_worlds.hpp"
 
 namespace {
@@ -194,7 +195,8 @@ TEST(Renderer, CheckersHaveTheirCornersAtWholeFields) {
 }
 
 TEST(Renderer, AnImageLiesUprightOnAWall) {
-  const std::string file = testing::TempDir() + "renderer_test.png";
+  const test_support::ScratchFolder folder;
+  const std::string file = folder.file("poster.png");
   sim::Image8 picture(2, 2, 3);
   picture.data = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255};  // red green / blue white
   sim::write_image(file, picture);
@@ -224,7 +226,8 @@ TEST(Renderer, AnImageLiesUprightOnAWall) {
 }
 
 TEST(Renderer, SaysWhichTextureCannotBeRead) {
-  const std::string file = testing::TempDir() + "broken.png";
+  const test_support::ScratchFolder folder;
+  const std::string file = folder.file("broken.png");
   std::ofstream(file) << "no picture";
   MaterialConfig poster;
   poster.name = "poster";

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <limits>
 
+#include "tests/scratch_folder.hpp"
 #include "tests/sim/physics/small_worlds.hpp"
 
 namespace {
@@ -74,15 +75,14 @@ std::string error_of(Action&& action) {
 /// A file that is removed again.
 class TemporaryFile {
  public:
-  TemporaryFile(const std::string& name, const std::string& bytes)
-      : path_(std::filesystem::temp_directory_path() / ("shoal_mesh_test_" + name)) {
+  TemporaryFile(const std::string& name, const std::string& bytes) : path_(folder_.file(name)) {
     std::ofstream(path_, std::ios::binary) << bytes;
   }
-  ~TemporaryFile() { std::filesystem::remove(path_); }
-  std::string path() const { return path_.string(); }
+  const std::string& path() const { return path_; }
 
  private:
-  std::filesystem::path path_;
+  test_support::ScratchFolder folder_;
+  std::string path_;
 };
 
 TEST(Mesh, IsReadFromEachFormat) {

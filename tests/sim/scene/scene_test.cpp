@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/scratch_folder.hpp"
 #include "tests/sim/physics/small_worlds.hpp"
 
 namespace {
@@ -134,7 +135,8 @@ TEST_P(Ray, HitsAMesh) {
   // A tetrahedron standing on z = 0, its slope towards -x through (-1, y, 0) and (0, 0, 1).
   PartConfig part;
   part.shape = "mesh";
-  part.mesh = testing::TempDir() + "/scene_test.obj";
+  const test_support::ScratchFolder folder;
+  part.mesh = folder.file("tetrahedron.obj");
   FILE* file = std::fopen(part.mesh.c_str(), "w");
   ASSERT_NE(file, nullptr);
   std::fputs("v -1 -1 0\nv -1 1 0\nv 2 0 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n", file);

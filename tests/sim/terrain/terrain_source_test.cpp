@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "sim/terrain/terrain.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace {
 
@@ -93,7 +94,7 @@ TEST(AsciiGrid, ErrorsSayTheLineAndWhatIsWrong) {
 class Picture {
  public:
   Picture(int width, int height, int bits, int color_type, const std::vector<unsigned char>& bytes)
-      : path_(std::filesystem::temp_directory_path() / ("shoal_terrain_" + std::to_string(next_++) + ".png")) {
+      : path_(folder_.file("picture.png")) {
     std::FILE* file = std::fopen(path_.c_str(), "wb");
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
     png_infop info = png_create_info_struct(png);
@@ -107,12 +108,11 @@ class Picture {
     png_destroy_write_struct(&png, &info);
     std::fclose(file);
   }
-  ~Picture() { std::filesystem::remove(path_); }
-  std::string path() const { return path_.string(); }
+  const std::string& path() const { return path_; }
 
  private:
-  static inline int next_ = 0;
-  std::filesystem::path path_;
+  test_support::ScratchFolder folder_;
+  std::string path_;
 };
 
 TEST(PngGrid, EightAndSixteenBitsGoFromBlackToWhiteWithNorthOnTop) {
@@ -142,7 +142,8 @@ TEST(PngGrid, ColorsAndBrokenFilesAreErrors) {
 }
 
 TEST(Terrain, OriginIsTheMiddleTheCornerOrAPlaceOnTheMap) {
-  const std::string path = (std::filesystem::temp_directory_path() / "shoal_terrain_origin.asc").string();
+  const test_support::ScratchFolder folder;
+  const std::string path = folder.file("origin.asc");
   std::ofstream(path) << header << "1 2 3\n4 5 6\n";
   sim::TerrainConfig config;
   config.source = "ascii";
