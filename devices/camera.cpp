@@ -1,15 +1,22 @@
 #include "devices/camera.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
+#include "devices/param_checks.hpp"
+#include "devices/ray_filter.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
 
 namespace {
+
+/// LCM 1.3.1 sends no message of more than 16 MiB; some of it is left for the metadata.
+constexpr int most_message_bytes = (16 << 20) - (64 << 10);
 
 /// What the cameras of a world share: decoded textures, and the rays of lenses that are alike.
 struct SharedByCameras {
@@ -90,17 +97,41 @@ void Camera::Params::read(sim::ParamReader& in) {
   if (exposure_time_s > 0 && !takes_light(image)) in.error("exposure_time_s", "is for images rgb and grey");
   if (read_noise_electrons > 0 && full_well_electrons == 0)
     in.error("read_noise_electrons", "'read_noise_electrons' needs 'full_well_electrons'");
+  check_time(in);
+  if (message_bytes() > most_message_bytes)
+    in.error(in.has("height") ? "height" : "width",
+             fmt::format("an image must have at most {} bytes, got {:.0f}: the bus carries no more; 'encoding' png or "
+                         "jpeg makes it smaller",
+                         most_message_bytes, message_bytes()));
+}
+
+void Camera::Params::check_time(sim::ParamReader& in) const {
+  const char* key = readout_s > 0 ? "readout_s" : "exposure_time_s";
+  const double span_s = std::max(readout_s, exposure_time_s);
+  const double rate_hz = rate_hz_of(in, default_rate_hz);
+  if (span_s > 0 && rate_hz == 0)
+    in.error(key, fmt::format("'{}' needs a 'rate_hz' > 0: at 0 there is an image in every step", key));
+  if (span_s * rate_hz > 1 + 1e-9)
+    in.error(key, fmt::format("'{}' must be at most 1 / rate_hz, got {:g} s at {:g} Hz", key, span_s, rate_hz));
+}
+
+double Camera::Params::message_bytes() const {
+  if (encoding == Encoding::png || encoding == Encoding::jpeg) return 0;
+  const double bytes = image == Kind::rgb     ? 3
+                       : image == Kind::grey  ? 1
+                       : image == Kind::depth ? (encoding == Encoding::raw ? 4 : 2)
+                                              : 2;
+  return bytes * optics.width * optics.height;
 }
 
 Camera::Camera(const Params& params, const sim::DeviceContext& context)
     : world_(context.world),
       physics_(context.world.physics()),
+      vehicle_(context.vehicle),
+      config_(context.config),
+      step_(sim::from_seconds(context.world.config().physics.step_s)),
       own_group_(context.vehicle.group()),
       noise_(context.noise(params.noise, params.image == Kind::rgb ? 3 : 1, "noise")) {
-  const double longest_s = std::max(params.readout_s, params.exposure_time_s);
-  if (longest_s > 0 && longest_s * context.config.rate_hz > 1 + 1e-9)
-    sim::throw_config_error(context.config.place, "device '" + context.full_name() + "'",
-                            "'readout_s' and 'exposure_time_s' must be at most 1 / rate_hz");
   change(params);
   renderer_->clear(frame_);
   levels_ = sim::develop(params_.image == Kind::grey ? sim::grey_of(frame_.light) : frame_.light, 1);
@@ -113,8 +144,8 @@ void Camera::change(const Params& params) {
   auto& shared = world_.shared<SharedByCameras>();
   sim::RenderOptions options;
   options.kind = render_kind(params.image);
-  for (const std::string& category : params.see_through) options.filter.categories &= ~physics_.category_bit(category);
-  if (!params.sees_own_vehicle) options.filter.exclude_group = own_group_;
+  options.filter =
+      make_ray_filter(physics_, sim::RayKind::light, params.see_through, own_group_, params.sees_own_vehicle);
   options.range_max_m = params.range_max_m;
   options.depth_along_ray = params.depth_along_ray;
   options.light = world_.config().light;
@@ -124,6 +155,7 @@ void Camera::change(const Params& params) {
       std::make_unique<sim::Renderer>(physics_, shared.rays_of(params.optics, per_side), options, shared.textures);
   renderer_->clear(under_way_);
   next_exposure_ = 0;
+  next_sample_ = swept_at_;  // not known until the next sweep
 }
 
 int Camera::exposures() const {
@@ -138,22 +170,58 @@ void Camera::expose(int exposure, const sim::Pose& X_WS) {
     renderer_->render_rows(X_WS, 0, params_.optics.height, 1.0F / static_cast<float>(exposures()), under_way_);
 }
 
+sim::Time Camera::before_sample(int exposure) const {
+  const int count = exposures();
+  if (count < 2) return sim::Time{0};
+  const double span_s = params_.readout_s > 0 ? params_.readout_s : params_.exposure_time_s;
+  return sim::from_seconds(span_s * (count - 1 - exposure) / (count - 1));
+}
+
+void Camera::remember(const sim::SweepContext& context) {
+  if (places_.empty() || places_.back().at != context.from) {  // the first step, or it was without power
+    places_.clear();
+    places_.push_back({context.from, context.X_WS_from});
+  }
+  places_.push_back({context.now, context.X_WS});
+  while (places_.size() > 2 && places_[1].at <= context.now - before_sample(0)) places_.pop_front();
+}
+
+sim::Pose Camera::X_WS_at(sim::Time at) const {
+  if (at <= places_.front().at) return places_.front().X_WS;
+  const auto after =
+      std::lower_bound(places_.begin(), places_.end(), at, [](const Place& p, sim::Time t) { return p.at < t; });
+  if (after == places_.end()) return places_.back().X_WS;
+  const auto before = std::prev(after);
+  return sim::SweepContext{world_, vehicle_, before->at, after->at, before->X_WS, after->X_WS, {}}.X_WS_at(at);
+}
+
 void Camera::sweep(const sim::SweepContext& context) {
+  swept_at_ = context.now;
+  next_sample_ = context.next_sample;
   const int count = exposures();
   if (count < 2) return;
-  const double span_s = params_.readout_s > 0 ? params_.readout_s : params_.exposure_time_s;
+  remember(context);
   for (; next_exposure_ < count; ++next_exposure_) {
-    // The last one is at the time of the sample.
-    const double before_s = span_s * (count - 1 - next_exposure_) / (count - 1);
-    const sim::Time at = context.next_sample - sim::from_seconds(before_s);
+    const sim::Time at = context.next_sample - before_sample(next_exposure_);
     if (at > context.now) return;
-    expose(next_exposure_, context.X_WS_at(std::max(at, context.from)));
+    // Before this step where the image before it ended late, as with a rate that does not divide the step.
+    expose(next_exposure_, X_WS_at(at));
   }
+}
+
+std::int64_t Camera::rays() const {
+  int due = next_exposure_;
+  while (due < exposures() && next_sample_ - before_sample(due) <= swept_at_ + step_) ++due;
+  const auto image = static_cast<std::int64_t>(renderer_->rays().directions_S.size());
+  return (due - next_exposure_) * (params_.readout_s > 0 ? image / params_.optics.height : image);
 }
 
 void Camera::measure(const sim::SenseContext& context) {
   for (; next_exposure_ < exposures(); ++next_exposure_) expose(next_exposure_, context.X_WS);
   next_exposure_ = 0;
+  // The next one is no earlier than this; the next sweep knows.
+  const double steps = config_.rate_hz > 0 ? 1 / (config_.rate_hz * sim::to_seconds(step_)) : 1;
+  next_sample_ = context.now + step_ * std::max<std::int64_t>(1, static_cast<std::int64_t>(steps + 1e-9));
   std::swap(frame_, under_way_);
   renderer_->clear(under_way_);
   if (params_.image == Kind::depth) depth_m_ = frame_.depth_m;
@@ -207,6 +275,7 @@ void Camera::hash_state(sim::StateHash& hash) const {
     add(under_way_.depth_m.data);
     add(under_way_.labels.data);
   }
+  for (const Place& place : places_) hash.add(std::span<const double>(place.X_WS.matrix().data(), 16));
   noise_.hash_state(hash);
 }
 

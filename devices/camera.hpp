@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <string>
 #include <vector>
@@ -47,6 +48,11 @@ class Camera final : public sim::Sensor {
     bool sees_own_vehicle = false;
     std::vector<std::string> see_through;  ///< part categories
     void read(sim::ParamReader& in);
+    /// Of the pixels of an image; 0 when they are compressed.
+    double message_bytes() const;
+
+   private:
+    void check_time(sim::ParamReader& in) const;
   };
 
   Camera(const Params& params, const sim::DeviceContext& context);
@@ -54,9 +60,7 @@ class Camera final : public sim::Sensor {
   void sweep(const sim::SweepContext& context) override;
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  std::int64_t rays() const override {
-    return std::int64_t{params_.optics.width} * params_.optics.height * params_.antialias * params_.antialias;
-  }
+  std::int64_t rays() const override;
   void hash_state(sim::StateHash& hash) const override;
 
   const Params& params() const { return params_; }
@@ -72,18 +76,34 @@ class Camera final : public sim::Sensor {
  private:
   /// Exposures of an image: rows that are read out one after the other, or whole images that blur into one.
   int exposures() const;
+  /// When one of them is, before the sample of its image.
+  sim::Time before_sample(int exposure) const;
   void expose(int exposure, const sim::Pose& X_WS);
+  /// Keeps where the camera was, for as long as an image takes.
+  void remember(const sim::SweepContext& context);
+  /// Where it was, as far back as that is known.
+  sim::Pose X_WS_at(sim::Time at) const;
   void add_sensor_noise(sim::Random& random);
+
+  struct Place {
+    sim::Time at;
+    sim::Pose X_WS;
+  };
 
   sim::World& world_;
   const sim::PhysicsWorld& physics_;
+  const sim::Vehicle& vehicle_;
+  const sim::DeviceConfig& config_;
+  sim::Time step_;
   int own_group_;
   Params params_;
   std::unique_ptr<sim::Renderer> renderer_;
   sim::Noise noise_;
   sim::Frame under_way_, frame_;  // the next image, and the last one
   int next_exposure_ = 0;
-  sim::FloatImage light_;  // the last image without errors, in color or grey
+  std::deque<Place> places_;                // at the ends of steps, the last one now
+  sim::Time swept_at_{0}, next_sample_{0};  // as far as known, for rays()
+  sim::FloatImage light_;                   // the last image without errors, in color or grey
   float gain_ = 1;
   sim::Image8 levels_;
   sim::FloatImage depth_m_;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "devices/param_checks.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sonar_image_t.hpp"
 #include "sim/world/world.hpp"
@@ -15,14 +16,14 @@ void ImagingSonar::Params::read(sim::ParamReader& in) {
   in.read("elevation_rays", elevation_rays, sim::between(1, 2000), "rays over the height of a beam");
   in.read("beam_rays", beam_rays, sim::between(1, 20), "rays over the width of a beam");
   sonar.read(in);
-  picture.read(in);
+  picture.read(in, sonar);
   if (in.describing()) return;
   const double pixels = static_cast<double>(beams) * picture.bins;
   if (pixels > 4e6)
     in.error("bins", "a picture must have at most 4000000 values, got " + std::to_string(static_cast<int>(pixels)));
-  const double rays = static_cast<double>(beams) * elevation_rays * beam_rays;
-  if (rays > 1e6)
-    in.error("elevation_rays", "a ping must have at most 1000000 rays, got " + std::to_string(static_cast<int>(rays)));
+  const RayFactor factors[] = {
+      {"beams", double(beams)}, {"elevation_rays", double(elevation_rays)}, {"beam_rays", double(beam_rays)}};
+  check_rays(in, factors);
 }
 
 ImagingSonar::ImagingSonar(const Params& params, const sim::DeviceContext& context)

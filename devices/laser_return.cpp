@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "devices/beam_pattern.hpp"
+#include "devices/ray_filter.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
@@ -65,10 +66,7 @@ LaserReceiver::LaserReceiver(const LaserParams& params, const sim::DeviceContext
 void LaserReceiver::change(const LaserParams& params) {
   params_ = params;
   noise_.change(params.noise);
-  filter_ = {};
-  filter_.kind = sim::RayKind::laser;
-  for (const std::string& category : params.see_through) filter_.categories &= ~physics_.category_bit(category);
-  if (!params.sees_own_vehicle) filter_.exclude_group = own_group_;
+  filter_ = make_ray_filter(physics_, sim::RayKind::laser, params.see_through, own_group_, params.sees_own_vehicle);
   pattern_ = cone_pattern(params.beam_divergence_rad / 2, params.beam_samples);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "devices/lidar_presets.hpp"
+#include "devices/param_checks.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "sim/world/world.hpp"
@@ -25,6 +26,9 @@ void Lidar::Params::read(sim::ParamReader& in) {
   in.read_deg("fov_deg", fov_rad, sim::between(0, 360), "angle the fan covers");
   in.read("intensities", intensities, "the message has the strength of each return, too");
   laser.read(in);
+  if (in.describing()) return;
+  const RayFactor factors[] = {{"beams", double(beams)}, {"beam_samples", double(laser.beam_samples)}};
+  check_rays(in, factors);
 }
 
 Lidar::Lidar(const Params& params, const sim::DeviceContext& context) : receiver_(params.laser, context) {

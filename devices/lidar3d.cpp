@@ -1,14 +1,23 @@
 #include "devices/lidar3d.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "devices/lidar_presets.hpp"
+#include "devices/param_checks.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/point_cloud_t.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
+
+namespace {
+
+constexpr int max_rings = 1000;  // their numbers are 16 bits in the message
+
+}  // namespace
 
 void Lidar3d::Params::read(sim::ParamReader& in) {
   std::vector<std::string> names{"none"};
@@ -23,7 +32,7 @@ void Lidar3d::Params::read(sim::ParamReader& in) {
     columns = unit.columns;
     laser = unit.laser;
   }
-  in.read("rings", rings, sim::between(1, 1000), "beams above each other, evenly spread");
+  in.read("rings", rings, sim::between(1, max_rings), "beams above each other, evenly spread");
   in.read_deg("lowest_deg", lowest_rad, sim::between(-90, 90), "elevation of the first ring");
   in.read_deg("highest_deg", highest_rad, sim::between(-90, 90), "elevation of the last ring");
   in.read("ring_angles_deg", ring_angles_deg, sim::between(-90, 90),
@@ -32,10 +41,16 @@ void Lidar3d::Params::read(sim::ParamReader& in) {
   laser.read(in);
   if (in.describing()) return;
   if (lowest_rad > highest_rad) in.error("lowest_deg", "'lowest_deg' must be <= highest_deg");
-  const auto beams =
-      static_cast<double>(ring_angles_deg.empty() ? static_cast<std::size_t>(rings) : ring_angles_deg.size()) * columns;
-  if (beams > 1e6)
-    in.error("columns", "a turn must have at most 1000000 beams, got " + std::to_string(static_cast<int>(beams)));
+  if (ring_angles_deg.size() > std::size_t{max_rings})
+    in.error("ring_angles_deg",
+             fmt::format("'ring_angles_deg' must have at most {} angles, got {}", max_rings, ring_angles_deg.size()));
+  const RayFactor rows = ring_angles_deg.empty() ? RayFactor{"rings", double(rings)}
+                                                 : RayFactor{"ring_angles_deg", double(ring_angles_deg.size())};
+  const RayFactor factors[] = {rows, {"columns", double(columns)}, {"beam_samples", double(laser.beam_samples)}};
+  check_rays(in, factors);
+  const double rate_hz = rate_hz_of(in, default_rate_hz);
+  if (rate_hz >= 1e-6 && rate_hz < 0.001)  // below: an error of every device
+    in.error("rate_hz", fmt::format("'rate_hz' of a head that turns must be 0 or >= 0.001, got {:g}", rate_hz));
 }
 
 Lidar3d::Lidar3d(const Params& params, const sim::DeviceContext& context)
@@ -85,6 +100,7 @@ void Lidar3d::begin_turn(const sim::SweepContext& context) {
 }
 
 void Lidar3d::sweep(const sim::SweepContext& context) {
+  step_ = context.now - context.from;
   if (turn_end_ != context.next_sample) begin_turn(context);
   int last = next_column_;
   while (last < params_.columns && turn_end_ + offset(last) <= context.now) ++last;
@@ -112,6 +128,12 @@ void Lidar3d::cast_columns(const sim::SweepContext& context, int first, int last
   for (std::size_t i = 0; i < rays_.size() / samples; ++i)
     receiver_.receive(hits.subspan(i * samples, samples), std::span(rays_).subspan(i * samples, samples), returns_,
                       first_beam + i);
+}
+
+std::int64_t Lidar3d::rays() const {
+  // Of a step; before the first turn is begun: of all of it.
+  const auto all = static_cast<std::int64_t>(ring_rays_.size()) * params_.columns;
+  return turn_length_ > step_ ? all * step_.count() / turn_length_.count() : all;
 }
 
 // The turn was measured step by step.

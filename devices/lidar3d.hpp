@@ -32,8 +32,7 @@ class Lidar3d final : public sim::Sensor {
   void sweep(const sim::SweepContext& context) override;
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  /// Of a step, with ten of them in a turn.
-  std::int64_t rays() const override { return static_cast<std::int64_t>(ring_rays_.size()) * params_.columns / 10; }
+  std::int64_t rays() const override;
   void hash_state(sim::StateHash& hash) const override;
 
   /// The last turn, column by column, ring by ring.
@@ -57,6 +56,7 @@ class Lidar3d final : public sim::Sensor {
   LaserReturns returns_;
   sim::Time turn_end_{-1};
   sim::Time turn_length_{0};
+  sim::Time step_{0};  ///< of the last sweep, for rays()
   int next_column_ = 0;
   std::vector<sim::Ray> rays_;
   std::vector<sim::RayHit> hits_;

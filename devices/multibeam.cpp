@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devices/param_checks.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/multibeam_t.hpp"
 #include "sim/world/world.hpp"
@@ -22,6 +23,10 @@ void Multibeam::Params::read(sim::ParamReader& in) {
   in.read("resolution_m", resolution_m, sim::at_least(0), "ranges are rounded to multiples of this; 0: not");
   in.read("noise", noise, "error of each range, m");
   in.read("strength_noise", strength_noise, "error of each strength, dB");
+  if (in.describing()) return;
+  const RayFactor factors[] = {
+      {"beams", double(beams)}, {"across_rays", double(across_rays)}, {"along_rays", double(along_rays)}};
+  check_rays(in, factors);
 }
 
 Multibeam::Multibeam(const Params& params, const sim::DeviceContext& context)
@@ -87,19 +92,24 @@ void Multibeam::detect(std::size_t beam) {
   }
   std::sort(echoes_.begin(), echoes_.end(),
             [](const SonarEcho& a, const SonarEcho& b) { return a.range_m < b.range_m; });
-  double loudest_uPa2 = 0, range_m = 0;
-  for (std::size_t from = 0; from < echoes_.size(); ++from) {
-    const double end_m =
-        std::max(echoes_[from].range_m * (1 + params_.gate), echoes_[from].range_m + params_.sonar.pulse_m());
-    double power_uPa2 = 0, moment = 0;
-    for (std::size_t i = from; i < echoes_.size() && echoes_[i].range_m <= end_m; ++i) {
-      power_uPa2 += echoes_[i].power_uPa2;
-      moment += echoes_[i].power_uPa2 * echoes_[i].range_m;
-    }
-    if (power_uPa2 <= loudest_uPa2) continue;
-    loudest_uPa2 = power_uPa2;
-    range_m = moment / power_uPa2;
+  const auto end_of = [&](double from_m) {
+    return std::max(from_m * (1 + params_.gate), from_m + params_.sonar.pulse_m());
+  };
+  // A stretch that begins later ends later: both ends only move on.
+  std::size_t loudest_from = 0, loudest_to = 0;
+  double most_uPa2 = 0, stretch_uPa2 = 0;
+  for (std::size_t from = 0, to = 0; from < echoes_.size(); ++from) {
+    const double end_m = end_of(echoes_[from].range_m);
+    for (; to < echoes_.size() && echoes_[to].range_m <= end_m; ++to) stretch_uPa2 += echoes_[to].power_uPa2;
+    if (stretch_uPa2 > most_uPa2) most_uPa2 = stretch_uPa2, loudest_from = from, loudest_to = to;
+    stretch_uPa2 -= echoes_[from].power_uPa2;
   }
+  double loudest_uPa2 = 0, moment = 0;
+  for (std::size_t i = loudest_from; i < loudest_to; ++i) {
+    loudest_uPa2 += echoes_[i].power_uPa2;
+    moment += echoes_[i].power_uPa2 * echoes_[i].range_m;
+  }
+  const double range_m = moment / loudest_uPa2;
   const double level_dB = 10 * std::log10(loudest_uPa2);
   if (echoes_.empty() || level_dB < params_.detection.threshold_dB) return;
   ranges_m_[beam] = range_m;

@@ -21,7 +21,7 @@ void SideScan::Params::read(sim::ParamReader& in) {
   in.read("rays", rays, sim::between(1, 20000), "rays over the height of each beam");
   in.read("along_rays", along_rays, sim::between(1, 20), "rays over the width of a beam");
   sonar.read(in);
-  picture.read(in);
+  picture.read(in, sonar);
 }
 
 SideScan::SideScan(const Params& params, const sim::DeviceContext& context)

@@ -1,5 +1,7 @@
 #include "devices/sonar_bins.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,6 +9,7 @@ namespace devices {
 
 namespace {
 
+constexpr double smallest_bin_m = 1e-4;
 constexpr double silence_dB = -300;  // no echo at all: below every floor
 
 double level_dB(double power_uPa2) {
@@ -15,12 +18,17 @@ double level_dB(double power_uPa2) {
 
 }  // namespace
 
-void SonarPictureParams::read(sim::ParamReader& in) {
+void SonarPictureParams::read(sim::ParamReader& in, const SonarParams& sonar) {
   in.read("bins", bins, sim::between(1, 10000), "steps in range");
   in.read("noise_level_dB", noise_level_dB, sim::any_number(), "background in each bin, re 1 uPa, before the gain");
   in.read("floor_dB", floor_dB, sim::any_number(), "level of the value 0, re 1 uPa, after the gain");
   in.read("dynamic_range_dB", dynamic_range_dB, sim::between(1, 200), "from the value 0 to the value 255");
   in.read("level_noise", level_noise, "further error of each level, dB");
+  const double bin_m = (sonar.range_max_m - sonar.range_min_m) / bins;
+  if (in.describing() || bin_m >= smallest_bin_m || bin_m <= 0) return;
+  const char* key = in.has("bins") ? "bins" : in.has("range_max_m") ? "range_max_m" : "range_min_m";
+  in.error(key, fmt::format("'range_min_m' to 'range_max_m' in 'bins' steps must be at least {:g} m each, got {:g} m",
+                            smallest_bin_m, bin_m));
 }
 
 SonarBins::SonarBins(const SonarPictureParams& params, const sim::DeviceContext& context)
@@ -50,8 +58,9 @@ void SonarBins::add(const SonarEcho& echo, double extent_m, int beam) {
   const double bin_m = (range_max_m_ - range_min_m_) / params_.bins;
   const double width = std::max(extent_m, pulse_m_) / bin_m;
   const double from = (echo.range_m - range_min_m_) / bin_m - width / 2, to = from + width;
-  const int first = std::max(0, static_cast<int>(std::floor(from)));
-  const int last = std::min(params_.bins - 1, static_cast<int>(std::floor(to)));
+  // A grazed patch can reach over more bins than an int counts.
+  const int first = static_cast<int>(std::clamp(std::floor(from), 0.0, static_cast<double>(params_.bins)));
+  const int last = static_cast<int>(std::clamp(std::floor(to), -1.0, params_.bins - 1.0));
   for (int bin = first; bin <= last; ++bin) {
     const double share = (std::min<double>(bin + 1, to) - std::max<double>(bin, from)) / width;
     power_uPa2_[static_cast<std::size_t>(bin) * static_cast<std::size_t>(beams_) + static_cast<std::size_t>(beam)] +=

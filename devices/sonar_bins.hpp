@@ -14,7 +14,8 @@ struct SonarPictureParams {
   double floor_dB = 75;
   double dynamic_range_dB = 60;
   sim::NoiseParams level_noise;  ///< dB
-  void read(sim::ParamReader& in);
+  /// `sonar`: as it was read.
+  void read(sim::ParamReader& in, const SonarParams& sonar);
   double dB_per_count() const { return dynamic_range_dB / 255; }
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devices/ray_filter.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
@@ -43,10 +44,7 @@ SonarReceiver::SonarReceiver(const SonarParams& params, const sim::DeviceContext
 void SonarReceiver::change(const SonarParams& params) {
   params_ = params;
   source_uPa2_ = std::pow(10, params.source_level_dB / 10);
-  filter_ = {};
-  filter_.kind = sim::RayKind::sound;
-  for (const std::string& category : params.see_through) filter_.categories &= ~physics_.category_bit(category);
-  if (!params.sees_own_vehicle) filter_.exclude_group = own_group_;
+  filter_ = make_ray_filter(physics_, sim::RayKind::sound, params.see_through, own_group_, params.sees_own_vehicle);
 }
 
 void SonarReceiver::cast(const sim::Scene& scene, const sim::Pose& X_WS, std::span<const SonarRay> rays_S) {

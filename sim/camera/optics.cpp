@@ -17,6 +17,15 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// The undistorted radius at which a pinhole gives up: 89.4 degrees off the axis.
 constexpr double widest_pinhole = 100;
 
+constexpr double least_focal_px = 1e-3, most_focal_px = 1e9;
+
+/// fx and fy.
+Vector2d focal_px_of(const OpticsConfig& config) {
+  if (!config.focal_px.empty()) return {config.focal_px.front(), config.focal_px.back()};
+  const double half_rad = 0.5 * config.fov_rad;
+  return Vector2d::Constant(0.5 * config.width / (config.lens == "fisheye" ? half_rad : std::tan(half_rad)));
+}
+
 bool in_form(const std::vector<double>& values, std::size_t least, std::size_t most) {
   return values.empty() || (values.size() >= least && values.size() <= most);
 }
@@ -58,6 +67,11 @@ std::string OpticsConfig::problem() const {
     return fmt::format("'fov_deg' of a pinhole must be > 0 and < 180, got {:g}", radians_to_degrees(fov_rad));
   if (!(fov_rad > 0 && fov_rad < 2 * std::numbers::pi))
     return fmt::format("'fov_deg' must be > 0 and < 360, got {:g}", radians_to_degrees(fov_rad));
+  const Vector2d focal = focal_px_of(*this);
+  for (const double f : focal)
+    if (!(f >= least_focal_px && f <= most_focal_px))
+      return fmt::format("'{}' must make a focal length >= {:g} and <= {:g} pixels, got {:g}",
+                         focal_px.empty() ? "fov_deg" : "focal_px", least_focal_px, most_focal_px, f);
   const Optics optics(*this);
   // The distortion is smooth and grows outwards: where corners and sides are good, all is.
   for (int i = 0; i <= 16; ++i)
@@ -90,12 +104,8 @@ Optics::Optics(const OpticsConfig& config) : config_(config), fisheye_(config.le
     p1_ = number(2), p2_ = number(3);
   }
   distorted_ = std::any_of(k.begin(), k.end(), [](double value) { return value != 0; });
-  if (config_.focal_px.empty()) {
-    const double half_rad = 0.5 * config_.fov_rad;
-    fx_ = fy_ = 0.5 * config_.width / (fisheye_ ? half_rad : std::tan(half_rad));
-  } else {
-    fx_ = config_.focal_px.front(), fy_ = config_.focal_px.back();
-  }
+  const Vector2d focal = focal_px_of(config_);
+  fx_ = focal.x(), fy_ = focal.y();
   cx_ = config_.principal_px.empty() ? 0.5 * config_.width : config_.principal_px[0];
   cy_ = config_.principal_px.empty() ? 0.5 * config_.height : config_.principal_px[1];
   if (!(fx_ > 0 && fy_ > 0 && std::isfinite(fx_) && std::isfinite(fy_)))

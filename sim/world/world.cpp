@@ -151,7 +151,6 @@ void World::sense() {
 }
 
 void World::cast_rays() {
-  scene().prepare();
   const auto sample = [this](const Casting& casting) {
     if (casting.device->sweeps()) casting.device->sweep(*this, now());
     if (casting.due) casting.device->sample(*this, now(), step_number_);
@@ -160,6 +159,8 @@ void World::cast_rays() {
   constexpr std::int64_t worth_sharing = 1500;
   std::int64_t rays = 0;
   for (const Casting& casting : casting_) rays += casting.device->rays();
+  // Where nothing is cast, as between the images of cameras, nothing has to be looked up either.
+  if (rays > 0) scene().prepare();
   if (threads_ && rays >= worth_sharing && scene().concurrent())
     threads_->for_each(casting_.size(), [&](std::size_t i) { sample(casting_[i]); });
   else

@@ -174,11 +174,12 @@ TEST(Camera, SeesItsOwnVehicleOnlyWhenAsked) {
   EXPECT_THAT(metadata(image_of(down + ", sees_own_vehicle: true"), "labels"), HasSubstr("2 r1\n"));
 }
 
-/// A table that turns at 2 rad/s, from the pose in which its camera looks at a pole, and that camera's image.
-shoal::image_t image_from_a_turntable(const std::string& keys) {
-  const std::string world = R"(
+/// A table that turns at 2 rad/s, and whose camera looks at a pole at 0.2 s.
+std::string turntable_world(const std::string& keys, double step_s = 0.001) {
+  return R"(
 shoal: 1
-physics: {step_s: 0.001, gravity_mps2: 0}
+physics: {gravity_mps2: 0, step_s: )" +
+         std::to_string(step_s) + R"(}
 objects:
   - {name: pole, fixed: true, position_m: [4, 0, 0], parts: [{shape: cylinder, radius_m: 0.05, length_m: 10}]}
 vehicles:
@@ -193,10 +194,15 @@ vehicles:
       joints: [{name: axle, type: hinge, bodies: [base, table], axis: [0, 0, 1],
                 motor_velocity: 2, motor_max_force: 1000}]
       devices:
-        - {name: camera, type: camera, body: table, rate_hz: 5, phase_s: 0.2, image: segmentation_vehicles,
-           focal_px: [200], width: 200, height: 101)" +
-                            keys + "}\n";
-  test::TestWorld test(world);
+        - {name: camera, type: camera, body: table, width: 200, height: 101)" +
+         keys + "}\n";
+}
+
+const std::string at_5_hz = ", rate_hz: 5, phase_s: 0.2, focal_px: [200]";
+const std::string labels = ", image: segmentation_vehicles";
+
+shoal::image_t image_from_a_turntable(const std::string& keys, double step_s = 0.001) {
+  test::TestWorld test(turntable_world(keys, step_s));
   test::Listener<shoal::image_t> images(test, "r1.camera");
   test.run_for(0.205);
   return images.last();
@@ -211,11 +217,11 @@ double middle_of_pole(const shoal::image_t& image, int row) {
 }
 
 TEST(Camera, RollingShutterLeansAPoleByTheAngleOfTheReadout) {
-  const auto global = image_from_a_turntable("");
+  const auto global = image_from_a_turntable(at_5_hz + labels);
   const double middle = middle_of_pole(global, 50);
   ASSERT_FALSE(std::isnan(middle));
   EXPECT_NEAR(middle_of_pole(global, 0), middle, 0.6);  // upright
-  const auto rolling = image_from_a_turntable(", readout_s: 0.05");
+  const auto rolling = image_from_a_turntable(at_5_hz + labels + ", readout_s: 0.05");
   // The last row is at the time of the sample; the first one 0.05 s before: 0.1 rad of turning.
   const double last = middle_of_pole(rolling, 100), first = middle_of_pole(rolling, 0);
   EXPECT_NEAR(last, middle, 0.6);
@@ -223,14 +229,72 @@ TEST(Camera, RollingShutterLeansAPoleByTheAngleOfTheReadout) {
   EXPECT_NEAR(std::abs(angle_first - angle_last), 0.1, 1.0 / 200);  // a pixel
 }
 
-TEST(Camera, MotionBlurIsTheMeanOfItsSamples) {
-  // The camera stands still: a blurred image is a sharp one.
+/// By how much the camera turned from the first row to the last one, as the pole shows it.
+double lean_rad(const shoal::image_t& image, double focal_px) {
+  const auto angle_rad = [&](int row) { return std::atan((middle_of_pole(image, row) - 100) / focal_px); };
+  return std::abs(angle_rad(100) - angle_rad(0));
+}
+
+TEST(Camera, RollingShutterTakesItsTimeAtARateThatDoesNotDivideTheStep) {
+  // 33.3 ms in steps of 10 ms: the image at 0.2 s follows the one at 0.17 s, and its first row is at 0.167 s.
+  const auto image =
+      image_from_a_turntable(labels + ", rate_hz: 30, phase_s: 0, focal_px: [800], readout_s: 0.033", 0.01);
+  EXPECT_NEAR(lean_rad(image, 800), 2 * 0.033, 1.0 / 800);  // a pixel
+}
+
+TEST(Camera, RollingShutterTakesItsTimeAfterAChangeOfTheRate) {
+  test::TestWorld test(
+      turntable_world(labels + ", rate_hz: 20, phase_s: 0, focal_px: [400], readout_s: 0.05"));
+  test::Listener<shoal::image_t> images(test, "r1.camera");
+  test.run_for(0.2);
+  EXPECT_THAT(test.change("r1/camera", "{rate_hz: 100}"), HasSubstr("'readout_s' must be at most 1 / rate_hz"));
+  EXPECT_THAT(test.change("r1/camera", "{rate_hz: 0}"), HasSubstr("'readout_s' needs a 'rate_hz' > 0"));
+  // Four periods of 50.25 ms: the next image is in the next step, and begins long before the last one was finished.
+  ASSERT_EQ(test.change("r1/camera", "{rate_hz: 19.9}"), "");
+  images.take_all();
+  test.run_for(0.0015);
+  EXPECT_NEAR(lean_rad(images.last(), 400), 2 * 0.05, 1.0 / 400);
+}
+
+/// Columns of the middle row that are not like the sky at its ends.
+int width_of_pole(const shoal::image_t& image) {
+  const auto level = [&](int column) { return int{value_at<std::uint8_t>(image, column, 50)}; };
+  int columns = 0;
+  for (int column = 0; column < image.width; ++column) columns += std::abs(level(column) - level(0)) > 2;
+  return columns;
+}
+
+TEST(Camera, MotionBlurSmearsAnEdgeByTheWayOfTheExposure) {
+  const std::string grey = at_5_hz + ", image: grey";
+  const auto sharp = image_from_a_turntable(grey);
+  const auto blurred = image_from_a_turntable(grey + ", exposure_time_s: 0.05, blur_samples: 32");
+  ASSERT_NEAR(width_of_pole(sharp), 5, 1);  // 0.1 m at 4 m
+  // 2 rad/s for 0.05 s at 200 px: 20 px.
+  EXPECT_NEAR(width_of_pole(blurred) - width_of_pole(sharp), 20, 2);
+}
+
+TEST(Camera, MotionBlurOfACameraThatStandsStillIsASharpImage) {
   const auto sharp = image_of(small, wall_ahead, 0.4),
              blurred = image_of(std::string(small) + ", exposure_time_s: 0.01, blur_samples: 4", wall_ahead, 0.4);
   double error = 0;
   for (std::size_t i = 0; i < sharp.data.size(); ++i)
     error += std::abs(static_cast<std::uint8_t>(sharp.data[i]) - static_cast<std::uint8_t>(blurred.data[i]));
   EXPECT_LT(error / static_cast<double>(sharp.data.size()), 0.5);
+}
+
+TEST(Camera, CountsTheRaysThatTheNextStepCasts) {
+  const auto rays_of = [](const std::string& keys, double run_s) {
+    test::TestWorld test(test::rover_world(camera(std::string(small) + ", phase_s: 0" + keys)));
+    test.run_for(run_s);
+    return test.world.find_device("r1/camera")->rays();
+  };
+  EXPECT_EQ(rays_of("", 0.05), 0);
+  EXPECT_EQ(rays_of("", 0.099), 64 * 48);
+  EXPECT_EQ(rays_of("", 0.1), 0);
+  EXPECT_EQ(rays_of(", antialias: 2", 0.099), 64 * 48 * 4);
+  // A row each ms.
+  EXPECT_EQ(rays_of(", readout_s: 0.047", 0.04), 0);
+  EXPECT_EQ(rays_of(", readout_s: 0.047", 0.07), 64);
 }
 
 TEST(Camera, IsTheSameForAnyNumberOfThreads) {
@@ -259,7 +323,12 @@ TEST(Camera, SaysWhatIsWrongWithItsParameters) {
       {"image: depth, encoding: jpeg", "'jpeg' is for images rgb and grey"},
       {"width: 4000, height: 4000, antialias: 2", "'antialias' makes more than 16000000 rays"},
       {"readout_s: 0.01, exposure_time_s: 0.01", "either 'readout_s' or 'exposure_time_s'"},
-      {"readout_s: 0.2", "'readout_s' and 'exposure_time_s' must be at most 1 / rate_hz"},
+      {"readout_s: 0.2", "'readout_s' must be at most 1 / rate_hz, got 0.2 s at 20 Hz"},
+      {"exposure_time_s: 0.1, rate_hz: 0", "'exposure_time_s' needs a 'rate_hz' > 0"},
+      {"fov_deg: 1e-310", "'fov_deg' must make a focal length >= 0.001 and <= 1e+09 pixels, got inf"},
+      {"focal_px: [1e-320]", "'focal_px' must make a focal length >= 0.001 and <= 1e+09 pixels, got 9.99989e-321"},
+      {"width: 4000, height: 1400", "must have at most 16711680 bytes, got 16800000"},
+      {"image: depth, width: 2400, height: 1800", "must have at most 16711680 bytes, got 17280000"},
       {"exposure: {gain: 0}", "'gain' must be > 0"},
       {"see_through: [fog]", "category 'fog'"},
       {"distortion: [-3]", "'distortion' folds the image over"}};

@@ -119,8 +119,22 @@ TEST(Lidar3d, ChangesItsRateWhileItRuns) {
 TEST(Lidar3d, SaysWhatIsWrongWithItsParameters) {
   EXPECT_THAT(test::error_of_world(lidar_world("lowest_deg: 5, highest_deg: -5", wall_at(5))),
               testing::HasSubstr("'lowest_deg' must be <= highest_deg"));
-  EXPECT_THAT(test::error_of_world(lidar_world("rings: 1000, columns: 100000", wall_at(5))),
-              testing::HasSubstr("a turn must have at most 1000000 beams, got 100000000"));
+  EXPECT_THAT(
+      test::error_of_world(lidar_world("rings: 1000, columns: 100000", wall_at(5))),
+      testing::HasSubstr(
+          "'rings' x 'columns' x 'beam_samples' must be at most 1000000 rays in a sample, got 1000 x 100000 x 1 "
+          "= 100000000"));
+  std::string angles = "0";
+  for (int i = 0; i < 1000; ++i) angles += ", 0";
+  EXPECT_THAT(test::error_of_world(lidar_world("ring_angles_deg: [" + angles + "]", wall_at(5))),
+              testing::HasSubstr("'ring_angles_deg' must have at most 1000 angles, got 1001"));
+}
+
+TEST(Lidar3d, TurnsAtLeastOnceInAThousandSeconds) {
+  test::TestWorld test(lidar_world("", wall_at(5)));
+  EXPECT_EQ(test.change("r1/s", "{rate_hz: 0.001}"), "");
+  EXPECT_THAT(test.change("r1/s", "{rate_hz: 0.0009}"),
+              testing::HasSubstr("'rate_hz' of a head that turns must be 0 or >= 0.001, got 0.0009"));
 }
 
 }  // namespace

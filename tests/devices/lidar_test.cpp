@@ -104,4 +104,11 @@ TEST(Lidar, NamesEveryBadKeyAtOnce) {
   }
 }
 
+TEST(Lidar, CastsAtMostAMillionRaysInAScan) {
+  const std::string error = test::error_of_world(test::rover_world(
+      "        - {name: lidar, type: lidar, beams: 100000, beam_divergence_deg: 1, beam_samples: 100}\n"));
+  EXPECT_THAT(error, testing::HasSubstr("'beams' x 'beam_samples' must be at most 1000000 rays in a sample, got 100000 "
+                                        "x 100 = 10000000"));
+}
+
 }  // namespace

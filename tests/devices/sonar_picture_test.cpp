@@ -72,6 +72,24 @@ TEST(Multibeam, SaysWhatIsWrongWithItsParameters) {
   EXPECT_THAT(error, testing::HasSubstr("'swath_deg' must be >= 0 and <= 180, got 200"));
   EXPECT_THAT(error, testing::HasSubstr("'across_deg' must be > 0 and <= 30, got 0"));
   EXPECT_THAT(error, testing::HasSubstr("'gate' must be >= 0 and <= 1, got 2"));
+  EXPECT_THAT(
+      test::error_of_world(ranging_world("type: multibeam, beams: 2048, across_rays: 50, along_rays: 50", bottom(0))),
+      testing::HasSubstr("'beams' x 'across_rays' x 'along_rays' must be at most 1000000 rays in a sample, got "
+                         "2048 x 50 x 50 = 5120000"));
+}
+
+TEST(Multibeam, TakesTheLoudestStretchOfManyEchoes) {
+  // Half of each beam meets a plate at 10 m, the rest the bottom at 20 m: power falls with the square of the range.
+  const std::string plate =
+      "  - {name: plate, fixed: true, position_m: [5, 0, -10.5], parts: [{shape: box, size_m: [10, 100, 1]}]}\n";
+  const std::string one_beam =
+      "type: multibeam, beams: 1, across_deg: 10, along_deg: 10, across_rays: 50, along_rays: 50, resolution_m: 0";
+  const auto range = [&](const std::string& more) {
+    return first_truth<multibeam_t>(ranging_world(one_beam + more, bottom(0) + plate)).ranges_m[0];
+  };
+  // Within a beam of 10 deg ranges grow by up to 0.4 %.
+  EXPECT_NEAR(range(", gate: 0.1"), 10, 0.04);
+  EXPECT_NEAR(range(", gate: 1, pulse_s: 0.1"), (10 + 20 / 4.0) / (1 + 1 / 4.0), 0.06);
 }
 
 TEST(ImagingSonar, APoleIsBrightAtItsRangeAndBearing) {
@@ -110,6 +128,10 @@ TEST(ImagingSonar, SaysWhatIsWrongWithItsParameters) {
   EXPECT_THAT(error, testing::HasSubstr("a picture must have at most 4000000 values, got 40960000"));
   EXPECT_THAT(error, testing::HasSubstr("'fov_deg' must be > 0 and <= 360, got 0"));
   EXPECT_THAT(error, testing::HasSubstr("'dynamic_range_dB' must be >= 1 and <= 200, got 0"));
+  EXPECT_THAT(test::error_of_world(
+                  ranging_world("type: imaging_sonar, range_min_m: 4.89, range_max_m: 4.9, bins: 1000", bottom(0))),
+              testing::HasSubstr("'range_min_m' to 'range_max_m' in 'bins' steps must be at least 0.0001 m each, got "
+                                 "1e-05 m"));
 }
 
 /// 10 m above the bottom, with a wall 2 m high from y = -19.9 to -20.1 m.
