@@ -8,10 +8,13 @@
 #include <map>
 #include <utility>
 
+#include "sim/config/message_text.hpp"
+
 namespace sim {
 namespace {
 
 constexpr std::uintmax_t max_file_bytes = 1u << 30;
+constexpr double max_mesh_coordinate_m = 1e7;  // as far as a part may be
 
 /// Words separated by white space; knows the ends of lines.
 class Words {
@@ -172,7 +175,12 @@ Mesh load_mesh(const std::string& path, double scale) {
   if (extension != ".stl" && extension != ".obj") throw MeshError("must end in .stl or .obj");
   const std::string bytes = read_file(path);
   Mesh mesh = extension == ".stl" ? parse_stl(bytes) : parse_obj(bytes);
-  for (Vector3d& p : mesh.vertices_m) p = checked_vertex(p * scale);
+  for (Vector3d& p : mesh.vertices_m) {
+    p = checked_vertex(p * scale);
+    if (p.cwiseAbs().maxCoeff() > max_mesh_coordinate_m)
+      throw MeshError("has a vertex more than 1e7 m from its origin, at " + number_text(p.cwiseAbs().maxCoeff()) +
+                      " m");
+  }
   return mesh;
 }
 
