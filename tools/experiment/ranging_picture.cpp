@@ -29,7 +29,7 @@ constexpr const char* sonar_palette =
     "set palette defined (0 '#000000', 0.35 '#5a2d0c', 0.7 '#d08030', 1 '#fff0c0') maxcolors 20\nunset colorbox\n";
 constexpr const char* depth_palette =
     "set palette defined (0 '#30123b', 0.25 '#4686fb', 0.5 '#1ae4b6', 0.75 '#faba39', "
-    "1 '#7a0403')\n";
+    "1 '#7a0403')\nset rmargin at screen 0.8\n";
 
 /// What gnuplot gets: a file of bytes or of text, and the commands that draw it.
 struct Drawing {

@@ -21,9 +21,9 @@ TEST(OutputFile, ThatCannotBeWrittenIsFoundBeforeTheWork) {
   EXPECT_EQ(problem_of(path), "");
   EXPECT_FALSE(std::filesystem::exists(path));
   EXPECT_EQ(problem_of("out.png"), "");
-  EXPECT_EQ(problem_of("/nowhere/out.png"), "'/nowhere/out.png' cannot be written: no such folder");
+  EXPECT_EQ(problem_of("/nowhere/out.png"), "/nowhere/out.png: cannot be written: no such folder");
   std::filesystem::create_directory(path);
-  EXPECT_EQ(problem_of(path), "'" + path + "' cannot be written: it is a folder");
+  EXPECT_EQ(problem_of(path), path + ": cannot be written: it is a folder");
 }
 
 }  // namespace
