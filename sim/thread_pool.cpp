@@ -1,20 +1,26 @@
 #include "sim/thread_pool.hpp"
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <optional>
 #include <thread>
 
 namespace sim {
 
 struct ThreadPool::Impl {
   int threads;
+  std::optional<tbb::global_control> more;
   tbb::task_arena arena;
 };
 
 ThreadPool::ThreadPool(int threads) : impl_(std::make_unique<Impl>()) {
-  impl_->threads = threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  impl_->threads = threads > 0 ? threads : processors;
+  if (impl_->threads > processors)  // else TBB warns, and takes fewer
+    impl_->more.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(impl_->threads));
   impl_->arena.initialize(impl_->threads);
 }
 

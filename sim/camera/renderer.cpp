@@ -27,7 +27,10 @@ float raised_to_64(float x) {
 /// How much of a footprint around x a line of 0.02 at every whole number covers.
 float line_share(double x, float footprint) {
   constexpr float width = 0.02F;
-  const auto off = static_cast<float>(std::abs(x - std::round(x)));
+  // To the nearest whole number and back, by a number so large that it has no room for fractions; std::round is a call.
+  constexpr double large = 0x1.8p52;
+  const double nearest = (x + large) - large;
+  const auto off = static_cast<float>(std::abs(x - nearest));
   const float seen = std::max(footprint, 0.25F * width);
   const float covered = std::clamp((0.5F * (width + seen) - off) / seen, 0.0F, std::min(1.0F, width / seen));
   return covered;
@@ -64,9 +67,7 @@ Renderer::Renderer(const PhysicsWorld& physics, std::shared_ptr<const PixelRays>
       ground_(linear_color({118, 116, 110})),
       sky_strength_(static_cast<float>(options.light.sky)) {
   if (options_.kind != ImageKind::color) return;
-  int materials = 1;
-  for (const PartInfo& part : physics_.parts()) materials = std::max(materials, part.group < 0 ? 0 : part.material + 1);
-  for (int i = 0; i < materials; ++i) surfaces_.push_back(make_surface(i, true));
+  for (int i = 0; i < physics_.materials(); ++i) surfaces_.push_back(make_surface(i, true));
 }
 
 Renderer::Surface Renderer::make_surface(int material, bool strict) const {
@@ -118,6 +119,7 @@ void Renderer::render_rows(const Pose& X_WS, int first, int end, float weight, F
   while (2 * high * n <= 8 && 2 * high <= end - first) high *= 2;
   const int wide = std::max(1, tile_rays / (high * n * n));
   Tile tile;
+  posed_ = {};
   for (int row = first; row < end; row += high)
     for (int column = 0; column < rays_->width; column += wide) {
       tile.column = column * n, tile.row = row * n;
@@ -235,20 +237,25 @@ LinearColor Renderer::sky(const Eigen::Vector3f& direction_W) const {
   return color;
 }
 
+const Pose& Renderer::X_PW(int part) {
+  if (posed_.part != part) posed_ = {part, physics_.X_WP(part).inverse()};
+  return posed_.X_PW;
+}
+
 LinearColor Renderer::albedo(const RayHit& hit, const Vector3d& p_W, float footprint_m) {
   const PartInfo& part = physics_.parts()[static_cast<std::size_t>(hit.part)];
   const Surface& material = surface(hit.material);
   if (part.color) return linear_color(*part.color);
   if (material.texture) {
-    const Pose X_WP = physics_.X_WP(hit.part);
-    return material.texture->color(X_WP.inverse() * p_W, X_WP.linear().transpose() * hit.normal_W, footprint_m);
+    const Pose& X_PW = this->X_PW(hit.part);
+    return material.texture->color(X_PW * p_W, X_PW.linear() * hit.normal_W, footprint_m);
   }
   if (material.has_color) return material.color;
   const bool fixed = physics_.bodies()[static_cast<std::size_t>(part.body)]->fixed();
   if (!fixed) return linear_color(group_colors[static_cast<std::size_t>(part.group) % std::size(group_colors)]);
   if (!part.plane) return linear_color(fixed_color);
   // A plane: a grid of one metre tells how far things are.
-  const Vector3d p_P = physics_.X_WP(hit.part).inverse() * p_W;
+  const Vector3d p_P = X_PW(hit.part) * p_W;
   const float line = std::max(line_share(p_P.x(), footprint_m), line_share(p_P.y(), footprint_m));
   return linear_color(ground_color) * (1 - 0.35F * line);
 }

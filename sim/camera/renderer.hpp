@@ -66,9 +66,15 @@ class Renderer {
     std::shared_ptr<const Texture> texture;
   };
   struct Tile;
+  struct PosedPart {
+    int part = -1;
+    Pose X_PW = Pose::Identity();
+  };
 
   Surface make_surface(int material, bool strict) const;
   const Surface& surface(int material);
+  /// Asked for again and again: neighbouring pixels mostly see one part.
+  const Pose& X_PW(int part);
   LinearColor albedo(const RayHit& hit, const Vector3d& p_W, float footprint_m);
   LinearColor sky(const Eigen::Vector3f& direction_W) const;
   LinearColor shade(const RayHit& hit, const Ray& ray, bool in_shadow, float footprint_m);
@@ -83,6 +89,7 @@ class Renderer {
   RenderOptions options_;
   std::shared_ptr<TextureLibrary> textures_;
   std::vector<Surface> surfaces_;  // by number of the material
+  PosedPart posed_;                // the last one, while rows are rendered
   Vector3d to_sun_W_;
   Eigen::Vector3f to_sun_f_W_;
   bool sun_is_up_;

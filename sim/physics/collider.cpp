@@ -7,6 +7,7 @@
 #include "sim/physics/free_numbers.hpp"
 #include "sim/physics/ode_math.hpp"
 #include "sim/physics/terrain_geom.hpp"
+#include "sim/scene/box_grid.hpp"
 
 namespace sim {
 namespace {
@@ -140,27 +141,39 @@ void Collider::read_forces(std::vector<ContactReport>& reports) const {
   }
 }
 
+namespace {
+
+AlignedBox box_of(dGeomID geom) {
+  dReal b[6];
+  dGeomGetAABB(geom, b);
+  return {{b[0], b[2], b[4]}, {b[1], b[3], b[5]}};
+}
+
+}  // namespace
+
 Collider::Overlap Collider::deepest_overlap(int group) const {
+  // Few parts stand near those of the group; the others are looked at once.
+  std::vector<std::pair<const CollisionPart*, AlignedBox>> own_parts, others;
+  for (const CollisionPart& part : parts_)
+    if (part.geom != nullptr && part.group == group) own_parts.emplace_back(&part, box_of(part.geom));
+  for (const CollisionPart& part : parts_) {
+    if (part.geom == nullptr || part.group == group) continue;
+    const AlignedBox box = box_of(part.geom);
+    if (std::any_of(own_parts.begin(), own_parts.end(), [&](const auto& own) { return own.second.meets(box); }))
+      others.emplace_back(&part, box);
+  }
   Overlap deepest;
   std::vector<dContactGeom> touching(8);
-  for (const CollisionPart& own : parts_) {
-    if (own.geom == nullptr || own.group != group) continue;
-    dReal box[6];
-    dGeomGetAABB(own.geom, box);
-    for (const CollisionPart& other : parts_) {
-      if (other.geom == nullptr || other.group == group || (own.category & other.collides_with) == 0 ||
-          (other.category & own.collides_with) == 0)
-        continue;
-      dReal b[6];
-      dGeomGetAABB(other.geom, b);
-      if (box[0] > b[1] || b[0] > box[1] || box[2] > b[3] || b[2] > box[3] || box[4] > b[5] || b[4] > box[5]) continue;
+  for (const auto& [own, own_box] : own_parts)
+    for (const auto& [other, box] : others) {
+      if ((own->category & other->collides_with) == 0 || (other->category & own->collides_with) == 0) continue;
+      if (!own_box.meets(box)) continue;
       const int count =
-          dCollide(own.geom, other.geom, static_cast<int>(touching.size()), &touching[0], sizeof(dContactGeom));
+          dCollide(own->geom, other->geom, static_cast<int>(touching.size()), &touching[0], sizeof(dContactGeom));
       for (int i = 0; i < count; ++i)
         if (touching[static_cast<std::size_t>(i)].depth > deepest.depth_m)
-          deepest = {other.group, touching[static_cast<std::size_t>(i)].depth};
+          deepest = {other->group, touching[static_cast<std::size_t>(i)].depth};
     }
-  }
   return deepest;
 }
 

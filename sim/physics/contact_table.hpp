@@ -23,6 +23,7 @@ class ContactTable {
   /// More of them.  Numbers of known materials stay; the contacts given at construction win over later ones.
   void add(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts);
   const Surface& of(int first, int second) const { return surfaces_[first * count_ + second]; }
+  int materials() const { return count_; }
   /// By number; 0 is `default`.
   const MaterialConfig& material(int number) const { return materials_[static_cast<std::size_t>(number)]; }
   /// Number of a material; `default` is always there.  Throws std::out_of_range.

@@ -206,6 +206,9 @@ std::span<const std::unique_ptr<Joint>> PhysicsWorld::joints() const {
 std::span<const PartInfo> PhysicsWorld::parts() const {
   return impl_->parts;
 }
+int PhysicsWorld::materials() const {
+  return impl_->collider.table().materials();
+}
 const MaterialConfig& PhysicsWorld::material(int number) const {
   return impl_->collider.table().material(number);
 }

@@ -115,6 +115,7 @@ class PhysicsWorld {
   /// Number of a part by its name in the group, such as `chassis/hull`; a part without a name is called by its place in
   /// the body, from 1.
   std::optional<int> find_part(int group, std::string_view body_slash_part) const;
+  int materials() const;  ///< how many there are
   /// Number 0 is `default`; where a ray hit: RayHit::material.
   const MaterialConfig& material(int number) const;
   /// Where a part is now.

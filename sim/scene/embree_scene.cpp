@@ -43,11 +43,18 @@ void EmbreeScene::add_shape(int number) {
     triangles = shared.triangles.get();
   }
   const RayShape shape = make_ray_shape(number, added.part, triangles);
-  added.layer = shape.kind == RayShape::Kind::plane ? &planes_ : added.part.moving ? &moving_ : &fixed_;
+  added.layer = &layer_of(shape, added.part);
   added.at = added.layer->shapes.size();
   added.layer->shapes.push_back(shape);
   added.layer->geoms.push_back(added.part.geom);
   added.layer->changed = true;
+}
+
+EmbreeScene::Layer& EmbreeScene::layer_of(const RayShape& shape, const ScenePart& part) {
+  if (shape.kind == RayShape::Kind::plane) return planes_;
+  if (part.moving) return moving_;
+  constexpr std::size_t many = 10'000;
+  return part.mesh != nullptr && part.mesh->triangles.size() >= many ? terrain_ : fixed_;
 }
 
 /// The last shape takes its place.
@@ -67,6 +74,7 @@ void EmbreeScene::remove_shape(Part& part) {
 void EmbreeScene::prepare() const {
   refresh(planes_, moves_.fixed);
   refresh(fixed_, moves_.fixed);
+  refresh(terrain_, moves_.fixed);
   refresh(moving_, moves_.moving);
 }
 
@@ -235,7 +243,7 @@ void EmbreeScene::find_occluded(const RTCOccludedFunctionNArguments* arguments) 
 }
 
 void EmbreeScene::cast_packet(RayPacket& rays, unsigned lanes, const RayFilter& filter) const {
-  for (const Layer* layer : {&planes_, &fixed_, &moving_}) {
+  for (const Layer* layer : in_order()) {
     if (layer->few()) {
       for (const RayShape& shape : layer->shapes)
         if (shape.stops(filter)) cast_at(shape, rays, lanes);
@@ -248,7 +256,7 @@ void EmbreeScene::cast_packet(RayPacket& rays, unsigned lanes, const RayFilter& 
 
 unsigned EmbreeScene::blocked_packet(RayPacket& rays, unsigned lanes, const RayFilter& filter) const {
   unsigned blocked = 0;
-  for (const Layer* layer : {&planes_, &fixed_, &moving_}) {
+  for (const Layer* layer : in_order()) {
     if (layer->few()) {
       for (const RayShape& shape : layer->shapes)
         if (shape.stops(filter)) blocked |= blocked_by(shape, rays, lanes & ~blocked);
@@ -338,11 +346,13 @@ void EmbreeScene::cast_fan(const Fan& fan, const RayFilter& filter, std::span<Ra
   directions.update(fan);
   const Matrix3d R_WS = fan.X_WS.linear();
   const Vector3d p_WS = fan.X_WS.translation();
+  // A packet whose rays are farther apart (2.5 degrees) is faster ray by ray.
+  constexpr double together_rad = 0.044;
   for_packets(
-      static_cast<std::size_t>(fan.count), false,
+      static_cast<std::size_t>(fan.count), std::abs(fan.step_rad) < together_rad,
       [&](RayPacket& rays, int lane, std::size_t i) {
         const auto [c, s] = directions.cos_sin[i];
-        rays.set(lane, p_WS, R_WS * Vector3d(c, s, 0), fan.range_max_m);
+        rays.set(lane, p_WS, R_WS.col(0) * c + R_WS.col(1) * s, fan.range_max_m);
       },
       [&](std::size_t first, RayPacket& rays, unsigned lanes) {
         cast_packet(rays, lanes, filter);

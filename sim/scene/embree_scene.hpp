@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <span>
@@ -65,6 +66,7 @@ class EmbreeScene final : public WorldScene {
   };
 
   void add_shape(int number);
+  Layer& layer_of(const RayShape& shape, const ScenePart& part);
   void remove_shape(Part& part);
   void refresh(Layer& layer, std::uint64_t moves) const;
   static void follow_geoms(Layer& layer);
@@ -77,13 +79,16 @@ class EmbreeScene final : public WorldScene {
   static unsigned blocked_by(const RayShape& shape, RayPacket& rays, unsigned lanes);
   void cast_packet(RayPacket& rays, unsigned lanes, const RayFilter& filter) const;
   unsigned blocked_packet(RayPacket& rays, unsigned lanes, const RayFilter& filter) const;
+  /// What is found quickly comes first: terrain takes longest, and least so for rays that already end near.
+  std::array<const Layer*, 4> in_order() const { return {&planes_, &moving_, &fixed_, &terrain_}; }
   RayHit hit_of(const RayPacket& rays, int lane) const;
 
   const SceneMoves& moves_;
   std::vector<Part> parts_;
   std::vector<std::vector<int>> open_;  // by group: parts not yet seen
   std::map<const Mesh*, SharedMesh> meshes_;
-  mutable Layer planes_, fixed_, moving_;
+  /// Terrain: large meshes that do not move.
+  mutable Layer planes_, moving_, fixed_, terrain_;
 };
 
 }  // namespace sim

@@ -29,25 +29,12 @@ class FloatRays {
       const int lane = std::countr_zero(lanes);
       set_start(lane, {from[0][lane], from[1][lane], from[2][lane]},
                 {direction[0][lane], direction[1][lane], direction[2][lane]});
-      fill(lane, lane + 1, from, direction, range_m);
-      RTCRayN_id(rays(), 1, 0) = static_cast<unsigned>(lane);
+      fill_one(lane, from, direction, range_m[lane]);
       return;
     }
     count_ = RayPacket::size;
-    bool inside = true;
-    for (int i = 0; i < RayPacket::size; ++i) {
-      start_m_[i] = -margin_m_;
-      inside &= from[0][i] * from[0][i] + from[1][i] * from[1][i] + from[2][i] * from[2][i] <= square_radius_m2_;
-    }
-    if (!inside)
-      for (int i = 0; i < RayPacket::size; ++i)
-        set_start(i, {from[0][i], from[1][i], from[2][i]}, {direction[0][i], direction[1][i], direction[2][i]});
-    fill(0, RayPacket::size, from, direction, range_m);
-    for (int i = 0; i < RayPacket::size; ++i) {
-      RTCRayN_id(rays(), RayPacket::size, static_cast<unsigned>(i)) = static_cast<unsigned>(i);
-      if ((lanes >> i & 1) == 0) valid_[i] = 0;
-      if (valid_[i] == 0) blank(static_cast<unsigned>(i));
-    }
+    static const auto best = __builtin_cpu_supports("avx2") ? aim_all_avx2 : aim_all_sse2;
+    best(*this, from, direction, range_m, lanes);
   }
 
   /// Embree's tfar of a ray whose nearest hit is at `range_m`: long enough for all that could be nearer.
@@ -85,41 +72,33 @@ class FloatRays {
     const double rest = square_radius_m2_ - (from + along * direction).squaredNorm();
     start_m_[lane] = along > 0 && rest >= 0 ? along - std::sqrt(rest) - margin_m_ : std::nan("");
   }
-  void fill(int first, int end, const double (&from)[3][RayPacket::size], const double (&direction)[3][RayPacket::size],
-            const double (&range_m)[RayPacket::size]) {
-    const int n = static_cast<int>(count_);
-    // As RTCRayN has it: origin, tnear, direction, time, tfar, mask, id, flags.
-    for (int axis = 0; axis < 3; ++axis)
-      for (int i = first; i < end; ++i) {
-        data_[axis * n + i - first] = static_cast<float>(from[axis][i] + start_m_[i] * direction[axis][i]);
-        data_[(4 + axis) * n + i - first] = static_cast<float>(direction[axis][i]);
-      }
-    for (int i = first; i < end; ++i) {
-      const unsigned at = static_cast<unsigned>(i - first), count = count_;
-      RTCRayN_tnear(rays(), count, at) = RTCRayN_time(rays(), count, at) = 0;
-      RTCRayN_mask(rays(), count, at) = ~0u;
-      RTCRayN_flags(rays(), count, at) = 0;
-      const float limit = limit_m(i, range_m[i]);
-      // Written so that NaN is left out.
-      const float sum = data_[i - first] + data_[n + i - first] + data_[2 * n + i - first] + data_[4 * n + i - first] +
-                        data_[5 * n + i - first] + data_[6 * n + i - first];
-      const bool good = limit >= 0 && std::abs(sum) < std::numeric_limits<float>::infinity();
-      valid_[i - first] = good ? -1 : 0;
-      RTCRayN_tfar(rays(), count, at) = good ? limit : -1;
+  void fill_one(int lane, const double (&from)[3][RayPacket::size], const double (&direction)[3][RayPacket::size],
+                double range_m) {
+    // As RTCRay has it: origin, tnear, direction, time, tfar, mask, id, flags.
+    float sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      data_[axis] = static_cast<float>(from[axis][lane] + start_m_[lane] * direction[axis][lane]);
+      data_[4 + axis] = static_cast<float>(direction[axis][lane]);
+      sum += data_[axis] + data_[4 + axis];
     }
+    RTCRay& ray = *reinterpret_cast<RTCRay*>(data_);
+    ray.tnear = ray.time = 0;
+    ray.tfar = limit_m(lane, range_m);
+    ray.mask = ~0u;
+    ray.id = static_cast<unsigned>(lane);
+    ray.flags = 0;
+    // Written so that NaN is left out.
+    valid_[0] = ray.tfar >= 0 && std::abs(sum) < std::numeric_limits<float>::infinity() ? -1 : 0;
   }
-  /// Embree checks even numbers that it is told to ignore, and where it has no packets of eight it ignores the mask.
-  void blank(unsigned i) {
-    for (unsigned k = 0; k < 7; ++k) data_[k * count_ + i] = 0;
-    RTCRayN_dir_x(rays(), count_, i) = 1;
-    RTCRayN_tfar(rays(), count_, i) = -1;
-  }
+  using Aim = void(FloatRays& out, const double (&from)[3][RayPacket::size],
+                   const double (&direction)[3][RayPacket::size], const double (&range_m)[RayPacket::size],
+                   unsigned lanes);
+  static Aim aim_all, aim_all_sse2, aim_all_avx2;
   bool none() const {
     int any = 0;
     for (unsigned i = 0; i < count_; ++i) any |= valid_[i];
     return any == 0;
   }
-  RTCRayN* rays() { return reinterpret_cast<RTCRayN*>(data_); }
 
   alignas(64) float data_[sizeof(RTCRayHit8) / sizeof(float)];
   alignas(64) int valid_[RayPacket::size];

@@ -49,7 +49,7 @@ SHOAL_INLINE LocalRay to_local(const RayShape& shape, const RayPacket& rays, int
 /// Cuts off what lies outside -half..half along one axis.  A ray along the face (0 / 0) counts as inside: a comparison
 /// with NaN changes nothing.
 SHOAL_INLINE Inside cut(Inside in, double from, double direction, double half) {
-  const double inverse = 1 / direction;
+  const double inverse = 1 / (direction + 0.0);  // -0 becomes 0, as `ahead` has it
   const double ahead = direction < 0 ? -half : half;
   const double enter = (-ahead - from) * inverse, leave = (ahead - from) * inverse;
   return {larger(enter, in.enter), smaller(leave, in.leave)};
@@ -155,16 +155,40 @@ SHOAL_INLINE void ranges_to_any(const RayShape& shape, const RayPacket& rays, un
   }
 }
 
+SHOAL_INLINE void see_all_from(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
+                               double (&direction)[3][RayPacket::size]) {
+  const auto& a = shape.axes;
+  const auto& c = shape.center;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < RayPacket::size; ++i) {
+      from[axis][i] = a[3 * axis] * (rays.origin[0][i] - c[0]) + a[3 * axis + 1] * (rays.origin[1][i] - c[1]) +
+                      a[3 * axis + 2] * (rays.origin[2][i] - c[2]);
+      direction[axis][i] = a[3 * axis] * rays.direction[0][i] + a[3 * axis + 1] * rays.direction[1][i] +
+                           a[3 * axis + 2] * rays.direction[2][i];
+    }
+}
+
 #undef SHOAL_INLINE
 
 void ranges_sse2(const RayShape& shape, const RayPacket& rays, unsigned lanes, double (&range_m)[RayPacket::size]) {
   ranges_to_any(shape, rays, lanes, range_m);
 }
 
-/// Equal bits: AVX2 alone brings no fused multiply-add.
+void see_sse2(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
+              double (&direction)[3][RayPacket::size]) {
+  see_all_from(shape, rays, from, direction);
+}
+
+// Equal bits: AVX2 alone brings no fused multiply-add.
+
 [[gnu::target("avx2")]] void ranges_avx2(const RayShape& shape, const RayPacket& rays, unsigned lanes,
                                          double (&range_m)[RayPacket::size]) {
   ranges_to_any(shape, rays, lanes, range_m);
+}
+
+[[gnu::target("avx2")]] void see_avx2(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
+                                      double (&direction)[3][RayPacket::size]) {
+  see_all_from(shape, rays, from, direction);
 }
 
 }  // namespace
@@ -172,6 +196,12 @@ void ranges_sse2(const RayShape& shape, const RayPacket& rays, unsigned lanes, d
 void find_ranges(const RayShape& shape, const RayPacket& rays, unsigned lanes, double (&range_m)[RayPacket::size]) {
   static const auto best = __builtin_cpu_supports("avx2") ? ranges_avx2 : ranges_sse2;
   best(shape, rays, lanes, range_m);
+}
+
+void see_from(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
+              double (&direction)[3][RayPacket::size]) {
+  static const auto best = __builtin_cpu_supports("avx2") ? see_avx2 : see_sse2;
+  best(shape, rays, from, direction);
 }
 
 Vector3d RayShape::half_extents_W() const {

@@ -96,6 +96,9 @@ struct alignas(64) RayPacket {
 /// where it leaves when it begins inside; infinity when it misses.  The bits are the same however many lanes there are.
 /// Other elements of `range_m` are left or filled with anything.
 void find_ranges(const RayShape& shape, const RayPacket& rays, unsigned lanes, double (&range_m)[RayPacket::size]);
+/// All lanes in the frame of the shape, which is no plane: x of all lanes, y, z.
+void see_from(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
+              double (&direction)[3][RayPacket::size]);
 /// Outward normal of a shape that is no mesh, at a point on it.
 Vector3d normal_at(const RayShape& shape, const Vector3d& point_W);
 

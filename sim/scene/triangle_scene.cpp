@@ -14,15 +14,7 @@ struct TriangleScene::Query {
       : scene(scene_), rays(rays_), floats(scene_.radius_m_) {
     rtcInitIntersectContext(&context);
     if (rays.coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    const auto& a = shape.axes;
-    const auto& c = shape.center;
-    for (int axis = 0; axis < 3; ++axis)
-      for (int i = 0; i < RayPacket::size; ++i) {
-        from[axis][i] = a[3 * axis] * (rays.origin[0][i] - c[0]) + a[3 * axis + 1] * (rays.origin[1][i] - c[1]) +
-                        a[3 * axis + 2] * (rays.origin[2][i] - c[2]);
-        direction[axis][i] = a[3 * axis] * rays.direction[0][i] + a[3 * axis + 1] * rays.direction[1][i] +
-                             a[3 * axis + 2] * rays.direction[2][i];
-      }
+    see_from(shape, rays, from, direction);
     floats.aim(from, direction, rays.range_m, lanes);
     for (int i = 0; i < RayPacket::size; ++i) {
       nearest[i] = std::numeric_limits<float>::infinity();
@@ -129,6 +121,8 @@ void TriangleScene::filter_cast(const RTCFilterFunctionNArguments* arguments) {
       continue;
     }
     query.note(lane, tfar, triangle);
+    // In double it is looked at after this query.
+    __builtin_prefetch(&query.scene.mesh_.triangles[triangle]);
     // Long enough for all candidates.
     tfar = query.nearest[lane] + query.floats.margin_m();
   }
@@ -137,6 +131,12 @@ void TriangleScene::filter_cast(const RTCFilterFunctionNArguments* arguments) {
 unsigned TriangleScene::cast(const RayShape& shape, RayPacket& rays, unsigned lanes) const {
   Query query(*this, shape, rays, lanes);
   query.floats.intersect(scene_.get(), query.context);
+  for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
+    const int lane = std::countr_zero(rest);
+    for (int i = 0; i < query.found[lane]; ++i)
+      for (const std::uint32_t corner : mesh_.triangles[query.candidates[lane][i].triangle])
+        __builtin_prefetch(&mesh_.vertices_m[corner]);
+  }
   unsigned hit = 0;
   for (; lanes != 0; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);

@@ -221,15 +221,14 @@ void bare_packets(RTCScene scene, const float* origin, const std::array<float, 3
   }
 }
 
-void lidars_bare_packets(benchmark::State& state) {
+void lidars_bare_packets(benchmark::State& state, RTCIntersectContextFlags flags) {
   const Strewn& all = strewn(static_cast<int>(state.range(0)));
   const std::vector<BareFan> fans = make_bare_fans();
   std::vector<BareHit> hits(beams);
   std::size_t next = 0;
   for (auto _ : state) {
     const BareFan& fan = fans[next++ % fans.size()];
-    bare_packets(all.bare->get(), fan.origin, fan.directions.data(), beams, range_m, hits.data(),
-                 RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+    bare_packets(all.bare->get(), fan.origin, fan.directions.data(), beams, range_m, hits.data(), flags);
     benchmark::DoNotOptimize(hits.data());
   }
   per_ray(state);
@@ -310,7 +309,12 @@ void update_bare(benchmark::State& state) {
 }  // namespace
 
 BENCHMARK(lidars_bare_single)->RangeMultiplier(10)->Range(10, 10000);
-BENCHMARK(lidars_bare_packets)->RangeMultiplier(10)->Range(10, 10000);
+BENCHMARK_CAPTURE(lidars_bare_packets, incoherent, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT)
+    ->RangeMultiplier(10)
+    ->Range(10, 10000);
+BENCHMARK_CAPTURE(lidars_bare_packets, coherent, RTC_INTERSECT_CONTEXT_FLAG_COHERENT)
+    ->RangeMultiplier(10)
+    ->Range(10, 10000);
 BENCHMARK(lidars_ours)->RangeMultiplier(10)->Range(10, 10000);
 BENCHMARK_CAPTURE(camera_bare, incoherent, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT)
     ->Arg(1000)

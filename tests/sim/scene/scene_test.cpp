@@ -73,6 +73,11 @@ TEST_P(Ray, HitsTheNearFaceOfABox) {
              {5 - std::sqrt(2) + 0.5, {-std::sqrt(0.5), std::sqrt(0.5), 0}});
 }
 
+TEST_P(Ray, MayPointAlongMinusZero) {
+  expect_hit(look_at(box({2, 4, 6}, 0), {20, 1, 2}, -Vector3d::UnitX()), {14, {1, 0, 0}});
+  expect_hit(look_at(box({2, 4, 6}, 0), {5, 1, 20}, -Vector3d::UnitZ()), {17, {0, 0, 1}});
+}
+
 TEST_P(Ray, HitsASphere) {
   expect_hit(look_at(sphere(1, 0), {0, 0, 0}, {1, 0, 0}), {4, {-1, 0, 0}});
   expect_hit(look_at(sphere(1, 0), {0, 0.6, 0}, {1, 0, 0}), {5 - 0.8, {-0.8, 0.6, 0}});
