@@ -228,7 +228,7 @@ LinearColor Renderer::sky(const Eigen::Vector3f& direction_W) const {
   if (up >= 0)
     color += std::sqrt(up) * (zenith_ - horizon_);
   else
-    color += std::min(1.0F, -8 * up) * (ground_ - horizon_);
+    color -= up * (ground_ - horizon_);  // gently: where there is no ground, the horizon has no edge
   if (!sun_is_up_) return color;
   const float toward = direction_W.dot(to_sun_f_W_);
   constexpr float disc = 0.99996F;  // cosine of half a degree, twice the sun's radius

@@ -4,14 +4,16 @@
 #include <charconv>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <utility>
+
+#include "sim/config/message_text.hpp"
+#include "sim/physics/whole_file.hpp"
 
 namespace sim {
 namespace {
 
-constexpr std::uintmax_t max_file_bytes = 1u << 30;
+constexpr double max_mesh_coordinate_m = 1e7;  // as far as a part may be
 
 /// Words separated by white space; knows the ends of lines.
 class Words {
@@ -152,17 +154,6 @@ std::uint32_t obj_index(std::string_view word, std::size_t vertices) {
   return static_cast<std::uint32_t>(index);
 }
 
-std::string read_file(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) throw MeshError("does not exist");
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error || size > max_file_bytes) throw MeshError("is larger than 1 GB");
-  std::string bytes(size, '\0');
-  std::ifstream file(path, std::ios::binary);
-  if (!file.read(bytes.data(), static_cast<std::streamsize>(size))) throw MeshError("cannot be read");
-  return bytes;
-}
-
 }  // namespace
 
 Mesh load_mesh(const std::string& path, double scale) {
@@ -170,9 +161,14 @@ Mesh load_mesh(const std::string& path, double scale) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
   if (extension != ".stl" && extension != ".obj") throw MeshError("must end in .stl or .obj");
-  const std::string bytes = read_file(path);
+  const std::string bytes = whole_file<MeshError>(path);
   Mesh mesh = extension == ".stl" ? parse_stl(bytes) : parse_obj(bytes);
-  for (Vector3d& p : mesh.vertices_m) p = checked_vertex(p * scale);
+  for (Vector3d& p : mesh.vertices_m) {
+    p = checked_vertex(p * scale);
+    if (p.cwiseAbs().maxCoeff() > max_mesh_coordinate_m)
+      throw MeshError("has a vertex more than 1e7 m from its origin, at " + number_text(p.cwiseAbs().maxCoeff()) +
+                      " m");
+  }
   return mesh;
 }
 

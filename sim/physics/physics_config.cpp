@@ -54,6 +54,11 @@ void ContactConfig::read(ParamReader& in) {
 
 namespace {
 
+/// Rays are followed in single precision first, and a part whose size squared is infinite there would hide others.
+Rule part_length() {
+  return between(1e-6, 1e7);
+}
+
 /// A key of another shape is a mistake: it would do nothing.
 void check_keys_of_shape(ParamReader& in, const std::string& shape) {
   const auto only_for = [&](const char* key, std::initializer_list<const char*> shapes) {
@@ -80,9 +85,9 @@ void PartConfig::read(ParamReader& in) {
   in.read("name", name, "name of the part");
   in.read_choice("shape", shape, {"box", "sphere", "capsule", "cylinder", "plane", "mesh", "terrain"},
                  "shape of the part");
-  in.read("size_m", size_m, above(0), "box: lengths along x, y and z");
-  in.read("radius_m", radius_m, above(0), "sphere, capsule, cylinder");
-  in.read("length_m", length_m, above(0), "capsule (without its caps) and cylinder: length along z");
+  in.read("size_m", size_m, part_length(), "box: lengths along x, y and z");
+  in.read("radius_m", radius_m, part_length(), "sphere, capsule, cylinder");
+  in.read("length_m", length_m, part_length(), "capsule (without its caps) and cylinder: length along z");
   in.read("mesh", mesh, "mesh: an STL or OBJ file, relative to this file");
   in.read("scale", scale, above(0), "mesh: its numbers times this are metres");
   in.read("terrain", terrain, "terrain: its heights; see docs/terrain.md");

@@ -95,6 +95,8 @@ Header read_header(Words& words) {
   need(header.xllcorner ? header.xllcorner : header.xllcenter, "xllcorner");
   need(header.yllcorner ? header.yllcorner : header.yllcenter, "yllcorner");
   if (!(*header.cellsize > 0)) words.fail("cellsize must be > 0, got " + number_text(*header.cellsize));
+  if (*header.cellsize < HeightGrid::min_cell_m || *header.cellsize > HeightGrid::max_place_m)
+    words.fail("cellsize must be from 0.0001 to 1e7 m, got " + number_text(*header.cellsize));
   for (const double count : {*header.ncols, *header.nrows})
     if (count != std::floor(count) || std::abs(count) > 1e15)
       words.fail("ncols and nrows must be whole numbers, got " + number_text(count));

@@ -58,11 +58,13 @@ class GradientNoise {
   std::array<std::uint8_t, 256> order_;
 };
 
-/// Octaves of noise, each half as long as the last, down to waves of four cells.
+/// Octaves of noise, each half as long as the last, down to waves of four cells.  Those longer than a few times the
+/// grid are left out: they are a plane there.
 void make_fractal(HeightGrid& grid, const TerrainConfig& config) {
   const GradientNoise noise(static_cast<std::uint64_t>(config.seed));
-  double weight = 1;
-  for (double wave_m = config.wavelength_m; wave_m >= 4 * config.cell_m && weight > 1e-4; wave_m /= 2) {
+  double longest_m = config.wavelength_m, weight = 1;
+  while (longest_m > 8 * std::max(grid.width_m(), grid.depth_m())) longest_m /= 2;
+  for (double wave_m = longest_m; wave_m >= 4 * config.cell_m && weight > 1e-4; wave_m /= 2) {
     // Shifted by an irrational part of a wave, or all octaves would be 0 at the points they share.
     const double shift = std::numbers::phi * wave_m;
     for (int j = 0; j < grid.rows; ++j)

@@ -110,7 +110,24 @@ void check_grid_size(std::int64_t columns, std::int64_t rows) {
   if (columns < 2 || rows < 2) throw TerrainError("is no grid: it has " + size + ", and needs 2 x 2");
   if (columns > HeightGrid::max_cells || rows > HeightGrid::max_cells || columns * rows > HeightGrid::max_cells)
     throw TerrainError("is too large: it has " + size + ", and may have 16 million");
+  // A long strip of few rows is most likely no map of heights.
+  if (columns > HeightGrid::max_side || rows > HeightGrid::max_side)
+    throw TerrainError("is too long: it has " + size + ", and may have 65536 along a side");
 }
+
+namespace {
+
+void check_extent(const HeightGrid& grid) {
+  for (const double place_m : {grid.west_m, grid.south_m, grid.west_m + grid.width_m(), grid.south_m + grid.depth_m()})
+    if (!(std::abs(place_m) <= HeightGrid::max_place_m))
+      throw TerrainError("reaches " + number_text(std::abs(place_m)) +
+                         " m from its origin; at most 1e7 m are possible");
+  for (const double height_m : {grid.lowest_m(), grid.highest_m()})
+    if (std::abs(height_m) > HeightGrid::max_place_m)
+      throw TerrainError("has a height of " + number_text(height_m) + " m; at most 1e7 m are possible");
+}
+
+}  // namespace
 
 void check_heights(const HeightGrid& grid) {
   for (const double height_m : grid.heights_m)
@@ -128,6 +145,7 @@ void check_heights(const HeightGrid& grid) {
     }
   if (2 * steep > grid.cells())
     throw TerrainError("is steeper than 89 degrees nearly everywhere: heights and cells in one unit, metres?");
+  check_extent(grid);
 }
 
 Mesh mesh_of(const HeightGrid& grid) {

@@ -37,6 +37,9 @@ struct SurfacePoint {
 /// each axis.  A plane stays the same plane, to its border.
 struct HeightGrid {
   static constexpr std::int64_t max_cells = 16'000'000;
+  static constexpr std::int64_t max_side = 65'536;  ///< points along x or y
+  static constexpr double min_cell_m = 1e-4;
+  static constexpr double max_place_m = 1e7;  ///< of a point, along each axis: as far as a part may be
 
   int columns = 0, rows = 0;  ///< points along x and y, at least 2 each
   double cell_m = 1;

@@ -1,25 +1,12 @@
 #include "sim/terrain/terrain.hpp"
 
 #include <filesystem>
-#include <fstream>
 
+#include "sim/physics/whole_file.hpp"
 #include "sim/script/zone.hpp"
 
 namespace sim {
 namespace {
-
-constexpr std::uintmax_t max_file_bytes = 1u << 30;
-
-std::string read_text(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) throw TerrainError("does not exist");
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error || size > max_file_bytes) throw TerrainError("is larger than 1 GB");
-  std::string text(size, '\0');
-  std::ifstream file(path, std::ios::binary);
-  if (!file.read(text.data(), static_cast<std::streamsize>(size))) throw TerrainError("cannot be read");
-  return text;
-}
 
 HeightGrid read_grid(const TerrainConfig& config) {
   if (config.source != "ascii" && config.source != "png") return generate_grid(config);
@@ -32,7 +19,7 @@ HeightGrid read_grid(const TerrainConfig& config) {
     const Holes holes = config.holes == "error"     ? Holes::error
                         : config.holes == "nearest" ? Holes::nearest
                                                     : Holes::linear;
-    return parse_ascii_grid(read_text(path), config.vertical_scale, holes);
+    return parse_ascii_grid(whole_file<TerrainError>(path), config.vertical_scale, holes);
   } catch (const TerrainError& error) {
     throw TerrainError("file '" + path + "' " + error.what());
   }

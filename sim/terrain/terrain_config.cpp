@@ -6,6 +6,7 @@
 
 #include "sim/config/message_text.hpp"
 #include "sim/script/read_points.hpp"
+#include "sim/terrain/height_grid.hpp"
 
 namespace sim {
 namespace {
@@ -70,6 +71,15 @@ void check_keys_of_source(ParamReader& in, const std::string& source) {
   keys_of({"roughness", "seed"}, {"fractal"});
 }
 
+/// Waves that the grid is too coarse for would come out flat or as other waves.
+void check_wavelength(ParamReader& in, const TerrainConfig& config) {
+  const double cells = config.source == "sine" ? 2 : config.source == "fractal" ? 4 : 0;
+  if (config.wavelength_m >= cells * config.cell_m) return;
+  in.error(in.has("wavelength_m") ? "wavelength_m" : "cell_m",
+           "'wavelength_m' of a " + config.source + " must be at least " + number_text(cells) +
+               " times 'cell_m', got " + number_text(config.wavelength_m) + " and " + number_text(config.cell_m));
+}
+
 }  // namespace
 
 void TerrainConfig::read(ParamReader& in) {
@@ -83,8 +93,10 @@ void TerrainConfig::read(ParamReader& in) {
   in.read_choice("collision", collision, {"smooth", "facets", "mesh"},
                  "what vehicles stand on: a surface without edges, or its triangles as ODE's heightfield or trimesh");
   in.read("file", file, "ascii, png: relative to this file");
-  in.read("cell_m", cell_m, above(0), "distance of neighbouring heights; ascii: the file says it");
-  read_pair(in, "size_m", size_m, above(0), "slope, sine, fractal: lengths along x and y");
+  in.read("cell_m", cell_m, between(HeightGrid::min_cell_m, HeightGrid::max_place_m),
+          "distance of neighbouring heights; ascii: the file says it");
+  read_pair(in, "size_m", size_m, between(HeightGrid::min_cell_m, HeightGrid::max_place_m),
+            "slope, sine, fractal: lengths along x and y");
   in.read("vertical_scale", vertical_scale, above(0), "ascii: heights of the file times this are metres");
   in.read("vertical_offset_m", vertical_offset_m, any_number(), "ascii, png: added to the heights");
   in.read("height_min_m", height_min_m, any_number(), "png: height of black");
@@ -98,12 +110,14 @@ void TerrainConfig::read(ParamReader& in) {
   in.read_deg("direction_deg", direction_rad, any_number(),
               "slope, sine: where it climbs to, counter-clockwise from +x");
   in.read("amplitude_m", amplitude_m, at_least(0), "sine; fractal: half of the height between lowest and highest");
-  in.read("wavelength_m", wavelength_m, above(0), "sine; fractal: of the largest hills");
+  in.read("wavelength_m", wavelength_m, between(HeightGrid::min_cell_m, HeightGrid::max_place_m),
+          "sine; fractal: of the largest hills");
   in.read("roughness", roughness, between(0, 1), "fractal: height of hills by that of hills twice as long");
   in.read("seed", seed, at_least(0), "fractal: other seed, other hills");
   in.read_list("areas", areas, "area", "regions of other materials, the last wins");
   if (in.describing()) return;
   check_keys_of_source(in, source);
+  check_wavelength(in, *this);
   if ((source == "ascii" || source == "png") && file.empty())
     in.error("terrain of source " + source + " needs the key 'file'");
   if (origin == "map" && source != "ascii") in.error("origin", "'origin' map is for source ascii");

@@ -24,11 +24,12 @@ namespace tools {
 
 namespace {
 
+constexpr double max_raster_bytes = 1e9;
 constexpr const char* sonar_palette =
-    "set palette defined (0 '#000000', 0.35 '#5a2d0c', 0.7 '#d08030', 1 '#fff0c0') maxcolors 20\n";
+    "set palette defined (0 '#000000', 0.35 '#5a2d0c', 0.7 '#d08030', 1 '#fff0c0') maxcolors 20\nunset colorbox\n";
 constexpr const char* depth_palette =
     "set palette defined (0 '#30123b', 0.25 '#4686fb', 0.5 '#1ae4b6', 0.75 '#faba39', "
-    "1 '#7a0403')\n";
+    "1 '#7a0403')\nset rmargin at screen 0.8\n";
 
 /// What gnuplot gets: a file of bytes or of text, and the commands that draw it.
 struct Drawing {
@@ -52,6 +53,12 @@ Message pick(const std::vector<sim::Bytes>& payloads, std::optional<int> number)
   return shoal::decode<Message>(payloads[static_cast<std::size_t>(index)], shoal::Finite::required);
 }
 
+/// Counts that a message gives must be those of its data: a log may come from anywhere.
+void check_count(const char* what, std::size_t has, std::int64_t says) {
+  if (says < 0 || has != static_cast<std::size_t>(says))
+    throw std::runtime_error(fmt::format("a message says it has {} {}, but has {}", says, what, has));
+}
+
 /// A raster of bytes with its lower left corner at (x, y).
 std::string image_command(int width, int height, double x, double y, double dx, double dy) {
   return fmt::format("plot 'data' binary array=({},{}) format='%uchar' origin=({},{}) dx={} dy={} with image notitle\n",
@@ -59,7 +66,8 @@ std::string image_command(int width, int height, double x, double y, double dx, 
 }
 
 Drawing draw(const shoal::sonar_image_t& image) {
-  if (image.nbins < 1 || image.nbeams < 1 || image.size != image.nbins * image.nbeams ||
+  check_count("bytes", image.data.size(), image.size);
+  if (image.nbins < 1 || image.nbeams < 1 || image.size != std::int64_t{image.nbins} * image.nbeams ||
       !(image.range_max_m > image.range_min_m) || !(image.range_min_m >= 0))
     throw std::runtime_error("the picture has no sensible size");
   // A single beam is drawn as a narrow wedge.
@@ -79,7 +87,7 @@ Drawing draw(const shoal::sonar_image_t& image) {
       const double beam = image.radstep != 0 ? std::round((bearing_rad - image.rad0) / image.radstep) : 0;
       const bool inside = bin >= 0 && bin < image.nbins && beam >= 0 && beam < image.nbeams;
       const std::size_t at = inside ? static_cast<std::size_t>(bin * image.nbeams + beam) : 0;
-      drawing.data += inside ? static_cast<char>(image.data[at]) : '\0';
+      drawing.data += inside ? static_cast<char>(image.data.at(at)) : '\0';
     }
   drawing.commands = fmt::format("{}set size ratio -1\nset xlabel 'right (m)'\nset ylabel 'forward (m)'\n{}",
                                  sonar_palette, image_command(width, height, -half_width_m, low_m, cell_m, cell_m));
@@ -92,28 +100,36 @@ Drawing draw(const std::vector<shoal::side_scan_t>& lines) {
   if (bins < 1 || !(range_m > near_m) || !(near_m >= 0)) throw std::runtime_error("the lines have no sensible size");
   const double bin_m = (range_m - near_m) / bins;
   const double unheard = std::round(2 * near_m / bin_m);  // between the two sides
-  if (unheard > 10000) throw std::runtime_error("the lines have no sensible size");
+  const double width = 2.0 * bins + unheard;
+  if (unheard > 10000 || width * static_cast<double>(lines.size()) > max_raster_bytes)
+    throw std::runtime_error("the lines have no sensible size");
   Drawing drawing;
   for (const auto& line : lines) {
     if (line.nbins != bins) throw std::runtime_error("the number of bins changes");
+    check_count("bins to port", line.port.size(), bins);
+    check_count("bins to starboard", line.starboard.size(), bins);
     drawing.data.append(line.port.rbegin(), line.port.rend());
     drawing.data.append(static_cast<std::size_t>(unheard), '\0');
     drawing.data.append(line.starboard.begin(), line.starboard.end());
   }
-  drawing.commands = fmt::format(
-      "{}set xlabel 'slant range (m): port to the left'\nset ylabel 'ping'\n{}", sonar_palette,
-      image_command(2 * bins + static_cast<int>(unheard), static_cast<int>(lines.size()), -range_m, -0.5, bin_m, 1));
+  drawing.commands =
+      fmt::format("{}set xlabel 'slant range (m): port to the left'\nset ylabel 'ping'\n{}", sonar_palette,
+                  image_command(static_cast<int>(width), static_cast<int>(lines.size()), -range_m, -0.5, bin_m, 1));
   return drawing;
 }
 
 Drawing draw(const std::vector<shoal::multibeam_t>& pings) {
   Drawing drawing;
-  for (std::size_t ping = 0; ping < pings.size(); ++ping)
+  for (std::size_t ping = 0; ping < pings.size(); ++ping) {
+    check_count("ranges", pings[ping].ranges_m.size(), pings[ping].count);
+    check_count("angles", pings[ping].angles_rad.size(), pings[ping].count);
+    check_count("valid flags", pings[ping].valid.size(), pings[ping].count);
     for (std::size_t i = 0; i < pings[ping].ranges_m.size(); ++i)
       if (pings[ping].valid[i])
         drawing.data +=
             fmt::format("{:.3f} {} {:.3f}\n", -pings[ping].ranges_m[i] * std::sin(pings[ping].angles_rad[i]), ping,
                         -pings[ping].ranges_m[i] * std::cos(pings[ping].angles_rad[i]));
+  }
   drawing.commands = fmt::format(
       "{}set xlabel 'across (m): port to the left'\nset ylabel 'ping'\nset cblabel 'z (m)'\n"
       "plot 'data' using 1:2:3 with points pt 5 ps 0.35 palette notitle\n",
@@ -123,6 +139,7 @@ Drawing draw(const std::vector<shoal::multibeam_t>& pings) {
 
 Drawing draw(const shoal::point_cloud_t& cloud) {
   Drawing drawing;
+  for (const auto* values : {&cloud.x_m, &cloud.y_m, &cloud.z_m}) check_count("points", values->size(), cloud.count);
   for (std::size_t i = 0; i < cloud.x_m.size(); ++i)
     drawing.data += fmt::format("{:.3f} {:.3f} {:.3f}\n", cloud.x_m[i], cloud.y_m[i], cloud.z_m[i]);
   drawing.commands = fmt::format(
@@ -134,6 +151,7 @@ Drawing draw(const shoal::point_cloud_t& cloud) {
 
 Drawing draw(const shoal::planar_lidar_t& scan) {
   Drawing drawing;
+  check_count("ranges", scan.ranges.size(), scan.nranges);
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const double angle_rad = scan.rad0 + static_cast<double>(i) * scan.radstep;
     drawing.data +=
@@ -160,22 +178,25 @@ Drawing draw(const std::vector<sim::Bytes>& payloads, std::optional<int> number)
 
 }  // namespace
 
-void draw_ranging(const std::string& log, const std::string& channel, const std::string& png,
-                  std::optional<int> number) {
+std::vector<std::string> draw_ranging(const std::string& log, const std::string& channel, const std::string& png,
+                                      std::optional<int> number) {
   bridges::EventLogReader reader(log);
   std::vector<sim::Bytes> payloads;
   while (const auto event = reader.next())
     if (event->channel == channel) payloads.emplace_back(event->payload.begin(), event->payload.end());
-  if (payloads.empty()) throw std::runtime_error("no event on channel '" + channel + "'; see shoal log info");
+  if (payloads.empty())
+    throw std::runtime_error("no event on channel '" + channel + "'; " +
+                             (reader.problems().empty() ? "see shoal log info" : reader.problems().back()));
   const Drawing drawing = draw(payloads, number);
   if (drawing.data.empty()) throw std::runtime_error(channel + ": there is nothing to draw");
   const ScratchDirectory scratch;
   std::ofstream(scratch.path / "data", std::ios::binary) << drawing.data;
   std::ofstream(scratch.path / "plot.gp") << fmt::format(
-      "set terminal pngcairo size 600,480\nset output {}\nset title {} noenhanced\nunset colorbox\n"
+      "set terminal pngcairo size 600,480\nset output {}\nset title {} noenhanced\n"
       "set tics out\nset autoscale fix\n{}",
       gnuplot_text(std::filesystem::absolute(png).string()), gnuplot_text(channel), drawing.commands);
-  if (run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(60), [] { return false; })) return;
+  if (run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(60), [] { return false; }))
+    return reader.problems();
   std::ifstream said(scratch.path / "plot.log");
   throw std::runtime_error("gnuplot failed: " + std::string(std::istreambuf_iterator<char>(said), {}));
 }

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tools {
 
@@ -12,7 +13,8 @@ namespace tools {
 ///   point_cloud_t   one turn, seen from above, coloured by height
 ///   planar_lidar_t  one scan, seen from above
 /// `number` picks the picture, turn or scan, from 0; unset: the last.  Throws std::runtime_error with the reason.
-void draw_ranging(const std::string& log, const std::string& channel, const std::string& png,
-                  std::optional<int> number);
+/// Returns what was wrong with the log where a picture was possible all the same.
+std::vector<std::string> draw_ranging(const std::string& log, const std::string& channel, const std::string& png,
+                                      std::optional<int> number);
 
 }  // namespace tools

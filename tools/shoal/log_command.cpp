@@ -13,6 +13,7 @@
 #include "tools/experiment/allan_table.hpp"
 #include "tools/experiment/ranging_picture.hpp"
 #include "tools/shoal/commands.hpp"
+#include "tools/shoal/output_file.hpp"
 
 namespace tools {
 
@@ -125,10 +126,17 @@ int csv(const std::string& path, const std::string& channel, const shoal::Messag
   return rows == 0 || bad > 0 ? exit_bus : show_problems(log);
 }
 
+void check_png_name(const std::string& png) {
+  if (!png.ends_with(".png")) throw CLI::ValidationError("--png", "must end in .png, got '" + png + "'");
+}
+
 /// The Allan deviation of what an instrument at rest reported: as CSV to a file or stdout, and as a picture.
 int allan(const std::string& path, const std::string& channel, const std::string& out, const std::string& png,
           const shoal::MessageTypes& types) {
+  if (!png.empty()) check_png_name(png);
   try {
+    for (const std::string& file : {out, png})
+      if (!file.empty()) check_writable(file);
     const AllanTable table = allan_table(path, channel, types);
     if (!out.empty() && !(std::ofstream(out) << to_csv(table) << std::flush))
       throw std::runtime_error("'" + out + "' cannot be written");
@@ -142,8 +150,12 @@ int allan(const std::string& path, const std::string& channel, const std::string
 }
 
 int picture(const std::string& path, const std::string& channel, const std::string& png, std::optional<int> number) {
+  check_png_name(png);
   try {
-    draw_ranging(path, channel, png, number);
+    check_writable(png);
+    const std::vector<std::string> problems = draw_ranging(path, channel, png, number);
+    for (const std::string& problem : problems) std::cerr << path << ": " << problem << '\n';
+    if (!problems.empty()) return exit_bus;
   } catch (const std::runtime_error& error) {
     std::cerr << path << ": " << error.what() << '\n';
     return exit_bus;

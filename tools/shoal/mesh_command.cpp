@@ -13,8 +13,8 @@ namespace {
 struct MeshOptions {
   std::string file;
   std::string out;
-  std::string up = "z";
-  double scale = 1;
+  std::string up;
+  MeshImportOptions import;
 };
 
 std::string vector_text(const sim::Vector3d& v) {
@@ -42,8 +42,10 @@ void print(const std::string& file, const sim::Mesh& mesh) {
 
 int describe_and_convert(const MeshOptions& options) {
   std::string about = options.file;
+  MeshImportOptions import = options.import;
+  if (!options.up.empty()) import.up = options.up[0];
   try {
-    const sim::Mesh mesh = import_mesh(options.file, options.scale, options.up == "y");
+    const sim::Mesh mesh = import_mesh(options.file, import);
     print(options.file, mesh);
     about = options.out;
     if (!options.out.empty()) save_mesh(mesh, options.out);
@@ -62,14 +64,20 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
   command->add_option("FILE", options->file, "mesh of any format that Assimp reads: DAE, FBX, GLB, OBJ, PLY, STL, ...")
       ->required();
   command->add_option("--out", options->out, "write it as this file, .stl (binary) or .obj");
-  command->add_option("--scale", options->scale, "numbers of the file times this are metres")
+  command
+      ->add_option("--scale", options->import.scale,
+                   "numbers of the file times this are metres; Collada's own unit is applied")
       ->check(number_from(1e-9, 1e9));
-  command->add_option("--up", options->up, "axis of the file that points up: z, or y as in glTF and Collada")
+  command
+      ->add_option("--up", options->up,
+                   "axis of the file that points up; without it y in glTF, what the file says in Collada, z in others")
       ->check(CLI::IsMember({"y", "z"}));
+  command->add_option("--timeout", options->import.timeout_s, "give up on a file that takes longer, s; 60")
+      ->check(number_from(0.01, 86400));
   command->footer(
       "Examples:\n"
       "  shoal mesh hull.stl\n"
-      "  shoal mesh hull.glb --up y --out hull.stl\n"
+      "  shoal mesh hull.glb --out hull.stl\n"
       "  shoal mesh rock_mm.fbx --scale 0.001 --out rock.obj\n"
       "Worlds and vehicles read STL and OBJ.  A mesh with mass must be closed.");
   command->callback([options, &exit_code] { exit_code = describe_and_convert(*options); });

@@ -1,14 +1,20 @@
 #include "tools/shoal/mesh_import.hpp"
 
+#include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <array>
 #include <assimp/Importer.hpp>
+#include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
+
+#include "tools/shoal/child_work.hpp"
 
 namespace tools {
 
@@ -33,6 +39,8 @@ void add_triangles(const aiMesh& from, double scale, bool y_up, sim::Mesh& mesh,
   for (unsigned i = 0; i < from.mNumFaces; ++i) {
     const aiFace& face = from.mFaces[i];
     if (face.mNumIndices != 3) continue;  // points and lines
+    for (unsigned k = 0; k < 3; ++k)
+      if (face.mIndices[k] >= number_of.size()) throw sim::MeshError("has a face of a vertex that is not there");
     const std::uint32_t a = number_of[face.mIndices[0]], b = number_of[face.mIndices[1]],
                         c = number_of[face.mIndices[2]];
     if (a != b && b != c && c != a) mesh.triangles.push_back({a, b, c});
@@ -40,15 +48,56 @@ void add_triangles(const aiMesh& from, double scale, bool y_up, sim::Mesh& mesh,
   if (mesh.triangles.size() > sim::max_mesh_triangles) throw sim::MeshError("has more than 4 million triangles");
 }
 
-/// Assimp 5.2 never returns from a PLY file whose header is cut off.
-void check_ply_header(const std::string& path) {
+std::string lower_case_extension(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-  if (extension != ".ply") return;
-  std::string head(1 << 16, '\0');
-  std::ifstream file(path, std::ios::binary);
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  if (head.find("end_header") == std::string::npos) throw sim::MeshError("is cut off: its header has no end");
+  return extension;
+}
+
+sim::Mesh read_with_assimp(const std::string& path, const MeshImportOptions& options) {
+  const std::string extension = lower_case_extension(path);
+  // Assimp turns a Collada file so that y is up, whatever axis the file names.
+  const bool y_up = options.up
+                        ? *options.up == 'y'
+                        : extension == ".dae" || extension == ".zae" || extension == ".gltf" || extension == ".glb";
+  Assimp::Importer importer;
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, options.up.has_value());
+  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_PreTransformVertices);
+  if (scene == nullptr) throw sim::MeshError(fmt::format("is no mesh that can be read: {}", importer.GetErrorString()));
+  sim::Mesh mesh;
+  std::map<std::array<double, 3>, std::uint32_t> numbers;
+  for (unsigned i = 0; i < scene->mNumMeshes; ++i)
+    add_triangles(*scene->mMeshes[i], options.scale, y_up, mesh, numbers);
+  if (mesh.triangles.empty()) throw sim::MeshError("has no triangles");
+  return mesh;
+}
+
+// What the child hands back: `m`, the number of vertices, the vertices and the triangles; or `e` and the problem.
+constexpr std::size_t vertex_bytes = sizeof(sim::Vector3d), triangle_bytes = 3 * sizeof(std::uint32_t);
+
+std::string packed(const sim::Mesh& mesh) {
+  const std::uint64_t vertices = mesh.vertices_m.size();
+  std::string bytes = "m";
+  bytes.append(reinterpret_cast<const char*>(&vertices), sizeof vertices);
+  bytes.append(reinterpret_cast<const char*>(mesh.vertices_m.data()), vertices * vertex_bytes);
+  bytes.append(reinterpret_cast<const char*>(mesh.triangles.data()), mesh.triangles.size() * triangle_bytes);
+  return bytes;
+}
+
+sim::Mesh unpacked(const std::string& bytes) {
+  std::uint64_t vertices = 0;
+  constexpr std::size_t head = 1 + sizeof vertices;
+  if (bytes.size() < head || bytes[0] != 'm')
+    throw sim::MeshError(bytes.substr(std::min<std::size_t>(1, bytes.size())));
+  std::memcpy(&vertices, bytes.data() + 1, sizeof vertices);
+  if (vertices > (bytes.size() - head) / vertex_bytes) throw ChildError("failed on this file");
+  sim::Mesh mesh;
+  mesh.vertices_m.resize(vertices);
+  mesh.triangles.resize((bytes.size() - head - vertices * vertex_bytes) / triangle_bytes);
+  std::memcpy(mesh.vertices_m.data(), bytes.data() + head, vertices * vertex_bytes);
+  std::memcpy(mesh.triangles.data(), bytes.data() + head + vertices * vertex_bytes,
+              mesh.triangles.size() * triangle_bytes);
+  return mesh;
 }
 
 std::string binary_stl(const sim::Mesh& mesh) {
@@ -59,7 +108,11 @@ std::string binary_stl(const sim::Mesh& mesh) {
     const sim::Vector3d &a = mesh.vertices_m[t[0]], &b = mesh.vertices_m[t[1]], &c = mesh.vertices_m[t[2]];
     const sim::Vector3d normal = (b - a).cross(c - a).stableNormalized();
     for (const sim::Vector3d& v : {normal, a, b, c})
-      for (int i = 0; i < 3; ++i) put(static_cast<float>(v[i]));
+      for (int i = 0; i < 3; ++i) {
+        const auto value = static_cast<float>(v[i]);
+        if (!std::isfinite(value)) throw sim::MeshError("cannot hold so large numbers; scale it, or write .obj");
+        put(value);
+      }
     put(std::uint16_t{0});
   }
   return bytes;
@@ -74,26 +127,30 @@ std::string obj_text(const sim::Mesh& mesh) {
 
 }  // namespace
 
-sim::Mesh import_mesh(const std::string& path, double scale, bool y_up) {
+sim::Mesh import_mesh(const std::string& path, const MeshImportOptions& options) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) throw sim::MeshError("does not exist");
   if (std::filesystem::file_size(path, error) > max_file_bytes) throw sim::MeshError("is larger than 1 GB");
-  check_ply_header(path);
-  Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_PreTransformVertices);
-  if (scene == nullptr) throw sim::MeshError(fmt::format("is no mesh that can be read: {}", importer.GetErrorString()));
-  sim::Mesh mesh;
-  std::map<std::array<double, 3>, std::uint32_t> numbers;
-  for (unsigned i = 0; i < scene->mNumMeshes; ++i) add_triangles(*scene->mMeshes[i], scale, y_up, mesh, numbers);
-  if (mesh.triangles.empty()) throw sim::MeshError("has no triangles");
-  return mesh;
+  const auto work = [&]() -> std::string {
+    try {
+      return packed(read_with_assimp(path, options));
+    } catch (const sim::MeshError& problem) {
+      return std::string("e") + problem.what();
+    }
+  };
+  try {
+    return unpacked(do_in_child(work, {.time_s = options.timeout_s}));
+  } catch (const ChildError& problem) {
+    throw sim::MeshError(fmt::format("cannot be read: the importer {}", problem.what()));
+  }
 }
 
 void save_mesh(const sim::Mesh& mesh, const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
   if (extension != ".stl" && extension != ".obj") throw sim::MeshError("must end in .stl or .obj");
+  const std::string bytes = extension == ".stl" ? binary_stl(mesh) : obj_text(mesh);
   std::ofstream file(path, std::ios::binary);
-  file << (extension == ".stl" ? binary_stl(mesh) : obj_text(mesh));
+  file << bytes;
   if (!file.flush()) throw sim::MeshError("cannot be written");
 }
 

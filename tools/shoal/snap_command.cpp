@@ -14,6 +14,7 @@
 #include "sim/world/load_world.hpp"
 #include "sim/world/world.hpp"
 #include "tools/shoal/commands.hpp"
+#include "tools/shoal/output_file.hpp"
 
 namespace tools {
 
@@ -224,6 +225,7 @@ int snap(SnapArguments& arguments) {
   sim::World world(loaded.config, bus);
   world.use_threads(0);
   make_view(arguments, world);  // what is wrong with it shows before a long run
+  check_writable(arguments.every_s ? numbered(arguments.out, 0) : arguments.out);
   sim::TextureLibrary textures;
   try {
     int number = 0;

@@ -232,27 +232,33 @@ TEST(EmbreeScene, SeesTerrainAsOdeDoes) {
   const auto embree = world_of("embree"), ode = world_of("ode");
   Uniform uniform(4);
   std::vector<Ray> rays;
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < 100000; ++i) {
     const Vector3d from(100 + uniform(-25, 25), 50 + uniform(-15, 15), uniform(8, 14));
     const Vector3d to(100 + uniform(-25, 25), 50 + uniform(-15, 15), uniform(0, 8));
     rays.push_back({from, (to - from).normalized(), uniform(10, 80)});
   }
   const std::vector<RayHit> ours = cast(embree->scene(), rays), theirs = cast(ode->scene(), rays);
-  int hit = 0, mud = 0, differ = 0;
+  int hit = 0, mud = 0, on_edge = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     hit += ours[i].hit();
     mud += ours[i].hit() && embree->material(ours[i].material).name == "mud";
-    // ODE's meshes are in single precision: 1e-5 m, more at grazing incidence; and at an edge of two cells, or where a
-    // ray passes a crest, rounding decides.
+    // ODE's meshes are in single precision: 1e-5 m, more at grazing incidence.
     const double steep = ours[i].hit() ? -ours[i].normal_W.dot(rays[i].direction_W) : 1;
-    if (ours[i].hit() != theirs[i].hit() || ours[i].material != theirs[i].material ||
-        (ours[i].hit() && std::abs(ours[i].range_m - theirs[i].range_m) > 1e-5 / steep))
-      ++differ;
+    if (ours[i].hit() == theirs[i].hit() && ours[i].material == theirs[i].material &&
+        (!ours[i].hit() || std::abs(ours[i].range_m - theirs[i].range_m) <= 1e-5 / steep))
+      continue;
+    // What else differs lies on an edge, so that as small a step aside makes either library see what the other one
+    // does: Embree where a ray passes a crest, ODE where it falls between two cells.
+    if (grazes(embree->scene(), rays[i], theirs[i].range_m, 1e-5) ||
+        grazes(ode->scene(), rays[i], ours[i].range_m, 1e-5))
+      ++on_edge;
+    else
+      ADD_FAILURE() << "ray " << i << ": " << ours[i].range_m << " against " << theirs[i].range_m;
   }
-  EXPECT_GT(hit, 10000);
-  EXPECT_GT(mud, 1000);
-  EXPECT_GT(hit - mud, 1000);
-  EXPECT_LE(differ, 20);
+  EXPECT_GT(hit, 50000);
+  EXPECT_GT(mud, 5000);
+  EXPECT_GT(hit - mud, 5000);
+  EXPECT_LE(on_edge, 5);  // seen: 1 of a million
 }
 
 TEST(EmbreeScene, KeepsItsPrecisionFarFromTheOrigin) {

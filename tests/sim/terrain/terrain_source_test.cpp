@@ -78,6 +78,8 @@ TEST(AsciiGrid, ErrorsSayTheLineAndWhatIsWrong) {
   EXPECT_EQ(error_of_ascii("ncols three\n"), "line 1: ncols is 'three', which is no number");
   EXPECT_EQ(error_of_ascii("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize -10\n1 2 3 4 5 6"),
             "line 5: cellsize must be > 0, got -10");
+  EXPECT_EQ(error_of_ascii("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1e-300\n1 2 3 4 5 6"),
+            "line 5: cellsize must be from 0.0001 to 1e7 m, got 1e-300");
   EXPECT_EQ(error_of_ascii("ncols 2.5\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3 4 5 6"),
             "line 5: ncols and nrows must be whole numbers, got 2.5");
   EXPECT_EQ(error_of_ascii("ncols 1e9\nnrows 1e9\nxllcorner 0\nyllcorner 0\ncellsize 1\n1"),
@@ -193,6 +195,19 @@ TEST(Terrain, TheLastAreaOverTheMiddleOfACellWins) {
   EXPECT_EQ(terrain.area_at(0.5, 0.5), 2);
   EXPECT_EQ(terrain.area_at(4.5, 2.7), 3);
   EXPECT_EQ(terrain.area_at(100, -100), 0);  // outside: as the nearest cell
+}
+
+TEST(FractalTerrain, OfWavesFarLongerThanItselfIsAsOfThoseAFewTimesAsLong) {
+  sim::TerrainConfig config;
+  config.source = "fractal";
+  config.size_m = {64, 32};
+  config.wavelength_m = 512;  // 8 times as long
+  config.roughness = 1;
+  const sim::HeightGrid few_times = sim::generate_grid(config);
+  config.wavelength_m = 512 * 16384;
+  EXPECT_EQ(sim::generate_grid(config).heights_m, few_times.heights_m);
+  config.wavelength_m = 256;
+  EXPECT_NE(sim::generate_grid(config).heights_m, few_times.heights_m);
 }
 
 }  // namespace

@@ -90,6 +90,23 @@ TEST_F(RangingPicture, DrawsMultibeamsPointCloudsAndScans) {
   EXPECT_EQ(problem_of(shoal::planar_lidar_t{0, 2, {1, 2}, 0, {}, -0.5f, 1}), "");
 }
 
+TEST_F(RangingPicture, CountsWhoseProductOverflowsAreNoSize) {
+  shoal::sonar_image_t image{0, 65536, 65536, 1, 10, -0.5f, 1e-5f, 80, 1, 0, {}};
+  EXPECT_EQ(problem_of(image), "the picture has no sensible size");
+  image.nbeams = 65537;  // 65536 in 32 bits
+  image.size = 65536;
+  image.data.assign(65536, 'x');
+  EXPECT_EQ(problem_of(image), "the picture has no sensible size");
+}
+
+TEST_F(RangingPicture, OfACutLogSaysSo) {
+  const std::string log = log_of(side_scan());
+  std::filesystem::resize_file(log, std::filesystem::file_size(log) - 3);
+  EXPECT_THAT(tools::draw_ranging(log, "s", png(), {}),
+              testing::ElementsAre(testing::HasSubstr("the last event is cut off")));
+  EXPECT_TRUE(drawn());
+}
+
 TEST_F(RangingPicture, SaysWhyThereIsNone) {
   EXPECT_THAT(problem_of(side_scan(), "other"), testing::HasSubstr("no event on channel 'other'"));
   EXPECT_THAT(problem_of(shoal::utime_t{}), testing::HasSubstr("its type cannot be drawn"));
