@@ -243,8 +243,7 @@ TEST(Camera, RollingShutterTakesItsTimeAtARateThatDoesNotDivideTheStep) {
 }
 
 TEST(Camera, RollingShutterTakesItsTimeAfterAChangeOfTheRate) {
-  test::TestWorld test(
-      turntable_world(labels + ", rate_hz: 20, phase_s: 0, focal_px: [400], readout_s: 0.05"));
+  test::TestWorld test(turntable_world(labels + ", rate_hz: 20, phase_s: 0, focal_px: [400], readout_s: 0.05"));
   test::Listener<shoal::image_t> images(test, "r1.camera");
   test.run_for(0.2);
   EXPECT_THAT(test.change("r1/camera", "{rate_hz: 100}"), HasSubstr("'readout_s' must be at most 1 / rate_hz"));

@@ -94,7 +94,8 @@ sim::Mesh unpacked(const std::string& bytes) {
   sim::Mesh mesh;
   mesh.vertices_m.resize(vertices);
   mesh.triangles.resize((bytes.size() - head - vertices * vertex_bytes) / triangle_bytes);
-  std::memcpy(mesh.vertices_m.data(), bytes.data() + head, vertices * vertex_bytes);
+  static_assert(sizeof(sim::Vector3d) == 3 * sizeof(double));
+  std::memcpy(static_cast<void*>(mesh.vertices_m.data()), bytes.data() + head, vertices * vertex_bytes);
   std::memcpy(mesh.triangles.data(), bytes.data() + head + vertices * vertex_bytes,
               mesh.triangles.size() * triangle_bytes);
   return mesh;

@@ -127,8 +127,7 @@ inline Rover add_rover(PhysicsWorld& world, const std::string& name, const Pose&
   sim::Body& chassis =
       world.add_body(group, body("chassis", {at(box({0.5, 0.3, 0.1}, 5), {-0.05, 0, 0}), caster}, {0, 0, 0.15}), X_WV);
   sim::Body& left_wheel = world.add_body(group, body("left_wheel", {wheel}, axle), X_WV);
-  sim::Body& right_wheel =
-world.add_body(group, body("right_wheel", {wheel}, mirrored), X_WV);
+  sim::Body& right_wheel = world.add_body(group, body("right_wheel", {wheel}, mirrored), X_WV);
   Rover rover{&chassis, nullptr, nullptr};
   rover.left = &world.add_joint(group, joint("left", "hinge", axle, Vector3d::UnitY()), chassis, &left_wheel, X_WV);
   rover.right =
