@@ -90,8 +90,8 @@ void Camera::Params::read(sim::ParamReader& in) {
   if (in.describing()) return;
   if (encoding == Encoding::raw16 && image != Kind::depth) in.error("encoding", "'raw16' is for images of depth");
   if (encoding == Encoding::jpeg && !takes_light(image)) in.error("encoding", "'jpeg' is for images rgb and grey");
-  if (static_cast<double>(optics.width) * optics.height * antialias * antialias > 16e6)
-    in.error("antialias", "'antialias' makes more than 16000000 rays in an image");
+  if (static_cast<double>(optics.width) * optics.height * antialias * antialias > sim::max_image_pixels)
+    in.error("antialias", "'antialias' makes more than " + std::to_string(sim::max_image_pixels) + " rays in an image");
   if (exposure_time_s > 0 && readout_s > 0)
     in.error("exposure_time_s", "needs either 'readout_s' or 'exposure_time_s', not both");
   if (exposure_time_s > 0 && !takes_light(image)) in.error("exposure_time_s", "is for images rgb and grey");

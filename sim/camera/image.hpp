@@ -7,6 +7,10 @@
 
 namespace sim {
 
+/// Images larger than this are refused, in files and of cameras.
+inline constexpr int max_image_side_px = 8192;
+inline constexpr int max_image_pixels = 16'000'000;
+
 /// Values of pixels, row by row from the top, each row from left to right, `channels` side by side.
 template <typename T>
 struct Image {

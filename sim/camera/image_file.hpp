@@ -16,10 +16,6 @@ class ImageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Images larger than this are refused.
-inline constexpr int max_image_side_px = 8192;
-inline constexpr int max_image_pixels = 16'000'000;
-
 // Written to memory.  `out` is replaced, and keeps its memory from image to image.
 
 /// 8 bits, grey or RGB.

@@ -7,12 +7,12 @@
 #include <limits>
 #include <stdexcept>
 
+#include "sim/camera/image.hpp"
+
 namespace sim {
 
 namespace {
 
-constexpr int max_side_px = 8192;
-constexpr int max_pixels = 16'000'000;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// The undistorted radius at which a pinhole gives up: 89.4 degrees off the axis.
 constexpr double widest_pinhole = 100;
@@ -33,13 +33,13 @@ bool in_form(const std::vector<double>& values, std::size_t least, std::size_t m
 }  // namespace
 
 void OpticsConfig::read(ParamReader& in) {
-  in.read("width", width, between(1, max_side_px), "pixels in a row");
-  in.read("height", height, between(1, max_side_px), "rows");
+  in.read("width", width, between(1, max_image_side_px), "pixels in a row");
+  in.read("height", height, between(1, max_image_side_px), "rows");
   in.read_choice("lens", lens, {"pinhole", "fisheye"}, "how angles become places in the image");
   in.read_deg("fov_deg", fov_rad, above_to(0, 359),
               "horizontal angle of view, without the distortion; a pinhole's is < 180");
   in.read("focal_px", focal_px, above(0), "focal length, or fx and fy, instead of fov_deg");
-  in.read("principal_px", principal_px, between(-max_side_px, 2 * max_side_px),
+  in.read("principal_px", principal_px, between(-max_image_side_px, 2 * max_image_side_px),
           "where the axis meets the image, from its outer corner; left out: its middle");
   in.read("distortion", distortion, any_number(),
           "pinhole: k1, k2, p1, p2, k3 (Brown-Conrady); fisheye: k1 to k4 (Kannala-Brandt); both as OpenCV has them");
@@ -54,8 +54,9 @@ void OpticsConfig::read(ParamReader& in) {
 }
 
 std::string OpticsConfig::problem() const {
-  if (width < 1 || height < 1 || width > max_side_px || height > max_side_px || width * height > max_pixels)
-    return fmt::format("'width' x 'height' must be at most {} pixels, got {} x {}", max_pixels, width, height);
+  if (width < 1 || height < 1 || width > max_image_side_px || height > max_image_side_px ||
+      width * height > max_image_pixels)
+    return fmt::format("'width' x 'height' must be at most {} pixels, got {} x {}", max_image_pixels, width, height);
   if (!in_form(focal_px, 1, 2)) return fmt::format("'focal_px' must have 1 or 2 numbers, got {}", focal_px.size());
   if (!in_form(principal_px, 2, 2))
     return fmt::format("'principal_px' must have 2 numbers, got {}", principal_px.size());

@@ -141,7 +141,8 @@ View free_view(const SnapArguments& arguments, const sim::World& world) {
   View view;
   for (const double side : size)
     if (!(side >= 1 && side <= sim::max_image_side_px) || side != std::floor(side))
-      throw CLI::ValidationError("--size", "must be 1 to 8192 pixels a side, got '" + arguments.size + "'");
+      throw CLI::ValidationError(
+          "--size", fmt::format("must be 1 to {} pixels a side, got '{}'", sim::max_image_side_px, arguments.size));
   view.optics.width = static_cast<int>(size[0]);
   view.optics.height = static_cast<int>(size[1]);
   view.optics.fov_rad = sim::degrees_to_radians(arguments.fov_deg);
