@@ -44,6 +44,22 @@ void Body::add_torque_W(const Vector3d& torque_Nm) {
   dBodyAddTorque(ode_.get(), torque_Nm.x(), torque_Nm.y(), torque_Nm.z());
 }
 
+Vector3d Body::applied_force_W() const {
+  return free() ? to_eigen(dBodyGetForce(ode_.get())) : Vector3d(Vector3d::Zero());
+}
+
+Vector3d Body::applied_torque_W() const {
+  return free() ? to_eigen(dBodyGetTorque(ode_.get())) : Vector3d(Vector3d::Zero());
+}
+
+void Body::set_applied_W(const Vector3d& force_N, const Vector3d& torque_Nm) {
+  if (!force_N.allFinite() || !torque_Nm.allFinite())
+    throw PhysicsFault("body '" + name_ + "': the forces of the water on it are not finite");
+  if (!free()) return;
+  dBodySetForce(ode_.get(), force_N.x(), force_N.y(), force_N.z());
+  dBodySetTorque(ode_.get(), torque_Nm.x(), torque_Nm.y(), torque_Nm.z());
+}
+
 void Body::set_pose(const Pose& X_WB) {
   if (!X_WB.matrix().allFinite()) throw PhysicsFault("body '" + name_ + "': its new pose is not finite");
   if (fixed()) {

@@ -44,6 +44,11 @@ class Body {
   /// Forces last for the next step, and do nothing to a body that is not free.  Not finite: PhysicsFault.
   void add_force_W(const Vector3d& force_N, const Vector3d& at_W);
   void add_torque_W(const Vector3d& torque_Nm);
+  /// What was added for the next step: the force, and the torque about the centre of mass.
+  Vector3d applied_force_W() const;
+  Vector3d applied_torque_W() const;
+  /// Takes the place of all that was added for the next step.  Not finite: PhysicsFault.
+  void set_applied_W(const Vector3d& force_N, const Vector3d& torque_Nm);
   /// Puts the body frame at a pose.  A fixed or kinematic body takes its parts along; what it touches sees no
   /// velocity.  A free body alone: PhysicsWorld::move_group takes the whole vehicle.
   void set_pose(const Pose& X_WB);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/config/param_reader.hpp"
+#include "sim/hydrodynamics/hydrodynamics_config.hpp"
 #include "sim/math.hpp"
 #include "sim/scene/material.hpp"
 #include "sim/terrain/terrain_config.hpp"
@@ -79,7 +80,8 @@ struct BodyConfig {
   Vector3d position_m = Vector3d::Zero();  ///< of the body frame B in the vehicle frame V
   Vector3d rpy_rad = Vector3d::Zero();
   std::vector<PartConfig> parts;
-  SourcePlace place;  ///< where the body was written, for errors found while building
+  std::optional<HydrodynamicsConfig> hydrodynamics;  ///< its mass is that of the body, whatever the parts weigh
+  SourcePlace place;                                 ///< where the body was written, for errors found while building
 
   void read(ParamReader& in);
 };

@@ -145,7 +145,29 @@ void PhysicsWorld::Impl::add_part(Body& body, const BodyConfig& config_, std::si
   if (made.terrain) terrains[number] = std::move(made.terrain);
 }
 
-void PhysicsWorld::Impl::set_mass(Body& body, const BodyConfig& config_, const dMass& total) {
+namespace {
+
+/// Mass, centre of mass and inertia as a body's hydrodynamics say, in axes of the body.
+dMass published_mass(const HydrodynamicsConfig& config) {
+  const auto flip = [](int i) { return i == 0 ? 1.0 : -1.0; };  // forward-right-down to forward-left-up
+  dMass mass;
+  dMassSetZero(&mass);
+  mass.mass = config.mass_kg;
+  const Vector3d& c = config.center_of_mass_m;
+  const Matrix3d about_origin =
+      config.inertia_kgm2 + config.mass_kg * (c.squaredNorm() * Matrix3d::Identity() - c * c.transpose());
+  for (int i = 0; i < 3; ++i) {
+    mass.c[i] = flip(i) * c[i];
+    for (int j = 0; j < 3; ++j) mass.I[4 * i + j] = flip(i) * flip(j) * about_origin(i, j);
+  }
+  return mass;
+}
+
+}  // namespace
+
+void PhysicsWorld::Impl::set_mass(Body& body, const BodyConfig& config_, const dMass& of_parts) {
+  const bool published = config_.hydrodynamics && config_.hydrodynamics->mass_kg > 0;
+  const dMass total = published ? published_mass(*config_.hydrodynamics) : of_parts;
   if (!(total.mass > 0)) {
     const SourcePlace place = config_.parts.empty() ? config_.place : config_.parts.front().place;
     throw_config_error(place, "body '" + body.name() + "'", "has no mass: give a part mass_kg or density_kgpm3");

@@ -20,7 +20,9 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
       host_{events_, config.epoch_us, Time{step_us_}, static_cast<std::uint64_t>(config.run.seed),
             [this](const BadMessage& bad) { complain(bad.channel, bad.text); }},
       physics_(std::make_unique<PhysicsWorld>(config.physics, config.materials, config.contacts, config.categories,
-                                              static_cast<std::uint64_t>(config.run.seed))) {
+                                              static_cast<std::uint64_t>(config.run.seed))),
+      medium_(config.medium, config.physics.gravity_mps2, static_cast<std::uint64_t>(config.run.seed)),
+      hydrodynamics_(medium_, config.physics.gravity_mps2, config.physics.step_s) {
   known_materials_.insert("default");
   for (const MaterialConfig& material : config.materials) known_materials_.insert(material.name);
   known_contacts_ = config.contacts;
@@ -58,7 +60,9 @@ const WorldObject& World::build_object(const ObjectConfig& config, const std::st
   const Motion motion = config.kinematic ? Motion::kinematic : config.fixed ? Motion::fixed : Motion::free;
   try {
     object.body = &physics_->add_body(object.group, body, X_WE, motion);
+    if (motion == Motion::free) hydrodynamics_.add_body(*object.body, body);
   } catch (...) {
+    hydrodynamics_.remove_group(object.group);
     physics_->remove_group(object.group);
     throw;
   }
@@ -85,8 +89,11 @@ Vehicle& World::build_vehicle(const VehicleInstance& instance) {
 
 void World::build_parts_of(Vehicle& vehicle, const VehicleInstance& instance) {
   const VehicleConfig& config = *instance.config;
-  for (const BodyConfig& body : config.bodies)
-    vehicle.add_body(body.name, physics_->add_body(vehicle.group(), body, instance.X_WV));
+  for (const BodyConfig& body : config.bodies) {
+    Body& built = physics_->add_body(vehicle.group(), body, instance.X_WV);
+    vehicle.add_body(body.name, built);
+    hydrodynamics_.add_body(built, body);
+  }
   for (const JointConfig& joint : config.joints) {
     Body* second = joint.bodies[1] == "world" ? nullptr : &vehicle.body(joint.bodies[1]);
     vehicle.add_joint(
@@ -124,10 +131,13 @@ void World::sort_devices() {
 
 void World::step() {
   for (MountedDevice* device : listening_) device->take_mail(now(), step_number_);
+  hydrodynamics_.begin_step();
   for (MountedDevice* device : acting_) device->act(now(), step_s_);
+  hydrodynamics_.step();
   script_->step();
   physics_->step(step_number_);
   ++step_number_;
+  medium_.advance_to(now());
   run_due_events();
   sense();
 }
@@ -239,6 +249,7 @@ std::uint64_t World::state_hash() const {
   StateHash hash;
   hash.add(step_number_);
   physics_->hash_state(hash);
+  medium_.hash_state(hash);
   for (const auto& vehicle : vehicles_) vehicle->systems().hash_state(hash);
   for (const auto& device : devices_)
     if (device) device->hash_state(hash);

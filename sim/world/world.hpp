@@ -14,6 +14,8 @@
 #include "sim/bus/bus.hpp"
 #include "sim/bus/byte_port.hpp"
 #include "sim/geodesy.hpp"
+#include "sim/hydrodynamics/hydrodynamics.hpp"
+#include "sim/medium/medium.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/thread_pool.hpp"
 #include "sim/world/event_queue.hpp"
@@ -83,6 +85,9 @@ class World {
   PhysicsWorld& physics() { return *physics_; }
   const PhysicsWorld& physics() const { return *physics_; }
   const Scene& scene() const { return physics_->scene(); }
+  /// Water and air at the time of the world: in stages 1 to 5 that of the start of the step, then that of its end.
+  const Medium& medium() const { return medium_; }
+  const Hydrodynamics& hydrodynamics() const { return hydrodynamics_; }
   const Geodesy& geodesy() const { return geodesy_; }
   std::span<const std::unique_ptr<Vehicle>> vehicles() const { return vehicles_; }
   const Vehicle* find_vehicle(const std::string& name) const;
@@ -184,6 +189,8 @@ class World {
   // By key only, never iterated.  Declared before the devices, which use it to their end.
   std::map<std::type_index, std::shared_ptr<void>> shared_;
   std::unique_ptr<PhysicsWorld> physics_;
+  Medium medium_;
+  Hydrodynamics hydrodynamics_;
   std::vector<std::unique_ptr<Vehicle>> vehicles_;
   std::map<std::string, Vehicle*, std::less<>> vehicles_by_name_;
   std::map<std::string, WorldObject, std::less<>> objects_;

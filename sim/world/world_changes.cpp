@@ -135,6 +135,7 @@ void World::remove_vehicle(const std::string& name) {
 
 void World::take_apart(Vehicle& vehicle) {
   for (MountedDevice* device : vehicle.devices()) remove_device(*device);
+  hydrodynamics_.remove_group(vehicle.group());
   physics_->remove_group(vehicle.group());
   ++generation_;
   vehicles_by_name_.erase(vehicle.name());
@@ -175,6 +176,7 @@ const WorldObject& World::add_object(const ObjectConfig& config, const std::stri
 
 void World::remove_object(const std::string& name) {
   const WorldObject& object = object_named(name);
+  hydrodynamics_.remove_group(object.group);
   physics_->remove_group(object.group);
   ++generation_;
   objects_.erase(object.name);

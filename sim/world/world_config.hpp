@@ -9,6 +9,7 @@
 #include "sim/camera/light.hpp"
 #include "sim/config/param_reader.hpp"
 #include "sim/geodesy.hpp"
+#include "sim/medium/medium_config.hpp"
 #include "sim/physics/physics_config.hpp"
 #include "sim/script/event_config.hpp"
 #include "sim/script/zone.hpp"
@@ -142,6 +143,7 @@ struct WorldConfig {
   std::string epoch = "2026-01-01T00:00:00Z";  ///< UTC of simulated time 0
   std::int64_t epoch_us = 0;                   ///< the same in microseconds since 1970
   PhysicsConfig physics;
+  MediumConfig medium;
   std::vector<MaterialConfig> materials;
   std::vector<ContactConfig> contacts;
   std::vector<std::string> categories;

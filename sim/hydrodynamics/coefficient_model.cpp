@@ -1,0 +1,255 @@
+#include "sim/hydrodynamics/coefficient_model.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace sim {
+
+namespace {
+
+Matrix3d cross_matrix(const Vector3d& v) {
+  Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+double signed_square(double x) {
+  return std::abs(x) * x;
+}
+
+/// The integrals of |v + x r| (v + x r) and of x times that over x from a to b, when v + x r has one sign there.
+void add_piece(double sign, double v, double r, double a, double b, double& force, double& moment) {
+  const double d1 = b - a, d2 = (b * b - a * a) / 2, d3 = (b * b * b - a * a * a) / 3,
+               d4 = (b * b * b * b - a * a * a * a) / 4;
+  force += sign * (v * v * d1 + 2 * v * r * d2 + r * r * d3);
+  moment += sign * (v * v * d2 + 2 * v * r * d3 + r * r * d4);
+}
+
+struct StripSum {
+  double force = 0, moment = 0;
+};
+
+StripSum integrate_strips(double v, double r, double half_length) {
+  StripSum sum;
+  const double at_aft = v - half_length * r, at_bow = v + half_length * r;
+  if (at_aft * at_bow >= 0) {
+    add_piece(at_aft + at_bow >= 0 ? 1 : -1, v, r, -half_length, half_length, sum.force, sum.moment);
+    return sum;
+  }
+  const double still = -v / r;
+  add_piece(at_aft >= 0 ? 1 : -1, v, r, -half_length, still, sum.force, sum.moment);
+  add_piece(at_bow >= 0 ? 1 : -1, v, r, still, half_length, sum.force, sum.moment);
+  return sum;
+}
+
+StripSum add_up_strips(double v, double r, double half_length, int strips) {
+  StripSum sum;
+  const double dx = 2 * half_length / (strips - 1);
+  for (int i = 0; i < strips; ++i) {
+    const double x = -half_length + i * dx;
+    const double strip = signed_square(v + x * r) * dx;
+    sum.force += strip;
+    sum.moment += x * strip;
+  }
+  return sum;
+}
+
+}  // namespace
+
+CoefficientModel::CoefficientModel(const HydrodynamicsConfig& config, double gravity_mps2)
+    : config_(config), gravity_mps2_(gravity_mps2) {
+  const Matrix3d S = cross_matrix(config.center_of_mass_m);
+  const double m = config.mass_kg;
+  inertia_O_ = config.inertia_kgm2 - m * S * S;
+  Matrix6d rigid;
+  rigid << m * Matrix3d::Identity(), -m * S, m * S, inertia_O_;
+  mass_ = rigid + config.added_mass;
+  mass_inverse_ = mass_.inverse();
+  weight_N_ = config.weight_N.value_or(m * gravity_mps2);
+  const double any_density = 1025;
+  buoyancy_N_ = config.buoyancy_N ? *config.buoyancy_N : config.volume_m3 ? -1 : weight_N_;
+  const double volume = config.volume_m3.value_or(m / any_density);
+  height_m_ = config.hull_height_m.value_or(2 * std::cbrt(volume * 3 / (4 * std::numbers::pi)));
+  linear_diagonal_ = config.linear_damping.diagonal();
+  quadratic_diagonal_ = config.quadratic_damping.diagonal();
+  diagonal_damping_ = config.linear_damping.isDiagonal(0) && config.quadratic_damping.isDiagonal(0);
+  added_mass_is_diagonal_ = config.added_mass.isDiagonal(0);
+}
+
+double CoefficientModel::immersed(const CraftState& state) const {
+  if (config_.waterline) {
+    // Floating as it should or deeper counts as immersed; beyond that it is on its way into the air.
+    const double draft = config_.mass_kg * gravity_mps2_ / config_.waterline->heave_Npm;
+    return std::clamp(2 + state.depth_m / draft, 0.0, 1.0);
+  }
+  const double center_depth = state.depth_m + state.down.dot(config_.center_of_buoyancy_m);
+  const double height = height_m_ + std::abs(state.down.x()) * config_.hull_length_m;
+  const double share = std::clamp(0.5 + center_depth / height, 0.0, 1.0);
+  return share * share * (3 - 2 * share);
+}
+
+Vector6d CoefficientModel::acceleration(const CraftState& state, const Vector6d& tau) const {
+  const Vector3d w = state.nu.tail<3>();
+  Vector3d v_c = state.v_water;
+  Vector3d v_c_dot;
+  if (config_.quirks.current == "yaw_only")
+    v_c_dot = Vector3d(w.z() * v_c.y(), -w.z() * v_c.x(), 0);
+  else
+    v_c_dot = -w.cross(v_c);
+  Vector6d nu_r = state.nu;
+  nu_r.head<3>() -= v_c;
+  const Vector3d v_r = nu_r.head<3>();
+
+  Vector6d total = tau + forces(state, nu_r);
+  // Rigid body, in the parametrization in which its Coriolis matrix does not depend on the linear velocity, so that it
+  // may act on the relative velocity (Fossen 2011, property 8.1).
+  const Vector3d& r_g = config_.center_of_mass_m;
+  const double m = config_.mass_kg;
+  const Vector3d f = m * w.cross(v_r + w.cross(r_g));
+  total.head<3>() -= f;
+  total.tail<3>() -= w.cross(config_.inertia_kgm2 * w) + r_g.cross(f);
+  // Added mass: Kirchhoff's equations.
+  const Matrix6d& A = config_.added_mass;
+  Vector3d a, b;
+  if (added_mass_is_diagonal_) {
+    a = A.diagonal().head<3>().cwiseProduct(v_r);
+    b = A.diagonal().tail<3>().cwiseProduct(w);
+  } else {
+    const Vector6d momentum = A * nu_r;
+    a = momentum.head<3>();
+    b = momentum.tail<3>();
+  }
+  if (config_.quirks.munk_moment) {
+    total.head<3>() -= w.cross(a);
+    total.tail<3>() -= v_r.cross(a) + w.cross(b);
+  } else {
+    total[1] += a.z() * w.x();
+    total[2] -= a.y() * w.x();
+    total.tail<3>() -= w.cross(b);
+    total[3] -= a.z() * v_r.y() - a.y() * v_r.z();
+  }
+  if (!state.a_water.isZero(0)) {
+    // Water that accelerates carries along what it would have filled (Froude-Krylov) and the added mass.
+    Vector6d accelerated = Vector6d::Zero();
+    accelerated.head<3>() = state.a_water;
+    total += immersed(state) * (config_.added_mass * accelerated);
+    const Vector3d displaced = weight_N_ / gravity_mps2_ * immersed(state) * state.a_water;
+    total.head<3>() += displaced;
+    total.tail<3>() += config_.center_of_buoyancy_m.cross(displaced);
+  }
+  Vector6d nu_dot = mass_inverse_ * total;
+  nu_dot.head<3>() += v_c_dot;
+  return nu_dot;
+}
+
+Vector6d CoefficientModel::forces(const CraftState& state, const Vector6d& nu_r) const {
+  Vector6d tau = Vector6d::Zero();
+  const double share = immersed(state);
+  if (share > 0) tau = share * damping(state, nu_r);
+  add_restoring(state, tau);
+  return tau;
+}
+
+Vector6d CoefficientModel::damping(const CraftState& state, const Vector6d& nu_r) const {
+  Vector6d tau;
+  if (diagonal_damping_) {
+    tau = -(linear_diagonal_ + quadratic_diagonal_.cwiseProduct(nu_r.cwiseAbs())).cwiseProduct(nu_r);
+  } else {
+    tau = -config_.linear_damping * nu_r - config_.quadratic_damping * nu_r.cwiseAbs().cwiseProduct(nu_r);
+  }
+  const PublishedQuirks& quirks = config_.quirks;
+  if (quirks.surge_damping_fade_spm > 0) {
+    const double speed = quirks.fade_speed == "water"
+                             ? nu_r.head<3>().norm()
+                             : std::sqrt(std::max(0.0, state.nu[0] + state.nu[1] * state.nu[1]));
+    tau[0] += config_.linear_damping(0, 0) * nu_r[0] * (1 - std::exp(-quirks.surge_damping_fade_spm * speed));
+  }
+  for (const DerivativeTerm& term : config_.derivatives) {
+    const double first = term.absolute ? std::abs(nu_r[term.first]) : nu_r[term.first];
+    tau[term.row] += term.coefficient * first * (term.second < 0 ? 1 : nu_r[term.second]);
+  }
+  if (config_.cross_flow) add_cross_flow(nu_r, config_.cross_flow->density_kgpm3.value_or(state.density_kgpm3), tau);
+  if (config_.hull_lift) add_hull_lift(nu_r, config_.hull_lift->density_kgpm3.value_or(state.density_kgpm3), tau);
+  return tau;
+}
+
+double CoefficientModel::cross_flow_drag(double speed) const {
+  const std::vector<double>& table = config_.cross_flow->drag_coefficient;
+  if (table.size() == 1) return table.front();
+  const double reynolds = speed * config_.cross_flow->reynolds_length_m / config_.cross_flow->kinematic_viscosity_m2ps;
+  if (reynolds <= table[0]) return table[1];
+  std::size_t i = 2;
+  while (i < table.size() && table[i] < reynolds) i += 2;
+  if (i >= table.size()) return table.back();
+  const double along = (reynolds - table[i - 2]) / (table[i] - table[i - 2]);
+  return table[i - 1] + along * (table[i + 1] - table[i - 1]);
+}
+
+void CoefficientModel::add_cross_flow(const Vector6d& nu_r, double density, Vector6d& tau) const {
+  const CrossFlowConfig& hull = *config_.cross_flow;
+  const double scale = -0.5 * density * hull.height_m * cross_flow_drag(std::hypot(nu_r[1], nu_r[2]));
+  const double half = hull.length_m / 2;
+  const auto strips = [&](double v, double r) {
+    return hull.strips == 0 ? integrate_strips(v, r, half) : add_up_strips(v, r, half, hull.strips);
+  };
+  const StripSum sideways = strips(nu_r[1], nu_r[5]), vertical = strips(nu_r[2], -nu_r[4]);
+  tau[1] += scale * sideways.force;
+  tau[5] += scale * sideways.moment;
+  tau[2] += scale * vertical.force;
+  tau[4] -= scale * vertical.moment;
+}
+
+void CoefficientModel::add_hull_lift(const Vector6d& nu_r, double density, Vector6d& tau) const {
+  const HullLiftConfig& hull = *config_.hull_lift;
+  const double u = nu_r[0], w = nu_r[2];
+  const double square = nu_r.head<3>().squaredNorm(), in_plane = std::hypot(u, w);
+  if (in_plane < 1e-12) return;
+  const double pressure = 0.5 * density * square * hull.area_m2;
+  const double C_L = hull.lift_slope * std::atan2(w, u);
+  const double lift = pressure * C_L;
+  const double drag = pressure * (hull.drag_coefficient + hull.induced_drag * C_L * C_L);
+  const double cosine = u / in_plane, sine = w / in_plane;
+  tau[0] += -drag * cosine + lift * sine;
+  tau[2] += -drag * sine - lift * cosine;
+}
+
+void CoefficientModel::add_restoring(const CraftState& state, Vector6d& tau) const {
+  if (config_.waterline) {
+    const WaterlineConfig& plane = *config_.waterline;
+    const double roll = std::atan2(state.down.y(), state.down.z()) - state.surface_roll_rad;
+    const double pitch = std::asin(std::clamp(-state.down.x(), -1.0, 1.0)) - state.surface_pitch_rad;
+    const double weight = config_.mass_kg * gravity_mps2_;
+    // Out of the water nothing but its weight pulls it down.
+    const double heave = std::max(state.depth_m, -weight / plane.heave_Npm);
+    tau[2] -= plane.heave_Npm * heave + plane.heave_pitch_N * pitch;
+    tau[3] -= plane.roll_Nmprad * roll;
+    tau[4] -= plane.pitch_Nmprad * pitch + plane.heave_pitch_N * heave;
+    if (plane.load_kg > 0) {
+      const Vector3d load = plane.load_kg * gravity_mps2_ * state.down;
+      const Vector3d moment = plane.load_at_m.cross(load);
+      tau[2] += load.z();
+      tau[3] += moment.x();
+      tau[4] += moment.y();
+    }
+    return;
+  }
+  const Vector3d weight = weight_N_ * state.down;
+  const double full = buoyancy_N_ >= 0 ? buoyancy_N_ : *config_.volume_m3 * state.density_kgpm3 * gravity_mps2_;
+  const Vector3d buoyancy = -full * immersed(state) * state.down;
+  tau.head<3>() += weight + buoyancy;
+  tau.tail<3>() += config_.center_of_mass_m.cross(weight) + config_.center_of_buoyancy_m.cross(buoyancy);
+}
+
+Vector6d CoefficientModel::equivalent_wrench(const Vector6d& nu_dot, const Vector3d& v, const Vector3d& w,
+                                             double mass_kg, const Matrix3d& inertia) const {
+  const Vector3d& r_g = config_.center_of_mass_m;
+  const Vector3d w_dot = nu_dot.tail<3>();
+  Vector6d wrench;
+  wrench.head<3>() = mass_kg * (nu_dot.head<3>() + w.cross(v) + w_dot.cross(r_g) + w.cross(w.cross(r_g)));
+  wrench.tail<3>() = inertia * w_dot;
+  return wrench;
+}
+
+}  // namespace sim

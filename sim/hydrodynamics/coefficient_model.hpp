@@ -1,0 +1,63 @@
+#pragma once
+
+#include "sim/hydrodynamics/hydrodynamics_config.hpp"
+#include "sim/math.hpp"
+#include "sim/medium/medium.hpp"
+
+namespace sim {
+
+/// How a craft lies in the water, in forward-right-down.
+struct CraftState {
+  Vector6d nu;             ///< velocity over ground of the origin, then angular velocity; m/s, rad/s
+  Vector3d v_water;        ///< of the water at the origin, m/s
+  Vector3d a_water;        ///< acceleration of the water in waves, m/s^2
+  Vector3d down;           ///< unit vector towards the centre of the earth
+  double heading_rad = 0;  ///< clockwise from north
+  double depth_m = 0;      ///< of the origin below the surface
+  double surface_roll_rad = 0, surface_pitch_rad = 0;  ///< of the surface along its water plane, as roll and pitch
+  double density_kgpm3 = 0;                            ///< of the water
+};
+
+/// The equations of motion of a marine craft (Fossen 2011, eq. 8.1 to 8.8 in relative velocity): rigid body and added
+/// mass, Coriolis of both, damping, restoring.  All in forward-right-down about the origin of the body.  Holds no
+/// state: vehicles that are alike share one.
+class CoefficientModel {
+ public:
+  CoefficientModel(const HydrodynamicsConfig& config, double gravity_mps2);
+
+  /// d(nu)/dt under the forces `tau` (N, N m about the origin) of everything but the water, weight and buoyancy.
+  Vector6d acceleration(const CraftState& state, const Vector6d& tau) const;
+  /// The forces of the water but those that come with acceleration, with weight and buoyancy.
+  Vector6d forces(const CraftState& state, const Vector6d& nu_r) const;
+
+  /// The wrench about the centre of mass, in these axes, that gives a body of mass `mass_kg` and inertia `inertia`
+  /// about its centre of mass this acceleration.
+  Vector6d equivalent_wrench(const Vector6d& nu_dot, const Vector3d& v, const Vector3d& w, double mass_kg,
+                             const Matrix3d& inertia) const;
+
+  const HydrodynamicsConfig& config() const { return config_; }
+  const Matrix6d& mass() const { return mass_; }  ///< rigid and added
+  double weight_N() const { return weight_N_; }
+  double buoyancy_N() const { return buoyancy_N_; }
+  /// Share of the hull under water, 0 to 1.
+  double immersed(const CraftState& state) const;
+
+ private:
+  Vector6d damping(const CraftState& state, const Vector6d& nu_r) const;
+  void add_cross_flow(const Vector6d& nu_r, double density, Vector6d& tau) const;
+  void add_hull_lift(const Vector6d& nu_r, double density, Vector6d& tau) const;
+  void add_restoring(const CraftState& state, Vector6d& tau) const;
+  double cross_flow_drag(double speed) const;
+
+  HydrodynamicsConfig config_;
+  double gravity_mps2_;
+  Matrix6d mass_;
+  Matrix6d mass_inverse_;
+  Matrix3d inertia_O_;  ///< about the origin
+  double weight_N_, buoyancy_N_, height_m_;
+  Vector6d linear_diagonal_, quadratic_diagonal_;
+  bool diagonal_damping_;
+  bool added_mass_is_diagonal_;
+};
+
+}  // namespace sim

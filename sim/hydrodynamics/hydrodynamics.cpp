@@ -1,0 +1,121 @@
+#include "sim/hydrodynamics/hydrodynamics.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "sim/config/diagnostics.hpp"
+#include "sim/config/message_text.hpp"
+
+namespace sim {
+
+namespace {
+
+/// Takes forward-left-up to forward-right-down and back.
+Vector3d flipped(const Vector3d& v) {
+  return {v.x(), -v.y(), -v.z()};
+}
+
+}  // namespace
+
+Hydrodynamics::Hydrodynamics(const Medium& medium, double gravity_mps2, double step_s)
+    : medium_(medium), gravity_mps2_(gravity_mps2), step_s_(step_s) {}
+
+void Hydrodynamics::add_body(Body& body, const BodyConfig& config) {
+  if (!medium_.has_water() || !config.hydrodynamics || config.hydrodynamics->model == "none") return;
+  std::weak_ptr<const CoefficientModel>& known = models_[&*config.hydrodynamics];
+  std::shared_ptr<const CoefficientModel> model = known.lock();
+  if (!model) {
+    model = std::make_shared<CoefficientModel>(*config.hydrodynamics, gravity_mps2_);
+    check_step(*model, *config.hydrodynamics, "body '" + body.name() + "'");
+    known = model;
+  }
+  // Weight and gyroscopic torque are part of the model.
+  body.set_gravity(false);
+  body.set_gyroscopic(false);
+  crafts_.push_back({&body, std::move(model)});
+  immersed_.push_back(&body);
+  if (water_.size() <= static_cast<std::size_t>(body.number()))
+    water_.resize(static_cast<std::size_t>(body.number()) + 1);
+  water_[static_cast<std::size_t>(body.number())] = medium_.water_at(body.X_WB().translation());
+}
+
+void Hydrodynamics::check_step(const CoefficientModel& model, const HydrodynamicsConfig& config,
+                               const std::string& who) const {
+  // An explicit step follows a decay of rate d only while h d < 2.
+  const Matrix6d rates = model.mass().inverse() * config.linear_damping;
+  const double fastest = rates.eigenvalues().cwiseAbs().maxCoeff();
+  if (fastest * step_s_ > 2)
+    throw_config_error(config.place, who,
+                       "'linear_damping' is too stiff for 'step_s' " + number_text(step_s_) +
+                           ": it needs a step below " + number_text(2 / fastest) + " s");
+}
+
+void Hydrodynamics::remove_group(int group) {
+  std::erase_if(crafts_, [&](const CoefficientBody& craft) { return craft.body->group() == group; });
+  std::erase_if(immersed_, [&](const Body* body) { return body->group() == group; });
+}
+
+void Hydrodynamics::begin_step() {
+  for (const Body* body : immersed_)
+    water_[static_cast<std::size_t>(body->number())] = medium_.water_at(body->X_WB().translation());
+}
+
+const LocalWater& Hydrodynamics::water_at(const Body& body) const {
+  static const LocalWater none;
+  const auto number = static_cast<std::size_t>(body.number());
+  return number < water_.size() ? water_[number] : none;
+}
+
+CraftState Hydrodynamics::state_of(const CoefficientBody& craft) const {
+  const Body& body = *craft.body;
+  const LocalWater& water = water_[static_cast<std::size_t>(body.number())];
+  const Pose X_WB = body.X_WB();
+  const Matrix3d R_BW = X_WB.linear().transpose();
+  CraftState state;
+  state.nu << flipped(R_BW * body.v_WB_W()), flipped(R_BW * body.w_WB_W());
+  state.down = flipped(-R_BW.col(2));
+  const CoefficientModel& model = *craft.model;
+  if (model.config().quirks.current == "yaw_only") {
+    const double heading = std::atan2(X_WB.linear()(0, 0), X_WB.linear()(1, 0));
+    const double north = water.velocity_W.y(), east = water.velocity_W.x();
+    state.v_water = {north * std::cos(heading) + east * std::sin(heading),
+                     east * std::cos(heading) - north * std::sin(heading), -water.velocity_W.z()};
+  } else {
+    state.v_water = flipped(R_BW * water.velocity_W);
+  }
+  state.a_water = flipped(R_BW * water.acceleration_W);
+  state.depth_m = water.surface_m - X_WB.translation().z();
+  state.density_kgpm3 = water.density_kgpm3;
+  if (model.config().waterline && medium_.has_waves()) {
+    const WaterlineConfig& plane = *model.config().waterline;
+    const auto surface_at = [&](double x, double y) {
+      const Vector3d p_W = X_WB * Vector3d(x, y, 0);
+      return medium_.surface_m(p_W.x(), p_W.y());
+    };
+    const double bow = surface_at(plane.length_m / 2, 0), stern = surface_at(-plane.length_m / 2, 0),
+                 port = surface_at(0, plane.beam_m / 2), starboard = surface_at(0, -plane.beam_m / 2);
+    state.surface_pitch_rad = std::atan((bow - stern) / plane.length_m);
+    state.surface_roll_rad = std::atan((port - starboard) / plane.beam_m);
+    state.depth_m = (bow + stern + port + starboard) / 4 - X_WB.translation().z();
+  }
+  return state;
+}
+
+void Hydrodynamics::step() {
+  for (const CoefficientBody& craft : crafts_) {
+    Body& body = *craft.body;
+    const CoefficientModel& model = *craft.model;
+    const CraftState state = state_of(craft);
+    const Matrix3d R_WB = body.X_WB().linear();
+    const Vector3d force = flipped(R_WB.transpose() * body.applied_force_W());
+    Vector6d tau;
+    tau << force, flipped(R_WB.transpose() * body.applied_torque_W()) + model.config().center_of_mass_m.cross(force);
+    const Vector6d nu_dot = model.acceleration(state, tau);
+    const Vector6d wrench = model.equivalent_wrench(nu_dot, state.nu.head<3>(), state.nu.tail<3>(), body.mass_kg(),
+                                                    model.config().inertia_kgm2);
+    body.set_applied_W(R_WB * flipped(wrench.head<3>()), R_WB * flipped(wrench.tail<3>()));
+  }
+}
+
+}  // namespace sim

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/hydrodynamics/coefficient_model.hpp"
+#include "sim/medium/medium.hpp"
+#include "sim/physics/body.hpp"
+#include "sim/physics/physics_config.hpp"
+
+namespace sim {
+
+/// What the water does to the bodies of a world: stage 3 of a step.
+class Hydrodynamics {
+ public:
+  Hydrodynamics(const Medium& medium, double gravity_mps2, double step_s);
+
+  /// A free body that has come; does nothing for one that water does not touch.  Throws ConfigError.
+  void add_body(Body& body, const BodyConfig& config);
+  /// The bodies of a group are about to go.
+  void remove_group(int group);
+
+  /// Looks at the water around each body, before actuators act on it.
+  void begin_step();
+  /// The water at a body's origin in this step.
+  const LocalWater& water_at(const Body& body) const;
+  /// Adds what the water does to the forces that actuators have put on the bodies in this step.
+  void step();
+
+ private:
+  struct CoefficientBody {
+    Body* body;
+    std::shared_ptr<const CoefficientModel> model;
+  };
+  CraftState state_of(const CoefficientBody& craft) const;
+  void check_step(const CoefficientModel& model, const HydrodynamicsConfig& config, const std::string& who) const;
+
+  const Medium& medium_;
+  double gravity_mps2_;
+  double step_s_;
+  std::vector<CoefficientBody> crafts_;  // in the order in which they came
+  std::vector<LocalWater> water_;        // by body number
+  std::vector<Body*> immersed_;          // bodies whose water begin_step() looks at
+  // Vehicles that are alike share a model.
+  std::map<const HydrodynamicsConfig*, std::weak_ptr<const CoefficientModel>> models_;
+};
+
+}  // namespace sim

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+
+#include "sim/math.hpp"
+#include "sim/medium/medium_config.hpp"
+#include "sim/state_hash.hpp"
+#include "sim/time.hpp"
+
+namespace sim {
+
+/// The water at a place, at the time of the medium.
+struct LocalWater {
+  double surface_m = 0;                        ///< height of the surface over the place, waves and tide included
+  double density_kgpm3 = 0;                    ///< of the water; 0 in a world without
+  Vector3d velocity_W = Vector3d::Zero();      ///< current and waves, m/s
+  Vector3d acceleration_W = Vector3d::Zero();  ///< of the water in waves, m/s^2; a current's is left out
+};
+
+/// What surrounds the bodies of a world: water below the surface, air over it.  World frame, east-north-up.
+///
+/// Time goes on by advance_to() only; all answers are for that time.  Places beyond the water (over the surface, or in
+/// a world without water) have answers too: those of the air, and LocalWater as at the surface.
+class Medium {
+ public:
+  /// Throws ConfigError (files).
+  Medium(const MediumConfig& config, double gravity_mps2, std::uint64_t seed);
+
+  bool has_water() const { return config_.water.has_value(); }
+  bool has_waves() const { return false; }
+
+  /// Not back in time.
+  void advance_to(Time now);
+  Time now() const { return now_; }
+
+  /// Height of the surface in the world; minus infinity in a world without water.
+  double surface_m(double x_m, double y_m) const;
+  /// Below the momentary surface, m; negative in the air, minus infinity in a world without water.
+  double depth_m(const Vector3d& p_W) const { return surface_m(p_W.x(), p_W.y()) - p_W.z(); }
+  bool in_water(const Vector3d& p_W) const { return depth_m(p_W) > 0; }
+  LocalWater water_at(const Vector3d& p_W) const;
+  /// Of the water (current and waves), m/s.
+  Vector3d water_velocity_W(const Vector3d& p_W) const;
+  /// Of the wind, m/s.
+  Vector3d air_velocity_W(const Vector3d& p_W) const;
+  /// Of water or air, kg/m^3.
+  double density_kgpm3(const Vector3d& p_W) const;
+  /// Absolute, of water or air, Pa.
+  double pressure_Pa(const Vector3d& p_W) const;
+  /// Of the water at this depth, also for places over the surface.
+  double temperature_C(const Vector3d& p_W) const;
+  double salinity_psu(const Vector3d& p_W) const;
+  /// In water or air, m/s.
+  double sound_speed_mps(const Vector3d& p_W) const;
+
+  void hash_state(StateHash& hash) const;
+
+ private:
+  MediumConfig config_;
+  double gravity_mps2_;
+  Time now_{0};
+};
+
+}  // namespace sim

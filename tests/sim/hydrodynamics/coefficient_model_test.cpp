@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "sim/world/vehicle.hpp"
+#include "tests/devices/world_fixture.hpp"
+
+namespace {
+
+const char* bluerov2 = R"(
+shoal: 1
+physics: {step_s: STEP, gravity_mps2: 9.82}
+medium: {water: {density_kgpm3: 1000}}
+vehicles:
+  - name: rov
+    position_m: [0, 0, -5]
+    rpy_deg: [0, 0, 90]
+    model:
+      shoal: 1
+      vehicle: bluerov2
+      bodies:
+        - name: hull
+          hydrodynamics:
+            frame: frd
+            mass_kg: 13.5
+            inertia_kgm2: [0.26, 0.23, 0.37]
+            volume_m3: 0.0134
+            center_of_buoyancy_m: [0, 0, -0.01]
+            added_mass: [6.36, 7.12, 18.68, 0.189, 0.135, 0.222]
+            linear_damping: [13.7, 0, 33.0, 0, 0.8, 0]
+            quadratic_damping: [141, 217, 190, 1.19, 0.47, 1.5]
+          parts: [{shape: box, size_m: [0.4, 0.3, 0.2]}]
+)";
+
+double rms_against(const std::string& file, const std::string& step) {
+  std::string yaml = bluerov2;
+  yaml.replace(yaml.find("STEP"), 4, step);
+  test::TestWorld test(yaml);
+  sim::Body& body = test.world.vehicles()[0]->body("hull");
+  std::ifstream in(std::string(SHOAL_SOURCE_DIR) + "/tests/fidelity/reference/" + file);
+  std::string line;
+  std::getline(in, line);
+  double sum = 0;
+  int count = 0;
+  sim::Vector3d force = sim::Vector3d::Zero(), torque = sim::Vector3d::Zero();
+  while (std::getline(in, line)) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream values(line);
+    double v[19];
+    for (double& x : v) values >> x;
+    while (sim::to_seconds(test.world.now()) < v[0] - 1e-9) {
+      const sim::Matrix3d R = body.X_WB().linear();
+      const auto flip = [](const sim::Vector3d& a) { return sim::Vector3d(a.x(), -a.y(), -a.z()); };
+      body.add_force_W(R * flip(force), body.X_WB().translation());
+      body.add_torque_W(R * flip(torque));
+      test.world.step();
+    }
+    const sim::Vector3d p = body.X_WB().translation();
+    sum += (sim::Vector3d(p.y(), p.x(), -p.z()) - sim::Vector3d(v[1], v[2], v[3])).squaredNorm();
+    ++count;
+    force = {v[13], v[14], v[15]};
+    torque = {v[16], v[17], v[18]};
+  }
+  return std::sqrt(sum / count);
+}
+
+TEST(CoefficientModel, MovesABlueRov2AsPublishedAndHalfTheStepIsHalfTheError) {
+  const double coarse = rms_against("bluerov2h_steps.csv", "0.01"), fine = rms_against("bluerov2h_steps.csv", "0.005");
+  EXPECT_LT(fine, 0.01);
+  EXPECT_NEAR(coarse / fine, 2, 0.2);
+  printf("%g %g\n", coarse, fine);
+}
+
+}  // namespace
