@@ -17,7 +17,7 @@ template <class M>
 class EveryType : public testing::Test {};
 
 using AllTypes =
-    testing::Types<ackermann_command_t, battery_t, bumper_t, compass_t, estop_t, gps_data_t, image_metadata_t, image_t,
+    testing::Types<ackermann_command_t, autopilot_command_t, autopilot_state_t, station_command_t, waypoints_command_t, battery_t, bumper_t, compass_t, estop_t, gps_data_t, image_metadata_t, image_t,
                    imu_t, inclination_t, ins_t, joint_command_t, joint_servo_command_t, joint_state_t, modem_received_t,
                    modem_send_t, multibeam_t, odometry_t, planar_lidar_t, point_cloud_t, pose_t, position_report_t,
                    range_beacon_t, raw_t, rigid_transform_t, side_scan_t, sim_ack_t, sim_control_reply_t,
