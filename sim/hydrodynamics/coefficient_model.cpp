@@ -76,6 +76,12 @@ CoefficientModel::CoefficientModel(const HydrodynamicsConfig& config, double gra
   quadratic_diagonal_ = config.quadratic_damping.diagonal();
   diagonal_damping_ = config.linear_damping.isDiagonal(0) && config.quadratic_damping.isDiagonal(0);
   added_mass_is_diagonal_ = config.added_mass.isDiagonal(0);
+  const PublishedQuirks& quirks = config.quirks;
+  coriolis_ = quirks.added_mass_coriolis == "full"           ? Coriolis::full
+              : quirks.added_mass_coriolis == "without_munk" ? Coriolis::without_munk
+                                                             : Coriolis::none;
+  current_by_yaw_only_ = quirks.current == "yaw_only";
+  fade_by_speed_in_water_ = quirks.fade_speed == "water";
 }
 
 double CoefficientModel::immersed(const CraftState& state) const {
@@ -94,7 +100,7 @@ Vector6d CoefficientModel::acceleration(const CraftState& state, const Vector6d&
   const Vector3d w = state.nu.tail<3>();
   Vector3d v_c = state.v_water;
   Vector3d v_c_dot;
-  if (config_.quirks.current == "yaw_only")
+  if (current_by_yaw_only_)
     v_c_dot = Vector3d(w.z() * v_c.y(), -w.z() * v_c.x(), 0);
   else
     v_c_dot = -w.cross(v_c);
@@ -121,10 +127,10 @@ Vector6d CoefficientModel::acceleration(const CraftState& state, const Vector6d&
     a = momentum.head<3>();
     b = momentum.tail<3>();
   }
-  if (config_.quirks.munk_moment) {
+  if (coriolis_ == Coriolis::full) {
     total.head<3>() -= w.cross(a);
     total.tail<3>() -= v_r.cross(a) + w.cross(b);
-  } else {
+  } else if (coriolis_ == Coriolis::without_munk) {
     total[1] += a.z() * w.x();
     total[2] -= a.y() * w.x();
     total.tail<3>() -= w.cross(b);
@@ -161,7 +167,7 @@ Vector6d CoefficientModel::damping(const CraftState& state, const Vector6d& nu_r
   }
   const PublishedQuirks& quirks = config_.quirks;
   if (quirks.surge_damping_fade_spm > 0) {
-    const double speed = quirks.fade_speed == "water"
+    const double speed = fade_by_speed_in_water_
                              ? nu_r.head<3>().norm()
                              : std::sqrt(std::max(0.0, state.nu[0] + state.nu[1] * state.nu[1]));
     tau[0] += config_.linear_damping(0, 0) * nu_r[0] * (1 - std::exp(-quirks.surge_damping_fade_spm * speed));

@@ -43,6 +43,7 @@ class CoefficientModel {
   double immersed(const CraftState& state) const;
 
  private:
+  enum class Coriolis { full, without_munk, none };
   Vector6d damping(const CraftState& state, const Vector6d& nu_r) const;
   void add_cross_flow(const Vector6d& nu_r, double density, Vector6d& tau) const;
   void add_hull_lift(const Vector6d& nu_r, double density, Vector6d& tau) const;
@@ -58,6 +59,8 @@ class CoefficientModel {
   Vector6d linear_diagonal_, quadratic_diagonal_;
   bool diagonal_damping_;
   bool added_mass_is_diagonal_;
+  Coriolis coriolis_;
+  bool current_by_yaw_only_, fade_by_speed_in_water_;
 };
 
 }  // namespace sim

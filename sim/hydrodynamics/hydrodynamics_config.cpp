@@ -107,7 +107,8 @@ void WaterlineConfig::read(ParamReader& in) {
 }
 
 void PublishedQuirks::read(ParamReader& in) {
-  in.read("munk_moment", munk_moment, "false: the added mass couples sway and heave with no turning, as MSS remus100");
+  in.read_choice("added_mass_coriolis", added_mass_coriolis, {"full", "without_munk", "none"},
+                 "without_munk: added mass couples sway and heave with no turning, as MSS remus100; none: to see the difference");
   in.read_choice("current", current, {"full", "yaw_only"},
                  "yaw_only: the current is turned into the body by its yaw alone, as MSS does");
   in.read("surge_damping_fade_spm", surge_damping_fade_spm, at_least(0),
