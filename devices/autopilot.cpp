@@ -189,12 +189,12 @@ void Autopilot::measure(const sim::SenseContext& context) {
   reading_ = {mode_, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, false};
   if (!driving) {
     law_.reset();
-    saturated_ = false;
+    limited_ = {};
     return;
   }
   if (mode_ == Mode::waypoints) follow_route(context.dt_s);
   wanted_.height_m = height_wanted(context);
-  drive(context, law_.step(motion_of(context.world), wanted_, context.dt_s, saturated_));
+  drive(context, law_.step(motion_of(context.world), wanted_, context.dt_s, limited_));
 }
 
 void Autopilot::drive(const sim::SenseContext& context, const Demand& demand) {
@@ -208,8 +208,8 @@ void Autopilot::drive(const sim::SenseContext& context, const Demand& demand) {
   if (wanted_.station_m) reading_.distance_m = (*wanted_.station_m - place()).norm();
   if (!actuators_) return drive_helm(demand, context.now);
   const CraftMotion motion = motion_of(context.world);
-  saturated_ = actuators_->share(demand.wrench, motion.v_S, context.world.hydrodynamics().water_at(body_).density_kgpm3);
-  reading_.saturated = saturated_;
+  limited_ = actuators_->share(demand.wrench, motion.v_S, context.world.hydrodynamics().water_at(body_).density_kgpm3);
+  reading_.saturated = limited_.any();
   actuators_->publish(context.now);
 }
 
@@ -230,7 +230,8 @@ void Autopilot::hash_state(sim::StateHash& hash) const {
   for (const std::optional<double>& number : {depth_wanted_m_, altitude_wanted_m_})
     if (number) hash.add(*number);
   if (wanted_.station_m) hash.add(sim::Vector3d(wanted_.station_m->x(), wanted_.station_m->y(), 0));
-  hash.add(saturated_);
+  hash.add(limited_.thrusters);
+  hash.add(limited_.fins);
   law_.hash_state(hash);
   route_.hash_state(hash);
 }

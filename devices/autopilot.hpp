@@ -76,7 +76,7 @@ class Autopilot final : public sim::Sensor {
   Setpoint wanted_;
   // One of them.
   std::optional<double> depth_wanted_m_, altitude_wanted_m_;
-  bool saturated_ = false;
+  Limited limited_;
   Reading reading_;
 };
 

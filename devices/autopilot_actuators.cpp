@@ -111,9 +111,10 @@ CraftAbilities AutopilotActuators::abilities() const {
   return craft;
 }
 
-bool AutopilotActuators::share(const Wrench& wrench, const sim::Vector3d& v_B, double density_kgpm3) {
+Limited AutopilotActuators::share(const Wrench& wrench, const sim::Vector3d& v_B, double density_kgpm3) {
   const double density = density_kgpm3 > 0 ? density_kgpm3 : plan_density_kgpm3;
-  bool limited = allocation_->allocate(wrench, forces_N_) < 1;
+  Limited limited;
+  limited.thrusters = allocation_->allocate(wrench, forces_N_) < 1;
   for (std::size_t i = 0; i < propellers_.size(); ++i) {
     Propeller& propeller = propellers_[i];
     propeller.device.command = propeller.curve.command_for_N(forces_N_[static_cast<Eigen::Index>(i)],
@@ -126,7 +127,7 @@ bool AutopilotActuators::share(const Wrench& wrench, const sim::Vector3d& v_B, d
     Plane& plane = planes_[i];
     const double angle = angles[static_cast<Eigen::Index>(i)];
     plane.device.command = std::clamp(angle, -plane.limit_rad, plane.limit_rad);
-    limited = limited || plane.device.command != angle;
+    limited.fins = limited.fins || plane.device.command != angle;
   }
   return limited;
 }

@@ -17,8 +17,8 @@ class AutopilotActuators {
   AutopilotActuators(const AutopilotParams& params, const sim::DeviceContext& context);
 
   CraftAbilities abilities() const;
-  /// Finds the commands for a wrench at a speed through the water.  True: one is at its limit.
-  bool share(const Wrench& wrench, const sim::Vector3d& v_B, double density_kgpm3);
+  /// Finds the commands for a wrench at a speed through the water.
+  Limited share(const Wrench& wrench, const sim::Vector3d& v_B, double density_kgpm3);
   /// Publishes the commands that share() found.
   void publish(sim::Time now);
 

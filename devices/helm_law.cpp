@@ -21,11 +21,13 @@ Eigen::Vector2d at_most(const Eigen::Vector2d& v, double length) {
 
 void HelmGains::read(sim::ParamReader& in) {
   in.read("heading", heading, "hold of the heading, rad and rad/s");
-  in.read("depth", depth, "hold of depth or altitude, m and m/s");
+  in.read("depth", depth, "hold of depth or altitude by thrusters, m and m/s");
   in.read("attitude", attitude, "hold of roll and pitch, rad and rad/s");
   in.read("position", position, "hold of a station, m and m/s");
   in.read("speed_bandwidth_radps", speed_bandwidth_radps, sim::above_to(0, 100), "hold of the speed");
   in.read("speed_integral", speed_integral, sim::between(0, 1), "weight of the sum of its errors");
+  in.read("climb_gain_per_s", climb_gain_per_s, sim::above_to(0, 10), "with fins: climb in m/s per m of depth error");
+  in.read("steerage_mps", steerage_mps, sim::above(0), "with fins: no slower at a station, which it passes over again and again");
   in.read_deg("pitch_max_deg", pitch_max_rad, sim::above_to(0, 80), "with fins: the steepest climb or dive");
 }
 
@@ -53,8 +55,14 @@ sim::Vector3d HelmLaw::stay_sideways(const CraftMotion& motion, const Eigen::Vec
 void HelmLaw::stay_ahead(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s, bool frozen,
                          Demand& demand) {
   const HoldGains& gains = gains_.position;
-  const double k = gains.bandwidth_radps / (2 * gains.damping);
+  // Its heading has to come first, so it is slower than a craft that moves to all sides.
+  const double k = 0.2 * gains.bandwidth_radps / gains.damping;
   const Eigen::Vector2d error = station - motion.X_WS.translation().head<2>();
+  if (craft_.fins) {
+    demand.heading_rad = std::atan2(error.y(), error.x());
+    demand.speed_mps = std::clamp(k * error.norm(), gains_.steerage_mps, std::max(gains_.steerage_mps, gains.rate_max));
+    return;
+  }
   const Eigen::Vector2d near = at_most(k * error, gains.rate_max);
   if (!frozen && (k * error).norm() <= gains.rate_max) drift_sum_mps_ += gains.integral * k * k * error * dt_s;
   const Eigen::Vector2d wanted = near + drift_sum_mps_;
@@ -66,19 +74,17 @@ void HelmLaw::stay_ahead(const CraftMotion& motion, const Eigen::Vector2d& stati
 
 /// The pitch (nose down is positive) at which a craft with fins comes to its height.
 double HelmLaw::pitch_for(const CraftMotion& motion, double height_m, double dt_s, bool frozen) {
-  const HoldGains& gains = gains_.depth;
-  const double k = gains.bandwidth_radps / (2 * gains.damping);
+  const double k = gains_.climb_gain_per_s;
   const double error = height_m - motion.X_WS.translation().z();
-  const double climb_mps = std::clamp(k * error, -gains.rate_max, gains.rate_max);
   const double speed = std::max(slowest_mps, motion.v_S.x());
-  const double nose_up = std::asin(std::clamp(climb_mps / speed, -1.0, 1.0)) + climb_sum_rad_;
+  const double nose_up = std::asin(std::clamp(k * error / speed, -1.0, 1.0)) + climb_sum_rad_;
   const double kept = std::clamp(nose_up, -gains_.pitch_max_rad, gains_.pitch_max_rad);
-  if (!frozen && kept == nose_up && climb_mps == k * error)
-    climb_sum_rad_ += gains.integral * k * k / speed * error * dt_s;
+  if (!frozen && kept == nose_up) climb_sum_rad_ += gains_.depth.integral * k * k / speed * error * dt_s;
   return -kept;
 }
 
-Demand HelmLaw::step(const CraftMotion& motion, const Setpoint& wanted, double dt_s, bool frozen) {
+Demand HelmLaw::step(const CraftMotion& motion, const Setpoint& wanted, double dt_s, const Limited& limited) {
+  const bool frozen = limited.thrusters, turn_frozen = craft_.fins ? limited.fins : limited.thrusters;
   Demand demand;
   demand.heading_rad = wanted.heading_rad;
   demand.speed_mps = wanted.station_m ? 0 : wanted.speed_mps;
@@ -94,13 +100,13 @@ Demand HelmLaw::step(const CraftMotion& motion, const Setpoint& wanted, double d
   }
   double pitch = 0;
   if (craft_.fins)
-    pitch = pitch_for(motion, wanted.height_m, dt_s, frozen);
+    pitch = pitch_for(motion, wanted.height_m, dt_s, turn_frozen);
   else if (craft_.heaves)
     a_W.z() = depth_.step(wanted.height_m - motion.X_WS.translation().z(), motion.v_WS_W.z(), dt_s, frozen);
   demand.heading_error_rad = sim::wrap_angle(demand.heading_rad - rpy.z());
-  turn_S.x() = roll_.step(-rpy.x(), motion.w_S.x(), dt_s, frozen);
-  turn_S.y() = pitch_.step(pitch - rpy.y(), motion.w_S.y(), dt_s, frozen);
-  turn_S.z() = heading_.step(demand.heading_error_rad, motion.w_S.z(), dt_s, frozen);
+  turn_S.x() = roll_.step(-rpy.x(), motion.w_S.x(), dt_s, turn_frozen);
+  turn_S.y() = pitch_.step(pitch - rpy.y(), motion.w_S.y(), dt_s, turn_frozen);
+  turn_S.z() = heading_.step(demand.heading_error_rad, motion.w_S.z(), dt_s, turn_frozen);
   a_S += motion.X_WS.linear().transpose() * a_W;
   demand.wrench.head<3>() = craft_.mass.head<3>().cwiseProduct(a_S);
   demand.wrench.tail<3>() = craft_.mass.tail<3>().cwiseProduct(turn_S);

@@ -32,12 +32,14 @@ struct Demand {
 };
 
 struct HelmGains {
-  HoldGains heading{0.6, 1, 0.4, 0.1};
-  HoldGains depth{0.4, 1, 0.4, 0.1};
+  HoldGains heading{1, 1, 0.3, 0.05};
+  HoldGains depth{1, 1, 0.4, 0.1};
   HoldGains attitude{1.2, 1, 0.5, 0.1};
-  HoldGains position{0.35, 1, 0.5, 0.15};
-  double speed_bandwidth_radps = 0.5;
-  double speed_integral = 0.25;
+  HoldGains position{1, 1, 0.5, 0.1};
+  double speed_bandwidth_radps = 1;
+  double speed_integral = 0.4;
+  double climb_gain_per_s = 0.2;
+  double steerage_mps = 0.8;
   double pitch_max_rad = sim::degrees_to_radians(25);
   void read(sim::ParamReader& in);
 };
@@ -50,13 +52,19 @@ struct CraftAbilities {
   bool heaves = false;           ///< and up and down
 };
 
+/// Which actuators were at their limits in the last step.
+struct Limited {
+  bool thrusters = false;
+  bool fins = false;
+  bool any() const { return thrusters || fins; }
+};
+
 /// From set values to forces and torques.
 class HelmLaw {
  public:
   HelmLaw(const HelmGains& gains, const CraftAbilities& craft);
 
-  /// `frozen`: in the last step an actuator was at its limit.
-  Demand step(const CraftMotion& motion, const Setpoint& wanted, double dt_s, bool frozen);
+  Demand step(const CraftMotion& motion, const Setpoint& wanted, double dt_s, const Limited& limited);
   /// Forgets the sums of errors.
   void reset();
   void hash_state(sim::StateHash& hash) const;
