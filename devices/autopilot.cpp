@@ -284,7 +284,8 @@ void take_waypoints(Autopilot& autopilot, std::span<const std::byte> payload) {
   if (command.n < 1) throw std::runtime_error("field 'n' must be at least 1, got " + std::to_string(command.n));
   check("speed_mps", command.speed_mps, 0, 100);
   for (std::size_t i = 0; i < command.x_m.size(); ++i) {
-    if (std::isnan(command.x_m[i]) || std::isnan(command.y_m[i])) throw std::runtime_error("a waypoint must have x_m and y_m");
+    if (std::isnan(command.x_m[i]) || std::isnan(command.y_m[i]))
+      throw std::runtime_error("a waypoint must have x_m and y_m");
     check("x_m", command.x_m[i], -far_m, far_m);
     check("y_m", command.y_m[i], -far_m, far_m);
     check("depth_m", command.depth_m[i], -far_m, far_m);

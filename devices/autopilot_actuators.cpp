@@ -24,7 +24,7 @@ constexpr double slowest_mps = 0.5;
 /// A device of the vehicle, which may come after the autopilot in the file: only its description is there yet.
 template <typename Params>
 std::pair<const sim::DeviceConfig*, const Params*> described(const sim::DeviceContext& context, const char* key,
-                                                            const std::string& name, const char* type) {
+                                                             const std::string& name, const char* type) {
   for (const sim::DeviceConfig& device : context.vehicle.config().devices) {
     if (device.name != name || device.type != type) continue;
     const auto& bodies = context.vehicle.config().bodies;
@@ -44,7 +44,8 @@ Wrench mass_of(const sim::DeviceContext& context) {
   const sim::Vector3d r = body.p_BC();
   Wrench mass;
   mass.head<3>().setConstant(body.mass_kg());
-  mass.tail<3>() = body.inertia_C_B().diagonal() + body.mass_kg() * (sim::Vector3d::Constant(r.squaredNorm()) - r.cwiseAbs2());
+  mass.tail<3>() =
+      body.inertia_C_B().diagonal() + body.mass_kg() * (sim::Vector3d::Constant(r.squaredNorm()) - r.cwiseAbs2());
   for (const sim::BodyConfig& config : context.vehicle.config().bodies)
     if (body.name() == context.vehicle.name() + "/" + config.name && config.hydrodynamics)
       mass += config.hydrodynamics->added_mass.diagonal();
@@ -75,7 +76,8 @@ void AutopilotActuators::add_thrusters(const AutopilotParams& params, const sim:
   if (places.empty()) return;
   std::vector<int> axes;
   for (const std::string& axis : params.axes)
-    axes.push_back(static_cast<int>(std::find(wrench_axes().begin(), wrench_axes().end(), axis) - wrench_axes().begin()));
+    axes.push_back(
+        static_cast<int>(std::find(wrench_axes().begin(), wrench_axes().end(), axis) - wrench_axes().begin()));
   if (axes.empty() && !params.fins.empty()) axes = {0};
   try {
     allocation_.emplace(places, axes);
@@ -117,8 +119,8 @@ Limited AutopilotActuators::share(const Wrench& wrench, const sim::Vector3d& v_B
   limited.thrusters = allocation_->allocate(wrench, forces_N_) < 1;
   for (std::size_t i = 0; i < propellers_.size(); ++i) {
     Propeller& propeller = propellers_[i];
-    propeller.device.command = propeller.curve.command_for_N(forces_N_[static_cast<Eigen::Index>(i)],
-                                                             propeller.axis_B.dot(v_B), density);
+    propeller.device.command =
+        propeller.curve.command_for_N(forces_N_[static_cast<Eigen::Index>(i)], propeller.axis_B.dot(v_B), density);
   }
   if (planes_.empty()) return limited;
   const double speed = std::max(slowest_mps, v_B.x());

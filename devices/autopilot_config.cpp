@@ -44,17 +44,18 @@ void AutopilotParams::read(sim::ParamReader& in) {
   in.read("altitude_range_m", altitude_range_m, sim::above(0), "the bottom is looked for so far below");
   if (in.describing()) return;
   const std::vector<std::string> words{"off", "hold", "waypoints", "station"};
-  if (first != "auto")
-    mode = static_cast<AutopilotMode>(std::find(words.begin(), words.end(), first) - words.begin());
+  if (first != "auto") mode = static_cast<AutopilotMode>(std::find(words.begin(), words.end(), first) - words.begin());
   if (thrusters.empty() && helm.empty()) in.error("'thrusters' or 'helm' must name what the autopilot drives");
-  if (!helm.empty() && !(thrusters.empty() && fins.empty())) in.error("helm", "'helm' stands in place of 'thrusters' and 'fins'");
+  if (!helm.empty() && !(thrusters.empty() && fins.empty()))
+    in.error("helm", "'helm' stands in place of 'thrusters' and 'fins'");
   if (!thruster_weights.empty() && thruster_weights.size() != thrusters.size())
     in.error("thruster_weights", "'thruster_weights' must have one number for each thruster");
   for (const std::string& axis : axes)
     if (std::find(wrench_axes().begin(), wrench_axes().end(), axis) == wrench_axes().end())
       in.error("axes", "'axes' must be of surge, sway, heave, roll, pitch, yaw; got '" + axis + "'");
   if (lawnmower && !waypoints.empty()) in.error("lawnmower", "give 'waypoints' or 'lawnmower', not both");
-  if (mode == AutopilotMode::waypoints && route().empty()) in.error("mode", "'mode' waypoints needs 'waypoints' or 'lawnmower'");
+  if (mode == AutopilotMode::waypoints && route().empty())
+    in.error("mode", "'mode' waypoints needs 'waypoints' or 'lawnmower'");
 }
 
 std::vector<Waypoint> AutopilotParams::route() const {

@@ -6,7 +6,8 @@
 namespace devices {
 
 void HoldGains::read(sim::ParamReader& in) {
-  in.read("bandwidth_radps", bandwidth_radps, sim::above_to(0, 100), "an error is gone after a few times 1 / bandwidth");
+  in.read("bandwidth_radps", bandwidth_radps, sim::above_to(0, 100),
+          "an error is gone after a few times 1 / bandwidth");
   in.read("damping", damping, sim::between(0.3, 10), "1: no overshoot");
   in.read("rate_max", rate_max, sim::above(0), "it changes no faster: m/s, or rad/s of an angle");
   in.read("integral", integral, sim::between(0, 0.5), "weight of the sum of errors, which takes away a steady one");

@@ -22,8 +22,8 @@ class AxisHold {
  public:
   explicit AxisHold(const HoldGains& gains) : gains_(gains) {}
 
-  /// The acceleration to ask for.  `error`: wanted less true; `rate`: x'.  `frozen`: the sum of errors stands still, for
-  /// the actuators gave less than was asked for.
+  /// The acceleration to ask for.  `error`: wanted less true; `rate`: x'.  `frozen`: the sum of errors stands still,
+  /// for the actuators gave less than was asked for.
   double step(double error, double rate, double dt_s, bool frozen);
   void reset() { sum_ = 0; }
   void hash_state(sim::StateHash& hash) const { hash.add(sum_); }

@@ -17,7 +17,8 @@ void read_point(sim::ParamReader& in, const char* key, Eigen::Vector2d& value, c
   value = {numbers[0], numbers[1]};
 }
 
-void check_one_height(sim::ParamReader& in, const std::optional<double>& depth_m, const std::optional<double>& altitude_m) {
+void check_one_height(sim::ParamReader& in, const std::optional<double>& depth_m,
+                      const std::optional<double>& altitude_m) {
   if (!in.describing() && depth_m && altitude_m) in.error("altitude_m", "give 'depth_m' or 'altitude_m', not both");
 }
 
@@ -33,7 +34,8 @@ void Waypoint::read(sim::ParamReader& in) {
 
 void Lawnmower::read(sim::ParamReader& in) {
   read_point(in, "corner_m", corner_m, "[east, north] where the first track begins");
-  in.read_deg("direction_deg", direction_rad, sim::between(-360, 360), "of the first track, counter-clockwise from east");
+  in.read_deg("direction_deg", direction_rad, sim::between(-360, 360),
+              "of the first track, counter-clockwise from east");
   in.read("length_m", length_m, sim::above_to(0, 1e6), "of a track");
   in.read("width_m", width_m, sim::between(-1e6, 1e6), "to the left of the first track; negative: to its right");
   in.read("spacing_m", spacing_m, sim::above_to(0, 1e6), "between tracks");
@@ -41,7 +43,8 @@ void Lawnmower::read(sim::ParamReader& in) {
   in.read("altitude_m", altitude_m, sim::above(0), "over the bottom, in place of a depth");
   in.read("speed_mps", speed_mps, sim::between(0, 100), "through the water; unset: as before");
   check_one_height(in, depth_m, altitude_m);
-  if (!in.describing() && std::abs(width_m) / spacing_m > 10000) in.error("spacing_m", "'spacing_m' makes over 10000 tracks");
+  if (!in.describing() && std::abs(width_m) / spacing_m > 10000)
+    in.error("spacing_m", "'spacing_m' makes over 10000 tracks");
 }
 
 std::vector<Waypoint> Lawnmower::waypoints() const {
@@ -61,7 +64,8 @@ std::vector<Waypoint> Lawnmower::waypoints() const {
 
 void GuidanceParams::read(sim::ParamReader& in) {
   in.read("lookahead_m", lookahead_m, sim::above(0), "it heads for the leg this far ahead; a few lengths of the craft");
-  in.read("integral", integral, sim::between(0, 10), "against drift: weight of the sum of cross-track errors");
+  in.read("integral", integral, sim::between(0, 10),
+          "against drift: weight of the sum of cross-track errors, m/s; a quarter of the speed");
   in.read("acceptance_radius_m", acceptance_radius_m, sim::above(0), "so near to a waypoint it is reached");
 }
 
@@ -102,7 +106,9 @@ Aim Route::aim(const Eigen::Vector2d& p_W, double dt_s) {
   aim.cross_track_m = (leg.x() * way.y() - leg.y() * way.x()) / length;
   const double lookahead = params_.lookahead_m, biased = aim.cross_track_m + params_.integral * sum_m_;
   aim.heading_rad = sim::wrap_angle(std::atan2(leg.y(), leg.x()) - std::atan(biased / lookahead));
-  sum_m_ += dt_s * lookahead * aim.cross_track_m / (lookahead * lookahead + biased * biased);
+  // In a turn the sum would only wind up.
+  if (std::abs(aim.cross_track_m) < lookahead / 2)
+    sum_m_ += dt_s * lookahead * aim.cross_track_m / (lookahead * lookahead + biased * biased);
   return aim;
 }
 

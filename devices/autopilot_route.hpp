@@ -34,7 +34,7 @@ struct Lawnmower {
 /// How a craft follows its route.
 struct GuidanceParams {
   double lookahead_m = 10;
-  double integral = 0.3;  ///< 0: none
+  double integral = 0.5;  ///< m/s; 0: none
   double acceptance_radius_m = 3;
   void read(sim::ParamReader& in);
 };
@@ -49,9 +49,9 @@ struct Aim {
 /// Follows the legs of a route by line of sight with an integral against drift (ILOS: Borhaug, Pavlov, Pettersen 2008;
 /// Fossen 2021, section 12.4):
 ///   heading = direction of the leg - atan((e + kappa s) / Delta),  s' = Delta e / (Delta^2 + (e + kappa s)^2),
-/// with e the cross-track error, Delta the lookahead, kappa the integral.  A waypoint is reached inside of its
-/// radius, or when the craft has passed the line through it across the leg: nobody turns back for a point that was
-/// missed.
+/// with e the cross-track error, Delta the lookahead, kappa the integral; s stands while |e| > Delta / 2.  A waypoint
+/// is reached inside of its radius, or when the craft has passed the line through it across the leg: nobody turns back
+/// for a point that was missed.
 class Route {
  public:
   explicit Route(const GuidanceParams& params) : params_(params) {}

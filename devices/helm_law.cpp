@@ -27,7 +27,8 @@ void HelmGains::read(sim::ParamReader& in) {
   in.read("speed_bandwidth_radps", speed_bandwidth_radps, sim::above_to(0, 100), "hold of the speed");
   in.read("speed_integral", speed_integral, sim::between(0, 1), "weight of the sum of its errors");
   in.read("climb_gain_per_s", climb_gain_per_s, sim::above_to(0, 10), "with fins: climb in m/s per m of depth error");
-  in.read("steerage_mps", steerage_mps, sim::above(0), "with fins: no slower at a station, which it passes over again and again");
+  in.read("steerage_mps", steerage_mps, sim::above(0),
+          "with fins: no slower at a station, which it passes over again and again");
   in.read_deg("pitch_max_deg", pitch_max_rad, sim::above_to(0, 80), "with fins: the steepest climb or dive");
 }
 

@@ -32,14 +32,14 @@ struct Demand {
 };
 
 struct HelmGains {
-  HoldGains heading{1, 1, 0.3, 0.05};
+  HoldGains heading{1.5, 1, 0.4, 0.05};
   HoldGains depth{1, 1, 0.4, 0.1};
   HoldGains attitude{1.2, 1, 0.5, 0.1};
   HoldGains position{1, 1, 0.5, 0.1};
   double speed_bandwidth_radps = 1;
   double speed_integral = 0.4;
-  double climb_gain_per_s = 0.2;
-  double steerage_mps = 0.8;
+  double climb_gain_per_s = 0.3;
+  double steerage_mps = 1.2;
   double pitch_max_rad = sim::degrees_to_radians(25);
   void read(sim::ParamReader& in);
 };

@@ -26,8 +26,8 @@ struct ThrusterPlace {
 /// (Fossen 2021, equation 11.35: f = W^-1 B^T (B W^-1 B^T)^-1 tau).
 class ThrustAllocation {
  public:
-  /// `axes`: numbers of the axes that count; empty: as many as the thrusters can give, looked at in the order surge, yaw,
-  /// heave, sway, roll, pitch.  Throws std::invalid_argument where the thrusters cannot give them all.
+  /// `axes`: numbers of the axes that count; empty: as many as the thrusters can give, looked at in the order surge,
+  /// yaw, heave, sway, roll, pitch.  Throws std::invalid_argument where the thrusters cannot give them all.
   ThrustAllocation(std::vector<ThrusterPlace> thrusters, const std::vector<int>& axes);
 
   /// Forces of the thrusters, N.  Where one would be over its limit all are scaled by one number, so that the direction

@@ -20,8 +20,9 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 /// One of the shipped vehicles at the origin, 10 m deep unless it floats.  `overrides`: lines of a map.
 std::string world_with(const std::string& file, const std::string& overrides, const std::string& medium = "{water: {}}",
                        double height_m = -10, const std::string& objects = "") {
-  return "shoal: 1\nphysics: {step_s: 0.01}\nmedium: " + medium + "\n" + objects + "vehicles:\n  - name: v\n    file: " +
-         file + "\n    position_m: [0, 0, " + std::to_string(height_m) + "]\n    overrides:\n" + overrides;
+  return "shoal: 1\nphysics: {step_s: 0.01}\nmedium: " + medium + "\n" + objects +
+         "vehicles:\n  - name: v\n    file: " + file + "\n    position_m: [0, 0, " + std::to_string(height_m) +
+         "]\n    overrides:\n" + overrides;
 }
 
 const std::string across = "{water: {}, current: [{type: constant, velocity_mps: [0, 0.3, 0]}]}";
@@ -89,10 +90,11 @@ TEST(Autopilot, ARovStaysAtItsStationInACurrent) {
 }
 
 TEST(Autopilot, ABoatWithTwoPropellersGoesRoundItsWaypoints) {
-  AutopilotWorld test(world_with("otter_autopilot.yaml",
-                                 "      devices.autopilot.waypoints: [{at_m: [30, 0], speed_mps: 1.5}, {at_m: [30, 30]}]\n"
-                                 "      devices.autopilot.at_end: stop\n",
-                                 "{water: {}}", 0));
+  AutopilotWorld test(
+      world_with("otter_autopilot.yaml",
+                 "      devices.autopilot.waypoints: [{at_m: [30, 0], speed_mps: 1.5}, {at_m: [30, 30]}]\n"
+                 "      devices.autopilot.at_end: stop\n",
+                 "{water: {}}", 0));
   const auto state = test.state_after(90);
   EXPECT_EQ(state.finished, 1);
   EXPECT_EQ(state.mode, 1);
