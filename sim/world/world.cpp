@@ -90,9 +90,10 @@ Vehicle& World::build_vehicle(const VehicleInstance& instance) {
 void World::build_parts_of(Vehicle& vehicle, const VehicleInstance& instance) {
   const VehicleConfig& config = *instance.config;
   for (const BodyConfig& body : config.bodies) {
-    Body& built = physics_->add_body(vehicle.group(), body, instance.X_WV);
+    Body& built = physics_->add_body(vehicle.group(), body, instance.X_WV,
+                                     body.kinematic ? Motion::kinematic : Motion::free);
     vehicle.add_body(body.name, built);
-    hydrodynamics_.add_body(built, body);
+    if (!body.kinematic) hydrodynamics_.add_body(built, body);
   }
   for (const JointConfig& joint : config.joints) {
     Body* second = joint.bodies[1] == "world" ? nullptr : &vehicle.body(joint.bodies[1]);
