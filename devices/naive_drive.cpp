@@ -24,10 +24,12 @@ void NaiveDrive::Params::read(sim::ParamReader& in) {
   in.read_deg("max_pitch_deg", max_pitch_rad, sim::between(0, 80), "steepest path down or up");
   in.read("heading_gain_per_s", heading_gain_per_s, sim::above_to(0, 100), "turn rate by error of the heading");
   in.read("depth_gain_per_s", depth_gain_per_s, sim::above_to(0, 100), "speed down by error of the depth");
-  in.read("rise_mps", rise_mps, sim::between(0, 100), "it rises so fast when nobody asks for a depth: positive buoyancy");
+  in.read("rise_mps", rise_mps, sim::between(0, 100),
+          "it rises so fast when nobody asks for a depth: positive buoyancy");
   in.read("surface", surface, "a surface craft: it stays on the water and takes no depth");
   in.read("drifts", drifts, "the water carries it along");
-  in.read("start_speed_mps", start_speed_mps, sim::between(-100, 100), "speed at the start, kept until a command comes");
+  in.read("start_speed_mps", start_speed_mps, sim::between(-100, 100),
+          "speed at the start, kept until a command comes");
 }
 
 NaiveDrive::NaiveDrive(const Params& params, const sim::DeviceContext& context)
@@ -57,7 +59,8 @@ void NaiveDrive::take_pose() {
 
 double NaiveDrive::wanted_turn(double speed_share) const {
   const double most = params_.max_turn_rate_radps * std::min(1.0, std::abs(speed_share));
-  if (std::isnan(heading_target_rad_)) return rudder_ * params_.max_turn_rate_radps * std::clamp(speed_share, -1.0, 1.0);
+  if (std::isnan(heading_target_rad_))
+    return rudder_ * params_.max_turn_rate_radps * std::clamp(speed_share, -1.0, 1.0);
   const double error = sim::wrap_angle(heading_target_rad_ - yaw_rad_);
   return std::clamp(params_.heading_gain_per_s * error, -most, most);
 }
@@ -76,7 +79,9 @@ void NaiveDrive::act(const sim::ActContext& context) {
   const double h = context.step_s;
   if (h != step_s_) {
     step_s_ = h;
-    const auto share = [h](double time_constant_s) { return time_constant_s > 0 ? 1 - std::exp(-h / time_constant_s) : 1; };
+    const auto share = [h](double time_constant_s) {
+      return time_constant_s > 0 ? 1 - std::exp(-h / time_constant_s) : 1;
+    };
     speed_share_ = share(params_.speed_time_constant_s);
     turn_share_ = share(params_.turn_time_constant_s);
   }

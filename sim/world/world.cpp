@@ -90,8 +90,8 @@ Vehicle& World::build_vehicle(const VehicleInstance& instance) {
 void World::build_parts_of(Vehicle& vehicle, const VehicleInstance& instance) {
   const VehicleConfig& config = *instance.config;
   for (const BodyConfig& body : config.bodies) {
-    Body& built = physics_->add_body(vehicle.group(), body, instance.X_WV,
-                                     body.kinematic ? Motion::kinematic : Motion::free);
+    Body& built =
+        physics_->add_body(vehicle.group(), body, instance.X_WV, body.kinematic ? Motion::kinematic : Motion::free);
     vehicle.add_body(body.name, built);
     if (!body.kinematic) hydrodynamics_.add_body(built, body);
   }

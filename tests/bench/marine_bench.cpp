@@ -71,12 +71,12 @@ BENCHMARK(Coefficients)
 
 void Naive(benchmark::State& state) {
   const bool parts = state.range(1) != 0;
-  run(state, world_text(static_cast<int>(state.range(0)),
-                        std::string("        - name: hull\n          kinematic: true\n          parts: [") +
-                            (parts ? "{shape: capsule, radius_m: 0.095, length_m: 1.4, rpy_deg: [0, 90, 0]}" : "") +
-                            "]\n",
-                        std::string("        - {name: drive, type: naive_drive, start_speed_mps: 1.5}\n") +
-                            (state.range(2) != 0 ? sensors : "")));
+  run(state,
+      world_text(static_cast<int>(state.range(0)),
+                 std::string("        - name: hull\n          kinematic: true\n          parts: [") +
+                     (parts ? "{shape: capsule, radius_m: 0.095, length_m: 1.4, rpy_deg: [0, 90, 0]}" : "") + "]\n",
+                 std::string("        - {name: drive, type: naive_drive, start_speed_mps: 1.5}\n") +
+                     (state.range(2) != 0 ? sensors : "")));
 }
 BENCHMARK(Naive)
     ->ArgNames({"vehicles", "parts", "sensors"})
