@@ -242,9 +242,29 @@ void WavesConfig::read(ParamReader& in) {
   take_sea_state(*this);
 }
 
+namespace {
+
+/// `current:` with one entry may leave out the list around it.
+void read_current(ParamReader& in, std::vector<CurrentConfig>& current) {
+  const auto read_from = [&current](ParamReader& from) {
+    from.read_list("current", current, "current", "how the water flows; the entries add up");
+  };
+  const ConfigNode* node = in.has("current") ? in.child("current") : nullptr;
+  if (node == nullptr || node->kind != ConfigNode::Kind::map) return read_from(in);
+  ConfigNode list;
+  list.kind = ConfigNode::Kind::list;
+  list.items = {*node};
+  list.place = node->place;
+  const ConfigNode wrapped = map_node("current", list);
+  ParamReader of_one(wrapped, in.who(), in.diagnostics());
+  read_from(of_one);
+}
+
+}  // namespace
+
 void MediumConfig::read(ParamReader& in) {
   in.read("water", water, "the sea, a lake or a tank; absent: the world is dry");
-  in.read_list("current", current, "current", "how the water flows; the entries add up");
+  read_current(in, current);
   in.read_list("tides", tides, "tide", "surface and current that go up and down; the entries add up");
   in.read("waves", waves, "absent: the surface is flat");
   in.read("wind", wind, "absent: still air");
