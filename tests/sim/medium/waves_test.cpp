@@ -272,6 +272,7 @@ TEST(IrregularWaves, SeedChoosesTheSea) {
   EXPECT_NE(make_medium(yaml, 4).surface_m(1, 2), make_medium(yaml, 5).surface_m(1, 2));
   EXPECT_EQ(test_support::read_medium(yaml).waves->hs_m, 0.88);
   EXPECT_EQ(test_support::read_medium(yaml).waves->tp_s, 7.5);
+  EXPECT_EQ(make_medium("{water: {surface_m: 2}, waves: {sea_state: 0}}").surface_m(1, 2), 2);
 }
 
 TEST(Waves, ThatWouldBreakAreRefused) {
