@@ -109,6 +109,28 @@ TEST(Autopilot, ABoatStaysOverAPlaceByHeadingIntoTheCurrent) {
   EXPECT_NEAR(state.heading_rad, -sim::degrees_to_radians(90), 0.1);
 }
 
+TEST(Autopilot, ANaiveAuvFollowsItsWaypointsByItsHelm) {
+  AutopilotWorld test(R"(
+shoal: 1
+physics: {step_s: 0.01}
+medium: {water: {}, current: [{type: constant, velocity_mps: [0, 0.3, 0]}]}
+vehicles:
+  - name: v
+    position_m: [0, 0, -5]
+    model:
+      shoal: 1
+      vehicle: naive
+      bodies: [{name: hull, kinematic: true, parts: [{shape: sphere, radius_m: 0.1}]}]
+      devices:
+        - {name: drive, type: naive_drive}
+        - {name: autopilot, type: autopilot, helm: drive, waypoints: [{at_m: [1000, 0], depth_m: 8, speed_mps: 1.5}]}
+)");
+  const auto state = test.state_after(200);
+  EXPECT_NEAR(state.cross_track_m, 0, 0.1);
+  EXPECT_NEAR(test.place().z(), -8, 0.05);
+  EXPECT_NEAR(state.heading_rad, -std::asin(0.2), 0.02);
+}
+
 TEST(Autopilot, TakesSetpointsAndLeavesWhatIsNaN) {
   AutopilotWorld test(world_with("remus100_survey.yaml",
                                  "      devices.autopilot.hold: {speed_mps: 1, heading_deg: 0, depth_m: 10}\n"));
