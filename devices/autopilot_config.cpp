@@ -45,6 +45,11 @@ void AutopilotParams::read(sim::ParamReader& in) {
   if (in.describing()) return;
   const std::vector<std::string> words{"off", "hold", "waypoints", "station"};
   if (first != "auto") mode = static_cast<AutopilotMode>(std::find(words.begin(), words.end(), first) - words.begin());
+  check(in);
+}
+
+/// What depends on two keys.
+void AutopilotParams::check(sim::ParamReader& in) const {
   if (thrusters.empty() && helm.empty()) in.error("'thrusters' or 'helm' must name what the autopilot drives");
   if (!helm.empty() && !(thrusters.empty() && fins.empty()))
     in.error("helm", "'helm' stands in place of 'thrusters' and 'fins'");

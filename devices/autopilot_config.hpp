@@ -52,6 +52,9 @@ struct AutopilotParams {
   /// The waypoints, or those of the lawnmower.
   std::vector<Waypoint> route() const;
   AutopilotMode first_mode() const;
+
+ private:
+  void check(sim::ParamReader& in) const;
 };
 
 }  // namespace devices
