@@ -45,7 +45,12 @@ class WaterMount {
   sim::Vector3d origin_velocity_D(const WaterFlow& flow) const {
     return R_BD_.transpose() * (flow.R_WB.transpose() * (body_.v_WB_W() - flow.water_W));
   }
+  /// Of the origin of D through a fluid that has a velocity of its own, in D, m/s.
+  sim::Vector3d velocity_D(const WaterFlow& flow, const sim::Vector3d& fluid_W) const {
+    return R_BD_.transpose() * (flow.R_WB.transpose() * (body_.velocity_at_W(p_BD_) - fluid_W));
+  }
   /// At the origin of D.
+  void add_force_W(const WaterFlow& flow, const sim::Vector3d& force_N) { body_.add_force_W(force_N, flow.p_WD); }
   void add_force_D(const WaterFlow& flow, const sim::Vector3d& force_N) {
     body_.add_force_W(flow.R_WB * (R_BD_ * force_N), flow.p_WD);
   }
