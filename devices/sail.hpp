@@ -18,6 +18,7 @@ class Sail final : public sim::Actuator {
   static constexpr const char* meaning =
       "Sail in the apparent wind; commanded by the angle in rad that its sheet allows.";
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::hold};
+  static constexpr const char* fixed_keys[] = {"initial_deg"};
   struct Params {
     double area_m2 = 1;
     FoilParams foil{.aspect_ratio = 4,
