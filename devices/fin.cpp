@@ -81,7 +81,7 @@ void Fin::lift_locally(const WaterFlow& flow, double angle_rad, double scale) {
 }
 
 void Fin::lift_by_speed_of_body(const WaterFlow& flow, double angle_rad, double scale) {
-  const sim::Vector3d v_D = mount_.origin_velocity_D(flow);
+  const sim::Vector3d v_D = mount_.in_D(flow, flow.body.v_WB_W - flow.water_W);
   const double square = v_D.x() * v_D.x() + v_D.y() * v_D.y();
   const double lift = 0.5 * params_.density_kgpm3.value_or(flow.density_kgpm3) * square * params_.area_m2 *
                       foil_.slope() * angle_rad * scale;
@@ -89,12 +89,14 @@ void Fin::lift_by_speed_of_body(const WaterFlow& flow, double angle_rad, double 
 }
 
 void Fin::act_as_published(const WaterFlow& flow, double angle_rad, double scale) {
-  const sim::Body& body = mount_.body();
-  const double u = flow.R_WB.col(0).dot(body.v_WB_W() - flow.water_W);
+  const sim::BodyMotion& body = flow.body;
+  const double u = body.R_WB.col(0).dot(body.v_WB_W - flow.water_W);
   const double factor = u * u * angle_rad * scale;
-  const sim::Vector3d force_W = flow.R_WB * (factor * params_.coefficients->force);
-  mount_.body().add_force_W(force_W, body.X_WB().translation());
-  mount_.body().add_torque_W(flow.R_WB * (factor * params_.coefficients->moment));
+  if (factor == 0) return;
+  const sim::Vector3d force_B = factor * params_.coefficients->force;
+  const sim::Vector3d moment_B = factor * params_.coefficients->moment;
+  mount_.body().add_force_W(body.R_WB * force_B, body.p_WB);
+  mount_.body().add_torque_W(body.R_WB * moment_B);
 }
 
 void Fin::hash_state(sim::StateHash& hash) const {

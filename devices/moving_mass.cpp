@@ -53,7 +53,8 @@ void MovingMass::act(const sim::ActContext& context) {
   const double h = context.effectiveness * context.step_s;
   const double place = h > 0 ? lag_.follow(wanted_, h) : lag_.value();
   if (place == 0) return;
-  const sim::Vector3d offset_W = body_.X_WB().linear() * (R_BD_ * offset_D(place));
+  const sim::Vector3d offset_B = R_BD_ * offset_D(place);
+  const sim::Vector3d offset_W = body_.motion().R_WB * offset_B;
   const double weight_N = params_.mass_kg * world_.physics().gravity_mps2();
   body_.add_torque_W(offset_W.cross(sim::Vector3d(0, 0, -weight_N)));
 }
