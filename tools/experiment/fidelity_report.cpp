@@ -95,8 +95,8 @@ std::string section_of(const FidelityResult& result) {
   text += fmt::format("![{0}](fidelity/{0}.png)\n\n", result.of.name);
   const FidelityState &a = result.theirs.back(), &b = result.ours.back();
   text += "| at the end | reference | ours | difference |\n|---|---:|---:|---:|\n";
-  static const char* names[] = {"north (m)",   "east (m)",   "depth (m)",     "roll (deg)", "pitch (deg)",
-                                "yaw (deg)",   "surge (m/s)", "sway (m/s)",   "heave (m/s)"};
+  static const char* names[] = {"north (m)", "east (m)",    "depth (m)",  "roll (deg)", "pitch (deg)",
+                                "yaw (deg)", "surge (m/s)", "sway (m/s)", "heave (m/s)"};
   for (std::size_t k = 0; k < std::size(names); ++k) {
     const double unit = k >= 3 && k < 6 ? deg : 1;
     const double difference = k == 5 ? std::remainder(b[k] - a[k], 2 * M_PI) : b[k] - a[k];
@@ -127,17 +127,19 @@ std::string fidelity_table(const std::vector<FidelityResult>& results) {
   return text;
 }
 
-void write_fidelity_report(const std::string& folder, const std::vector<FidelityResult>& results) {
+void write_fidelity_report(const std::string& folder, const std::string& text,
+                           const std::vector<FidelityResult>& results, bool csv) {
   const std::filesystem::path pictures = std::filesystem::path(folder) / "fidelity";
   std::filesystem::create_directories(pictures);
-  std::string page = "# Fidelity\n\nWritten by `shoal fidelity --results`.\n\n" + fidelity_table(results) + "\n";
+  std::string page =
+      "# Fidelity\n\nWritten by `shoal fidelity`.\n\n" + text + "\n## The table\n\n" + fidelity_table(results) + "\n";
   std::string group;
   for (const FidelityResult& result : results) {
     if (result.of.group != group) page += "## " + result.of.title + "\n\n";
     group = result.of.group;
     page += section_of(result);
     plot(pictures / (result.of.name + ".png"), result);
-    write(pictures / (result.of.name + ".csv"), states_header() + rows_of(result, result.ours, ',', false));
+    if (csv) write(pictures / (result.of.name + ".csv"), states_header() + rows_of(result, result.ours, ',', false));
   }
   write(std::filesystem::path(folder) / "fidelity.md", page);
 }
