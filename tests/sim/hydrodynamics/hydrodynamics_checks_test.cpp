@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sim/hydrodynamics/coefficient_model.hpp"
+#include "sim/world/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/sim/hydrodynamics/marine_worlds.hpp"
 
@@ -101,6 +103,21 @@ TEST(HydrodynamicsChecks, QuadraticDragThatOvershootsInAStepIsSeen) {
   EXPECT_FALSE(model.too_fast_for_step(nu, 0.01));
   nu[0] = -21;
   EXPECT_TRUE(model.too_fast_for_step(nu, 0.01));
+}
+
+TEST(HydrodynamicsChecks, ARunEndsWithTheReasonWhenDragOvershoots) {
+  test::TestWorld test(test::marine_world("{mass_kg: 10, inertia_kgm2: [1, 1, 1], derivatives: {X_uu: -100}}",
+                                          "{water: {}}", "", "0.01"));
+  sim::Body& body = test.world.vehicles()[0]->body("hull");
+  body.set_velocity_W({19, 0, 0}, sim::Vector3d::Zero());
+  EXPECT_NO_THROW(test.world.step());
+  body.set_velocity_W({21, 0, 0}, sim::Vector3d::Zero());
+  try {
+    test.world.step();
+    ADD_FAILURE() << "no fault";
+  } catch (const sim::PhysicsFault& fault) {
+    EXPECT_STREQ(fault.what(), "body 'auv/hull': its drag at 21 m/s and 0 rad/s is too stiff for 'step_s' 0.01");
+  }
 }
 
 }  // namespace
