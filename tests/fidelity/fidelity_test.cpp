@@ -8,6 +8,7 @@
 
 #include "sim/config/diagnostics.hpp"
 #include "tests/scratch_folder.hpp"
+#include "tools/experiment/fidelity_report.hpp"
 
 namespace {
 
@@ -110,6 +111,22 @@ TEST_F(FidelityFiles, ATrajectoryOfOnesOwnIsComparedWithItsStart) {
   // 2 N up on 11.5 kg and 14.57 kg of added mass, for 0.1 s.
   EXPECT_NEAR(result.ours.back()[2] - 3, -2 / 26.07 * 0.01 / 2, 0.1 * 2 / 26.07 * 0.01 / 2);
   EXPECT_THAT(result.missed, testing::ElementsAre(testing::StartsWith("position_max_m ")));
+}
+
+TEST_F(FidelityFiles, TheReportHasTheTableThePicturesAndOurStates) {
+  write("c.csv", header + "0,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n0.1,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n");
+  const tools::FidelityFile file = tools::read_fidelity_file(cases("    title: Mine\n"));
+  tools::write_fidelity_report(folder_.file("report"), "A word before.\n",
+                               {tools::run_fidelity_case(file.cases.front())}, true);
+  const auto read = [&](const std::string& name) {
+    std::ifstream in(folder_.file("report/" + name), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  EXPECT_THAT(read("fidelity.md"),
+              testing::AllOf(testing::HasSubstr("A word before."), testing::HasSubstr("## Mine"),
+                             testing::HasSubstr("![c](fidelity/c.png)"), testing::HasSubstr("| north (m) | 1.0000 |")));
+  EXPECT_THAT(read("fidelity/c.png"), testing::StartsWith("\x89PNG"));
+  EXPECT_THAT(read("fidelity/c.csv"), testing::StartsWith("t,x,y,z,phi,theta,psi,u,v,w,p,q,r\n0,1,2,3,0,0,0.5,"));
 }
 
 TEST_F(FidelityFiles, MistakesInThemAreNamed) {
