@@ -1,11 +1,14 @@
 #include "sim/hydrodynamics/hydrodynamics.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/hydrodynamics/hydrodynamics_checks.hpp"
+#include "sim/physics/physics_world.hpp"
 
 namespace sim {
 
@@ -14,6 +17,15 @@ namespace {
 /// Takes forward-left-up to forward-right-down and back.
 Vector3d flipped(const Vector3d& v) {
   return {v.x(), -v.y(), -v.z()};
+}
+
+/// Throws PhysicsFault when the drag would throw the body about, and more so with every step.
+void check_speed(const Body& body, const CoefficientModel& model, const CraftState& state, double step_s) {
+  Vector6d nu_r = state.nu;
+  nu_r.head<3>() -= state.v_water;
+  if (model.too_fast_for_step(nu_r, step_s) && model.immersed(state) > 0) [[unlikely]]
+    throw PhysicsFault("body '" + body.name() + "': its drag at " + number_text(nu_r.head<3>().norm()) + " m/s and " +
+                       number_text(nu_r.tail<3>().norm()) + " rad/s is too stiff for 'step_s' " + number_text(step_s));
 }
 
 }  // namespace
@@ -42,13 +54,12 @@ void Hydrodynamics::add_body(Body& body, const BodyConfig& config) {
 
 void Hydrodynamics::check_step(const CoefficientModel& model, const HydrodynamicsConfig& config,
                                const std::string& who) const {
-  // An explicit step follows a decay of rate d only while h d < 2.
-  const Matrix6d rates = model.mass().inverse() * config.linear_damping;
-  const double fastest = rates.eigenvalues().cwiseAbs().maxCoeff();
-  if (fastest * step_s_ > 2)
+  const CoefficientModel::StepLimit limit = model.longest_step();
+  if (limit.step_s < step_s_)
     throw_config_error(config.place, who,
-                       "'linear_damping' is too stiff for 'step_s' " + number_text(step_s_) +
-                           ": it needs a step below " + number_text(2 / fastest) + " s");
+                       std::string("the ") + limit.why + " are too stiff for 'step_s' " + number_text(step_s_) +
+                           ": they need a step below " + number_text(limit.step_s) + " s");
+  for (const std::string& doubt : doubts_about(config, who)) spdlog::warn("{}", doubt);
 }
 
 void Hydrodynamics::remove_group(int group) {
@@ -107,6 +118,7 @@ void Hydrodynamics::step() {
     Body& body = *craft.body;
     const CoefficientModel& model = *craft.model;
     const CraftState state = state_of(craft);
+    check_speed(body, model, state, step_s_);
     const Matrix3d R_WB = body.X_WB().linear();
     const Vector3d force = flipped(R_WB.transpose() * body.applied_force_W());
     Vector6d tau;
