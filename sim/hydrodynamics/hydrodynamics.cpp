@@ -19,25 +19,34 @@ Vector3d flipped(const Vector3d& v) {
 }  // namespace
 
 Hydrodynamics::Hydrodynamics(const Medium& medium, double gravity_mps2, double step_s)
-    : medium_(medium), gravity_mps2_(gravity_mps2), step_s_(step_s) {}
+    : medium_(medium), gravity_mps2_(gravity_mps2), step_s_(step_s), floaters_(medium, step_s) {}
 
 void Hydrodynamics::add_body(Body& body, const BodyConfig& config) {
-  if (!medium_.has_water() || !config.hydrodynamics || config.hydrodynamics->model == "none") return;
-  std::weak_ptr<const CoefficientModel>& known = models_[&*config.hydrodynamics];
+  if (!medium_.has_water()) return;
+  if (config.hydrodynamics) {
+    if (config.hydrodynamics->model == "none") return;
+    add_craft(body, *config.hydrodynamics);
+  } else if (!floaters_.add(body, config, gravity_mps2_, warnings_)) {
+    return;
+  }
+  immersed_.push_back(&body);
+  if (water_.size() <= static_cast<std::size_t>(body.number()))
+    water_.resize(static_cast<std::size_t>(body.number()) + 1);
+  water_[static_cast<std::size_t>(body.number())] = medium_.water_at(body.X_WB().translation());
+}
+
+void Hydrodynamics::add_craft(Body& body, const HydrodynamicsConfig& config) {
+  std::weak_ptr<const CoefficientModel>& known = models_[&config];
   std::shared_ptr<const CoefficientModel> model = known.lock();
   if (!model) {
-    model = std::make_shared<CoefficientModel>(*config.hydrodynamics, gravity_mps2_);
-    check_step(*model, *config.hydrodynamics, "body '" + body.name() + "'");
+    model = std::make_shared<CoefficientModel>(config, gravity_mps2_);
+    check_step(*model, config, "body '" + body.name() + "'");
     known = model;
   }
   // Weight and gyroscopic torque are part of the model.
   body.set_gravity(false);
   body.set_gyroscopic(false);
   crafts_.push_back({&body, std::move(model)});
-  immersed_.push_back(&body);
-  if (water_.size() <= static_cast<std::size_t>(body.number()))
-    water_.resize(static_cast<std::size_t>(body.number()) + 1);
-  water_[static_cast<std::size_t>(body.number())] = medium_.water_at(body.X_WB().translation());
 }
 
 void Hydrodynamics::check_step(const CoefficientModel& model, const HydrodynamicsConfig& config,
@@ -53,6 +62,7 @@ void Hydrodynamics::check_step(const CoefficientModel& model, const Hydrodynamic
 
 void Hydrodynamics::remove_group(int group) {
   std::erase_if(crafts_, [&](const CoefficientBody& craft) { return craft.body->group() == group; });
+  floaters_.remove_group(group);
   std::erase_if(immersed_, [&](const Body* body) { return body->group() == group; });
 }
 
@@ -102,7 +112,12 @@ CraftState Hydrodynamics::state_of(const CoefficientBody& craft) const {
   return state;
 }
 
-void Hydrodynamics::step() {
+void Hydrodynamics::step(double gravity_mps2) {
+  step_crafts();
+  floaters_.step(gravity_mps2, water_);
+}
+
+void Hydrodynamics::step_crafts() {
   for (const CoefficientBody& craft : crafts_) {
     Body& body = *craft.body;
     const CoefficientModel& model = *craft.model;

@@ -29,6 +29,7 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
   add_objects();
   for (const VehicleInstance& instance : config.vehicles) build_vehicle(instance);
   for (const std::string& warning : physics_->ground_warnings()) spdlog::warn("{}", warning);
+  for (const std::string& warning : hydrodynamics_.take_warnings()) spdlog::warn("{}", warning);
   sort_devices();
   script_ = std::make_unique<Script>(*this);
 }
@@ -133,7 +134,7 @@ void World::step() {
   for (MountedDevice* device : listening_) device->take_mail(now(), step_number_);
   hydrodynamics_.begin_step();
   for (MountedDevice* device : acting_) device->act(now(), step_s_);
-  hydrodynamics_.step();
+  hydrodynamics_.step(physics_->gravity_mps2());
   script_->step();
   physics_->step(step_number_);
   ++step_number_;
