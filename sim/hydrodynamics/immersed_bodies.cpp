@@ -33,6 +33,7 @@ struct ImmersedBodies::Wrench {
   double linear_rate_kgps = 0;  ///< bound of d(drag force) / d(velocity)
   double angular_rate_Nms = 0;  ///< bound of d(drag torque) / d(rate)
   double added_kg = 0;          ///< added mass
+  double solver_mass_kg = 0;    ///< of add_stiffness(), upwards
   Vector3d added_moment_kgm = Vector3d::Zero();
   Matrix3d added_inertia_kgm2 = Matrix3d::Zero();
   bool wet = false;
@@ -49,7 +50,7 @@ bool ImmersedBodies::add(Body& body, const BodyConfig& config, double gravity_mp
   added.body = &body;
   added.pieces = pieces_of(body, config, std::numeric_limits<double>::infinity(), warnings);
   if (added.pieces.empty()) return false;
-  steady(added, gravity_mps2, warnings);
+  find_stiffness(added, gravity_mps2, warnings);
   if (medium_.has_waves()) {
     std::vector<std::string> known;
     added.pieces = pieces_of(body, config, section_m, known);
@@ -75,35 +76,35 @@ std::vector<ImmersedPiece> ImmersedBodies::pieces_of(const Body& body, const Bod
   return pieces;
 }
 
-/// A body that is light for the water line it can have swings faster than the step can follow: semi-implicit Euler
-/// does up to h w = 2.  Mass that only the solver sees slows it down to half of that; floating at rest is as it was.
-void ImmersedBodies::steady(ImmersedBody& body, double gravity_mps2, std::vector<std::string>& warnings) const {
+/// A body that is light for its water line can have swings faster than the step can follow: semi-implicit Euler does up
+/// to h w = 2.  From sqrt(2) on these springs are followed by backward Euler, which is stable for any, and brakes.
+void ImmersedBodies::find_stiffness(ImmersedBody& body, double gravity_mps2, std::vector<std::string>& warnings) const {
   const LocalWater water = medium_.water_at(body.body->X_WB().translation());
-  double stiffness = 0;
-  Vector3d turning = Vector3d::Zero();
+  const double pressure = water.density_kgpm3 * std::abs(gravity_mps2);  // per metre
+  double heave_Npm = 0;
+  Vector3d turn_Nmprad = Vector3d::Zero();
   for (const ImmersedPiece& piece : body.pieces) {
-    // The extents in the axes of the body, and the largest water plane across each of them.
+    // The largest water planes that the extents in the axes of the body allow.
     const Vector3d size = piece.R_BP.cwiseAbs() * piece.size_m;
-    const double spring = water.density_kgpm3 * std::abs(gravity_mps2);
-    stiffness += spring * size.prod() / size.minCoeff();
-    const Vector3d from_C = piece.p_BP - body.body->p_BC();
+    heave_Npm += pressure * size.prod() / size.minCoeff();
+    const Vector3d p_CP = piece.p_BP - body.body->p_BC();
     for (int i = 0; i < 3; ++i)
       for (const int j : {(i + 1) % 3, (i + 2) % 3})
-        turning[i] =
-            std::max(turning[i], spring * size[i] * size[j] * (size[j] * size[j] / 12 + from_C[j] * from_C[j]));
+        turn_Nmprad[i] =
+            std::max(turn_Nmprad[i], pressure * size[i] * size[j] * (size[j] * size[j] / 12 + p_CP[j] * p_CP[j]));
   }
-  const double h2 = step_s_ * step_s_, mass = body.body->mass_kg();
-  double fastest = stiffness / mass;
-  body.steadying_mass_kg = std::max(0.0, h2 * stiffness / 2 - mass);
+  const double most = 2 / (step_s_ * step_s_);
+  double fastest = heave_Npm / body.body->mass_kg();
+  if (fastest > most) body.stiff_Npm = heave_Npm;
   for (int i = 0; i < 3; ++i) {
-    const double inertia = body.body->inertia_C_B()(i, i);
-    fastest = std::max(fastest, turning[i] / inertia);
-    body.steadying_inertia_kgm2[i] = std::max(0.0, h2 * turning[i] / 2 - inertia);
+    const double square = turn_Nmprad[i] / body.body->inertia_C_B()(i, i);
+    if (square > most) body.stiff_Nmprad[i] = turn_Nmprad[i];
+    fastest = std::max(fastest, square);
   }
-  body.steadied = h2 * fastest > 2;
-  if (!body.steadied) return;
+  body.stiff = fastest > most;
+  if (!body.stiff) return;
   warnings.push_back("body '" + body.body->name() + "': it is so light that it swings in the water faster than " +
-                     "'step_s' " + number_text(step_s_) + " can follow; it is slowed down to that: a step below " +
+                     "'step_s' " + number_text(step_s_) + " can follow, and is braked; a step below " +
                      number_text(std::floor(std::sqrt(2 / fastest) * 1e4) / 1e4) + " s would follow it");
 }
 
@@ -140,29 +141,44 @@ void ImmersedBodies::step_body(const ImmersedBody& body, double gravity_mps2, co
   sum.force_N += drag_share * sum.drag_N;
   sum.torque_Nm += drag_share * sum.drag_torque_Nm;
 
-  const bool steadied = sum.afloat && body.steadied;
-  if (!body.added_mass && !steadied) {
+  const bool stiff = body.stiff && sum.afloat;
+  if (!body.added_mass && !stiff) {
     body.body->add_force_W(sum.force_N, sum.p_WC);
     body.body->add_torque_W(sum.torque_Nm);
     return;
   }
-  // ODE knows rigid mass only: solve with the added mass, and hand over the force that gives this acceleration.
-  const Matrix3d I_W = sum.R_WB * body.body->inertia_C_B() * sum.R_WB.transpose();
-  const double steadying_kg = steadied ? body.steadying_mass_kg : 0;
-  const Vector3d steadying_kgm2 = steadied ? body.steadying_inertia_kgm2 : Vector3d::Zero();
-  const Vector3d gyroscopic = sum.w_W.cross(I_W * sum.w_W);  // ODE's side adds its own
-  const Vector3d weight(0, 0, -mass * gravity_mps2);         // so does ODE
+  if (stiff) add_stiffness(body, at_origin, sum);
+  apply_with_added_mass(*body.body, gravity_mps2, sum);
+}
+
+/// Backward Euler: the force of the spring at the end of the step, for heave and for turning about level axes.
+void ImmersedBodies::add_stiffness(const ImmersedBody& body, const LocalWater& water, Wrench& sum) const {
+  const double h = step_s_;
+  Matrix3d turning = sum.R_WB * body.stiff_Nmprad.asDiagonal() * sum.R_WB.transpose();
+  turning.row(2).setZero();
+  turning.col(2).setZero();
+  sum.force_N.z() -= h * body.stiff_Npm * (sum.v_WC_W.z() - water.velocity_W.z());
+  sum.torque_Nm -= h * turning * sum.w_W;
+  sum.solver_mass_kg = h * h * body.stiff_Npm;
+  sum.added_inertia_kgm2 += h * h * turning;
+}
+
+/// ODE knows rigid mass only: solves with the added mass, and hands over the force that gives this acceleration.
+void ImmersedBodies::apply_with_added_mass(Body& body, double gravity_mps2, const Wrench& sum) {
+  const Matrix3d I_W = sum.R_WB * body.inertia_C_B() * sum.R_WB.transpose();
+  const Vector3d weight(0, 0, -body.mass_kg() * gravity_mps2);  // ODE adds it, and this torque too
+  const Vector3d gyroscopic = sum.w_W.cross(I_W * sum.w_W);
   Eigen::Matrix<double, 6, 6> M;
   const Matrix3d S = cross_matrix(sum.added_moment_kgm);
-  M.topLeftCorner<3, 3>() = (mass + sum.added_kg + steadying_kg) * Matrix3d::Identity();
+  M.topLeftCorner<3, 3>() = (body.mass_kg() + sum.added_kg) * Matrix3d::Identity();
+  M(2, 2) += sum.solver_mass_kg;
   M.topRightCorner<3, 3>() = -S;
   M.bottomLeftCorner<3, 3>() = S;
-  M.bottomRightCorner<3, 3>() =
-      I_W + sum.added_inertia_kgm2 + sum.R_WB * steadying_kgm2.asDiagonal() * sum.R_WB.transpose();
+  M.bottomRightCorner<3, 3>() = I_W + sum.added_inertia_kgm2;
   Eigen::Matrix<double, 6, 1> f;
-  f << body.body->applied_force_W() + sum.force_N + weight, body.body->applied_torque_W() + sum.torque_Nm - gyroscopic;
+  f << body.applied_force_W() + sum.force_N + weight, body.applied_torque_W() + sum.torque_Nm - gyroscopic;
   const Eigen::Matrix<double, 6, 1> a = M.llt().solve(f);
-  body.body->set_applied_W(mass * a.head<3>() - weight, I_W * a.tail<3>() + gyroscopic);
+  body.set_applied_W(body.mass_kg() * a.head<3>() - weight, I_W * a.tail<3>() + gyroscopic);
 }
 
 WaterPlane ImmersedBodies::surface_at(const ImmersedPiece& piece, const Vector3d& p_WP, const LocalWater& water) const {
@@ -199,7 +215,11 @@ void ImmersedBodies::add_piece(const ImmersedPiece& piece, double gravity_mps2, 
   sum.force_N += lift;
   sum.torque_Nm += at_CP_W.cross(lift);
   const double share = immersed.volume_m3 / piece.whole.volume_m3;
-  sum.add_drag(piece, share, water.density_kgpm3, water.velocity_W, at_CP_W, R_WP);
+  // The pressure on a round side goes through its axis, however deep it lies.
+  Vector3d pressed_P = immersed.centroid_m;
+  if (piece.shape == ImmersedPiece::Shape::round) pressed_P.x() = pressed_P.y() = 0;
+  if (piece.shape == ImmersedPiece::Shape::sphere) pressed_P.setZero();
+  sum.add_drag(piece, share, water.density_kgpm3, water.velocity_W, p_WP + R_WP * pressed_P - sum.p_WC, R_WP);
   if (piece.added_mass_coefficient > 0)
     sum.add_added_mass(piece.added_mass_coefficient * displaced_kg, at_CP_W, water.acceleration_W);
 }

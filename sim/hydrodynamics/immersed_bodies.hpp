@@ -29,19 +29,22 @@ class ImmersedBodies {
     double radius_m = 0;  ///< about the origin of the body: no part is farther away
     double smallest_inertia_kgm2 = 0;
     bool added_mass = false;
-    bool steadied = false;  ///< see steady()
-    double steadying_mass_kg = 0;
-    Vector3d steadying_inertia_kgm2 = Vector3d::Zero();
+    // Springs of its water line that are too stiff for the step, see find_stiffness(); 0: none.
+    bool stiff = false;
+    double stiff_Npm = 0;
+    Vector3d stiff_Nmprad = Vector3d::Zero();  ///< about the axes of the body
     std::vector<ImmersedPiece> pieces;
   };
   struct Wrench;
 
   std::vector<ImmersedPiece> pieces_of(const Body& body, const BodyConfig& config, double longest_m,
                                        std::vector<std::string>& warnings);
-  void steady(ImmersedBody& body, double gravity_mps2, std::vector<std::string>& warnings) const;
+  void find_stiffness(ImmersedBody& body, double gravity_mps2, std::vector<std::string>& warnings) const;
   void step_body(const ImmersedBody& body, double gravity_mps2, const LocalWater& at_origin) const;
   void add_piece(const ImmersedPiece& piece, double gravity_mps2, const LocalWater& at_origin, Wrench& sum) const;
   WaterPlane surface_at(const ImmersedPiece& piece, const Vector3d& p_WP, const LocalWater& water) const;
+  void add_stiffness(const ImmersedBody& body, const LocalWater& water, Wrench& sum) const;
+  static void apply_with_added_mass(Body& body, double gravity_mps2, const Wrench& sum);
   void add_wind(const ImmersedBody& body, Wrench& sum) const;
 
   const Medium& medium_;
