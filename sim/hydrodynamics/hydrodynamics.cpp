@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
@@ -23,13 +24,15 @@ Hydrodynamics::Hydrodynamics(const Medium& medium, double gravity_mps2, double s
 
 void Hydrodynamics::add_body(Body& body, const BodyConfig& config) {
   if (!medium_.has_water()) return;
+  double radius_m = std::numeric_limits<double>::infinity();
   if (config.hydrodynamics) {
     if (config.hydrodynamics->model == "none") return;
     add_craft(body, *config.hydrodynamics);
-  } else if (!floaters_.add(body, config, gravity_mps2_, warnings_)) {
-    return;
+  } else {
+    radius_m = floaters_.add(body, config, gravity_mps2_, warnings_);
+    if (radius_m == 0) return;
   }
-  immersed_.push_back(&body);
+  wetted_.push_back({&body, radius_m});
   if (water_.size() <= static_cast<std::size_t>(body.number()))
     water_.resize(static_cast<std::size_t>(body.number()) + 1);
   water_[static_cast<std::size_t>(body.number())] = medium_.water_at(body.X_WB().translation());
@@ -63,12 +66,25 @@ void Hydrodynamics::check_step(const CoefficientModel& model, const Hydrodynamic
 void Hydrodynamics::remove_group(int group) {
   std::erase_if(crafts_, [&](const CoefficientBody& craft) { return craft.body->group() == group; });
   floaters_.remove_group(group);
-  std::erase_if(immersed_, [&](const Body* body) { return body->group() == group; });
+  std::erase_if(wetted_, [&](const Wetted& wetted) { return wetted.body->group() == group; });
 }
 
 void Hydrodynamics::begin_step() {
-  for (const Body* body : immersed_)
-    water_[static_cast<std::size_t>(body->number())] = medium_.water_at(body->X_WB().translation());
+  const double highest_m = medium_.highest_surface_m();
+  for (Wetted& wetted : wetted_) {
+    const Vector3d p_WB = wetted.body->X_WB().translation();
+    LocalWater& water = water_[static_cast<std::size_t>(wetted.body->number())];
+    if (p_WB.z() - wetted.radius_m > highest_m) {
+      water.surface_m = highest_m;
+      continue;
+    }
+    water = medium_.water_at(p_WB);
+    if (wetted.left_the_current || medium_.current_known(p_WB)) continue;
+    wetted.left_the_current = true;
+    if (complain_)
+      complain_("body '" + wetted.body->name() + "'",
+                "has left the file of the current at " + number_text(p_WB.x()) + ", " + number_text(p_WB.y()));
+  }
 }
 
 const LocalWater& Hydrodynamics::water_at(const Body& body) const {

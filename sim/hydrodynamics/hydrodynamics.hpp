@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -30,6 +31,9 @@ class Hydrodynamics {
   const LocalWater& water_at(const Body& body) const;
   /// Adds what the water does to the forces that actuators have put on the bodies in this step.
   void step(double gravity_mps2);
+  /// Whom to tell, in a step, what goes wrong: who and what.
+  using Complain = std::function<void(const std::string& who, const std::string& text)>;
+  void set_complain(Complain complain) { complain_ = std::move(complain); }
   /// What was found about bodies since the last call; each is one line.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
@@ -37,6 +41,11 @@ class Hydrodynamics {
   struct CoefficientBody {
     Body* body;
     std::shared_ptr<const CoefficientModel> model;
+  };
+  struct Wetted {
+    Body* body;
+    double radius_m;                // about its origin: higher over the highest crest the water does not concern it
+    bool left_the_current = false;  // was said
   };
   void add_craft(Body& body, const HydrodynamicsConfig& config);
   void step_crafts();
@@ -49,8 +58,9 @@ class Hydrodynamics {
   std::vector<CoefficientBody> crafts_;  // in the order in which they came
   ImmersedBodies floaters_;              // bodies without coefficients
   std::vector<LocalWater> water_;        // by body number
-  std::vector<Body*> immersed_;          // bodies whose water begin_step() looks at
+  std::vector<Wetted> wetted_;           // bodies whose water begin_step() looks at
   std::vector<std::string> warnings_;
+  Complain complain_;
   // Vehicles that are alike share a model.
   std::map<const HydrodynamicsConfig*, std::weak_ptr<const CoefficientModel>> models_;
 };

@@ -44,12 +44,12 @@ struct ImmersedBodies::Wrench {
   void add_added_mass(double mass_kg, const Vector3d& at_CP_W, const Vector3d& a_fluid_W);
 };
 
-bool ImmersedBodies::add(Body& body, const BodyConfig& config, double gravity_mps2,
-                         std::vector<std::string>& warnings) {
+double ImmersedBodies::add(Body& body, const BodyConfig& config, double gravity_mps2,
+                           std::vector<std::string>& warnings) {
   ImmersedBody added;
   added.body = &body;
   added.pieces = pieces_of(body, config, std::numeric_limits<double>::infinity(), warnings);
-  if (added.pieces.empty()) return false;
+  if (added.pieces.empty()) return 0;
   find_stiffness(added, gravity_mps2, warnings);
   if (medium_.has_waves()) {
     std::vector<std::string> known;
@@ -61,7 +61,7 @@ bool ImmersedBodies::add(Body& body, const BodyConfig& config, double gravity_mp
   }
   added.smallest_inertia_kgm2 = body.inertia_C_B().diagonal().minCoeff();
   bodies_.push_back(std::move(added));
-  return true;
+  return bodies_.back().radius_m;
 }
 
 std::vector<ImmersedPiece> ImmersedBodies::pieces_of(const Body& body, const BodyConfig& config, double longest_m,
@@ -121,8 +121,7 @@ void ImmersedBodies::step(double gravity_mps2, std::span<const LocalWater> water
 
 void ImmersedBodies::step_body(const ImmersedBody& body, double gravity_mps2, const LocalWater& at_origin) const {
   const Pose X_WB = body.body->X_WB();
-  // Waves may stand higher over another part of the body: then each part looks for itself.
-  if (!medium_.has_waves() && X_WB.translation().z() - body.radius_m > at_origin.surface_m) return;
+  if (X_WB.translation().z() - body.radius_m > medium_.highest_surface_m()) return;
   Wrench sum;
   sum.R_WB = X_WB.linear();
   sum.p_WB = X_WB.translation();

@@ -15,9 +15,9 @@ class ImmersedBodies {
  public:
   ImmersedBodies(const Medium& medium, double step_s) : medium_(medium), step_s_(step_s) {}
 
-  /// Does nothing and returns false for a body of which no part displaces water.  Appends what is to be said about it
-  /// to `warnings`.  Throws ConfigError (meshes).
-  bool add(Body& body, const BodyConfig& config, double gravity_mps2, std::vector<std::string>& warnings);
+  /// How far from the origin of the body water can touch it, m; 0 for one of which no part displaces water, which is
+  /// left out.  Appends what is to be said about it to `warnings`.  Throws ConfigError (meshes).
+  double add(Body& body, const BodyConfig& config, double gravity_mps2, std::vector<std::string>& warnings);
   void remove_group(int group);
   /// Adds to the forces on each body.  `water`: at the origin of each body, by body number.
   void step(double gravity_mps2, std::span<const LocalWater> water);
