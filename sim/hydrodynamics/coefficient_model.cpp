@@ -1,5 +1,6 @@
 #include "sim/hydrodynamics/coefficient_model.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -110,14 +111,15 @@ Vector6d CoefficientModel::acceleration(const CraftState& state, const Vector6d&
   const Vector3d f = m * w.cross(v_r + w.cross(r_g));
   total.head<3>() -= f;
   total.tail<3>() -= w.cross(config_.inertia_kgm2 * w) + r_g.cross(f);
-  // Added mass: Kirchhoff's equations.
+  // Added mass: Kirchhoff's equations.  It goes as the craft leaves the water.
+  const double share = immersed(state);
   const Matrix6d& A = config_.added_mass;
   Vector3d a, b;
   if (added_mass_is_diagonal_) {
-    a = A.diagonal().head<3>().cwiseProduct(v_r);
-    b = A.diagonal().tail<3>().cwiseProduct(w);
+    a = share * A.diagonal().head<3>().cwiseProduct(v_r);
+    b = share * A.diagonal().tail<3>().cwiseProduct(w);
   } else {
-    const Vector6d momentum = A * nu_r;
+    const Vector6d momentum = share * (A * nu_r);
     a = momentum.head<3>();
     b = momentum.tail<3>();
   }
@@ -134,12 +136,16 @@ Vector6d CoefficientModel::acceleration(const CraftState& state, const Vector6d&
     // Water that accelerates carries along what it would have filled (Froude-Krylov) and the added mass.
     Vector6d accelerated = Vector6d::Zero();
     accelerated.head<3>() = state.a_water;
-    total += immersed(state) * (config_.added_mass * accelerated);
-    const Vector3d displaced = weight_N_ / gravity_mps2_ * immersed(state) * state.a_water;
+    total += share * (config_.added_mass * accelerated);
+    const Vector3d displaced = weight_N_ / gravity_mps2_ * share * state.a_water;
     total.head<3>() += displaced;
     total.tail<3>() += config_.center_of_buoyancy_m.cross(displaced);
   }
-  Vector6d nu_dot = mass_inverse_ * total;
+  Vector6d nu_dot;
+  if (share == 1)
+    nu_dot = mass_inverse_ * total;
+  else
+    nu_dot = (mass_ - (1 - share) * A).llt().solve(total);
   nu_dot.head<3>() += v_c_dot;
   return nu_dot;
 }

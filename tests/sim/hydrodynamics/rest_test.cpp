@@ -79,6 +79,24 @@ std::vector<Body*> all_bodies(TestWorld& test) {
   return bodies;
 }
 
+TEST(Surface, ACraftOverTheWaterFallsLikeAStoneAndComesToRestInIt) {
+  std::string world = still_world(0.01) + crafts;
+  for (const auto& [from, to] :
+       {std::pair{"[0, 0, -5]", "[0, 0, 20]"}, {"[0, 5, -5]", "[0, 5, 20]"}, {"[0, 10, 0]", "[0, 10, 20]"}})
+    world.replace(world.find(from), std::string(from).size(), to);
+  TestWorld test(world);
+  test.run_for(1);
+  for (const auto& vehicle : test.world.vehicles())
+    EXPECT_NEAR(vehicle->body("hull").X_WB().translation().z(), 20 - 9.80665 / 2 * 1.01, 1e-6) << vehicle->name();
+  test.run_for(300);
+  for (const auto& vehicle : test.world.vehicles()) {
+    const Body& body = vehicle->body("hull");
+    EXPECT_LT(body.v_WB_W().norm(), 0.02) << vehicle->name();
+    EXPECT_LT(body.X_WB().translation().z(), 0.1) << vehicle->name();
+    EXPECT_GT(body.X_WB().linear()(2, 2), 0.99) << vehicle->name();
+  }
+}
+
 class StillWater : public testing::TestWithParam<double> {};
 
 // An hour; with steps of 1 ms ten minutes and with 5 ms half an hour, to save time: a drift of rounding errors grows
