@@ -227,17 +227,23 @@ void CoefficientModel::add_restoring(const CraftState& state, Vector6d& tau) con
     const double roll = std::atan2(state.down.y(), state.down.z()) - state.surface_roll_rad;
     const double pitch = std::asin(std::clamp(-state.down.x(), -1.0, 1.0)) - state.surface_pitch_rad;
     const double weight = config_.mass_kg * gravity_mps2_;
-    // Out of the water nothing but its weight pulls it down.
+    // The springs hold while it floats.  Out of the water nothing but its weight pulls it down.
+    const double share = immersed(state);
     const double heave = std::max(state.depth_m, -weight / plane.heave_Npm);
-    tau[2] -= plane.heave_Npm * heave + plane.heave_pitch_N * pitch;
-    tau[3] -= plane.roll_Nmprad * roll;
-    tau[4] -= plane.pitch_Nmprad * pitch + plane.heave_pitch_N * heave;
+    tau[2] -= share * (plane.heave_Npm * heave + plane.heave_pitch_N * pitch);
+    tau[3] -= share * (plane.roll_Nmprad * roll);
+    tau[4] -= share * (plane.pitch_Nmprad * pitch + plane.heave_pitch_N * heave);
     if (plane.load_kg > 0) {
-      const Vector3d load = plane.load_kg * gravity_mps2_ * state.down;
+      const Vector3d load = share * plane.load_kg * gravity_mps2_ * state.down;
       const Vector3d moment = plane.load_at_m.cross(load);
       tau[2] += load.z();
       tau[3] += moment.x();
       tau[4] += moment.y();
+    }
+    if (share < 1) {
+      const Vector3d falling = (1 - share) * weight * state.down;
+      tau.head<3>() += falling;
+      tau.tail<3>() += config_.center_of_mass_m.cross(falling);
     }
     return;
   }

@@ -239,10 +239,10 @@ Mesh cut(const Mesh& mesh, int axis, double at_m, double side) {
     kept.vertices_m.push_back(p);
     return static_cast<std::uint32_t>(kept.vertices_m.size() - 1);
   };
-  // Each edge along the cut makes a triangle with this point; those that are outside the solid cancel each other.
-  Vector3d middle = Vector3d::Zero();
-  middle[axis] = at_m;
-  const std::uint32_t hub = add_vertex(middle);
+  // Each edge along the cut makes a triangle with a point of the cut; those outside the solid cancel each other.
+  const std::uint32_t hub = 0;
+  bool has_hub = false;
+  kept.vertices_m.emplace_back(Vector3d::Zero());
   for (const auto& t : mesh.triangles) {
     std::array<std::uint32_t, 4> wet{};
     std::array<bool, 4> on_cut{};
@@ -254,6 +254,8 @@ Mesh cut(const Mesh& mesh, int axis, double at_m, double side) {
       if ((inside > 0) == (next > 0)) continue;
       Vector3d crossing = p + inside / (inside - next) * (q - p);
       crossing[axis] = at_m;
+      if (!has_hub) kept.vertices_m[hub] = crossing;
+      has_hub = true;
       on_cut[count] = true;
       wet[count++] = add_vertex(crossing);
     }
@@ -263,6 +265,7 @@ Mesh cut(const Mesh& mesh, int axis, double at_m, double side) {
       if (on_cut[i] && on_cut[next]) kept.triangles.push_back({hub, wet[next], wet[i]});
     }
   }
+  if (!has_hub && kept.vertices_m.size() > 1) kept.vertices_m[hub] = kept.vertices_m[1];  // nothing was cut
   return kept;
 }
 

@@ -36,7 +36,7 @@ std::vector<std::string> bottom_warnings(const World& world) {
     if (++more == 0) first = vehicle->name();
   }
   if (more < 0) return {};
-  const std::string others = more == 0 ? "" : " (nor below " + std::to_string(more) + " other vehicles)";
+  const std::string others = more == 0 ? "" : " (nor below " + std::to_string(more) + " more)";
   return {"there is no bottom below vehicle '" + first + "'" + others + ": what looks down from there sees nothing"};
 }
 
