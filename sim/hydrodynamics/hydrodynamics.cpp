@@ -1,12 +1,14 @@
 #include "sim/hydrodynamics/hydrodynamics.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/hydrodynamics/hydrodynamics_checks.hpp"
 
 namespace sim {
 
@@ -54,13 +56,12 @@ void Hydrodynamics::add_craft(Body& body, const HydrodynamicsConfig& config) {
 
 void Hydrodynamics::check_step(const CoefficientModel& model, const HydrodynamicsConfig& config,
                                const std::string& who) const {
-  // An explicit step follows a decay of rate d only while h d < 2.
-  const Matrix6d rates = model.mass().inverse() * config.linear_damping;
-  const double fastest = rates.eigenvalues().cwiseAbs().maxCoeff();
-  if (fastest * step_s_ > 2)
+  const CoefficientModel::StepLimit limit = model.longest_step();
+  if (limit.step_s < step_s_)
     throw_config_error(config.place, who,
-                       "'linear_damping' is too stiff for 'step_s' " + number_text(step_s_) +
-                           ": it needs a step below " + number_text(2 / fastest) + " s");
+                       std::string("the ") + limit.why + " are too stiff for 'step_s' " + number_text(step_s_) +
+                           ": they need a step below " + number_text(limit.step_s) + " s");
+  for (const std::string& doubt : doubts_about(config, who)) spdlog::warn("{}", doubt);
 }
 
 void Hydrodynamics::remove_group(int group) {
