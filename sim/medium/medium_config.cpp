@@ -208,13 +208,12 @@ void check_keys_of_waves(ParamReader& in, WavesConfig::Type type) {
 }
 
 /// Sets height and period of a sea state: the middle of the range of heights and the most probable period in the open
-/// North Atlantic (Lee and Bales 1984, as in STANAG 4194; sea state 1 has no period there: that of 2).
+/// North Atlantic (Lee and Bales 1984, as in STANAG 4194; sea states 0 and 1 have no period there: that of 2).
 void take_sea_state(WavesConfig& waves) {
-  constexpr double hs_m[] = {0.05, 0.3, 0.88, 1.88, 3.25, 5, 7.5, 11.5};
-  constexpr double tp_s[] = {7.5, 7.5, 7.5, 8.8, 9.7, 12.4, 15, 16.4};
-  if (waves.sea_state < 1 || waves.sea_state > 8) return;
-  waves.hs_m = hs_m[waves.sea_state - 1];
-  waves.tp_s = tp_s[waves.sea_state - 1];
+  constexpr double hs_m[] = {0, 0.05, 0.3, 0.88, 1.88, 3.25, 5, 7.5, 11.5};
+  constexpr double tp_s[] = {7.5, 7.5, 7.5, 7.5, 8.8, 9.7, 12.4, 15, 16.4};
+  waves.hs_m = hs_m[waves.sea_state];
+  waves.tp_s = tp_s[waves.sea_state];
 }
 
 }  // namespace
@@ -231,7 +230,8 @@ void WavesConfig::read(ParamReader& in) {
   in.read("hs_m", hs_m, between(0, 40), "significant wave height");
   in.read("tp_s", tp_s, between(0.2, 60), "peak period");
   in.read("gamma", gamma, between(1, 10), "jonswap: how sharp the peak is; 1: as pierson_moskowitz");
-  in.read("sea_state", sea_state, between(1, 8), "instead of 'hs_m' and 'tp_s': of the open North Atlantic");
+  in.read("sea_state", sea_state, between(0, 8),
+          "instead of 'hs_m' and 'tp_s': those of the open North Atlantic; 0: calm");
   in.read("components", components, between(1, max_components), "waves that the sea is made of");
   in.read("cutoff", cutoff, between(1.5, 50), "highest frequency by that of the peak");
   in.read("spreading", spreading, between(0.5, 1000), "s of cos^2s of half the angle; absent: all go one way");
@@ -239,12 +239,32 @@ void WavesConfig::read(ParamReader& in) {
   in.read("water_depth_m", water_depth_m, above_to(0.01, 12000), "of the bottom, for the waves; absent: deep");
   if (in.describing()) return;
   check_keys_of_waves(in, type);
-  take_sea_state(*this);
+  if (in.has("sea_state")) take_sea_state(*this);
 }
+
+namespace {
+
+/// `current:` with one entry may leave out the list around it.
+void read_current(ParamReader& in, std::vector<CurrentConfig>& current) {
+  const auto read_from = [&current](ParamReader& from) {
+    from.read_list("current", current, "current", "how the water flows; the entries add up");
+  };
+  const ConfigNode* node = in.has("current") ? in.child("current") : nullptr;
+  if (node == nullptr || node->kind != ConfigNode::Kind::map) return read_from(in);
+  ConfigNode list;
+  list.kind = ConfigNode::Kind::list;
+  list.items = {*node};
+  list.place = node->place;
+  const ConfigNode wrapped = map_node("current", list);
+  ParamReader of_one(wrapped, in.who(), in.diagnostics());
+  read_from(of_one);
+}
+
+}  // namespace
 
 void MediumConfig::read(ParamReader& in) {
   in.read("water", water, "the sea, a lake or a tank; absent: the world is dry");
-  in.read_list("current", current, "current", "how the water flows; the entries add up");
+  read_current(in, current);
   in.read_list("tides", tides, "tide", "surface and current that go up and down; the entries add up");
   in.read("waves", waves, "absent: the surface is flat");
   in.read("wind", wind, "absent: still air");

@@ -125,7 +125,7 @@ struct WavesConfig {
   double hs_m = 1;                  ///< irregular: significant wave height, 4 standard deviations of the elevation
   double tp_s = 6;                  ///< irregular: peak period
   double gamma = 3.3;               ///< jonswap: peak enhancement
-  std::int64_t sea_state = 0;       ///< irregular: 1 to 8 sets hs_m and tp_s; 0: those are used
+  std::int64_t sea_state = 0;       ///< irregular: 0 to 8 sets hs_m and tp_s when it is given
   int components = 200;             ///< irregular
   double cutoff = 10;               ///< irregular: highest frequency by the peak frequency
   std::optional<double> spreading;  ///< irregular: s of cos^2s(half angle); unset: all go one way
