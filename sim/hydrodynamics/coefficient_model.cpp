@@ -1,5 +1,6 @@
 #include "sim/hydrodynamics/coefficient_model.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
@@ -167,14 +168,15 @@ Vector6d CoefficientModel::acceleration(const CraftState& state, const Vector6d&
   const Vector3d f = m * w.cross(v_r + w.cross(r_g));
   total.head<3>() -= f;
   total.tail<3>() -= w.cross(config_.inertia_kgm2 * w) + r_g.cross(f);
-  // Added mass: Kirchhoff's equations.
+  // Added mass: Kirchhoff's equations.  It goes as the craft leaves the water.
+  const double share = immersed(state);
   const Matrix6d& A = config_.added_mass;
   Vector3d a, b;
   if (added_mass_is_diagonal_) {
-    a = A.diagonal().head<3>().cwiseProduct(v_r);
-    b = A.diagonal().tail<3>().cwiseProduct(w);
+    a = share * A.diagonal().head<3>().cwiseProduct(v_r);
+    b = share * A.diagonal().tail<3>().cwiseProduct(w);
   } else {
-    const Vector6d momentum = A * nu_r;
+    const Vector6d momentum = share * (A * nu_r);
     a = momentum.head<3>();
     b = momentum.tail<3>();
   }
@@ -191,12 +193,16 @@ Vector6d CoefficientModel::acceleration(const CraftState& state, const Vector6d&
     // Water that accelerates carries along what it would have filled (Froude-Krylov) and the added mass.
     Vector6d accelerated = Vector6d::Zero();
     accelerated.head<3>() = state.a_water;
-    total += immersed(state) * (config_.added_mass * accelerated);
-    const Vector3d displaced = weight_N_ / gravity_mps2_ * immersed(state) * state.a_water;
+    total += share * (config_.added_mass * accelerated);
+    const Vector3d displaced = weight_N_ / gravity_mps2_ * share * state.a_water;
     total.head<3>() += displaced;
     total.tail<3>() += config_.center_of_buoyancy_m.cross(displaced);
   }
-  Vector6d nu_dot = mass_inverse_ * total;
+  Vector6d nu_dot;
+  if (share == 1)
+    nu_dot = mass_inverse_ * total;
+  else
+    nu_dot = (mass_ - (1 - share) * A).llt().solve(total);
   nu_dot.head<3>() += v_c_dot;
   return nu_dot;
 }
@@ -278,17 +284,23 @@ void CoefficientModel::add_restoring(const CraftState& state, Vector6d& tau) con
     const double roll = std::atan2(state.down.y(), state.down.z()) - state.surface_roll_rad;
     const double pitch = std::asin(std::clamp(-state.down.x(), -1.0, 1.0)) - state.surface_pitch_rad;
     const double weight = config_.mass_kg * gravity_mps2_;
-    // Out of the water nothing but its weight pulls it down.
+    // The springs hold while it floats.  Out of the water nothing but its weight pulls it down.
+    const double share = immersed(state);
     const double heave = std::max(state.depth_m, -weight / plane.heave_Npm);
-    tau[2] -= plane.heave_Npm * heave + plane.heave_pitch_N * pitch;
-    tau[3] -= plane.roll_Nmprad * roll;
-    tau[4] -= plane.pitch_Nmprad * pitch + plane.heave_pitch_N * heave;
+    tau[2] -= share * (plane.heave_Npm * heave + plane.heave_pitch_N * pitch);
+    tau[3] -= share * (plane.roll_Nmprad * roll);
+    tau[4] -= share * (plane.pitch_Nmprad * pitch + plane.heave_pitch_N * heave);
     if (plane.load_kg > 0) {
-      const Vector3d load = plane.load_kg * gravity_mps2_ * state.down;
+      const Vector3d load = share * plane.load_kg * gravity_mps2_ * state.down;
       const Vector3d moment = plane.load_at_m.cross(load);
       tau[2] += load.z();
       tau[3] += moment.x();
       tau[4] += moment.y();
+    }
+    if (share < 1) {
+      const Vector3d falling = (1 - share) * weight * state.down;
+      tau.head<3>() += falling;
+      tau.tail<3>() += config_.center_of_mass_m.cross(falling);
     }
     return;
   }
