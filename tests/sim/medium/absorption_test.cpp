@@ -6,8 +6,8 @@ namespace {
 
 TEST(Absorption, ThorpHasTheValuesOfTheReference) {
   // closed_forms.csv, absorption_thorp: 0.1 %.
-  const double expected[][2] = {{1, 0.06900409047}, {5, 0.3823108974}, {10, 1.187029939},  {15, 2.463405615},
-                                {25, 6.104805101},  {30, 8.280377913}, {50, 17.46712268},  {100, 34.06866276}};
+  const double expected[][2] = {{1, 0.06900409047}, {5, 0.3823108974}, {10, 1.187029939}, {15, 2.463405615},
+                                {25, 6.104805101},  {30, 8.280377913}, {50, 17.46712268}, {100, 34.06866276}};
   for (const auto& [frequency_kHz, dBpkm] : expected)
     EXPECT_NEAR(sim::thorp_dBpkm(frequency_kHz), dBpkm, 1e-3 * dBpkm) << frequency_kHz;
 }
