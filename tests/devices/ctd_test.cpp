@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "shoal/ctd_t.hpp"
-#include "tests/devices/marine_fixture.hpp"
+#include "tests/devices/immersed_sensor_fixture.hpp"
 
 namespace {
 

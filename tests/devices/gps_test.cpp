@@ -1,5 +1,5 @@
 #include "shoal/gps_data_t.hpp"
-#include "tests/devices/marine_fixture.hpp"
+#include "tests/devices/immersed_sensor_fixture.hpp"
 
 namespace {
 

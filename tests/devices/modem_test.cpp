@@ -1,6 +1,6 @@
 #include "shoal/modem_received_t.hpp"
 #include "shoal/modem_send_t.hpp"
-#include "tests/devices/marine_fixture.hpp"
+#include "tests/devices/immersed_sensor_fixture.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "shoal/side_scan_t.hpp"
 #include "shoal/sonar_range_t.hpp"
 #include "sim/medium/absorption.hpp"
-#include "tests/devices/marine_fixture.hpp"
+#include "tests/devices/immersed_sensor_fixture.hpp"
 
 namespace {
 

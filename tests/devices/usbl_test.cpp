@@ -2,7 +2,7 @@
 
 #include "shoal/transponder_t.hpp"
 #include "shoal/usbl_t.hpp"
-#include "tests/devices/marine_fixture.hpp"
+#include "tests/devices/immersed_sensor_fixture.hpp"
 
 namespace {
 
