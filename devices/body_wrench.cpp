@@ -30,14 +30,15 @@ void BodyWrench::set_wrench(const sim::Vector3d& force_N, const sim::Vector3d& t
 }
 
 void BodyWrench::act(const sim::ActContext& context) {
-  const double left = params_.lag_s > 0 ? std::exp(-context.step_s / params_.lag_s) : 0;
+  const double left = params_.lag_s > 0 ? std::exp(-context.step_s / params_.lag_s) : 0;  // of the way
   force_N_ = wanted_force_N_ + left * (force_N_ - wanted_force_N_);
   torque_Nm_ = wanted_torque_Nm_ + left * (torque_Nm_ - wanted_torque_Nm_);
   if (context.effectiveness == 0 || (force_N_.isZero(0) && torque_Nm_.isZero(0))) return;
-  const sim::Pose X_WB = body_.X_WB();
-  const sim::Matrix3d R_WD = X_WB.linear() * R_BD_;
-  body_.add_force_W(context.effectiveness * (R_WD * force_N_), X_WB * p_BD_);
-  body_.add_torque_W(context.effectiveness * (R_WD * torque_Nm_));
+  const sim::BodyMotion body = body_.motion();
+  const sim::Vector3d force_B = R_BD_ * (context.effectiveness * force_N_).eval();
+  const sim::Vector3d torque_B = R_BD_ * (context.effectiveness * torque_Nm_).eval();
+  body_.add_force_W(body.R_WB * force_B, body.p_WB + body.R_WB * p_BD_);
+  if (!torque_B.isZero(0)) body_.add_torque_W(body.R_WB * torque_B);
 }
 
 void BodyWrench::hash_state(sim::StateHash& hash) const {

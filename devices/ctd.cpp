@@ -40,8 +40,7 @@ void Ctd::measure(const sim::SenseContext& context) {
   reading_.pressure_Pa = medium.pressure_Pa(p_WS);
   reading_.valid = medium.in_water(p_WS);
   if (!reading_.valid) return;
-  reading_.conductivity_Spm =
-      sim::conductivity_Spm(medium.salinity_psu(p_WS), reading_.temperature_C, pressure_dbar());
+  reading_.conductivity_Spm = sim::conductivity_Spm(medium.salinity_psu(p_WS), reading_.temperature_C, pressure_dbar());
   reading_.sound_speed_mps = medium.sound_speed_mps(p_WS);
 }
 

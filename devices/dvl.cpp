@@ -215,7 +215,8 @@ void Dvl::hash_state(sim::StateHash& hash) const {
   }
   if (reading_.velocity_S) hash.add(*reading_.velocity_S);
   if (reading_.water_velocity_S) hash.add(*reading_.water_velocity_S);
-  for (const sim::Noise* noise : {&beam_noise_, &water_beam_noise_, &velocity_noise_, &water_velocity_noise_, &range_noise_})
+  for (const sim::Noise* noise :
+       {&beam_noise_, &water_beam_noise_, &velocity_noise_, &water_velocity_noise_, &range_noise_})
     noise->hash_state(hash);
 }
 

@@ -20,7 +20,8 @@ constexpr std::size_t dvl_beams = 4;
 /// What the beams hit counts as standing still.
 class Dvl final : public sim::Sensor {
  public:
-  static constexpr const char* meaning = "Doppler velocity log: velocity over the bottom and through the water, altitude.";
+  static constexpr const char* meaning =
+      "Doppler velocity log: velocity over the bottom and through the water, altitude.";
   static constexpr double default_rate_hz = 5;
   static constexpr bool casts_rays = true;
   struct Params {
@@ -73,9 +74,9 @@ class Dvl final : public sim::Sensor {
   const sim::NoiseFault& beam_fault_;
   sim::RayFilter filter_;
   sim::Noise beam_noise_, water_beam_noise_, velocity_noise_, water_velocity_noise_, range_noise_;
-  double scale_draw_;         ///< standard normal, once in a run
-  double sound_scale_ = 1;    ///< assumed over true speed of sound
-  double speed_mps_ = 0;      ///< true, for the noise
+  double scale_draw_;       ///< standard normal, once in a run
+  double sound_scale_ = 1;  ///< assumed over true speed of sound
+  double speed_mps_ = 0;    ///< true, for the noise
   std::array<sim::Vector3d, dvl_beams> beams_S_;
   Reading reading_;
 };

@@ -6,6 +6,7 @@
 
 #include "devices/actuator_commands.hpp"
 #include "devices/actuator_lag.hpp"
+#include "devices/foil.hpp"
 #include "devices/water_mount.hpp"
 #include "sim/hydrodynamics/hydrodynamics_config.hpp"
 
@@ -27,10 +28,7 @@ struct FinCoefficients {
 /// - A stern plane, `rpy_deg: [90, 0, 0]`: the lift is upwards, positive turns the nose down (as delta_s of MSS and of
 ///   Prestero).  `rpy_deg: [-90, 0, 0]`: nose up.
 ///
-/// With the angle of attack a between the flow at the fin and its chord:
-/// - attached flow: C_L = slope a, C_D = C_D0 + C_L^2 / (pi e AR) (Anderson, Fundamentals of Aerodynamics, ch. 5)
-/// - past the stall: as a plate, C_N = c sin^2(a) across the chord (Beard & McLain, Small Unmanned Aircraft, eq. 4.10)
-/// - between them smooth.  A fin has no front: flow from behind acts alike.
+/// Lift and drag are those of a foil, see Foil.
 class Fin final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
@@ -42,17 +40,13 @@ class Fin final : public sim::Actuator {
     Model model = Model::lift;
     Flow flow = Flow::local;
     double area_m2 = 0.01;
-    double aspect_ratio = 2;
-    std::optional<double> lift_slope;
-    double stall_rad = sim::degrees_to_radians(15), stall_width_rad = sim::degrees_to_radians(10);
-    double drag_coefficient = 0.01, span_efficiency = 0.9, plate_coefficient = 1.2;
+    FoilParams foil;
     std::optional<double> density_kgpm3;
     std::optional<FinCoefficients> coefficients;
     double limit_rad = sim::degrees_to_radians(30);
     std::optional<double> rate_limit_degps;
     LagParams lag;
     void read(sim::ParamReader& in);
-    double slope() const;
   };
 
   Fin(const Params& params, const sim::DeviceContext& context);
@@ -77,7 +71,7 @@ class Fin final : public sim::Actuator {
   Lag lag_;
   double command_ = 0;
   double span_m_ = 0;
-  double slope_ = 0;
+  Foil foil_;
 };
 
 }  // namespace devices

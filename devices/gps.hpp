@@ -21,7 +21,7 @@ class Gps final : public sim::Sensor {
     int fix_quality = 1;
     int satellites = 9;
     std::optional<double> min_height_m;  ///< below this height of the antenna there is no fix
-    double reacquisition_s = 0;          ///< after a zone that denies it or water over the antenna, until there is a fix again
+    double reacquisition_s = 0;  ///< after a zone that denies it or water over the antenna, until there is a fix again
     void read(sim::ParamReader& in);
   };
   struct Reading {

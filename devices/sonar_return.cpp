@@ -80,12 +80,12 @@ bool SonarReceiver::look_at_medium(const sim::Vector3d& p_WS) {
   return true;
 }
 
-double SonarReceiver::range_to_surface_m(const sim::Ray& ray_W) const {
+double SonarReceiver::range_to_surface_m(const sim::Ray& ray_W, double surface_m) const {
   const sim::Vector3d& o = ray_W.origin_W;
   const sim::Vector3d& d = ray_W.direction_W;
   if (d.z() == 0) return ray_W.range_max_m;
   // The level over the sensor first, then, in waves, that over the place found.
-  double range_m = (medium_.surface_m(o.x(), o.y()) - o.z()) / d.z();
+  double range_m = (surface_m - o.z()) / d.z();
   for (int i = 0; i < 2 && medium_.has_waves() && range_m > 0 && range_m < ray_W.range_max_m; ++i)
     range_m = (medium_.surface_m(o.x() + range_m * d.x(), o.y() + range_m * d.y()) - o.z()) / d.z();
   return range_m > 0 ? std::min(range_m, ray_W.range_max_m) : ray_W.range_max_m;
@@ -98,8 +98,10 @@ void SonarReceiver::cast(const sim::Scene& scene, const sim::Pose& X_WS, std::sp
   const double range_max_m = params_.range_max_m / range_scale_;
   for (std::size_t i = 0; i < rays_S.size(); ++i)
     rays_W_[i] = {X_WS.translation(), X_WS.linear() * rays_S[i].direction_S, range_max_m};
-  if (medium_.has_water())
-    for (sim::Ray& ray_W : rays_W_) ray_W.range_max_m = range_to_surface_m(ray_W);
+  if (medium_.has_water()) {
+    const double surface_m = medium_.surface_m(X_WS.translation().x(), X_WS.translation().y());
+    for (sim::Ray& ray_W : rays_W_) ray_W.range_max_m = range_to_surface_m(ray_W, surface_m);
+  }
   scene.cast(rays_W_, filter_, hits_);
   if (!params_.surface_echo) return;
   for (std::size_t i = 0; i < hits_.size(); ++i) {

@@ -88,8 +88,8 @@ class SonarReceiver {
  private:
   /// Whether it works in the medium where it is; takes over what the medium is like there.
   bool look_at_medium(const sim::Vector3d& p_WS);
-  /// How far along a ray the surface of the water is, at most `range_max_m`.
-  double range_to_surface_m(const sim::Ray& ray_W) const;
+  /// How far along a ray the surface of the water is, at most `range_max_m`.  `surface_m`: its height over the sensor.
+  double range_to_surface_m(const sim::Ray& ray_W, double surface_m) const;
 
   const sim::PhysicsWorld& physics_;
   const sim::Medium& medium_;

@@ -134,8 +134,8 @@ Thruster::Effort Thruster::effort_of(double level, double inflow_mps, double den
 double Thruster::inflow_mps(const WaterFlow& flow) const {
   const double share = 1 - params_.wake_fraction;
   if (params_.inflow == Inflow::water) return share * flow.v_D.x();
-  if (params_.inflow == Inflow::water_speed) return share * mount_.origin_velocity_D(flow).norm();
-  return share * mount_.body().v_WB_W().norm();
+  if (params_.inflow == Inflow::water_speed) return share * (flow.body.v_WB_W - flow.water_W).norm();
+  return share * flow.body.v_WB_W.norm();
 }
 
 void Thruster::act(const sim::ActContext& context) {

@@ -10,9 +10,10 @@
 namespace devices {
 
 void WaterSpeed::Params::read(sim::ParamReader& in) {
-  in.read_choice("senses", senses, {"both", "forward", "magnitude"},
-                 "both: the speed with its sign; forward: 0 when the water comes from behind, as a pitot tube; magnitude: "
-                 "without its sign, as a paddle wheel");
+  in.read_choice(
+      "senses", senses, {"both", "forward", "magnitude"},
+      "both: the speed with its sign; forward: 0 when the water comes from behind, as a pitot tube; magnitude: "
+      "without its sign, as a paddle wheel");
   in.read("threshold_mps", threshold_mps, sim::at_least(0), "slower than this it reports 0: a paddle wheel sticks");
   in.read("speed_max_mps", speed_max_mps, sim::above(0), "it reports no more than this");
   in.read("speed_noise", speed_noise, "error of the speed, m/s");

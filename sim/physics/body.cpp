@@ -24,6 +24,17 @@ Vector3d Body::w_WB_W() const {
   return fixed() ? Vector3d(Vector3d::Zero()) : to_eigen(w_WB_W_);
 }
 
+BodyMotion Body::motion() const {
+  if (fixed()) return {seat_X_WB_.linear(), seat_X_WB_.translation(), Vector3d::Zero(), Vector3d::Zero()};
+  BodyMotion motion;
+  motion.R_WB = rotation_to_eigen(R_WB_);
+  const Vector3d p_BC_W = motion.R_WB * p_BC_;
+  motion.p_WB = to_eigen(p_WC_) - p_BC_W;
+  motion.w_WB_W = to_eigen(w_WB_W_);
+  motion.v_WB_W = to_eigen(v_WC_W_) - motion.w_WB_W.cross(p_BC_W);
+  return motion;
+}
+
 Vector3d Body::velocity_at_W(const Vector3d& p_B) const {
   if (fixed()) return Vector3d::Zero();
   const Vector3d p_CP_W = rotation_to_eigen(R_WB_) * (p_B - p_BC_);

@@ -19,6 +19,12 @@ struct BodyDeleter {
 };
 using BodyHandle = std::unique_ptr<dxBody, BodyDeleter>;
 
+/// Where a body is and how it moves.
+struct BodyMotion {
+  Matrix3d R_WB;
+  Vector3d p_WB, v_WB_W, w_WB_W;
+};
+
 /// One ODE body, free or kinematic, or a fixed one without.  ODE's frame sits at the centre of mass; this class speaks
 /// of the body frame B that the vehicle file defines.
 class Body {
@@ -38,6 +44,8 @@ class Body {
   /// Velocity of the origin of B.  A kinematic body keeps that of the last step until the next one.
   Vector3d v_WB_W() const;
   Vector3d w_WB_W() const;
+  /// All of this at once, which is cheaper.
+  BodyMotion motion() const;
   /// Velocity of a point of the body given in B.
   Vector3d velocity_at_W(const Vector3d& p_B) const;
 

@@ -31,6 +31,9 @@ TEST(DeviceChange, RefusesKeysThatOnlyConstructionUses) {
                                          {"joint_servo, joint: left", "joint", "right"},
                                          {"joint_servo, joint: left", "axis", "1"},
                                          {"joint_motor, joint: left", "joint", "right"},
+                                         {"buoyancy_engine", "initial_m3", "1e-5"},
+                                         {"moving_mass", "motion", "turn"},
+                                         {"sail", "initial_deg", "40"},
                                          {"battery", "initial_charge", "0.5"}}) {
     test::TestWorld test(test::rover_world("        - {name: d, type: " + c.device + "}\n"));
     EXPECT_THAT(test.change("r1/d", "{" + c.key + ": " + c.value + "}"),

@@ -19,8 +19,17 @@ namespace {
 
 constexpr double deg = std::numbers::pi / 180;
 
+struct TrimEntry {
+  double heave_m = 0, pitch_rad = 0;
+  void read(sim::ParamReader& in) {
+    in.read("heave_m", heave_m, sim::between(-100, 100), "down, of the origin");
+    in.read_deg("pitch_deg", pitch_rad, sim::between(-45, 45), "bow up");
+  }
+};
+
 struct CaseEntry {
   std::string name, text, reference;
+  TrimEntry trim;
   sim::ConfigNode world, overrides;
   FidelityBars bars;
   void read(sim::ParamReader& in) {
@@ -32,6 +41,7 @@ struct CaseEntry {
     in.read_raw("world", world, "dotted path: value, changes of the world, beside those of the group");
     in.read_raw("overrides", overrides, "dotted path: value, changes of the vehicle, beside those of the group");
     in.read("bars", bars, "instead of the group's");
+    in.read("trim", trim, "where the reference counts heave and pitch from, when its level at rest is not 0");
   }
 };
 
@@ -59,9 +69,11 @@ struct GroupEntry {
 
 struct CaseFile {
   int shoal = 1;
+  std::string text;
   std::vector<GroupEntry> groups;
   void read(sim::ParamReader& in) {
     in.read("shoal", shoal, sim::between(1, 1), "version of the format");
+    in.read("text", text, "Markdown for the top of the report");
     in.require("groups");
     in.read_list("groups", groups, "group", "vehicles with their cases");
   }
@@ -119,15 +131,16 @@ FidelityState state_of(const sim::Body& body) {
                       w = flipped(R.transpose() * body.w_WB_W());
   const double pitch = std::asin(std::clamp(-R(2, 0), -1.0, 1.0));
   const double yaw = std::atan2(R(1, 0), R(0, 0));
-  return {p.y(), p.x(), -p.z(), std::atan2(R(2, 1), R(2, 2)), -pitch, std::numbers::pi / 2 - yaw,
-          v.x(), v.y(), v.z(),  w.x(),                        w.y(),  w.z()};
+  return {p.y(), p.x(), -p.z(), std::atan2(R(2, 1), R(2, 2)), -pitch, std::numbers::pi / 2 - yaw, v.x(), v.y(), v.z(),
+          w.x(), w.y(), w.z()};
 }
 
 /// The velocity that a row starts with.  Vehicles of several bodies start as one solid.
 void set_velocity(const sim::Vehicle& vehicle, const FidelityState& start) {
   const sim::Body& first = vehicle.base();
   const sim::Matrix3d R = first.X_WB().linear();
-  const sim::Vector3d v = R * flipped({start[6], start[7], start[8]}), w = R * flipped({start[9], start[10], start[11]});
+  const sim::Vector3d v = R * flipped({start[6], start[7], start[8]}),
+                      w = R * flipped({start[9], start[10], start[11]});
   const sim::Vector3d origin = first.X_WB().translation();
   for (const auto& [name, body] : vehicle.bodies())
     body->set_velocity_W(v + w.cross(body->X_WB().translation() - origin), w);
@@ -193,8 +206,8 @@ void compare(FidelityResult& result) {
 std::int64_t steps_to(double t, double step_s, const FidelityReference& reference) {
   const auto steps = static_cast<std::int64_t>(std::llround(t / step_s));
   if (std::abs(static_cast<double>(steps) * step_s - t) > 1e-7)
-    fail(reference.file, 0, "a step of " + sim::number_text(step_s) + " s does not meet the row at t = " +
-                                sim::number_text(t) + " s");
+    fail(reference.file, 0,
+         "a step of " + sim::number_text(step_s) + " s does not meet the row at t = " + sim::number_text(t) + " s");
   return steps;
 }
 
@@ -207,8 +220,7 @@ void FidelityInput::read(sim::ParamReader& in) {
   in.read("column", column, "column that becomes `value`");
   in.read_raw("fields", fields, "of the message, with names of columns for numbers; instead of `column`");
   in.read("scale", scale, sim::any_number(), "times the columns: 57.29577951308232 makes degrees of radians");
-  if (!in.describing() && in.has("column") == in.has("fields"))
-    in.error("one of 'column' and 'fields' must be given");
+  if (!in.describing() && in.has("column") == in.has("fields")) in.error("one of 'column' and 'fields' must be given");
 }
 
 void FidelityBars::read(sim::ParamReader& in) {
@@ -218,7 +230,7 @@ void FidelityBars::read(sim::ParamReader& in) {
   in.read("heading_rms_deg", heading_rms_deg, sim::at_least(0), "root mean square of the yaw's difference");
 }
 
-std::vector<FidelityCase> read_fidelity_cases(const std::string& path) {
+FidelityFile read_fidelity_file(const std::string& path) {
   sim::Diagnostics diagnostics;
   const sim::ConfigNode tree = sim::load_config_file(path, diagnostics);
   diagnostics.throw_if_any();
@@ -228,7 +240,7 @@ std::vector<FidelityCase> read_fidelity_cases(const std::string& path) {
   in.finish();
   diagnostics.throw_if_any();
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  std::vector<FidelityCase> cases;
+  FidelityFile result{file.text, {}};
   for (const GroupEntry& group : file.groups)
     for (const CaseEntry& entry : group.cases) {
       FidelityCase of;
@@ -245,16 +257,18 @@ std::vector<FidelityCase> read_fidelity_cases(const std::string& path) {
       of.step_s = group.step_s;
       of.inputs = group.inputs;
       of.bars = over(entry.bars, group.bars);
-      cases.push_back(std::move(of));
+      of.trim_heave_m = entry.trim.heave_m;
+      of.trim_pitch_rad = entry.trim.pitch_rad;
+      result.cases.push_back(std::move(of));
     }
-  return cases;
+  return result;
 }
 
 std::size_t FidelityReference::column(const std::string& name) const {
   const auto found = std::find(columns.begin(), columns.end(), name);
   if (found == columns.end())
-    fail(file, 1, "there is no column '" + sim::shortened(sim::printable(name)) + "'; there are " +
-                      sim::list_text(columns));
+    fail(file, 1,
+         "there is no column '" + sim::shortened(sim::printable(name)) + "'; there are " + sim::list_text(columns));
   return static_cast<std::size_t>(found - columns.begin());
 }
 
@@ -276,8 +290,8 @@ FidelityReference read_fidelity_reference(const std::string& path) {
       row.push_back(value);
     }
     if (row.size() != reference.columns.size())
-      fail(path, number, "must have " + std::to_string(reference.columns.size()) + " numbers, got " +
-                             std::to_string(row.size()));
+      fail(path, number,
+           "must have " + std::to_string(reference.columns.size()) + " numbers, got " + std::to_string(row.size()));
     if (!reference.rows.empty() && !(row[0] > reference.rows.back()[0])) fail(path, number, "the time must rise");
     reference.rows.push_back(std::move(row));
   }
@@ -288,23 +302,24 @@ FidelityReference read_fidelity_reference(const std::string& path) {
 
 namespace {
 
-FidelityState state_of(const FidelityReference& reference, const std::vector<double>& row) {
+FidelityState state_of(const FidelityCase& of, const FidelityReference& reference, const std::vector<double>& row) {
   FidelityState state;
   for (std::size_t i = 0; i < state.size(); ++i) state[i] = row[reference.column(fidelity_states[i])];
+  state[2] -= of.trim_heave_m;
+  state[4] -= of.trim_pitch_rad;
   return state;
 }
 
 }  // namespace
 
-std::string fidelity_world(const FidelityCase& of, const FidelityReference& reference,
-                           const FidelityOptions& options) {
-  const FidelityState start = state_of(reference, reference.rows.front());
-  const std::string text =
-      "shoal: 1\nname: " + of.name + "\nphysics: {step_s: " + sim::number_text(options.step_s.value_or(of.step_s)) +
-      "}\nmedium: {water: {}}\nvehicles:\n  - name: vehicle\n    file: " +
-      std::filesystem::path(of.vehicle).filename().string() +
-      "\n    position_m: " + list_of({start[1], start[0], -start[2]}) +
-      "\n    rpy_deg: " + list_of({start[3] / deg, -start[4] / deg, 90 - start[5] / deg}) + "\n";
+std::string fidelity_world(const FidelityCase& of, const FidelityReference& reference, const FidelityOptions& options) {
+  const FidelityState start = state_of(of, reference, reference.rows.front());
+  const std::string text = "shoal: 1\nname: " + of.name +
+                           "\nphysics: {step_s: " + sim::number_text(options.step_s.value_or(of.step_s)) +
+                           "}\nmedium: {water: {}}\nvehicles:\n  - name: vehicle\n    file: " +
+                           std::filesystem::path(of.vehicle).filename().string() +
+                           "\n    position_m: " + list_of({start[1], start[0], -start[2]}) +
+                           "\n    rpy_deg: " + list_of({start[3] / deg, -start[4] / deg, 90 - start[5] / deg}) + "\n";
   sim::Diagnostics diagnostics;
   sim::ConfigNode world = sim::parse_config_text(text, of.name, diagnostics);
   for (const sim::ConfigNode::Entry& change : of.world.entries)
@@ -326,7 +341,7 @@ FidelityResult run_fidelity_case(const FidelityCase& of, const FidelityOptions& 
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus);
   const sim::Vehicle& vehicle = *world.vehicles().front();
-  set_velocity(vehicle, state_of(reference, reference.rows.front()));
+  set_velocity(vehicle, state_of(of, reference, reference.rows.front()));
 
   FidelityResult result;
   result.of = of;
@@ -335,7 +350,7 @@ FidelityResult run_fidelity_case(const FidelityCase& of, const FidelityOptions& 
     const std::vector<double>& row = reference.rows[k];
     for (std::int64_t end = steps_to(row[0], result.step_s, reference); world.step_number() < end;) world.step();
     result.t.push_back(row[0]);
-    result.theirs.push_back(state_of(reference, row));
+    result.theirs.push_back(state_of(of, reference, row));
     result.ours.push_back(state_of(vehicle.base()));
     send_inputs(of, reference, row, vehicle.name(), world);
   }

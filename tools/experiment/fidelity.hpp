@@ -29,19 +29,25 @@ struct FidelityBars {
 /// One trajectory of somebody else, and how to run the same here.
 struct FidelityCase {
   std::string name;
-  std::string text;               ///< a sentence for the report
-  std::string group, title;       ///< the vehicle it belongs to
-  std::string vehicle;            ///< path of the vehicle file
-  std::string reference;          ///< path of the CSV
-  sim::ConfigNode world;          ///< dotted path: value, of the world around the vehicle
-  sim::ConfigNode overrides;      ///< dotted path: value, of the vehicle
+  std::string text;           ///< a sentence for the report
+  std::string group, title;   ///< the vehicle it belongs to
+  std::string vehicle;        ///< path of the vehicle file
+  std::string reference;      ///< path of the CSV
+  sim::ConfigNode world;      ///< dotted path: value, of the world around the vehicle
+  sim::ConfigNode overrides;  ///< dotted path: value, of the vehicle
   double step_s = 0.005;
   std::vector<FidelityInput> inputs;
   FidelityBars bars;
+  double trim_heave_m = 0, trim_pitch_rad = 0;  ///< the reference's level is not ours
 };
 
-/// Cases of a file.  Throws ConfigError.
-std::vector<FidelityCase> read_fidelity_cases(const std::string& path);
+struct FidelityFile {
+  std::string text;  ///< Markdown for the top of the report
+  std::vector<FidelityCase> cases;
+};
+
+/// Throws ConfigError.
+FidelityFile read_fidelity_file(const std::string& path);
 
 /// Names of the state in a reference: place (m) in north-east-down, roll, pitch and yaw (rad), velocity over ground
 /// (m/s) and turn rates (rad/s) in forward-right-down.
@@ -76,7 +82,7 @@ struct FidelityResult {
   double velocity_rms_mps = 0;  ///< of the velocity vector
   double turn_rms_degps = 0;    ///< of the turn rate vector
   double heading_rms_deg = 0;
-  double path_m = 0;  ///< length of the reference's track
+  double path_m = 0;                ///< length of the reference's track
   std::vector<std::string> missed;  ///< bars, as `position_rms_m 0.3 > 0.1`
 };
 

@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -58,18 +59,36 @@ std::string panel(const char* title, const char* x, std::initializer_list<std::p
   return text + "\n";
 }
 
+/// Tics of the track to the east: about three.
+double tics_of(const FidelityResult& result) {
+  double low = result.theirs[0][1], high = low;
+  for (const FidelityState& state : result.theirs) {
+    low = std::min(low, state[1]);
+    high = std::max(high, state[1]);
+  }
+  const double wide = std::max((high - low) / 2.5, 0.01);
+  const double power = std::pow(10, std::floor(std::log10(wide)));
+  return power * (wide / power >= 5 ? 5 : wide / power >= 2 ? 2 : 1);
+}
+
+/// Four digits, and no minus before a zero.
+std::string digits(double value) {
+  const std::string text = fmt::format("{:.4f}", value);
+  return text == "-0.0000" ? "0.0000" : text;
+}
+
 void plot(const std::filesystem::path& picture, const FidelityResult& result) {
   const ScratchDirectory scratch;
   write(scratch.path / "theirs", rows_of(result, result.theirs, ' ', true));
   write(scratch.path / "ours", rows_of(result, result.ours, ' ', true));
   write(scratch.path / "plot.gp",
-        "set terminal pngcairo size 960,520 font ',9'\nset output " +
+        "set terminal pngcairo size 840,440 font ',8'\nset output " +
             gnuplot_text(std::filesystem::absolute(picture).string()) +
             "\nset key samplen 1 spacing 0.9\nset multiplot layout 2,3 title " +
             gnuplot_text(result.of.name + ": reference grey, ours coloured") + " noenhanced\nset xlabel 'east (m)'\n" +
-            "set ylabel 'north (m)'\nset size ratio -1\nset xtics autofreq rotate by -30\n" +
+            "set ylabel 'north (m)'\nset size ratio -1\n" + fmt::format("set xtics {:g}\n", tics_of(result)) +
             panel("track", "3", {{"2", ""}}) +
-            "set size noratio\nset xtics norotate\nset xlabel 't (s)'\nset ylabel 'm'\nset yrange [] reverse\n" +
+            "set size noratio\nset xtics autofreq\nset xlabel 't (s)'\nset ylabel 'm'\nset yrange [] reverse\n" +
             panel("depth", "1", {{"4", ""}}) + "set yrange [] noreverse\nset ylabel 'deg'\n" +
             panel("attitude", "1", {{"5", "roll"}, {"6", "pitch"}, {"7", "yaw"}}) + "set ylabel 'm/s'\n" +
             panel("speed", "1", {{"8", "surge"}}) + panel("speed across", "1", {{"9", "sway"}, {"10", "heave"}}) +
@@ -95,13 +114,13 @@ std::string section_of(const FidelityResult& result) {
   text += fmt::format("![{0}](fidelity/{0}.png)\n\n", result.of.name);
   const FidelityState &a = result.theirs.back(), &b = result.ours.back();
   text += "| at the end | reference | ours | difference |\n|---|---:|---:|---:|\n";
-  static const char* names[] = {"north (m)",   "east (m)",   "depth (m)",     "roll (deg)", "pitch (deg)",
-                                "yaw (deg)",   "surge (m/s)", "sway (m/s)",   "heave (m/s)"};
+  static const char* names[] = {"north (m)", "east (m)",    "depth (m)",  "roll (deg)", "pitch (deg)",
+                                "yaw (deg)", "surge (m/s)", "sway (m/s)", "heave (m/s)"};
   for (std::size_t k = 0; k < std::size(names); ++k) {
     const double unit = k >= 3 && k < 6 ? deg : 1;
     const double difference = k == 5 ? std::remainder(b[k] - a[k], 2 * M_PI) : b[k] - a[k];
-    text += fmt::format("| {} | {:.4f} | {:.4f} | {:.4f} |\n", names[k], a[k] / unit, (a[k] + difference) / unit,
-                        difference / unit);
+    text += fmt::format("| {} | {} | {} | {} |\n", names[k], digits(a[k] / unit), digits((a[k] + difference) / unit),
+                        digits(difference / unit));
   }
   return text + "\n";
 }
@@ -127,17 +146,19 @@ std::string fidelity_table(const std::vector<FidelityResult>& results) {
   return text;
 }
 
-void write_fidelity_report(const std::string& folder, const std::vector<FidelityResult>& results) {
+void write_fidelity_report(const std::string& folder, const std::string& text,
+                           const std::vector<FidelityResult>& results, bool csv) {
   const std::filesystem::path pictures = std::filesystem::path(folder) / "fidelity";
   std::filesystem::create_directories(pictures);
-  std::string page = "# Fidelity\n\nWritten by `shoal fidelity --results`.\n\n" + fidelity_table(results) + "\n";
+  std::string page =
+      "# Fidelity\n\nWritten by `shoal fidelity`.\n\n" + text + "\n## The table\n\n" + fidelity_table(results) + "\n";
   std::string group;
   for (const FidelityResult& result : results) {
     if (result.of.group != group) page += "## " + result.of.title + "\n\n";
     group = result.of.group;
     page += section_of(result);
     plot(pictures / (result.of.name + ".png"), result);
-    write(pictures / (result.of.name + ".csv"), states_header() + rows_of(result, result.ours, ',', false));
+    if (csv) write(pictures / (result.of.name + ".csv"), states_header() + rows_of(result, result.ours, ',', false));
   }
   write(std::filesystem::path(folder) / "fidelity.md", page);
 }

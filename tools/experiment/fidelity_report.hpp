@@ -11,7 +11,8 @@ namespace tools {
 std::string fidelity_table(const std::vector<FidelityResult>& results);
 
 /// Writes FOLDER/fidelity.md, and for each case FOLDER/fidelity/NAME.png (reference and ours over each other) and
-/// NAME.csv (ours, in the columns of the reference).  Throws std::runtime_error.
-void write_fidelity_report(const std::string& folder, const std::vector<FidelityResult>& results);
+/// with `csv` NAME.csv (our states).  `text`: Markdown for the top.  Throws std::runtime_error.
+void write_fidelity_report(const std::string& folder, const std::string& text,
+                           const std::vector<FidelityResult>& results, bool csv);
 
 }  // namespace tools

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -11,7 +12,8 @@ namespace tools {
 namespace {
 
 struct FidelityArguments {
-  std::string cases, results, page;
+  std::string cases, results;
+  bool csv = false;
   std::vector<std::string> names;
   std::optional<double> step_s;
   std::vector<std::string> overrides;
@@ -28,7 +30,8 @@ int fidelity(const FidelityArguments& arguments) {
   }
   std::vector<FidelityResult> results;
   bool passed = true;
-  for (const FidelityCase& of : read_fidelity_cases(arguments.cases)) {
+  const FidelityFile file = read_fidelity_file(arguments.cases);
+  for (const FidelityCase& of : file.cases) {
     const auto wanted = [&](const std::string& name) { return name == of.name || name == of.group; };
     if (!arguments.names.empty() && std::none_of(arguments.names.begin(), arguments.names.end(), wanted)) continue;
     results.push_back(run_fidelity_case(of, options));
@@ -38,7 +41,7 @@ int fidelity(const FidelityArguments& arguments) {
   std::cout << fidelity_table(results);
   for (const FidelityResult& result : results)
     for (const std::string& missed : result.missed) std::cout << result.of.name << ": missed " << missed << '\n';
-  if (!arguments.results.empty()) write_fidelity_report(arguments.results, results);
+  if (!arguments.results.empty()) write_fidelity_report(arguments.results, file.text, results, arguments.csv);
   return passed ? exit_ok : exit_failed;
 }
 
@@ -55,7 +58,8 @@ void add_fidelity_command(CLI::App& app, int& exit_code) {
   command->add_option("--override", arguments->overrides, "path=value: change a value of the vehicles")
       ->type_size(1)
       ->allow_extra_args(false);
-  command->add_option("--results", arguments->results, "folder for the report: fidelity.md, pictures, CSV files");
+  command->add_option("--results", arguments->results, "folder for the report: fidelity.md and pictures");
+  command->add_flag("--csv", arguments->csv, "with the report, our states as CSV files");
   add_plugin_option(*command);
   command->footer(
       "Example:\n  shoal fidelity tests/fidelity/cases.yaml --case otter_turn --results results/otter\n"
