@@ -105,7 +105,8 @@ TEST_P(Determinism, AnotherSeedIsAnotherRun) {
 INSTANTIATE_TEST_SUITE_P(Worlds, Determinism,
                          testing::Values(Case{"worlds/minimal.yaml", "20"}, Case{"worlds/erl_room.yaml", "20"},
                                          Case{"worlds/scale.yaml", "2"}, Case{"worlds/living_warehouse.yaml", "20"},
-                                         Case{"worlds/proving_ground.yaml", "20"}, Case{"worlds/proving_sea.yaml", "20"}, Case{"worlds/hill_course.yaml", "5"},
+                                         Case{"worlds/proving_ground.yaml", "20"},
+                                         Case{"worlds/proving_sea.yaml", "20"}, Case{"worlds/hill_course.yaml", "5"},
                                          Case{"worlds/sonar_tank.yaml", "5"}),
                          [](const auto& test) { return std::filesystem::path(test.param.world).stem().string(); });
 
