@@ -16,7 +16,8 @@ void Gps::Params::read(sim::ParamReader& in) {
   in.read("fix_quality", fix_quality, sim::between(1, 2), "1: autonomous, 2: differential");
   in.read("satellites", satellites, sim::between(4, 40), "reported number of satellites");
   in.read("min_height_m", min_height_m, sim::any_number(), "below this height the antenna has no fix");
-  in.read("reacquisition_s", reacquisition_s, sim::between(0, 1e6), "no fix for so long after a zone that denies it");
+  in.read("reacquisition_s", reacquisition_s, sim::between(0, 1e6),
+          "no fix for so long after a zone that denies it, or after water over the antenna");
 }
 
 Gps::Gps(const Params& params, const sim::DeviceContext& context)
@@ -37,7 +38,8 @@ void Gps::measure(const sim::SenseContext& context) {
   reading_.p_W = context.X_WS.translation();
   reading_.v_W = context.v_WS_W;
   reading_.fix_quality = params_.min_height_m && reading_.p_W.z() < *params_.min_height_m ? 0 : params_.fix_quality;
-  if (context.world.zones().denied(sim::ZoneFlag::gps_denied, reading_.p_W)) denied_at_ = context.now;
+  const bool denied = context.world.zones().denied(sim::ZoneFlag::gps_denied, reading_.p_W);
+  if (denied || context.world.medium().in_water(reading_.p_W)) denied_at_ = context.now;
   if (denied_at_ && context.now <= *denied_at_ + sim::from_seconds(params_.reacquisition_s)) reading_.fix_quality = 0;
   reading_.position = geodesy_.to_geodetic(reading_.p_W);
 }

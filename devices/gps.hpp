@@ -8,7 +8,8 @@
 
 namespace devices {
 
-/// Satellite receiver: position on the WGS84 ellipsoid by the world's origin, and velocity over ground.
+/// Satellite receiver: position on the WGS84 ellipsoid by the world's origin, and velocity over ground.  No fix while
+/// its antenna, the origin of its frame, is under the momentary surface of the water.
 class Gps final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Satellite positioning: WGS84 position, velocity over ground, fix quality.";
@@ -20,7 +21,7 @@ class Gps final : public sim::Sensor {
     int fix_quality = 1;
     int satellites = 9;
     std::optional<double> min_height_m;  ///< below this height of the antenna there is no fix
-    double reacquisition_s = 0;          ///< after a zone that denies it, until there is a fix again
+    double reacquisition_s = 0;  ///< after a zone that denies it or water over the antenna, until there is a fix again
     void read(sim::ParamReader& in);
   };
   struct Reading {
@@ -45,7 +46,7 @@ class Gps final : public sim::Sensor {
   const sim::Geodesy& geodesy_;
   sim::Noise horizontal_noise_, vertical_noise_, velocity_noise_;
   Reading reading_;
-  std::optional<sim::Time> denied_at_;  ///< when it was last in a zone that denies it
+  std::optional<sim::Time> denied_at_;  ///< when it was last under water or in a zone that denies it
 };
 
 /// Publishes shoal.gps_data_t, equal on the wire to bot_core's.

@@ -36,9 +36,11 @@ void Modem::SerialParams::read(sim::ParamReader& in) {
 
 void Modem::Params::read(sim::ParamReader& in) {
   in.read("network", network, "modems hear each other only in the same network, such as a radio channel");
+  read_through(in, through);
   in.read("range_m", range_m, sim::above(0), "how far it is heard");
   in.read("data_rate_bps", data_rate_bps, sim::between(1e-3, 1e12), "bits per second");
-  in.read("propagation_mps", propagation_mps, sim::between(1, 1e12), "speed of radio waves or of sound");
+  in.read("propagation_mps", propagation_mps, sim::between(1, 1e12),
+          "speed of the signal; unset: 299792458, for an acoustic one that of sound at the sender");
   in.read("loss_probability", loss_probability, sim::between(0, 1), "of each message at each receiver");
   in.read("queue_messages", queue_messages, sim::at_least(1), "messages waiting to be sent; the oldest is dropped");
   in.read("max_message_bytes", max_message_bytes, sim::between(1, 1 << 20), "longer messages are refused");
@@ -113,16 +115,25 @@ void Modem::transmit(sim::Time now, const Outgoing& message) {
   frame.utime = 0;
   const sim::Bytes payload = shoal::encode(frame);
   const sim::Zones& zones = network_.world().zones();
-  if (zones.denied(sim::ZoneFlag::radio_denied, p_WS())) return;  // it sends, and nobody hears
+  const sim::Medium& medium = network_.world().medium();
+  // It sends, and nobody hears.
+  if (zones.denied(sim::ZoneFlag::radio_denied, p_WS()) || !carries(medium, params_.through, p_WS())) return;
   for (Modem* receiver : network_.members()) {
     if (receiver == this || receiver->params_.network != params_.network) continue;
     if (!message.destination.empty() && receiver->vehicle_ != message.destination) continue;
     const double distance_m = (receiver->p_WS() - p_WS()).norm();
     if (zones.denied(sim::ZoneFlag::radio_denied, receiver->p_WS())) continue;
+    if (!carries(medium, params_.through, receiver->p_WS())) continue;
     if (distance_m > params_.range_m || lost_on_the_way_to(*receiver)) continue;
-    const sim::Time due = now + sim::from_seconds(air_time_s + distance_m / params_.propagation_mps);
+    const sim::Time due = now + sim::from_seconds(air_time_s + distance_m / propagation_mps());
     network_.world().schedule_arrival(receiver->device_, due, payload);
   }
+}
+
+double Modem::propagation_mps() const {
+  constexpr double light_mps = 299792458.0;
+  if (params_.propagation_mps) return *params_.propagation_mps;
+  return params_.through == SignalCarrier::acoustic ? network_.world().medium().sound_speed_mps(p_WS()) : light_mps;
 }
 
 bool Modem::lost_on_the_way_to(const Modem& receiver) {

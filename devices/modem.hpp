@@ -2,9 +2,11 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "devices/signal_carrier.hpp"
 #include "sim/bus/byte_port.hpp"
 #include "sim/device/device_registry.hpp"
 
@@ -12,7 +14,7 @@ namespace devices {
 
 /// Radio or acoustic modem: carries messages of bytes between vehicles.  It sends one message at a time, which takes
 /// size / data rate; the message arrives distance / speed of propagation later at every modem of the same network
-/// that was in range when the sending began.
+/// that was in range when the sending began, with both ends in what carries the signal.
 class Modem final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Radio or acoustic modem: messages of bytes between vehicles.";
@@ -25,9 +27,10 @@ class Modem final : public sim::Sensor {
   };
   struct Params {
     std::string network = "radio";
+    SignalCarrier through = SignalCarrier::radio;
     double range_m = 100;
     double data_rate_bps = 9600;
-    double propagation_mps = 299792458.0;
+    std::optional<double> propagation_mps;  ///< unset: of light, or of sound where the sender is
     double loss_probability = 0;
     int queue_messages = 16;
     int max_message_bytes = 1024;
@@ -66,6 +69,7 @@ class Modem final : public sim::Sensor {
   class Network;
 
   void transmit(sim::Time now, const Outgoing& message);
+  double propagation_mps() const;
   bool lost_on_the_way_to(const Modem& receiver);
   sim::Vector3d p_WS() const;
   void open_serial(const sim::DeviceContext& context);

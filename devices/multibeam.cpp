@@ -93,7 +93,7 @@ void Multibeam::detect(std::size_t beam) {
   std::sort(echoes_.begin(), echoes_.end(),
             [](const SonarEcho& a, const SonarEcho& b) { return a.range_m < b.range_m; });
   const auto end_of = [&](double from_m) {
-    return std::max(from_m * (1 + params_.gate), from_m + params_.sonar.pulse_m());
+    return std::max(from_m * (1 + params_.gate), from_m + receiver_.pulse_m());
   };
   // A stretch that begins later ends later: both ends only move on.
   std::size_t loudest_from = 0, loudest_to = 0;
@@ -121,6 +121,7 @@ void Multibeam::disturb(double dt_s, sim::Random& random) {
   if (params_.sonar.speckle)
     for (double& strength_dB : strengths_dB_) strength_dB += 10 * std::log10(speckle_power(random));
   strength_noise_.apply(std::span<double>(strengths_dB_), dt_s, random);
+  for (double& range_m : ranges_m_) range_m *= receiver_.range_scale();
   noise_.apply(std::span<double>(ranges_m_), dt_s, random);
   for (std::size_t i = 0; i < ranges_m_.size(); ++i) {
     const double level_dB = strengths_dB_[i] - receiver_.gain_dB(true_ranges_m_[i]);

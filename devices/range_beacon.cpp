@@ -37,6 +37,7 @@ void RangeBeacon::Params::read(sim::ParamReader& in) {
   in.read("beacon_only", beacon_only, "it is a beacon for others and measures nothing");
   in.read("bearing", bearing, "measure the direction in the xy-plane of the sensor too");
   in.read("elevation", elevation, "measure the direction out of that plane too");
+  read_through(in, through);
   in.read("range_max_m", range_max_m, sim::above(0), "beacons farther away are not heard");
   in.read("occlusion", occlusion, "parts of the world hide beacons");
   in.read("beacon_dropout", beacon_dropout, sim::between(0, 1), "probability that a beacon is missed, for each anew");
@@ -88,7 +89,7 @@ void RangeBeacon::look_at(const sim::SenseContext& context, const std::string& b
                           int group) {
   const sim::Vector3d p_S = context.X_WS.inverse() * p_W;
   const double range_m = p_S.norm();
-  if (range_m > params_.range_max_m) return;
+  if (range_m > params_.range_max_m || !carries(context.world.medium(), params_.through, p_W)) return;
   if (params_.occlusion && range_m > 0) {
     // A fixed beacon may stick to a wall: the last millimetre hides nothing.
     const double reach_m = std::max(0.0, range_m - 1e-3);
@@ -107,6 +108,7 @@ void RangeBeacon::measure(const sim::SenseContext& context) {
   now_s_ = sim::to_seconds(context.now);
   sightings_.clear();
   if (params_.beacon_only) return;
+  if (!carries(context.world.medium(), params_.through, context.X_WS.translation())) return;
   for (const FixedBeacon& beacon : params_.beacons) look_at(context, beacon.name, beacon.position_m, -1);
   for (const RangeBeacon* other : network_.members()) {
     if (&other->vehicle_ == &vehicle_ || other->params_.network != params_.network || !other->answers()) continue;

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "devices/signal_carrier.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/random/noise.hpp"
 
@@ -25,6 +26,7 @@ class RangeBeacon final : public sim::Sensor {
     bool beacon_only = false;  ///< it is a beacon for others and measures nothing
     bool bearing = false;
     bool elevation = false;
+    SignalCarrier through = SignalCarrier::radio;
     double range_max_m = 100;
     bool occlusion = true;
     double beacon_dropout = 0;

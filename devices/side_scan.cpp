@@ -60,7 +60,7 @@ void SideScan::make_rays() {
 
 void SideScan::measure(const sim::SenseContext& context) {
   receiver_.cast(context.world.scene(), context.X_WS, rays_S_);
-  bins_.clear();
+  bins_.begin(receiver_);
   for (std::size_t i = 0; i < rays_S_.size(); ++i) {
     const SonarEcho echo = receiver_.echo(i, rays_S_[i]);
     if (echo.power_uPa2 > 0)

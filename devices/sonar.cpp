@@ -64,7 +64,7 @@ void RangeSonar::measure(const sim::SenseContext& context) {
   for (std::size_t from = 0; from < echoes_.size() && !valid_; ++from) {
     double power_uPa2 = 0;
     for (std::size_t i = from; i < echoes_.size(); ++i) {
-      if (echoes_[i].range_m > echoes_[from].range_m + params_.sonar.pulse_m()) break;
+      if (echoes_[i].range_m > echoes_[from].range_m + receiver_.pulse_m()) break;
       power_uPa2 += echoes_[i].power_uPa2;
     }
     if (power_uPa2 < threshold_uPa2) continue;
@@ -76,6 +76,7 @@ void RangeSonar::measure(const sim::SenseContext& context) {
 
 void RangeSonar::disturb(double dt_s, sim::Random& random) {
   const double truth_m = range_m_;
+  if (valid_) range_m_ *= receiver_.range_scale();
   if (params_.sonar.speckle) strength_dB_ += 10 * std::log10(speckle_power(random));
   strength_noise_.apply(strength_dB_, dt_s, random);
   noise_.apply(range_m_, dt_s, random);

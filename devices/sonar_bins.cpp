@@ -41,7 +41,6 @@ void SonarBins::change(const SonarPictureParams& params, const SonarParams& sona
   beams_ = beams;
   range_min_m_ = sonar.range_min_m;
   range_max_m_ = sonar.range_max_m;
-  pulse_m_ = sonar.pulse_m();
   const auto size = static_cast<std::size_t>(beams) * static_cast<std::size_t>(params.bins);
   power_uPa2_.assign(size, 0);
   levels_dB_.assign(size, silence_dB);
@@ -49,15 +48,17 @@ void SonarBins::change(const SonarPictureParams& params, const SonarParams& sona
   gains_dB_.assign(static_cast<std::size_t>(params.bins), 0);
 }
 
-void SonarBins::clear() {
+void SonarBins::begin(const SonarReceiver& receiver) {
   std::fill(power_uPa2_.begin(), power_uPa2_.end(), 0.0);
+  range_scale_ = receiver.range_scale();
+  pulse_m_ = receiver.pulse_m() * range_scale_;
 }
 
 void SonarBins::add(const SonarEcho& echo, double extent_m, int beam) {
   if (!(echo.power_uPa2 > 0)) return;
   const double bin_m = (range_max_m_ - range_min_m_) / params_.bins;
-  const double width = std::max(extent_m, pulse_m_) / bin_m;
-  const double from = (echo.range_m - range_min_m_) / bin_m - width / 2, to = from + width;
+  const double width = std::max(extent_m * range_scale_, pulse_m_) / bin_m;
+  const double from = (echo.range_m * range_scale_ - range_min_m_) / bin_m - width / 2, to = from + width;
   // A grazed patch can reach over more bins than an int counts.
   const int first = static_cast<int>(std::clamp(std::floor(from), 0.0, static_cast<double>(params_.bins)));
   const int last = static_cast<int>(std::clamp(std::floor(to), -1.0, params_.bins - 1.0));

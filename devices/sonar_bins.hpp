@@ -25,7 +25,8 @@ class SonarBins {
   SonarBins(const SonarPictureParams& params, const sim::DeviceContext& context);
   void change(const SonarPictureParams& params, const SonarParams& sonar, int beams);
 
-  void clear();
+  /// Before the echoes of a ping: `receiver` has cast its rays.
+  void begin(const SonarReceiver& receiver);
   /// Adds an echo that comes from `extent_m` of range about the echo's own, evenly; at least from a pulse's length.
   void add(const SonarEcho& echo, double extent_m, int beam);
   /// Levels and pixels from the power: without errors.
@@ -46,7 +47,7 @@ class SonarBins {
   sim::Noise level_noise_;
   bool speckle_ = true;
   int beams_ = 0;
-  double range_min_m_ = 0, range_max_m_ = 0, pulse_m_ = 0;
+  double range_min_m_ = 0, range_max_m_ = 0, pulse_m_ = 0, range_scale_ = 1;
   std::vector<double> power_uPa2_, levels_dB_;
   std::vector<double> gains_dB_;  ///< of each bin
   std::vector<std::uint8_t> pixels_;

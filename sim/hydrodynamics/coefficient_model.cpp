@@ -1,5 +1,7 @@
 #include "sim/hydrodynamics/coefficient_model.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -69,13 +71,69 @@ CoefficientModel::CoefficientModel(const HydrodynamicsConfig& config, double gra
   mass_inverse_ = mass_.inverse();
   weight_N_ = config.weight_N.value_or(m * gravity_mps2);
   const double any_density = 1025;
+  // Below 0: of its volume, in whatever water there is.
   buoyancy_N_ = config.buoyancy_N ? *config.buoyancy_N : config.volume_m3 ? -1 : weight_N_;
   const double volume = config.volume_m3.value_or(m / any_density);
   height_m_ = config.hull_height_m.value_or(2 * std::cbrt(volume * 3 / (4 * std::numbers::pi)));
-  linear_diagonal_ = config.linear_damping.diagonal();
-  quadratic_diagonal_ = config.quadratic_damping.diagonal();
-  diagonal_damping_ = config.linear_damping.isDiagonal(0) && config.quadratic_damping.isDiagonal(0);
+  fold_derivatives();
+  linear_diagonal_ = config_.linear_damping.diagonal();
+  quadratic_diagonal_ = config_.quadratic_damping.diagonal();
+  diagonal_damping_ = config_.linear_damping.isDiagonal(0) && config_.quadratic_damping.isDiagonal(0);
+  find_rates();
   added_mass_is_diagonal_ = config.added_mass.isDiagonal(0);
+  const PublishedQuirks& quirks = config.quirks;
+  coriolis_ = quirks.added_mass_coriolis == "full"           ? Coriolis::full
+              : quirks.added_mass_coriolis == "without_munk" ? Coriolis::without_munk
+                                                             : Coriolis::none;
+  current_by_yaw_only_ = quirks.current == "yaw_only";
+  fade_by_speed_in_water_ = quirks.fade_speed == "water";
+}
+
+/// Terms such as X_u and X_uu are damping.
+void CoefficientModel::fold_derivatives() {
+  std::erase_if(config_.derivatives, [&](const DerivativeTerm& term) {
+    if (term.row != term.first) return false;
+    const bool linear = term.second < 0, quadratic = term.second == term.first && term.absolute;
+    if (linear) config_.linear_damping(term.row, term.row) -= term.coefficient;
+    if (quadratic) config_.quadratic_damping(term.row, term.row) -= term.coefficient;
+    return linear || quadratic;
+  });
+}
+
+void CoefficientModel::find_rates() {
+  const Vector6d mass = mass_.diagonal();
+  linear_rate_ = linear_diagonal_.cwiseQuotient(mass);
+  Vector6d quadratic = quadratic_diagonal_;
+  if (config_.cross_flow) {
+    const CrossFlowConfig& hull = *config_.cross_flow;
+    double most = 0;
+    for (std::size_t i = hull.drag_coefficient.size() > 1 ? 1 : 0; i < hull.drag_coefficient.size(); i += 2)
+      most = std::max(most, hull.drag_coefficient[i]);
+    const double any_density = 1025, L = hull.length_m;
+    const double drag = 0.5 * hull.density_kgpm3.value_or(any_density) * hull.height_m * most;
+    for (const int across : {1, 2}) quadratic[across] += drag * L;
+    // The integral of |x|^3 over the hull.
+    for (const int turning : {4, 5}) quadratic[turning] += drag * L * L * L * L / 32;
+  }
+  quadratic_rate_ = quadratic.cwiseQuotient(mass);
+}
+
+CoefficientModel::StepLimit CoefficientModel::longest_step() const {
+  const double damping = (mass_inverse_ * config_.linear_damping).eval().eigenvalues().cwiseAbs().maxCoeff();
+  Matrix6d stiffness = Matrix6d::Zero();
+  if (config_.waterline) {
+    const WaterlineConfig& plane = *config_.waterline;
+    stiffness.diagonal() << 0, 0, plane.heave_Npm, plane.roll_Nmprad, plane.pitch_Nmprad, 0;
+    stiffness(2, 4) = stiffness(4, 2) = plane.heave_pitch_N;
+  } else {
+    const double upright = weight_N_ * config_.center_of_mass_m.z() -
+                           (buoyancy_N_ < 0 ? weight_N_ : buoyancy_N_) * config_.center_of_buoyancy_m.z();
+    stiffness(3, 3) = stiffness(4, 4) = std::abs(upright);
+  }
+  // A spring is followed by a semi-implicit step while h omega < 2.
+  const double restoring = std::sqrt((mass_inverse_ * stiffness).eval().eigenvalues().cwiseAbs().maxCoeff());
+  const double fastest = std::max(damping, restoring);
+  return {fastest > 0 ? 2 / fastest : 1e9, damping >= restoring ? "forces of linear damping" : "restoring forces"};
 }
 
 double CoefficientModel::immersed(const CraftState& state) const {
@@ -94,7 +152,7 @@ Vector6d CoefficientModel::acceleration(const CraftState& state, const Vector6d&
   const Vector3d w = state.nu.tail<3>();
   Vector3d v_c = state.v_water;
   Vector3d v_c_dot;
-  if (config_.quirks.current == "yaw_only")
+  if (current_by_yaw_only_)
     v_c_dot = Vector3d(w.z() * v_c.y(), -w.z() * v_c.x(), 0);
   else
     v_c_dot = -w.cross(v_c);
@@ -110,21 +168,22 @@ Vector6d CoefficientModel::acceleration(const CraftState& state, const Vector6d&
   const Vector3d f = m * w.cross(v_r + w.cross(r_g));
   total.head<3>() -= f;
   total.tail<3>() -= w.cross(config_.inertia_kgm2 * w) + r_g.cross(f);
-  // Added mass: Kirchhoff's equations.
+  // Added mass: Kirchhoff's equations.  It goes as the craft leaves the water.
+  const double share = immersed(state);
   const Matrix6d& A = config_.added_mass;
   Vector3d a, b;
   if (added_mass_is_diagonal_) {
-    a = A.diagonal().head<3>().cwiseProduct(v_r);
-    b = A.diagonal().tail<3>().cwiseProduct(w);
+    a = share * A.diagonal().head<3>().cwiseProduct(v_r);
+    b = share * A.diagonal().tail<3>().cwiseProduct(w);
   } else {
-    const Vector6d momentum = A * nu_r;
+    const Vector6d momentum = share * (A * nu_r);
     a = momentum.head<3>();
     b = momentum.tail<3>();
   }
-  if (config_.quirks.munk_moment) {
+  if (coriolis_ == Coriolis::full) {
     total.head<3>() -= w.cross(a);
     total.tail<3>() -= v_r.cross(a) + w.cross(b);
-  } else {
+  } else if (coriolis_ == Coriolis::without_munk) {
     total[1] += a.z() * w.x();
     total[2] -= a.y() * w.x();
     total.tail<3>() -= w.cross(b);
@@ -134,12 +193,16 @@ Vector6d CoefficientModel::acceleration(const CraftState& state, const Vector6d&
     // Water that accelerates carries along what it would have filled (Froude-Krylov) and the added mass.
     Vector6d accelerated = Vector6d::Zero();
     accelerated.head<3>() = state.a_water;
-    total += immersed(state) * (config_.added_mass * accelerated);
-    const Vector3d displaced = weight_N_ / gravity_mps2_ * immersed(state) * state.a_water;
+    total += share * (config_.added_mass * accelerated);
+    const Vector3d displaced = weight_N_ / gravity_mps2_ * share * state.a_water;
     total.head<3>() += displaced;
     total.tail<3>() += config_.center_of_buoyancy_m.cross(displaced);
   }
-  Vector6d nu_dot = mass_inverse_ * total;
+  Vector6d nu_dot;
+  if (share == 1)
+    nu_dot = mass_inverse_ * total;
+  else
+    nu_dot = (mass_ - (1 - share) * A).llt().solve(total);
   nu_dot.head<3>() += v_c_dot;
   return nu_dot;
 }
@@ -161,9 +224,8 @@ Vector6d CoefficientModel::damping(const CraftState& state, const Vector6d& nu_r
   }
   const PublishedQuirks& quirks = config_.quirks;
   if (quirks.surge_damping_fade_spm > 0) {
-    const double speed = quirks.fade_speed == "water"
-                             ? nu_r.head<3>().norm()
-                             : std::sqrt(std::max(0.0, state.nu[0] + state.nu[1] * state.nu[1]));
+    const double speed = fade_by_speed_in_water_ ? nu_r.head<3>().norm()
+                                                 : std::sqrt(std::max(0.0, state.nu[0] + state.nu[1] * state.nu[1]));
     tau[0] += config_.linear_damping(0, 0) * nu_r[0] * (1 - std::exp(-quirks.surge_damping_fade_spm * speed));
   }
   for (const DerivativeTerm& term : config_.derivatives) {
@@ -189,7 +251,8 @@ double CoefficientModel::cross_flow_drag(double speed) const {
 
 void CoefficientModel::add_cross_flow(const Vector6d& nu_r, double density, Vector6d& tau) const {
   const CrossFlowConfig& hull = *config_.cross_flow;
-  const double scale = -0.5 * density * hull.height_m * cross_flow_drag(std::hypot(nu_r[1], nu_r[2]));
+  const double scale =
+      -0.5 * density * hull.height_m * cross_flow_drag(std::sqrt(nu_r[1] * nu_r[1] + nu_r[2] * nu_r[2]));
   const double half = hull.length_m / 2;
   const auto strips = [&](double v, double r) {
     return hull.strips == 0 ? integrate_strips(v, r, half) : add_up_strips(v, r, half, hull.strips);
@@ -204,7 +267,7 @@ void CoefficientModel::add_cross_flow(const Vector6d& nu_r, double density, Vect
 void CoefficientModel::add_hull_lift(const Vector6d& nu_r, double density, Vector6d& tau) const {
   const HullLiftConfig& hull = *config_.hull_lift;
   const double u = nu_r[0], w = nu_r[2];
-  const double square = nu_r.head<3>().squaredNorm(), in_plane = std::hypot(u, w);
+  const double square = nu_r.head<3>().squaredNorm(), in_plane = std::sqrt(u * u + w * w);
   if (in_plane < 1e-12) return;
   const double pressure = 0.5 * density * square * hull.area_m2;
   const double C_L = hull.lift_slope * std::atan2(w, u);
@@ -221,17 +284,23 @@ void CoefficientModel::add_restoring(const CraftState& state, Vector6d& tau) con
     const double roll = std::atan2(state.down.y(), state.down.z()) - state.surface_roll_rad;
     const double pitch = std::asin(std::clamp(-state.down.x(), -1.0, 1.0)) - state.surface_pitch_rad;
     const double weight = config_.mass_kg * gravity_mps2_;
-    // Out of the water nothing but its weight pulls it down.
+    // The springs hold while it floats.  Out of the water nothing but its weight pulls it down.
+    const double share = immersed(state);
     const double heave = std::max(state.depth_m, -weight / plane.heave_Npm);
-    tau[2] -= plane.heave_Npm * heave + plane.heave_pitch_N * pitch;
-    tau[3] -= plane.roll_Nmprad * roll;
-    tau[4] -= plane.pitch_Nmprad * pitch + plane.heave_pitch_N * heave;
+    tau[2] -= share * (plane.heave_Npm * heave + plane.heave_pitch_N * pitch);
+    tau[3] -= share * (plane.roll_Nmprad * roll);
+    tau[4] -= share * (plane.pitch_Nmprad * pitch + plane.heave_pitch_N * heave);
     if (plane.load_kg > 0) {
-      const Vector3d load = plane.load_kg * gravity_mps2_ * state.down;
+      const Vector3d load = share * plane.load_kg * gravity_mps2_ * state.down;
       const Vector3d moment = plane.load_at_m.cross(load);
       tau[2] += load.z();
       tau[3] += moment.x();
       tau[4] += moment.y();
+    }
+    if (share < 1) {
+      const Vector3d falling = (1 - share) * weight * state.down;
+      tau.head<3>() += falling;
+      tau.tail<3>() += config_.center_of_mass_m.cross(falling);
     }
     return;
   }

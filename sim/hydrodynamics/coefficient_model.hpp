@@ -39,15 +39,31 @@ class CoefficientModel {
   const Matrix6d& mass() const { return mass_; }  ///< rigid and added
   double weight_N() const { return weight_N_; }
   double buoyancy_N() const { return buoyancy_N_; }
+
+  /// The longest step that follows damping and restoring forces (2 over the fastest rate), and what needs it.
+  struct StepLimit {
+    double step_s;
+    const char* why;
+  };
+  StepLimit longest_step() const;
+  /// True when drag that grows with speed is too stiff for a step of `step_s` at this velocity in the water: the speed
+  /// would change its sign in a step and grow.
+  bool too_fast_for_step(const Vector6d& nu_r, double step_s) const {
+    return ((linear_rate_ + quadratic_rate_.cwiseProduct(nu_r.cwiseAbs())) * step_s).maxCoeff() > 2;
+  }
+
   /// Share of the hull under water, 0 to 1.
   double immersed(const CraftState& state) const;
 
  private:
+  enum class Coriolis { full, without_munk, none };
   Vector6d damping(const CraftState& state, const Vector6d& nu_r) const;
   void add_cross_flow(const Vector6d& nu_r, double density, Vector6d& tau) const;
   void add_hull_lift(const Vector6d& nu_r, double density, Vector6d& tau) const;
   void add_restoring(const CraftState& state, Vector6d& tau) const;
   double cross_flow_drag(double speed) const;
+  void fold_derivatives();
+  void find_rates();
 
   HydrodynamicsConfig config_;
   double gravity_mps2_;
@@ -56,8 +72,11 @@ class CoefficientModel {
   Matrix3d inertia_O_;  ///< about the origin
   double weight_N_, buoyancy_N_, height_m_;
   Vector6d linear_diagonal_, quadratic_diagonal_;
+  Vector6d linear_rate_, quadratic_rate_;  // damping over mass, axis by axis
   bool diagonal_damping_;
   bool added_mass_is_diagonal_;
+  Coriolis coriolis_;
+  bool current_by_yaw_only_, fade_by_speed_in_water_;
 };
 
 }  // namespace sim

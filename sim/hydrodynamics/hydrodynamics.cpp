@@ -1,11 +1,15 @@
 #include "sim/hydrodynamics/hydrodynamics.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/hydrodynamics/hydrodynamics_checks.hpp"
+#include "sim/physics/physics_world.hpp"
 
 namespace sim {
 
@@ -16,49 +20,82 @@ Vector3d flipped(const Vector3d& v) {
   return {v.x(), -v.y(), -v.z()};
 }
 
+/// Throws PhysicsFault when the drag would throw the body about, and more so with every step.
+void check_speed(const Body& body, const CoefficientModel& model, const CraftState& state, double step_s) {
+  Vector6d nu_r = state.nu;
+  nu_r.head<3>() -= state.v_water;
+  if (model.too_fast_for_step(nu_r, step_s) && model.immersed(state) > 0) [[unlikely]]
+    throw PhysicsFault("body '" + body.name() + "': its drag at " + number_text(nu_r.head<3>().norm()) + " m/s and " +
+                       number_text(nu_r.tail<3>().norm()) + " rad/s is too stiff for 'step_s' " + number_text(step_s));
+}
+
 }  // namespace
 
 Hydrodynamics::Hydrodynamics(const Medium& medium, double gravity_mps2, double step_s)
-    : medium_(medium), gravity_mps2_(gravity_mps2), step_s_(step_s) {}
+    : medium_(medium), gravity_mps2_(gravity_mps2), step_s_(step_s), floaters_(medium, step_s) {}
 
 void Hydrodynamics::add_body(Body& body, const BodyConfig& config) {
-  if (!medium_.has_water() || !config.hydrodynamics || config.hydrodynamics->model == "none") return;
-  std::weak_ptr<const CoefficientModel>& known = models_[&*config.hydrodynamics];
+  if (!medium_.has_water()) return;
+  double radius_m = std::numeric_limits<double>::infinity();
+  if (config.hydrodynamics) {
+    if (config.hydrodynamics->model == "none") return;
+    add_craft(body, *config.hydrodynamics);
+  } else {
+    radius_m = floaters_.add(body, config, gravity_mps2_, warnings_);
+    if (radius_m == 0) return;
+  }
+  wetted_.push_back({&body, radius_m});
+  if (water_.size() <= static_cast<std::size_t>(body.number()))
+    water_.resize(static_cast<std::size_t>(body.number()) + 1);
+  water_[static_cast<std::size_t>(body.number())] = medium_.water_at(body.X_WB().translation());
+}
+
+void Hydrodynamics::add_craft(Body& body, const HydrodynamicsConfig& config) {
+  std::weak_ptr<const CoefficientModel>& known = models_[&config];
   std::shared_ptr<const CoefficientModel> model = known.lock();
   if (!model) {
-    model = std::make_shared<CoefficientModel>(*config.hydrodynamics, gravity_mps2_);
-    check_step(*model, *config.hydrodynamics, "body '" + body.name() + "'");
+    model = std::make_shared<CoefficientModel>(config, gravity_mps2_);
+    check_step(*model, config, "body '" + body.name() + "'");
     known = model;
   }
   // Weight and gyroscopic torque are part of the model.
   body.set_gravity(false);
   body.set_gyroscopic(false);
   crafts_.push_back({&body, std::move(model)});
-  immersed_.push_back(&body);
-  if (water_.size() <= static_cast<std::size_t>(body.number()))
-    water_.resize(static_cast<std::size_t>(body.number()) + 1);
-  water_[static_cast<std::size_t>(body.number())] = medium_.water_at(body.X_WB().translation());
 }
 
 void Hydrodynamics::check_step(const CoefficientModel& model, const HydrodynamicsConfig& config,
                                const std::string& who) const {
-  // An explicit step follows a decay of rate d only while h d < 2.
-  const Matrix6d rates = model.mass().inverse() * config.linear_damping;
-  const double fastest = rates.eigenvalues().cwiseAbs().maxCoeff();
-  if (fastest * step_s_ > 2)
+  const CoefficientModel::StepLimit limit = model.longest_step();
+  if (limit.step_s < step_s_)
     throw_config_error(config.place, who,
-                       "'linear_damping' is too stiff for 'step_s' " + number_text(step_s_) +
-                           ": it needs a step below " + number_text(2 / fastest) + " s");
+                       std::string("the ") + limit.why + " are too stiff for 'step_s' " + number_text(step_s_) +
+                           ": they need a step below " + number_text(limit.step_s) + " s");
+  for (const std::string& doubt : doubts_about(config, who)) spdlog::warn("{}", doubt);
 }
 
 void Hydrodynamics::remove_group(int group) {
   std::erase_if(crafts_, [&](const CoefficientBody& craft) { return craft.body->group() == group; });
-  std::erase_if(immersed_, [&](const Body* body) { return body->group() == group; });
+  floaters_.remove_group(group);
+  std::erase_if(wetted_, [&](const Wetted& wetted) { return wetted.body->group() == group; });
 }
 
 void Hydrodynamics::begin_step() {
-  for (const Body* body : immersed_)
-    water_[static_cast<std::size_t>(body->number())] = medium_.water_at(body->X_WB().translation());
+  const double highest_m = medium_.highest_surface_m();
+  for (Wetted& wetted : wetted_) {
+    const Vector3d p_WB = wetted.body->X_WB().translation();
+    LocalWater& water = water_[static_cast<std::size_t>(wetted.body->number())];
+    if (p_WB.z() - wetted.radius_m > highest_m) {
+      water.surface_m = highest_m;
+      continue;
+    }
+    water = medium_.water_at(p_WB);
+    if (wetted.left_the_current || medium_.current_known(p_WB)) continue;
+    wetted.left_the_current = true;
+    if (complain_)
+      complain_("body '" + wetted.body->name() + "'",
+                "has left the file of the current at " + number_text(p_WB.x()) + ", " + number_text(p_WB.y()));
+  }
 }
 
 const LocalWater& Hydrodynamics::water_at(const Body& body) const {
@@ -102,11 +139,17 @@ CraftState Hydrodynamics::state_of(const CoefficientBody& craft) const {
   return state;
 }
 
-void Hydrodynamics::step() {
+void Hydrodynamics::step(double gravity_mps2) {
+  step_crafts();
+  floaters_.step(gravity_mps2, water_);
+}
+
+void Hydrodynamics::step_crafts() {
   for (const CoefficientBody& craft : crafts_) {
     Body& body = *craft.body;
     const CoefficientModel& model = *craft.model;
     const CraftState state = state_of(craft);
+    check_speed(body, model, state, step_s_);
     const Matrix3d R_WB = body.X_WB().linear();
     const Vector3d force = flipped(R_WB.transpose() * body.applied_force_W());
     Vector6d tau;

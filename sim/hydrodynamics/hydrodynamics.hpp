@@ -1,11 +1,14 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/hydrodynamics/coefficient_model.hpp"
+#include "sim/hydrodynamics/immersed_bodies.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/physics/body.hpp"
 #include "sim/physics/physics_config.hpp"
@@ -27,13 +30,25 @@ class Hydrodynamics {
   /// The water at a body's origin in this step.
   const LocalWater& water_at(const Body& body) const;
   /// Adds what the water does to the forces that actuators have put on the bodies in this step.
-  void step();
+  void step(double gravity_mps2);
+  /// Whom to tell, in a step, what goes wrong: who and what.
+  using Complain = std::function<void(const std::string& who, const std::string& text)>;
+  void set_complain(Complain complain) { complain_ = std::move(complain); }
+  /// What was found about bodies since the last call; each is one line.
+  std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
  private:
   struct CoefficientBody {
     Body* body;
     std::shared_ptr<const CoefficientModel> model;
   };
+  struct Wetted {
+    Body* body;
+    double radius_m;                // about its origin: higher over the highest crest the water does not concern it
+    bool left_the_current = false;  // was said
+  };
+  void add_craft(Body& body, const HydrodynamicsConfig& config);
+  void step_crafts();
   CraftState state_of(const CoefficientBody& craft) const;
   void check_step(const CoefficientModel& model, const HydrodynamicsConfig& config, const std::string& who) const;
 
@@ -41,8 +56,11 @@ class Hydrodynamics {
   double gravity_mps2_;
   double step_s_;
   std::vector<CoefficientBody> crafts_;  // in the order in which they came
+  ImmersedBodies floaters_;              // bodies without coefficients
   std::vector<LocalWater> water_;        // by body number
-  std::vector<Body*> immersed_;          // bodies whose water begin_step() looks at
+  std::vector<Wetted> wetted_;           // bodies whose water begin_step() looks at
+  std::vector<std::string> warnings_;
+  Complain complain_;
   // Vehicles that are alike share a model.
   std::map<const HydrodynamicsConfig*, std::weak_ptr<const CoefficientModel>> models_;
 };

@@ -1,10 +1,12 @@
 #include "sim/hydrodynamics/hydrodynamics_config.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 
 #include "sim/config/message_text.hpp"
+#include "sim/hydrodynamics/hydrodynamics_checks.hpp"
+#include "sim/hydrodynamics/spheroid.hpp"
 
 namespace sim {
 
@@ -34,6 +36,21 @@ void read_matrix(ParamReader& in, const char* key, Eigen::Matrix<double, n, n>& 
                       std::to_string(n * n) + " (row by row), got " + std::to_string(values.size()));
   }
 }
+
+/// `added_mass_of_spheroid:`
+struct SpheroidConfig {
+  double half_length_m = 1, radius_m = 0.1, density_kgpm3 = 1025;
+  void read(ParamReader& in) {
+    in.require("half_length_m");
+    in.read("half_length_m", half_length_m, above_to(0, 1000), "half the length of the hull");
+    in.require("radius_m");
+    in.read("radius_m", radius_m, above_to(0, 1000), "of the hull, at most half its length");
+    in.read("density_kgpm3", density_kgpm3, above(0), "of the water");
+    if (half_length_m < radius_m)
+      in.error("radius_m", "'radius_m' must be <= 'half_length_m' " + number_text(half_length_m) + ", got " +
+                               number_text(radius_m));
+  }
+};
 
 /// Reads `X_uu`, `Y_uv`, `N_|v|r`, `M_qdot`.  False: the name is none of these.  `second` -2: an acceleration.
 bool parse_derivative(std::string_view name, DerivativeTerm& term) {
@@ -107,7 +124,9 @@ void WaterlineConfig::read(ParamReader& in) {
 }
 
 void PublishedQuirks::read(ParamReader& in) {
-  in.read("munk_moment", munk_moment, "false: the added mass couples sway and heave with no turning, as MSS remus100");
+  in.read_choice(
+      "added_mass_coriolis", added_mass_coriolis, {"full", "without_munk", "none"},
+      "without_munk: added mass couples sway and heave with no turning, as MSS remus100; none: to see the difference");
   in.read_choice("current", current, {"full", "yaw_only"},
                  "yaw_only: the current is turned into the body by its yaw alone, as MSS does");
   in.read("surge_damping_fade_spm", surge_damping_fade_spm, at_least(0),
@@ -135,6 +154,12 @@ void HydrodynamicsConfig::read(ParamReader& in) {
   in.read("hull_height_m", hull_height_m, above(0), "over which it emerges; absent: of a ball of its volume");
   in.read("hull_length_m", hull_length_m, at_least(0), "over which it emerges when it stands upright");
   read_matrix<6>(in, "added_mass", added_mass, "6 numbers (diagonal) or 36, row by row; positive as mass");
+  std::optional<SpheroidConfig> spheroid;
+  in.read("added_mass_of_spheroid", spheroid, "instead of added_mass: that of a spheroid about the origin");
+  if (spheroid && in.has("added_mass"))
+    in.error("added_mass_of_spheroid", "only one of 'added_mass' and 'added_mass_of_spheroid'");
+  if (spheroid && spheroid->half_length_m >= spheroid->radius_m)
+    added_mass = spheroid_added_mass(spheroid->half_length_m, spheroid->radius_m, spheroid->density_kgpm3).asDiagonal();
   read_matrix<6>(in, "linear_damping", linear_damping, "6 or 36 numbers; positive brakes");
   read_matrix<6>(in, "quadratic_damping", quadratic_damping, "6 or 36 numbers, times |speed| speed; positive brakes");
   if (frame == "flu") {
@@ -186,6 +211,7 @@ void HydrodynamicsConfig::read(ParamReader& in) {
     const Vector3d& r = center_of_mass_m;
     inertia_kgm2 -= mass_kg * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
   }
+  check_coefficients(*this, in);
 }
 
 }  // namespace sim

@@ -60,7 +60,8 @@ struct WaterlineConfig {
 
 /// What some published models do and the physics does not.
 struct PublishedQuirks {
-  bool munk_moment = true;            ///< false: added mass couples no sway, heave and turning
+  /// full; without_munk: added mass couples no sway, heave and turning; none: no Coriolis forces of added mass.
+  std::string added_mass_coriolis = "full";
   std::string current = "full";       ///< full; yaw_only: the current is turned into the body by its yaw alone
   double surge_damping_fade_spm = 0;  ///< linear surge damping falls with exp(-this * speed)
   std::string fade_speed = "water";   ///< water; ground: sqrt(u + v^2) over ground, as MSS has it

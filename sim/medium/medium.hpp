@@ -44,6 +44,8 @@ class Medium {
   double surface_m(double x_m, double y_m) const;
   /// The same at any time.
   double surface_m(double x_m, double y_m, Time at) const;
+  /// The surface is nowhere higher now.
+  double highest_surface_m() const { return still_m_ + (waves_ ? waves_->highest_m() : 0); }
   /// Below the momentary surface, m; negative in the air, minus infinity in a world without water.
   double depth_m(const Vector3d& p_W) const { return surface_m(p_W.x(), p_W.y()) - p_W.z(); }
   bool in_water(const Vector3d& p_W) const { return depth_m(p_W) > 0; }

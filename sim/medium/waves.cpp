@@ -121,6 +121,7 @@ Waves::Waves(const WavesConfig& config, double gravity_mps2, std::uint64_t seed)
     ky_.push_back(wave.k_radpm * north * per_turn);
     k_.push_back(wave.k_radpm);
     amplitude_.push_back(wave.amplitude_m);
+    highest_m_ += std::abs(wave.amplitude_m);
     speed_.push_back(speed);
     speed_x_.push_back(speed * east);
     speed_y_.push_back(speed * north);

@@ -34,6 +34,8 @@ class Waves {
   /// `z_m` over the still surface; places over the water: as at the surface.
   WaveMotion at(double x_m, double y_m, double z_m) const;
   const std::vector<WaveComponent>& components() const { return components_; }
+  /// No crest is higher over the still surface.
+  double highest_m() const { return highest_m_; }
 
  private:
   using Column = std::vector<double>;
@@ -43,6 +45,7 @@ class Waves {
 
   std::vector<WaveComponent> components_;
   double depth_m_;  ///< infinite: deep
+  double highest_m_ = 0;
   // One number a wave, filled up with waves of no height to whole lanes.  Angles in turns.
   Column kx_, ky_, turns_, k_, amplitude_;
   Column speed_, speed_x_, speed_y_;                       ///< amplitude omega, and its parts, m/s

@@ -72,6 +72,8 @@ void check_keys_of_shape(ParamReader& in, const std::string& shape) {
   only_for("scale", {"mesh"});
   only_for("terrain", {"terrain"});
   only_for("mass_kg", {"box", "sphere", "capsule", "cylinder", "mesh"});
+  for (const char* key : {"displaces", "drag_coefficient", "added_mass_coefficient"})
+    only_for(key, {"box", "sphere", "capsule", "cylinder", "mesh"});
   only_for("density_kgpm3", {"box", "sphere", "capsule", "cylinder", "mesh"});
 }
 
@@ -100,12 +102,25 @@ void PartConfig::read(ParamReader& in) {
   in.read_references("collides_with", collides_with, "category",
                      "categories it collides with, if they want to as well; none: all");
   in.read("color", color, "color in pictures and viewers, #rrggbb; none: the material's");
+  read_water_keys(in);
   if (in.describing()) return;
   check_keys_of_shape(in, shape);
   if (mass_kg && density_kgpm3) in.error("density_kgpm3", "give 'mass_kg' or 'density_kgpm3', not both");
   if (shape == "mesh" && mesh.empty()) in.error("a part of shape mesh needs the key 'mesh'");
   if (shape == "terrain" && !terrain) in.error("a part of shape terrain needs the key 'terrain'");
   if (!color.empty() && !parse_color(color)) in.error("color", "'color' must look like #rrggbb, got '" + color + "'");
+}
+
+void PartConfig::read_water_keys(ParamReader& in) {
+  if (!in.describing()) displaces_was_given = in.has("displaces");
+  in.read("displaces", displaces, "water lifts and brakes the part; false: hollow, or there for the looks");
+  in.read("drag_coefficient", drag_coefficient, at_least(0),
+          "in water, by projected area: one number, or three along x, y and z of the part; none: that of the shape");
+  in.read("added_mass_coefficient", added_mass_coefficient, between(0, 100),
+          "in water: added mass over the mass of the water displaced");
+  if (drag_coefficient.size() > 3 || drag_coefficient.size() == 2)
+    in.error("drag_coefficient",
+             "'drag_coefficient' must be one number or three, got " + std::to_string(drag_coefficient.size()));
 }
 
 void BodyConfig::read(ParamReader& in) {

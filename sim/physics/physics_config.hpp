@@ -67,11 +67,19 @@ struct PartConfig {
   std::string category = "solid";
   std::vector<std::string> collides_with;  ///< categories; empty: all.  A plane with normal +z of its frame.
   std::string color;                       ///< in pictures and viewers: #rrggbb; empty: the material's
+  // In water, for a free body without coefficients of its own.
+  bool displaces = true;                 ///< a solid that water lifts and brakes
+  bool displaces_was_given = false;      ///< `displaces` is written
+  std::vector<double> drag_coefficient;  ///< one, or along x, y and z of the part; empty: that of the shape
+  double added_mass_coefficient = 0;     ///< added mass over the mass of the water displaced
 
   SourcePlace place;      ///< where the part was written, for errors found while building
   std::string directory;  ///< of the YAML file, where mesh files are looked up
 
   void read(ParamReader& in);
+
+ private:
+  void read_water_keys(ParamReader& in);
 };
 
 /// Parts that move as one.

@@ -1,5 +1,7 @@
 #include "sim/world/load_world.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <set>
@@ -146,6 +148,18 @@ void make_paths_absolute(ConfigNode& node, bool of_terrain = false) {
   }
 }
 
+/// Says once that coefficients do nothing here.
+void warn_of_missing_water(const WorldConfig& world) {
+  if (world.medium.water) return;
+  for (const VehicleInstance& vehicle : world.vehicles)
+    for (const BodyConfig& body : vehicle.config->bodies)
+      if (body.hydrodynamics && body.hydrodynamics->model == "coefficients") {
+        spdlog::warn("vehicle '{}' has hydrodynamics, but the world has no 'medium: water:', so it falls like a stone",
+                     vehicle.name);
+        return;
+      }
+}
+
 LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& options, Diagnostics& diagnostics) {
   diagnostics.throw_if_any();
   LoadedWorld loaded;
@@ -168,6 +182,7 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   gather_from_vehicles(loaded.config);
   check_script(loaded.config, diagnostics);
   diagnostics.throw_if_any();
+  warn_of_missing_water(loaded.config);
   vehicles.resolve(root);
   make_paths_absolute(root);
   if (options.seed) {

@@ -6,6 +6,7 @@
 
 #include "sim/config/message_text.hpp"
 #include "sim/script/script.hpp"
+#include "sim/world/bottom_check.hpp"
 
 namespace sim {
 
@@ -23,12 +24,15 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
                                               static_cast<std::uint64_t>(config.run.seed))),
       medium_(config.medium, config.physics.gravity_mps2, static_cast<std::uint64_t>(config.run.seed)),
       hydrodynamics_(medium_, config.physics.gravity_mps2, config.physics.step_s) {
+  hydrodynamics_.set_complain([this](const std::string& who, const std::string& text) { complain(who, text); });
   known_materials_.insert("default");
   for (const MaterialConfig& material : config.materials) known_materials_.insert(material.name);
   known_contacts_ = config.contacts;
   add_objects();
   for (const VehicleInstance& instance : config.vehicles) build_vehicle(instance);
   for (const std::string& warning : physics_->ground_warnings()) spdlog::warn("{}", warning);
+  for (const std::string& warning : hydrodynamics_.take_warnings()) spdlog::warn("{}", warning);
+  for (const std::string& warning : bottom_warnings(*this)) spdlog::warn("{}", warning);
   sort_devices();
   script_ = std::make_unique<Script>(*this);
 }
@@ -138,7 +142,7 @@ void World::step() {
       listening.device->take_mail(now(), step_number_);
   hydrodynamics_.begin_step();
   for (MountedDevice* device : acting_) device->act(now(), step_s_);
-  hydrodynamics_.step();
+  hydrodynamics_.step(physics_->gravity_mps2());
   script_->step();
   physics_->step(step_number_);
   ++step_number_;

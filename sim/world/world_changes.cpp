@@ -1,3 +1,5 @@
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -116,6 +118,7 @@ const Vehicle& World::add_vehicle(const VehicleInstance& instance) {
       known_contacts_.push_back(contact);
   Vehicle& vehicle = build_vehicle(instance);
   check_place_is_free(vehicle, instance.place);
+  for (const std::string& warning : hydrodynamics_.take_warnings()) spdlog::warn("{}", warning);
   sort_devices();
   return vehicle;
 }

@@ -1,5 +1,5 @@
 #include "shoal/gps_data_t.hpp"
-#include "tests/devices/world_fixture.hpp"
+#include "tests/devices/immersed_sensor_fixture.hpp"
 
 namespace {
 
@@ -32,6 +32,21 @@ TEST(Gps, HasNoFixBelowItsLeastHeight) {
   EXPECT_EQ(fix.gps_lock, 0);
   EXPECT_EQ(fix.numSatellites, 0);
   EXPECT_TRUE(std::isnan(fix.latitude));
+}
+
+TEST(Gps, IsLostUnderWaterAndComesBackAfterItsTime) {
+  test::TestWorld test(test::marine_world("type: gps, reacquisition_s: 0.5", "[0, 0, -0.25]"));
+  test::Listener<shoal::gps_data_t> fixes(test, "r1.s");
+  test::set_velocity(test, {0, 0, 1});  // out of the water after 0.25 s
+  test.run_for(1.5);
+  int without = 0, with = 0;
+  for (const auto& fix : fixes.take_all()) {
+    fix.gps_lock == 0 ? ++without : ++with;
+    EXPECT_EQ(std::isnan(fix.latitude), fix.gps_lock == 0);
+  }
+  // 25 or 26 samples under water and 50 after the last of them; none is lost again.
+  EXPECT_NEAR(without, 75, 1.5);
+  EXPECT_NEAR(with, 75, 1.5);
 }
 
 TEST(Gps, ErrorsHaveTheSpreadAskedForAndTheTruthHasNone) {

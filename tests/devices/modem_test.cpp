@@ -1,6 +1,6 @@
 #include "shoal/modem_received_t.hpp"
 #include "shoal/modem_send_t.hpp"
-#include "tests/devices/world_fixture.hpp"
+#include "tests/devices/immersed_sensor_fixture.hpp"
 
 namespace {
 
@@ -48,6 +48,47 @@ TEST(Modem, DeliversAfterAirTimeAndPropagation) {
   EXPECT_EQ(b[0].sent_utime, test.world.epoch_us() + 50000);
   EXPECT_EQ(b[0].utime - b[0].sent_utime, 200000);
   EXPECT_EQ(c[0].utime - c[0].sent_utime, 300000);
+}
+
+/// What r1 at 10 m depth sends and a modem at `z_m` hears.
+std::size_t heard(const std::string& through, double z_m, const std::string& medium) {
+  const std::string modem = "type: modem, range_m: 1000, through: " + through;
+  const std::string other = "  - {name: b, position_m: [100, 0, " + std::to_string(z_m) +
+                            "], model: {shoal: 1, vehicle: box, bodies: [{name: hull, hydrodynamics: {model: none}, "
+                            "parts: [{shape: box, size_m: [0.2, 0.2, 0.2], mass_kg: 1}]}], devices: [{name: s, " +
+                            modem + "}]}}\n";
+  test::TestWorld test(test::marine_world(modem, "[0, 0, -10]", "[]", other, medium));
+  test::Listener<shoal::modem_received_t> received(test, "b.s");
+  test.send("r1.s.cmd", message("x"));
+  test.run_for(1);
+  return received.take_all().size();
+}
+
+TEST(Modem, RadioDoesNotPassWaterAndSoundDoesNotPassAir) {
+  const char* sea = "{water: {surface_m: 0}}";
+  EXPECT_EQ(heard("radio", -10, sea), 0u);
+  EXPECT_EQ(heard("radio", 1, sea), 0u);
+  EXPECT_EQ(heard("acoustic", -10, sea), 1u);
+  EXPECT_EQ(heard("acoustic", 1, sea), 0u);
+  EXPECT_EQ(heard("any", 1, sea), 1u);
+  EXPECT_EQ(heard("radio", 1, "{water: {surface_m: -20}}"), 1u);
+  EXPECT_EQ(heard("radio", 1, "{}"), 1u);
+  EXPECT_EQ(heard("acoustic", 1, "{}"), 0u);
+}
+
+TEST(Modem, SoundTakesTheSpeedOfTheWaterAtItsSender) {
+  const std::string modem = "type: modem, range_m: 1000, data_rate_bps: 8000, through: acoustic";
+  test::TestWorld test(test::marine_world(
+      modem, "[0, 0, -10]", "[]",
+      "  - {name: b, position_m: [300, 0, -10], model: {shoal: 1, vehicle: box, bodies: [{name: hull, hydrodynamics: "
+      "{model: none}, parts: [{shape: box, size_m: [0.2, 0.2, 0.2], mass_kg: 1}]}], devices: [{name: s, " +
+          modem + "}]}}\n"));
+  test::Listener<shoal::modem_received_t> received(test, "b.s");
+  test.send("r1.s.cmd", message("x"));
+  test.run_for(1);
+  const auto report = received.last();
+  const double expected_s = 0.001 + 300 / test.world.medium().sound_speed_mps({0, 0, -10});  // 8 bits, and the way
+  EXPECT_NEAR(static_cast<double>(report.utime - report.sent_utime) * 1e-6, expected_s, 2e-6);
 }
 
 TEST(Modem, IsNotHeardBeyondItsRangeOrInAnotherNetwork) {

@@ -73,6 +73,25 @@ TEST(RangeBeacon, AWallHidesWhatIsBehindIt) {
   EXPECT_THAT(all.last().beacon, ElementsAre("on_wall", "r2/b", "r3/b"));
 }
 
+TEST(RangeBeacon, TheMediumDecidesWhatIsHeard) {
+  const auto heard = [](const std::string& through, const std::string& medium) {
+    test::TestWorld test("medium: " + medium + "\n" +
+                         boxes(", beacons: [{name: wet, position_m: [0, 5, -1]}, {name: dry, position_m: [0, 5, 1]}]"
+                               ", through: " +
+                               through));
+    test::Listener<shoal::range_beacon_t> reports(test, "r1.b");
+    test.run_for(0.1);
+    return reports.last().beacon;
+  };
+  const std::string above = "{water: {surface_m: -0.5}}", below = "{water: {surface_m: 0.5}}";
+  EXPECT_THAT(heard("radio", above), ElementsAre("dry"));
+  EXPECT_THAT(heard("radio", below), ElementsAre());
+  EXPECT_THAT(heard("acoustic", above), ElementsAre());
+  EXPECT_THAT(heard("acoustic", below), ElementsAre("wet"));
+  EXPECT_THAT(heard("any", below), ElementsAre("wet", "dry"));
+  EXPECT_THAT(heard("radio", "{}"), ElementsAre("wet", "dry"));
+}
+
 TEST(RangeBeacon, BeaconsComeAndGoWithTheirVehicles) {
   test::TestWorld test(boxes("", other("r2", "[3, 4, 0]") + other("r3", "[0, 2, 0]")));
   test::Listener<shoal::range_beacon_t> reports(test, "r1.b");

@@ -70,7 +70,6 @@ TEST(CoefficientModel, MovesABlueRov2AsPublishedAndHalfTheStepIsHalfTheError) {
   const double coarse = rms_against("bluerov2h_steps.csv", "0.01"), fine = rms_against("bluerov2h_steps.csv", "0.005");
   EXPECT_LT(fine, 0.01);
   EXPECT_NEAR(coarse / fine, 2, 0.2);
-  printf("%g %g\n", coarse, fine);
 }
 
 }  // namespace

@@ -1,0 +1,116 @@
+#include "sim/hydrodynamics/hydrodynamics_checks.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "sim/config/message_text.hpp"
+
+namespace sim {
+
+namespace {
+
+constexpr const char* axes[] = {"surge", "sway", "heave", "roll", "pitch", "yaw"};
+constexpr char rows[] = "XYZKMN";
+constexpr char states[] = "uvwpqr";
+
+const char* key_of_added_mass(const ParamReader& in) {
+  return in.has("added_mass") || !in.has("derivatives") ? "added_mass" : "derivatives";
+}
+
+std::string derivative_name(const DerivativeTerm& term) {
+  std::string name{rows[term.row], '_', states[term.first]};
+  if (term.second >= 0) name += states[term.second];
+  return name;
+}
+
+bool check_added_mass(const Matrix6d& A, ParamReader& in) {
+  const char* key = key_of_added_mass(in);
+  for (int i = 0; i < 6; ++i) {
+    if (A(i, i) >= 0) continue;
+    in.error(key, std::string("the added mass in ") + axes[i] + " must be >= 0, got " + number_text(A(i, i)) +
+                      ": papers print derivatives such as " + rows[i] + "_" + states[i] +
+                      "dot, which are its negative");
+    return false;
+  }
+  const double scale = A.cwiseAbs().maxCoeff();
+  for (int i = 0; i < 6; ++i)
+    for (int j = i + 1; j < 6; ++j) {
+      if (std::abs(A(i, j) - A(j, i)) <= 1e-6 * scale) continue;
+      in.error(key, std::string("the added mass must be symmetric, got ") + number_text(A(i, j)) + " between " +
+                        axes[i] + " and " + axes[j] + " and " + number_text(A(j, i)) + " the other way");
+      return false;
+    }
+  return true;
+}
+
+Matrix6d rigid_mass(const HydrodynamicsConfig& config) {
+  const Vector3d& r = config.center_of_mass_m;
+  Matrix3d S;
+  S << 0, -r.z(), r.y(), r.z(), 0, -r.x(), -r.y(), r.x(), 0;
+  const double m = config.mass_kg;
+  Matrix6d rigid;
+  rigid << m * Matrix3d::Identity(), -m * S, m * S, config.inertia_kgm2 - m * S * S;
+  return rigid;
+}
+
+template <typename Matrix>
+double smallest_eigenvalue(const Matrix& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Matrix>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[0];
+}
+
+bool check_inertia(const HydrodynamicsConfig& config, ParamReader& in) {
+  const Matrix3d& I = config.inertia_kgm2;
+  if ((I - I.transpose()).cwiseAbs().maxCoeff() > 1e-9 * I.cwiseAbs().maxCoeff()) {
+    in.error("inertia_kgm2", "'inertia_kgm2' must be symmetric");
+    return false;
+  }
+  const double least = smallest_eigenvalue(I);
+  if (least > 0) return true;
+  in.error("inertia_kgm2",
+           "'inertia_kgm2' about the centre of mass must be positive definite, its smallest eigenvalue is " +
+               number_text(least) + "; see 'inertia_about'");
+  return false;
+}
+
+void check_damping(const char* key, const Matrix6d& damping, ParamReader& in) {
+  for (int i = 0; i < 6; ++i)
+    if (!(damping(i, i) >= 0))
+      in.error(key, std::string("'") + key + "' must be >= 0 in " + axes[i] + ", got " + number_text(damping(i, i)) +
+                        ": negative, it would push the vehicle on; papers print derivatives, which are its negative");
+}
+
+void check_derivatives(const HydrodynamicsConfig& config, ParamReader& in) {
+  for (const DerivativeTerm& term : config.derivatives) {
+    const bool brakes = term.row == term.first && (term.second < 0 || (term.second == term.first && term.absolute));
+    if (brakes && term.coefficient > 0)
+      in.error("derivatives", "'" + derivative_name(term) + "' must be <= 0, got " + number_text(term.coefficient) +
+                                  ": positive, it would push the vehicle on");
+  }
+}
+
+}  // namespace
+
+void check_coefficients(const HydrodynamicsConfig& config, ParamReader& in) {
+  if (in.describing() || config.model != "coefficients" || !(config.mass_kg > 0)) return;
+  check_damping("linear_damping", config.linear_damping, in);
+  check_damping("quadratic_damping", config.quadratic_damping, in);
+  check_derivatives(config, in);
+  const bool inertia_is_good = !in.has("inertia_kgm2") || check_inertia(config, in);
+  if (!check_added_mass(config.added_mass, in) || !inertia_is_good) return;
+  const double least = smallest_eigenvalue(Matrix6d(rigid_mass(config) + config.added_mass));
+  if (!(least > 0))
+    in.error(
+        key_of_added_mass(in),
+        "rigid and added mass together must be positive definite, the smallest eigenvalue is " + number_text(least));
+}
+
+std::vector<std::string> doubts_about(const HydrodynamicsConfig& config, const std::string& who) {
+  std::vector<std::string> doubts;
+  const double above = config.center_of_buoyancy_m.z() - config.center_of_mass_m.z();
+  if (!config.waterline && above > 0)
+    doubts.push_back(config.place.text() + ": " + who + ": its centre of mass lies " + number_text(above) +
+                     " m above its centre of buoyancy, so that it turns over; is 'frame' " + config.frame + " right?");
+  return doubts;
+}
+
+}  // namespace sim

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/hydrodynamics/immersed_piece.hpp"
+#include "sim/medium/medium.hpp"
+#include "sim/physics/body.hpp"
+
+namespace sim {
+
+/// Buoyancy and drag of free bodies without coefficients of their own, part by part.  docs/marine.md has the model.
+class ImmersedBodies {
+ public:
+  ImmersedBodies(const Medium& medium, double step_s) : medium_(medium), step_s_(step_s) {}
+
+  /// How far from the origin of the body water can touch it, m; 0 for one of which no part displaces water, which is
+  /// left out.  Appends what is to be said about it to `warnings`.  Throws ConfigError (meshes).
+  double add(Body& body, const BodyConfig& config, double gravity_mps2, std::vector<std::string>& warnings);
+  void remove_group(int group);
+  /// Adds to the forces on each body.  `water`: at the origin of each body, by body number.
+  void step(double gravity_mps2, std::span<const LocalWater> water);
+
+ private:
+  /// What a step needs of a body, side by side.
+  struct ImmersedBody {
+    Body* body = nullptr;
+    double radius_m = 0;  ///< about the origin of the body: no part is farther away
+    double smallest_inertia_kgm2 = 0;
+    bool added_mass = false;
+    // Springs of its water line that are too stiff for the step, see find_stiffness(); 0: none.
+    bool stiff = false;
+    double stiff_Npm = 0;
+    Vector3d stiff_Nmprad = Vector3d::Zero();  ///< about the axes of the body
+    std::vector<ImmersedPiece> pieces;
+  };
+  struct Wrench;
+
+  std::vector<ImmersedPiece> pieces_of(const Body& body, const BodyConfig& config, double longest_m,
+                                       std::vector<std::string>& warnings);
+  void find_stiffness(ImmersedBody& body, double gravity_mps2, std::vector<std::string>& warnings) const;
+  void step_body(const ImmersedBody& body, double gravity_mps2, const LocalWater& at_origin) const;
+  void add_piece(const ImmersedPiece& piece, double gravity_mps2, const LocalWater& at_origin, Wrench& sum) const;
+  WaterPlane surface_at(const ImmersedPiece& piece, const Vector3d& p_WP, const LocalWater& water) const;
+  void add_stiffness(const ImmersedBody& body, const LocalWater& water, Wrench& sum) const;
+  static void apply_with_added_mass(Body& body, double gravity_mps2, const Wrench& sum);
+  void add_wind(const ImmersedBody& body, Wrench& sum) const;
+
+  const Medium& medium_;
+  double step_s_;
+  std::vector<ImmersedBody> bodies_;  // in the order in which they came
+  PieceMeshes meshes_;
+};
+
+}  // namespace sim

@@ -1,0 +1,201 @@
+#include "sim/hydrodynamics/immersed_piece.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "sim/config/diagnostics.hpp"
+
+namespace sim {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Vector3d default_drag(const std::string& shape) {
+  // Hoerner, Fluid-Dynamic Drag (1965), chapter 3: sphere and cylinders below the critical Reynolds number, cube.
+  if (shape == "sphere") return Vector3d::Constant(0.47);
+  if (shape == "capsule") return {1.1, 1.1, 0.3};
+  if (shape == "cylinder") return {1.1, 1.1, 0.8};
+  if (shape == "mesh") return Vector3d::Ones();
+  return Vector3d::Constant(1.05);
+}
+
+Vector3d drag_of(const PartConfig& part) {
+  const std::vector<double>& given = part.drag_coefficient;
+  if (given.empty()) return default_drag(part.shape);
+  return given.size() == 1 ? Vector3d(Vector3d::Constant(given[0])) : Vector3d(given[0], given[1], given[2]);
+}
+
+/// Strips of the faces along an axis of rotation, each in flow of its own speed: the integral of |r|^3 over a side.
+Vector3d angular_drag(const Vector3d& C, const Vector3d& size) {
+  Vector3d drag;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    drag[i] = size[i] * (C[k] * std::pow(size[j], 4) + C[j] * std::pow(size[k], 4)) / 32;
+  }
+  return drag;
+}
+
+/// What spins about its own axis has skin friction only.
+constexpr double spin_share = 0.05;
+
+ImmersedPiece sphere_piece(const PartConfig& part, const Vector3d& C) {
+  ImmersedPiece piece;
+  piece.shape = ImmersedPiece::Shape::sphere;
+  piece.size_m = Vector3d::Constant(2 * part.radius_m);
+  piece.radius_m = part.radius_m;
+  piece.drag_area_m2 = C * pi * part.radius_m * part.radius_m;
+  piece.angular_drag_area_m5 = spin_share * angular_drag(C, piece.size_m);
+  return piece;
+}
+
+ImmersedPiece box_piece(const Vector3d& size, const Vector3d& C) {
+  ImmersedPiece piece;
+  piece.size_m = size;
+  piece.radius_m = size.norm() / 2;
+  piece.drag_area_m2 = C.cwiseProduct(Vector3d(size.y() * size.z(), size.z() * size.x(), size.x() * size.y()));
+  piece.angular_drag_area_m5 = angular_drag(C, size);
+  return piece;
+}
+
+/// `low` and `high` along the axis of the part.  The middle of a section, not that of the part, is where the water is
+/// looked up.
+ImmersedPiece round_piece(const PartConfig& part, double low, double high, const Vector3d& C) {
+  ImmersedPiece piece;
+  piece.shape = ImmersedPiece::Shape::round;
+  const double r = part.radius_m;
+  piece.round = {r, part.length_m / 2, part.shape == "capsule", low, high};
+  piece.size_m = {2 * r, 2 * r, high - low};
+  piece.p_BP.z() = (low + high) / 2;
+  piece.radius_m = std::hypot(r, (high - low) / 2);
+  const double side = 2 * r * (high - low);
+  piece.drag_area_m2 = C.cwiseProduct(Vector3d(side, side, pi * r * r));
+  piece.angular_drag_area_m5 = angular_drag(C, piece.size_m);
+  piece.angular_drag_area_m5.z() *= spin_share;
+  return piece;
+}
+
+ImmersedPiece mesh_piece(Mesh mesh, const Vector3d& C) {
+  Vector3d low = Vector3d::Constant(1e300), high = -low;
+  for (const Vector3d& p : mesh.vertices_m) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const Vector3d middle = (low + high) / 2;
+  for (Vector3d& p : mesh.vertices_m) p -= middle;
+  ImmersedPiece piece = box_piece(high - low, C);
+  piece.shape = ImmersedPiece::Shape::mesh;
+  piece.p_BP = middle;
+  piece.mesh = std::make_shared<const Mesh>(std::move(mesh));
+  return piece;
+}
+
+std::shared_ptr<const Mesh> closed_mesh(const PartConfig& part, const std::string& who, PieceMeshes& meshes,
+                                        std::optional<std::string>& warning) {
+  const std::string path = (std::filesystem::path(part.directory) / part.mesh).string();
+  const auto [at, added] = meshes.try_emplace({path, part.scale});
+  if (added) {
+    try {
+      Mesh mesh = load_mesh(path, part.scale);
+      if (is_closed(mesh)) {
+        if (solid_of(mesh).volume_m3 < 0) turn_inside_out(mesh);
+        at->second = std::make_shared<const Mesh>(std::move(mesh));
+      }
+    } catch (const MeshError& error) {
+      throw_config_error(part.place, who, "mesh '" + path + "' " + error.what());
+    }
+  }
+  if (at->second) return at->second;
+  const std::string open = "mesh '" + part.mesh + "' has an open surface, so that the water it displaces is unknown";
+  if (part.displaces_was_given) throw_config_error(part.place, who, open + ": close it, or set 'displaces' to false");
+  warning = who + ": " + open + ": it displaces none";
+  return nullptr;
+}
+
+/// The pieces in the frame of the part.
+std::vector<ImmersedPiece> pieces_in_part(const PartConfig& part, double longest_m,
+                                          const std::shared_ptr<const Mesh>& mesh) {
+  const Vector3d C = drag_of(part);
+  if (part.shape == "sphere") return {sphere_piece(part, C)};
+  std::vector<ImmersedPiece> pieces;
+  Vector3d low = -part.size_m / 2, high = part.size_m / 2;
+  int axis = 2;
+  if (part.shape == "mesh") {
+    low = high = mesh->vertices_m[mesh->triangles.front()[0]];
+    for (const Vector3d& p : mesh->vertices_m) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+  }
+  if (part.shape == "box" || part.shape == "mesh") {
+    (high - low).maxCoeff(&axis);
+  } else {
+    const double half = part.length_m / 2 + (part.shape == "capsule" ? part.radius_m : 0);
+    low.z() = -half;
+    high.z() = half;
+  }
+  const double whole = high[axis] - low[axis];
+  const int sections = static_cast<int>(std::clamp(std::ceil(whole / longest_m), 1.0, 8.0));
+  const double from = low[axis], length = whole / sections;
+  Vector3d shared_ends = Vector3d::Ones();  // all sections together have one end against the flow
+  shared_ends[axis] = 1.0 / sections;
+  const Vector3d C_section = C.cwiseProduct(shared_ends);
+  for (int i = 0; i < sections; ++i) {
+    const double begin = from + i * length, end = begin + length;
+    if (part.shape == "box") {
+      Vector3d size = part.size_m;
+      size[axis] = length;
+      pieces.push_back(box_piece(size, C_section));
+      pieces.back().p_BP[axis] = (begin + end) / 2;
+    } else if (part.shape == "mesh") {
+      Mesh section = sections == 1 ? *mesh : section_of(*mesh, axis, begin, end);
+      if (!section.triangles.empty()) pieces.push_back(mesh_piece(std::move(section), C_section));
+    } else {
+      pieces.push_back(round_piece(part, begin, end, C_section));
+    }
+  }
+  return pieces;
+}
+
+}  // namespace
+
+ImmersedVolume ImmersedPiece::immersed(const WaterPlane& plane) const {
+  switch (shape) {
+    case Shape::sphere:
+      return immersed_sphere(radius_m, plane);
+    case Shape::box:
+      return immersed_box(size_m, plane);
+    case Shape::mesh:
+      return immersed_mesh(*mesh, plane);
+    case Shape::round:
+      break;
+  }
+  // The solid is about the middle of the part, the piece about its own.
+  const double shift = (round.low_m + round.high_m) / 2;
+  ImmersedVolume volume = immersed_round(round, {plane.normal, plane.level_m + shift * plane.normal.z()});
+  if (volume.volume_m3 > 0) volume.centroid_m.z() -= shift;
+  return volume;
+}
+
+std::vector<ImmersedPiece> pieces_of(const PartConfig& part, double longest_m, const std::string& who,
+                                     PieceMeshes& meshes, std::optional<std::string>& warning) {
+  if (!part.displaces || part.shape == "plane" || part.shape == "terrain") return {};
+  std::shared_ptr<const Mesh> mesh;
+  if (part.shape == "mesh") {
+    mesh = closed_mesh(part, who, meshes, warning);
+    if (!mesh) return {};
+  }
+  std::vector<ImmersedPiece> pieces = pieces_in_part(part, longest_m, mesh);
+  const Matrix3d R_BG = rotation_from_rpy(part.rpy_rad);
+  for (ImmersedPiece& piece : pieces) {
+    piece.R_BP = R_BG;
+    piece.p_BP = part.position_m + R_BG * piece.p_BP;
+    piece.added_mass_coefficient = part.added_mass_coefficient;
+    piece.whole = piece.immersed({Vector3d::UnitZ(), 2 * piece.radius_m + 1});
+  }
+  return pieces;
+}
+
+}  // namespace sim

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace sim {
+
+class World;
+
+/// A line when vehicles that are in water, or float on it, have no ground below them: what looks down from there sees
+/// nothing.
+std::vector<std::string> bottom_warnings(const World& world);
+
+}  // namespace sim

@@ -1,0 +1,146 @@
+#include "tools/experiment/fidelity.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "sim/config/diagnostics.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tools/experiment/fidelity_report.hpp"
+
+namespace {
+
+const std::string cases_file = SHOAL_SOURCE_DIR "/tests/fidelity/cases.yaml";
+
+tools::FidelityResult run(const std::string& name, const tools::FidelityOptions& options = {}) {
+  const tools::FidelityFile file = tools::read_fidelity_file(cases_file);
+  const auto found =
+      std::find_if(file.cases.begin(), file.cases.end(), [&](const auto& of) { return of.name == name; });
+  if (found == file.cases.end()) throw std::runtime_error("no case " + name);
+  return tools::run_fidelity_case(*found, options);
+}
+
+TEST(Fidelity, EveryPublishedTrajectoryKeepsItsBarsAtFiveMilliseconds) {
+  const tools::FidelityFile file = tools::read_fidelity_file(cases_file);
+  EXPECT_EQ(file.cases.size(), 24u);
+  for (const tools::FidelityCase& of : file.cases) {
+    const tools::FidelityResult result = tools::run_fidelity_case(of);
+    EXPECT_LE(of.step_s, 0.005);
+    EXPECT_TRUE(of.bars.position_rms_m && *of.bars.position_rms_m <= 0.2) << of.name;
+    EXPECT_TRUE(of.bars.velocity_rms_mps && *of.bars.velocity_rms_mps <= 0.01) << of.name;
+    EXPECT_THAT(result.missed, testing::IsEmpty()) << of.name;
+  }
+}
+
+TEST(Fidelity, HalfTheStepIsHalfTheError) {
+  // First order: the ratio tends to 2; 15 % for the terms of second order at 10 ms.
+  for (const char* name : {"otter_turn", "otter_steps", "remus100_turn", "remus100_helix", "prestero_rudder_step",
+                           "prestero_decay", "bluerov2h_steps", "bluerov2h_current"}) {
+    const double coarse = run(name, {.step_s = 0.01}).position_rms_m,
+                 half = run(name, {.step_s = 0.005}).position_rms_m,
+                 quarter = run(name, {.step_s = 0.0025}).position_rms_m;
+    EXPECT_NEAR(coarse / half, 2, 0.3) << name;
+    EXPECT_NEAR(half / quarter, 2, 0.3) << name;
+  }
+}
+
+const std::string hull = "bodies.hull.hydrodynamics.";
+
+TEST(Fidelity, WithoutAddedMassAnOtterMissesItsBarByMetres) {
+  const tools::FidelityOptions none{.overrides = {{hull + "added_mass", "[0, 0, 0, 0, 0, 0]"}}};
+  // The references' own figures: 16 m rms in the turn, 53 m in the current.
+  EXPECT_NEAR(run("otter_turn", none).position_rms_m, 16, 2);
+  EXPECT_GT(run("otter_current", none).position_rms_m, 10);
+}
+
+TEST(Fidelity, WithoutCoriolisForcesOfAddedMassAnOtterMissesItsBarByMetres) {
+  const tools::FidelityOptions none{.overrides = {{hull + "quirks.added_mass_coriolis", "none"}}};
+  EXPECT_NEAR(run("otter_turn", none).position_rms_m, 16, 2);
+  EXPECT_GT(run("otter_current", none).position_rms_m, 10);
+}
+
+TEST(Fidelity, WithoutAddedMassARemusMissesItsBar) {
+  const tools::FidelityOptions none{.overrides = {{hull + "added_mass", "[0, 0, 0, 0, 0, 0]"}}};
+  const tools::FidelityResult result = run("remus100_turn", none);
+  EXPECT_THAT(result.missed, testing::Not(testing::IsEmpty()));
+  EXPECT_GT(result.position_rms_m, 0.3);
+}
+
+TEST(Fidelity, WhatAReferenceDoesInItsOwnWayIsSeen) {
+  // README figures: the true integral differs by 6.6 m rms in remus100_turn, by 0.84 m in otter_turn.
+  EXPECT_NEAR(run("remus100_turn", {.overrides = {{hull + "cross_flow.strips", "0"}}}).position_rms_m, 6.6, 0.2);
+  EXPECT_NEAR(run("otter_turn", {.overrides = {{hull + "cross_flow.strips", "0"}}}).position_rms_m, 0.84, 0.1);
+  // Thrust by speed over ground: 10.6 m after 100 s.
+  const tools::FidelityResult inflow =
+      run("remus100_current", {.overrides = {{"devices.propeller.inflow", "water_speed"}}});
+  EXPECT_NEAR(inflow.position_max_m, 10.6, 0.5);
+}
+
+class FidelityFiles : public testing::Test {
+ protected:
+  std::string write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_.file(name)) << text;
+    return folder_.file(name);
+  }
+  std::string error_of(const std::string& file) {
+    try {
+      for (const tools::FidelityCase& of : tools::read_fidelity_file(file).cases) tools::run_fidelity_case(of);
+    } catch (const sim::ConfigError& error) {
+      return error.what();
+    }
+    return {};
+  }
+  std::string cases(const std::string& more) {
+    return write("cases.yaml", "shoal: 1\ngroups:\n  - name: g\n    vehicle: " SHOAL_SOURCE_DIR
+                               "/vehicles/bluerov2.yaml\n" +
+                                   more + "    cases: [{name: c, reference: c.csv}]\n");
+  }
+  const std::string header = "t[s],x,y,z,phi,theta,psi,u,v,w,p,q,r,push\n";
+  test_support::ScratchFolder folder_;
+};
+
+TEST_F(FidelityFiles, ATrajectoryOfOnesOwnIsComparedWithItsStart) {
+  write("c.csv", header + "0,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n0.1,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n");
+  const std::string file = cases("    bars: {position_max_m: 1e-9}\n");
+  const tools::FidelityResult result = tools::run_fidelity_case(tools::read_fidelity_file(file).cases.front());
+  EXPECT_NEAR(result.ours.front()[0], 1, 1e-12);
+  EXPECT_NEAR(result.ours.front()[2], 3, 1e-12);
+  EXPECT_NEAR(result.ours.front()[5], 0.5, 1e-12);
+  // 2 N up on 11.5 kg and 14.57 kg of added mass, for 0.1 s.
+  EXPECT_NEAR(result.ours.back()[2] - 3, -2 / 26.07 * 0.01 / 2, 0.1 * 2 / 26.07 * 0.01 / 2);
+  EXPECT_THAT(result.missed, testing::ElementsAre(testing::StartsWith("position_max_m ")));
+}
+
+TEST_F(FidelityFiles, TheReportHasTheTableThePicturesAndOurStates) {
+  write("c.csv", header + "0,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n0.1,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n");
+  const tools::FidelityFile file = tools::read_fidelity_file(cases("    title: Mine\n"));
+  tools::write_fidelity_report(folder_.file("report"), "A word before.\n",
+                               {tools::run_fidelity_case(file.cases.front())}, true);
+  const auto read = [&](const std::string& name) {
+    std::ifstream in(folder_.file("report/" + name), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  EXPECT_THAT(read("fidelity.md"),
+              testing::AllOf(testing::HasSubstr("A word before."), testing::HasSubstr("## Mine"),
+                             testing::HasSubstr("![c](fidelity/c.png)"), testing::HasSubstr("| north (m) | 1.0000 |")));
+  EXPECT_THAT(read("fidelity/c.png"), testing::StartsWith("\x89PNG"));
+  EXPECT_THAT(read("fidelity/c.csv"), testing::StartsWith("t,x,y,z,phi,theta,psi,u,v,w,p,q,r\n0,1,2,3,0,0,0.5,"));
+}
+
+TEST_F(FidelityFiles, MistakesInThemAreNamed) {
+  write("c.csv", header + "0,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n0.1,1,2,3,0,0,oops,0,0,0,0,0,0,0\n");
+  EXPECT_THAT(error_of(cases("")), testing::HasSubstr("c.csv:3:1: must have finite numbers, got 'oops'"));
+  write("c.csv", header + "0,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n0.1234,1,2,3,0,0,0,0,0,0,0,0,0,0\n");
+  EXPECT_THAT(error_of(cases("")), testing::HasSubstr("a step of 0.005 s does not meet the row at t = 0.1234 s"));
+  write("c.csv", header + "0,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n");
+  EXPECT_THAT(error_of(cases("    inputs: [{device: wheel, column: push}]\n")),
+              testing::HasSubstr("there is no device 'wheel'"));
+  EXPECT_THAT(error_of(cases("    inputs: [{device: wrench, column: pull}]\n")),
+              testing::HasSubstr("there is no column 'pull'"));
+  EXPECT_THAT(error_of(cases("    inputs: [{device: wrench}]\n")),
+              testing::HasSubstr("one of 'column' and 'fields' must be given"));
+}
+
+}  // namespace

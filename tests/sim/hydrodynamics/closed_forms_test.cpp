@@ -1,0 +1,169 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include "sim/hydrodynamics/coefficient_model.hpp"
+#include "sim/hydrodynamics/spheroid.hpp"
+#include "sim/world/vehicle.hpp"
+#include "tests/devices/world_fixture.hpp"
+#include "tests/sim/hydrodynamics/marine_worlds.hpp"
+
+namespace {
+
+using sim::Vector3d;
+using sim::Vector6d;
+
+struct Row {
+  double expected = NAN, tolerance = 0;
+};
+
+/// A row of closed_forms.csv by case, quantity and a part of its parameters; its tolerance as an absolute one.
+Row closed_form(const std::string& name, const std::string& quantity) {
+  std::ifstream in(SHOAL_SOURCE_DIR "/tests/fidelity/reference/closed_forms.csv");
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream cells(line);
+    std::string cell[7];
+    for (std::string& each : cell) std::getline(cells, each, ',');
+    if (cell[0] != name || cell[2] != quantity) continue;
+    const double expected = std::stod(cell[3]), tolerance = std::stod(cell[5]);
+    return {expected, cell[6] == "rel" ? tolerance * std::abs(expected) : tolerance};
+  }
+  ADD_FAILURE() << "no row " << name << ", " << quantity;
+  return {};
+}
+
+void expect_row(double value, const std::string& name, const std::string& quantity) {
+  const Row row = closed_form(name, quantity);
+  EXPECT_NEAR(value, row.expected, row.tolerance) << name << ", " << quantity;
+}
+
+/// A body at some depth that can be pushed along.
+struct Craft {
+  explicit Craft(const std::string& hydrodynamics, const std::string& medium = "{water: {}}")
+      : test(test::marine_world(hydrodynamics, medium)), body(test.world.vehicles()[0]->body("hull")) {}
+  void run_for(double time_s, const Vector3d& force_W = Vector3d::Zero()) {
+    const sim::Time end = test.world.now() + sim::from_seconds(time_s);
+    while (test.world.now() < end) {
+      if (!force_W.isZero(0)) body.add_force_W(force_W, body.X_WB().translation());
+      test.world.step();
+    }
+  }
+  double x() const { return body.X_WB().translation().x(); }
+  double u() const { return body.v_WB_W().x(); }
+
+  test::TestWorld test;
+  sim::Body& body;
+};
+
+TEST(ClosedForms, QuadraticDragSlowsACoastingHull) {
+  Craft craft(
+      "{mass_kg: 30.48, inertia_kgm2: [1, 1, 1], added_mass: [0.93, 0, 0, 0, 0, 0], derivatives: {X_uu: -1.62}}");
+  craft.body.set_velocity_W({1.5, 0, 0}, Vector3d::Zero());
+  craft.run_for(60);
+  expect_row(craft.u(), "quadratic_coast", "u");
+  expect_row(craft.x(), "quadratic_coast", "distance");
+}
+
+TEST(ClosedForms, LinearDragStopsACoastingHull) {
+  Craft craft(
+      "{mass_kg: 55, inertia_kgm2: [1, 1, 1], added_mass: [5.2815, 0, 0, 0, 0, 0], "
+      "linear_damping: [77.55, 0, 0, 0, 0, 0]}");
+  craft.body.set_velocity_W({1.5, 0, 0}, Vector3d::Zero());
+  craft.run_for(2);
+  expect_row(craft.u(), "linear_coast", "u");
+  craft.run_for(30);
+  expect_row(craft.x(), "linear_coast", "distance_total");
+}
+
+TEST(ClosedForms, AForceAgainstQuadraticDragGivesTheHyperbolicTangent) {
+  Craft craft(
+      "{mass_kg: 13.5, inertia_kgm2: [1, 1, 1], added_mass: [6.36, 0, 0, 0, 0, 0], "
+      "quadratic_damping: [141, 0, 0, 0, 0, 0]}");
+  craft.run_for(1, {30, 0, 0});
+  expect_row(craft.u(), "thrust_accel_quadratic", "u");
+  expect_row(craft.x(), "thrust_accel_quadratic", "distance");
+}
+
+TEST(ClosedForms, ASubmergedHullRollsAboutItsCentreOfBuoyancy) {
+  Craft craft(
+      "{frame: frd, mass_kg: 30.48, weight_N: 299, center_of_mass_m: [0, 0, 0.0196], "
+      "inertia_kgm2: [0.177, 3.45, 3.45], inertia_about: origin, "
+      "added_mass: [0, 1e9, 1e9, 0.0704, 0, 0]}");  // held in place, to roll about the origin
+  craft.body.set_velocity_W(Vector3d::Zero(), {0.01, 0, 0});
+  double first = 0, before = 0.01;
+  int crossings = 0;
+  while (crossings < 5) {
+    craft.test.world.step();
+    const double p = craft.body.w_WB_W().x();
+    if (before * p < 0) {
+      const double at = sim::to_seconds(craft.test.world.now()) - 0.001 * p / (p - before);
+      if (crossings++ == 0) first = at;
+      if (crossings == 5) expect_row((at - first) / 2, "submerged_roll_period", "period");
+    }
+    before = p;
+    ASSERT_LT(craft.test.world.now(), sim::from_seconds(20));
+  }
+}
+
+TEST(ClosedForms, ACurrentTakesANeutralBodyAlong) {
+  Craft craft(
+      "{mass_kg: 20, inertia_kgm2: [1, 1, 1], added_mass: [10, 10, 10, 0, 0, 0], "
+      "linear_damping: [12, 12, 12, 0, 0, 0]}",
+      "{water: {}, current: {velocity_mps: [0.4, 0, 0]}}");
+  craft.run_for(10);
+  expect_row(craft.x(), "passive_drift_linear", "x");
+}
+
+TEST(ClosedForms, AddedMassOfASpheroid) {
+  const Vector6d added = sim::spheroid_added_mass(0.8, 0.095, 1025);
+  expect_row(added[0], "prolate_spheroid_added_mass", "A11");
+  expect_row(added[1], "prolate_spheroid_added_mass", "A22");
+  expect_row(added[4], "prolate_spheroid_added_mass", "A55");
+  EXPECT_EQ(added[1], added[2]);
+  EXPECT_EQ(added[4], added[5]);
+  EXPECT_EQ(added[3], 0);
+}
+
+TEST(ClosedForms, AddedMassOfABallIsHalfItsWater) {
+  const double half = 2.0 / 3 * std::numbers::pi * 1000;
+  // Nearly a ball by the formula, and a ball.
+  EXPECT_NEAR(sim::spheroid_added_mass(1.001, 1, 1000)[0], half, 0.002 * half);
+  EXPECT_NEAR(sim::spheroid_added_mass(1, 1, 1000)[0], half, 1e-9 * half);
+  EXPECT_NEAR(sim::spheroid_added_mass(1.0001, 1, 1000)[2], half, 0.001 * half);
+}
+
+/// The forces of an otherwise empty model on a body that moves at `nu`.
+Vector6d forces_at(const Vector6d& nu, const Vector6d& added_mass) {
+  sim::HydrodynamicsConfig config;
+  config.mass_kg = 10;
+  config.inertia_kgm2 = sim::Matrix3d::Identity();
+  config.added_mass = added_mass.asDiagonal();
+  const sim::CoefficientModel model(config, 9.81);
+  sim::CraftState state;
+  state.nu = nu;
+  state.v_water.setZero();
+  state.a_water.setZero();
+  state.down = Vector3d::UnitZ();
+  state.depth_m = 100;
+  state.density_kgpm3 = 1025;
+  Vector6d force = model.mass() * model.acceleration(state, Vector6d::Zero());
+  force.head<3>() += 10 * nu.tail<3>().cross(nu.head<3>());  // but for those of the rigid body
+  return force;
+}
+
+TEST(ClosedForms, TheMunkMomentTurnsAHullAcrossItsWay) {
+  const Vector6d nu = (Vector6d() << 1.5, 0.1, 0, 0, 0, 0).finished();
+  expect_row(forces_at(nu, sim::spheroid_added_mass(0.8, 0.095, 1025))[5], "munk_moment", "N");
+}
+
+TEST(ClosedForms, AddedMassHasItsCoriolisForces) {
+  const Vector6d nu = (Vector6d() << 0.8, 0.3, 0, 0, 0, 0.4).finished();
+  const Vector6d force = forces_at(nu, (Vector6d() << 6.36, 7.12, 0, 0, 0, 0).finished());
+  expect_row(force[0], "added_mass_coriolis", "X");
+  expect_row(force[1], "added_mass_coriolis", "Y");
+}
+
+}  // namespace

@@ -1,0 +1,123 @@
+#include "sim/hydrodynamics/hydrodynamics_checks.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sim/hydrodynamics/coefficient_model.hpp"
+#include "sim/world/vehicle.hpp"
+#include "tests/devices/world_fixture.hpp"
+#include "tests/sim/hydrodynamics/marine_worlds.hpp"
+
+namespace {
+
+using testing::HasSubstr;
+
+std::string error_of(const std::string& more, const std::string& step_s = "0.001") {
+  return test::error_of_world(test::marine_world("{frame: frd, mass_kg: 10" + more + "}", "{water: {}}", "", step_s));
+}
+const std::string inertia = ", inertia_kgm2: [1, 1, 1]";
+
+TEST(HydrodynamicsChecks, GoodCoefficientsPass) {
+  EXPECT_EQ(error_of(inertia + ", added_mass: [1, 10, 10, 0.1, 1, 1], linear_damping: [1, 2, 3, 1, 1, 1]"), "");
+}
+
+TEST(HydrodynamicsChecks, NegativeAddedMassIsADerivative) {
+  EXPECT_THAT(error_of(inertia + ", added_mass: [-0.93, 35.5, 35.5, 0, 0, 0]"),
+              HasSubstr("the added mass in surge must be >= 0, got -0.93: papers print derivatives such as X_udot"));
+  EXPECT_THAT(error_of(inertia + ", derivatives: {Y_vdot: 35.5}"),
+              HasSubstr("the added mass in sway must be >= 0, got -35.5"));
+}
+
+TEST(HydrodynamicsChecks, AddedMassIsSymmetric) {
+  EXPECT_THAT(error_of(inertia + ", derivatives: {Y_vdot: -35.5, N_rdot: -5, Y_rdot: 1.93, N_vdot: -1.93}"),
+              HasSubstr("the added mass must be symmetric, got -1.93 between sway and yaw and 1.93 the other way"));
+}
+
+TEST(HydrodynamicsChecks, MassIsPositiveDefinite) {
+  // 10 + 1 kg and 1 + 0.1 kg m^2 with 20 kg m between them: 11 * 1.1 < 20^2.
+  EXPECT_THAT(error_of(inertia + ", derivatives: {Y_vdot: -1, N_rdot: -0.1, Y_rdot: -20, N_vdot: -20}"),
+              HasSubstr("rigid and added mass together must be positive definite, the smallest eigenvalue is -14.5"));
+  EXPECT_THAT(error_of(", inertia_kgm2: [1, 1, -1]"),
+              HasSubstr("must be positive definite, its smallest eigenvalue is -1"));
+  // 10 kg half a metre off already have 2.5 kg m^2 about the origin.
+  EXPECT_THAT(error_of(inertia + ", inertia_about: origin, center_of_mass_m: [0, 0, 0.5]"),
+              HasSubstr("its smallest eigenvalue is -1.5; see 'inertia_about'"));
+  EXPECT_THAT(error_of(", inertia_kgm2: [1, 0.1, 0, 0, 1, 0, 0, 0, 1]"), HasSubstr("'inertia_kgm2' must be symmetric"));
+}
+
+TEST(HydrodynamicsChecks, DampingBrakes) {
+  EXPECT_THAT(error_of(inertia + ", linear_damping: [-1, 2, 3, 1, 1, 1]"),
+              HasSubstr("'linear_damping' must be >= 0 in surge, got -1: negative, it would push the vehicle on"));
+  EXPECT_THAT(error_of(inertia + ", quadratic_damping: [1, 2, 3, 1, -4, 1]"),
+              HasSubstr("'quadratic_damping' must be >= 0 in pitch"));
+  EXPECT_THAT(error_of(inertia + ", derivatives: {X_uu: 1.62}"),
+              HasSubstr("'X_uu' must be <= 0, got 1.62: positive, it would push the vehicle on"));
+  EXPECT_THAT(error_of(inertia + ", derivatives: {N_r: 1.62}"), HasSubstr("'N_r' must be <= 0"));
+}
+
+TEST(HydrodynamicsChecks, MatricesHaveTheirShape) {
+  EXPECT_THAT(error_of(inertia + ", added_mass: [1, 2, 3]"),
+              HasSubstr("'added_mass' must have 6 numbers (the diagonal) or 36 (row by row), got 3"));
+  EXPECT_THAT(
+      error_of(inertia + ", added_mass: [1, 1, 1, 0, 0, 0], added_mass_of_spheroid: {half_length_m: 1, radius_m: 0.1}"),
+      HasSubstr("only one of 'added_mass' and 'added_mass_of_spheroid'"));
+  EXPECT_THAT(error_of(inertia + ", added_mass_of_spheroid: {half_length_m: 0.1, radius_m: 1}"),
+              HasSubstr("'radius_m' must be <= 'half_length_m' 0.1, got 1"));
+}
+
+TEST(HydrodynamicsChecks, AStepTooLongForStiffForcesIsRefused) {
+  // 100 N s/m on 10 kg: it needs a step below 2 * 10 / 1000 s.
+  EXPECT_THAT(error_of(inertia + ", linear_damping: [1000, 0, 0, 0, 0, 0]", "0.05"),
+              HasSubstr("the forces of linear damping are too stiff for 'step_s' 0.05: they need a step below 0.02 s"));
+  EXPECT_EQ(error_of(inertia + ", linear_damping: [1000, 0, 0, 0, 0, 0]", "0.01"), "");
+  // Roll at sqrt(1e5 / 10) = 100 rad/s.
+  EXPECT_THAT(error_of(", inertia_kgm2: [10, 1000, 1000], waterline: {heave_Npm: 1, roll_Nmprad: 1e5, pitch_Nmprad: 1}",
+                       "0.05"),
+              HasSubstr("the restoring forces are too stiff for 'step_s' 0.05: they need a step below 0.02 s"));
+}
+
+sim::HydrodynamicsConfig config_of(const std::string& text) {
+  sim::Diagnostics diagnostics;
+  const sim::ConfigNode node = sim::parse_config_text(text, "test", diagnostics);
+  sim::HydrodynamicsConfig config;
+  sim::ParamReader in(node, "", diagnostics);
+  config.read(in);
+  in.finish();
+  diagnostics.throw_if_any();
+  return config;
+}
+
+TEST(HydrodynamicsChecks, AHullThatTurnsOverIsDoubted) {
+  const std::string rest = ", mass_kg: 10, inertia_kgm2: [1, 1, 1], center_of_mass_m: [0, 0, 0.02]}";
+  EXPECT_THAT(sim::doubts_about(config_of("{frame: frd" + rest), "auv"), testing::IsEmpty());
+  EXPECT_THAT(sim::doubts_about(config_of("{frame: flu" + rest), "auv"),
+              testing::ElementsAre(HasSubstr("auv: its centre of mass lies 0.02 m above its centre of buoyancy")));
+}
+
+TEST(HydrodynamicsChecks, QuadraticDragThatOvershootsInAStepIsSeen) {
+  const sim::CoefficientModel model(config_of("{mass_kg: 10, inertia_kgm2: [1, 1, 1], derivatives: {X_uu: -100}}"),
+                                    9.81);
+  sim::Vector6d nu = sim::Vector6d::Zero();
+  // In one step from u to u (1 - h 100 u / 10): to its negative at h u = 0.2.
+  nu[0] = 19;
+  EXPECT_FALSE(model.too_fast_for_step(nu, 0.01));
+  nu[0] = -21;
+  EXPECT_TRUE(model.too_fast_for_step(nu, 0.01));
+}
+
+TEST(HydrodynamicsChecks, ARunEndsWithTheReasonWhenDragOvershoots) {
+  test::TestWorld test(test::marine_world("{mass_kg: 10, inertia_kgm2: [1, 1, 1], derivatives: {X_uu: -100}}",
+                                          "{water: {}}", "", "0.01"));
+  sim::Body& body = test.world.vehicles()[0]->body("hull");
+  body.set_velocity_W({19, 0, 0}, sim::Vector3d::Zero());
+  EXPECT_NO_THROW(test.world.step());
+  body.set_velocity_W({21, 0, 0}, sim::Vector3d::Zero());
+  try {
+    test.world.step();
+    ADD_FAILURE() << "no fault";
+  } catch (const sim::PhysicsFault& fault) {
+    EXPECT_STREQ(fault.what(), "body 'auv/hull': its drag at 21 m/s and 0 rad/s is too stiff for 'step_s' 0.01");
+  }
+}
+
+}  // namespace

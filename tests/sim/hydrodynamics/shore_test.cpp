@@ -1,0 +1,86 @@
+#include "sim/world/bottom_check.hpp"
+#include "sim/world/vehicle.hpp"
+#include "tests/sim/hydrodynamics/floating_worlds.hpp"
+
+// Land, water and what goes from one to the other.
+
+namespace {
+
+
+using test::TestWorld;
+
+/// A beach that falls away to the east: the water line is at x = 0.
+const char* beach = R"(
+shoal: 1
+physics: {step_s: 0.005}
+medium: {water: {}}
+objects:
+  - {name: beach, fixed: true, rpy_deg: [0, 15, 0], parts: [{shape: plane}]}
+)";
+
+TEST(Shore, ABoxThatSlidesIntoTheSeaFloatsAndAStoneStaysBelow) {
+  TestWorld test(
+      std::string("shoal: 1\nphysics: {step_s: 0.005}\nmedium: {water: {}}\n"
+                  "contacts: [{between: [any, any], friction: 0}]\n"
+                  "objects:\n  - {name: bottom, fixed: true, position_m: [0, 0, -2], parts: [{shape: plane}]}\n"
+                  "  - {name: raft, position_m: [0, 0, 1], parts: [{shape: box, size_m: [1, 1, 0.4], "
+                  "density_kgpm3: 400}]}\n"
+                  "  - {name: stone, position_m: [5, 0, 1], parts: [{shape: box, size_m: [1, 1, 0.4], "
+                  "density_kgpm3: 2600}]}\n"));
+  test.run_for(30);
+  EXPECT_NEAR(test.world.find_object("raft")->body->X_WB().translation().z(), 0.2 - 0.4 * 400 / 1025, 0.02);
+  EXPECT_NEAR(test.world.find_object("stone")->body->X_WB().translation().z(), -1.8, 0.002);
+}
+
+TEST(Shore, WaterFarBelowChangesNoBitOfALandVehicle) {
+  const auto pose_after = [](const char* water) {
+    TestWorld test(std::string("shoal: 1\n") + water +
+                   "objects:\n  - {name: ground, fixed: true, parts: [{shape: plane}]}\n"
+                   "  - {name: it, position_m: [0, 0, 1], rpy_deg: [10, 20, 30], parts: [{shape: box, mass_kg: 3}]}\n");
+    test.run_for(5);
+    return test.world.find_object("it")->body->X_WB().matrix().eval();
+  };
+  EXPECT_EQ(pose_after(""), pose_after("medium: {water: {surface_m: -3}}\n"));
+}
+
+TEST(Shore, SaysWhereThereIsNoBottom) {
+  const char* auv = R"(
+vehicles:
+  - name: auv1
+    position_m: [X, 0, -1]
+    model:
+      shoal: 1
+      vehicle: auv
+      bodies: [{name: hull, parts: [{shape: sphere, radius_m: 0.1, density_kgpm3: 1025}]}]
+)";
+  const auto warnings_at = [&](const std::string& x) {
+    std::string yaml = std::string(beach) + auv;
+    yaml.replace(yaml.find("X, 0"), 1, x);
+    TestWorld test(yaml);
+    return sim::bottom_warnings(test.world);
+  };
+  EXPECT_TRUE(warnings_at("20").empty());
+  TestWorld open(std::string("shoal: 1\nmedium: {water: {}}\n") +
+                 std::string(auv).replace(std::string(auv).find("X, 0"), 1, "0"));
+  const auto warnings = sim::bottom_warnings(open.world);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0], "there is no bottom below vehicle 'auv1': what looks down from there sees nothing");
+}
+
+TEST(Shore, ASecondRunOfFloatingBodiesGivesTheSameBits) {
+  const auto hash_after = [] {
+    TestWorld test(
+        "shoal: 1\nphysics: {step_s: 0.01}\n"
+        "medium: {water: {}, waves: {type: jonswap, hs_m: 0.5, tp_s: 4}, current: [{velocity_mps: [0.3, 0, "
+        "0]}]}\nobjects:\n"
+        "  - {name: raft, count: 5, parts: [{shape: box, size_m: [1, 1, 0.4], density_kgpm3: 400}], "
+        "placement: {pattern: grid, spacing_m: 3}}\n"
+        "  - {name: spar, position_m: [-5, 0, 0], parts: [{shape: capsule, radius_m: 0.1, length_m: 1, "
+        "density_kgpm3: 600, added_mass_coefficient: 0.5}]}\n");
+    test.run_for(10);
+    return test.world.state_hash();
+  };
+  EXPECT_EQ(hash_after(), hash_after());
+}
+
+}  // namespace

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/experiment/fidelity.hpp"
+
+namespace tools {
+
+/// The table of differences, in columns for a terminal that are a table in Markdown too.
+std::string fidelity_table(const std::vector<FidelityResult>& results);
+
+/// Writes FOLDER/fidelity.md, and for each case FOLDER/fidelity/NAME.png (reference and ours over each other) and
+/// with `csv` NAME.csv (our states).  `text`: Markdown for the top.  Throws std::runtime_error.
+void write_fidelity_report(const std::string& folder, const std::string& text,
+                           const std::vector<FidelityResult>& results, bool csv);
+
+}  // namespace tools

@@ -1,0 +1,70 @@
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "tools/experiment/fidelity.hpp"
+#include "tools/experiment/fidelity_report.hpp"
+#include "tools/shoal/commands.hpp"
+
+namespace tools {
+
+namespace {
+
+struct FidelityArguments {
+  std::string cases, results;
+  bool csv = false;
+  std::vector<std::string> names;
+  std::optional<double> step_s;
+  std::vector<std::string> overrides;
+};
+
+int fidelity(const FidelityArguments& arguments) {
+  FidelityOptions options;
+  options.step_s = arguments.step_s;
+  for (const std::string& change : arguments.overrides) {
+    const auto equals = change.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw CLI::ValidationError("--override", "must be path=value, got '" + change + "'");
+    options.overrides[change.substr(0, equals)] = change.substr(equals + 1);
+  }
+  std::vector<FidelityResult> results;
+  bool passed = true;
+  const FidelityFile file = read_fidelity_file(arguments.cases);
+  for (const FidelityCase& of : file.cases) {
+    const auto wanted = [&](const std::string& name) { return name == of.name || name == of.group; };
+    if (!arguments.names.empty() && std::none_of(arguments.names.begin(), arguments.names.end(), wanted)) continue;
+    results.push_back(run_fidelity_case(of, options));
+    passed = passed && results.back().missed.empty();
+  }
+  if (results.empty()) throw CLI::ValidationError("--case", "no case has this name");
+  std::cout << fidelity_table(results);
+  for (const FidelityResult& result : results)
+    for (const std::string& missed : result.missed) std::cout << result.of.name << ": missed " << missed << '\n';
+  if (!arguments.results.empty()) write_fidelity_report(arguments.results, file.text, results, arguments.csv);
+  return passed ? exit_ok : exit_failed;
+}
+
+}  // namespace
+
+void add_fidelity_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("fidelity", "Compare vehicles with published trajectories");
+  const auto arguments = std::make_shared<FidelityArguments>();
+  command->add_option("CASES", arguments->cases, "file of cases")->required();
+  command->add_option("--case", arguments->names, "only this case, or the cases of this group; may be repeated")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command->add_option("--step", arguments->step_s, "time step instead of the file's, s")->check(number_from(1e-5, 1));
+  command->add_option("--override", arguments->overrides, "path=value: change a value of the vehicles")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command->add_option("--results", arguments->results, "folder for the report: fidelity.md and pictures");
+  command->add_flag("--csv", arguments->csv, "with the report, our states as CSV files");
+  add_plugin_option(*command);
+  command->footer(
+      "Example:\n  shoal fidelity tests/fidelity/cases.yaml --case otter_turn --results results/otter\n"
+      "The exit code is 1 when a bar of a case is missed.  docs/fidelity.md tells how to add cases.");
+  command->callback([arguments, &exit_code] { exit_code = fidelity(*arguments); });
+}
+
+}  // namespace tools
