@@ -105,17 +105,19 @@ TEST_P(Determinism, AnotherSeedIsAnotherRun) {
 INSTANTIATE_TEST_SUITE_P(Worlds, Determinism,
                          testing::Values(Case{"worlds/minimal.yaml", "20"}, Case{"worlds/erl_room.yaml", "20"},
                                          Case{"worlds/scale.yaml", "2"}, Case{"worlds/living_warehouse.yaml", "20"},
-                                         Case{"worlds/proving_ground.yaml", "20"}, Case{"worlds/hill_course.yaml", "5"},
+                                         Case{"worlds/proving_ground.yaml", "20"}, Case{"worlds/proving_sea.yaml", "20"}, Case{"worlds/hill_course.yaml", "5"},
                                          Case{"worlds/sonar_tank.yaml", "5"}),
                          [](const auto& test) { return std::filesystem::path(test.param.world).stem().string(); });
 
-TEST(ProvingGround, HasEveryDevice) {
+TEST(ProvingGroundAndSea, HaveEveryDevice) {
   sim::LoadOptions options;
   options.encode_message = shoal::encode_own_message;
-  const auto loaded = sim::load_world(source("worlds/proving_ground.yaml"), options);
   std::set<std::string> types;
-  for (const sim::VehicleInstance& vehicle : loaded.config.vehicles)
-    for (const sim::DeviceConfig& device : vehicle.config->devices) types.insert(device.type);
+  for (const char* file : {"worlds/proving_ground.yaml", "worlds/proving_sea.yaml"}) {
+    const auto loaded = sim::load_world(source(file), options);
+    for (const sim::VehicleInstance& vehicle : loaded.config.vehicles)
+      for (const sim::DeviceConfig& device : vehicle.config->devices) types.insert(device.type);
+  }
   for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all())
     EXPECT_TRUE(types.contains(type->name)) << type->name;
 }
