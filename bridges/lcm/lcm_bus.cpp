@@ -80,6 +80,12 @@ class ChannelMailbox final : public sim::Mailbox {
 
   std::uint64_t dropped() const override { return dropped_.load(std::memory_order_relaxed); }
 
+  void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) override {
+    const std::lock_guard lock(channel_.mutex);
+    if (!messages_.empty()) flag->store(true, std::memory_order_release);
+    flag_ = std::move(flag);
+  }
+
   /// With the channel's lock held.
   void add(sim::Message message) {
     if (messages_.size() == capacity_) {
@@ -89,6 +95,7 @@ class ChannelMailbox final : public sim::Mailbox {
     }
     messages_.push_back(std::move(message));
     size_.store(messages_.size(), std::memory_order_release);
+    if (flag_) flag_->store(true, std::memory_order_release);
   }
 
  private:
@@ -96,6 +103,7 @@ class ChannelMailbox final : public sim::Mailbox {
   const std::size_t capacity_;
   std::deque<sim::Message> messages_;
   std::atomic<std::size_t> size_ = 0;
+  std::shared_ptr<std::atomic<bool>> flag_;  // guarded by the channel's lock
   std::atomic<std::uint64_t> dropped_ = 0;
 };
 

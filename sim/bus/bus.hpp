@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -28,6 +29,9 @@ class Mailbox {
   /// The oldest unread message.  Never waits.
   virtual std::optional<Message> take() = 0;
   virtual std::uint64_t dropped() const = 0;
+  /// From now on `flag` becomes true whenever a message has come, so that who reads thousands of mailboxes need not
+  /// look into those that are empty.  Who reads lowers it first, then takes all there is.  For one flag.
+  virtual void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) = 0;
 };
 
 struct BusCounts {

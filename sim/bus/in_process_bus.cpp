@@ -23,6 +23,7 @@ struct InProcessBus::Queue {
   std::size_t capacity = 0;
   std::uint64_t dropped = 0;
   bool closed = false;  ///< its mailbox is gone
+  std::shared_ptr<std::atomic<bool>> flag;  ///< may be null
 };
 
 class InProcessBus::QueueMailbox final : public Mailbox {
@@ -42,6 +43,10 @@ class InProcessBus::QueueMailbox final : public Mailbox {
     return oldest;
   }
   std::uint64_t dropped() const override { return queue_->dropped; }
+  void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) override {
+    if (!queue_->messages.empty()) flag->store(true, std::memory_order_relaxed);
+    queue_->flag = std::move(flag);
+  }
 
  private:
   std::shared_ptr<Queue> queue_;
@@ -59,6 +64,7 @@ void InProcessBus::publish(std::string_view channel, std::span<const std::byte> 
   for (const std::shared_ptr<Queue>& queue : found->second) {
     queue->messages.push_back({found->first, Bytes(payload.begin(), payload.end()), false});
     ++counts_.received;
+    if (queue->flag) queue->flag->store(true, std::memory_order_relaxed);
     if (queue->messages.size() <= queue->capacity) continue;
     queue->messages.pop_front();
     ++queue->dropped;

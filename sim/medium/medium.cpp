@@ -9,70 +9,102 @@ namespace {
 
 constexpr double air_density_kgpm3 = 1.225;  // ISA, sea level
 constexpr double air_pressure_Pa = 101325;   // ISA, sea level
-constexpr double sound_in_air_mps = 340.3;   // ISA, sea level, 15 C
-
-/// Mackenzie 1981 (JASA 70, 807): m/s of degrees C, psu, m.
-double mackenzie_mps(double T, double S, double D) {
-  return 1448.96 + 4.591 * T - 5.304e-2 * T * T + 2.374e-4 * T * T * T + 1.340 * (S - 35) + 1.630e-2 * D +
-         1.675e-7 * D * D - 1.025e-2 * T * (S - 35) - 7.139e-13 * T * D * D * D;
-}
+constexpr double air_temperature_C = 15;     // ISA, sea level
+constexpr double sound_in_air_mps = 340.3;   // ISA, sea level
+constexpr double dry = -std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-Medium::Medium(const MediumConfig& config, double gravity_mps2, std::uint64_t)
-    : config_(config), gravity_mps2_(gravity_mps2) {}
+Medium::Medium(const MediumConfig& config, double gravity_mps2, std::uint64_t seed)
+    : config_(config), gravity_mps2_(gravity_mps2), still_m_(dry) {
+  if (config.water) {
+    column_.emplace(*config.water, gravity_mps2);
+    current_.emplace(config.current, config.tides, seed);
+    if (config.waves) waves_.emplace(*config.waves, gravity_mps2, seed);
+  }
+  if (config.wind) wind_.emplace(*config.wind, seed);
+  advance_to(Time{0});
+}
 
 void Medium::advance_to(Time now) {
   now_ = now;
+  if (has_water()) {
+    still_m_ = config_.water->surface_m + Current::tide_m(config_.tides, now);
+    current_->advance_to(now);
+    if (waves_) waves_->advance_to(now);
+  }
+  if (wind_) wind_->advance_to(now);
 }
 
-double Medium::surface_m(double, double) const {
-  return has_water() ? config_.water->surface_m : -std::numeric_limits<double>::infinity();
+double Medium::surface_m(double x_m, double y_m) const {
+  return waves_ ? still_m_ + waves_->elevation_m(x_m, y_m) : still_m_;
+}
+
+double Medium::surface_m(double x_m, double y_m, Time at) const {
+  if (!has_water()) return dry;
+  const double still_m = config_.water->surface_m + Current::tide_m(config_.tides, at);
+  return waves_ ? still_m + waves_->elevation_m(x_m, y_m, at) : still_m;
 }
 
 LocalWater Medium::water_at(const Vector3d& p_W) const {
   LocalWater water;
-  water.surface_m = surface_m(p_W.x(), p_W.y());
+  water.surface_m = still_m_;
   if (!has_water()) return water;
-  water.density_kgpm3 = config_.water->density_kgpm3;
-  water.velocity_W = water_velocity_W(p_W);
+  if (waves_) {
+    const WaveMotion motion = waves_->at(p_W.x(), p_W.y(), p_W.z() - still_m_);
+    water.surface_m += motion.elevation_m;
+    water.velocity_W = motion.velocity_W;
+    water.acceleration_W = motion.acceleration_W;
+  }
+  const double depth_m = water.surface_m - p_W.z();
+  water.density_kgpm3 = column_->density_kgpm3(depth_m);
+  water.velocity_W += current_->velocity_W(p_W.x(), p_W.y(), depth_m);
   return water;
 }
 
-Vector3d Medium::water_velocity_W(const Vector3d&) const {
-  return has_water() ? config_.current.velocity_mps : Vector3d::Zero();
+Vector3d Medium::water_velocity_W(const Vector3d& p_W) const {
+  return water_at(p_W).velocity_W;
 }
 
-Vector3d Medium::air_velocity_W(const Vector3d&) const {
-  return Vector3d::Zero();
+Vector3d Medium::air_velocity_W(const Vector3d& p_W) const {
+  if (!wind_) return Vector3d::Zero();
+  return wind_->velocity_W(p_W.z() - (has_water() ? still_m_ : 0));
 }
 
 double Medium::density_kgpm3(const Vector3d& p_W) const {
-  return in_water(p_W) ? config_.water->density_kgpm3 : air_density_kgpm3;
+  const double depth = depth_m(p_W);
+  return depth > 0 ? column_->density_kgpm3(depth) : air_density_kgpm3;
 }
 
 double Medium::pressure_Pa(const Vector3d& p_W) const {
-  const double depth = depth_m(p_W);
-  if (depth > 0) return air_pressure_Pa + config_.water->density_kgpm3 * gravity_mps2_ * depth;
-  return air_pressure_Pa;
+  if (!has_water()) return air_pressure_Pa;
+  const double z_m = p_W.z() - still_m_;
+  if (!waves_) return air_pressure_Pa + column_->pressure_Pa(-z_m);
+  const WaveMotion motion = waves_->at(p_W.x(), p_W.y(), z_m);
+  if (z_m >= motion.elevation_m) return air_pressure_Pa;
+  const double by_head = column_->density_kgpm3(0) * gravity_mps2_;
+  const double still_Pa = z_m < 0 ? column_->pressure_Pa(-z_m) : -by_head * z_m;
+  return air_pressure_Pa + std::max(0.0, still_Pa + by_head * motion.head_m);
 }
 
-double Medium::temperature_C(const Vector3d&) const {
-  return has_water() ? config_.water->temperature_C : 15;
+double Medium::temperature_C(const Vector3d& p_W) const {
+  return has_water() ? column_->temperature_C(depth_m(p_W)) : air_temperature_C;
 }
 
-double Medium::salinity_psu(const Vector3d&) const {
-  return has_water() ? config_.water->salinity_psu : 0;
+double Medium::salinity_psu(const Vector3d& p_W) const {
+  return has_water() ? column_->salinity_psu(depth_m(p_W)) : 0;
 }
 
 double Medium::sound_speed_mps(const Vector3d& p_W) const {
   const double depth = depth_m(p_W);
-  return depth > 0 ? mackenzie_mps(temperature_C(p_W), salinity_psu(p_W), depth) : sound_in_air_mps;
+  return depth > 0 ? column_->sound_speed_mps(depth) : sound_in_air_mps;
 }
 
 void Medium::hash_state(StateHash& hash) const {
-  if (!has_water()) return;
+  if (!has_water() && !wind_) return;
   hash.add(static_cast<std::int64_t>(now_.count()));
+  if (current_) current_->hash_state(hash);
+  if (wind_) wind_->hash_state(hash);
 }
 
 }  // namespace sim

@@ -1,9 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "sim/math.hpp"
+#include "sim/medium/current.hpp"
 #include "sim/medium/medium_config.hpp"
+#include "sim/medium/water_column.hpp"
+#include "sim/medium/waves.hpp"
+#include "sim/medium/wind.hpp"
 #include "sim/state_hash.hpp"
 #include "sim/time.hpp"
 
@@ -17,17 +22,19 @@ struct LocalWater {
   Vector3d acceleration_W = Vector3d::Zero();  ///< of the water in waves, m/s^2; a current's is left out
 };
 
-/// What surrounds the bodies of a world: water below the surface, air over it.  World frame, east-north-up.
+/// What surrounds the bodies of a world: water below the surface, air over it.  World frame, east-north-up.  The models
+/// and their sources are in docs/medium.md.
 ///
-/// Time goes on by advance_to() only; all answers are for that time.  Places beyond the water (over the surface, or in
-/// a world without water) have answers too: those of the air, and LocalWater as at the surface.
+/// Time goes on by advance_to() only; all answers are for that time, and do not depend on what was asked before.
+/// Places beyond the water (over the surface, or in a world without water) have answers too: those of the air, and
+/// LocalWater as at the surface.
 class Medium {
  public:
-  /// Throws ConfigError (files).
+  /// Throws ConfigError (files, waves that break).
   Medium(const MediumConfig& config, double gravity_mps2, std::uint64_t seed);
 
   bool has_water() const { return config_.water.has_value(); }
-  bool has_waves() const { return false; }
+  bool has_waves() const { return waves_.has_value(); }
 
   /// Not back in time.
   void advance_to(Time now);
@@ -35,17 +42,22 @@ class Medium {
 
   /// Height of the surface in the world; minus infinity in a world without water.
   double surface_m(double x_m, double y_m) const;
+  /// The same at any time.
+  double surface_m(double x_m, double y_m, Time at) const;
   /// Below the momentary surface, m; negative in the air, minus infinity in a world without water.
   double depth_m(const Vector3d& p_W) const { return surface_m(p_W.x(), p_W.y()) - p_W.z(); }
   bool in_water(const Vector3d& p_W) const { return depth_m(p_W) > 0; }
+  /// All of the water in one pass: cheaper than the questions below one by one.
   LocalWater water_at(const Vector3d& p_W) const;
   /// Of the water (current and waves), m/s.
   Vector3d water_velocity_W(const Vector3d& p_W) const;
-  /// Of the wind, m/s.
+  /// False where a gridded current ends.
+  bool current_known(const Vector3d& p_W) const { return !current_ || current_->known(p_W.x(), p_W.y()); }
+  /// Of the wind, m/s.  Below the surface: as at the surface.
   Vector3d air_velocity_W(const Vector3d& p_W) const;
   /// Of water or air, kg/m^3.
   double density_kgpm3(const Vector3d& p_W) const;
-  /// Absolute, of water or air, Pa.
+  /// Absolute, of water or air, Pa; in waves with their dynamic pressure.
   double pressure_Pa(const Vector3d& p_W) const;
   /// Of the water at this depth, also for places over the surface.
   double temperature_C(const Vector3d& p_W) const;
@@ -58,6 +70,11 @@ class Medium {
  private:
   MediumConfig config_;
   double gravity_mps2_;
+  std::optional<WaterColumn> column_;  ///< these two in a world with water
+  std::optional<Current> current_;
+  std::optional<Waves> waves_;
+  std::optional<Wind> wind_;
+  double still_m_;  ///< height of the surface without waves, now
   Time now_{0};
 };
 

@@ -93,6 +93,11 @@ void Body::move_to(const Pose& X_WB_at_end, double step_s) {
   const Vector3d v_WB_W = (X_WB_at_end.translation() - to_eigen(p_WC_)) / step_s;
   const Eigen::AngleAxisd turn_W(to_quaternion(X_WB_at_end.linear() * rotation_to_eigen(R_WB_).transpose()));
   const Vector3d w_WB_W = turn_W.angle() / step_s * turn_W.axis();
+  move_to(X_WB_at_end, v_WB_W, w_WB_W);
+}
+
+void Body::move_to(const Pose& X_WB_at_end, const Vector3d& v_WB_W, const Vector3d& w_WB_W) {
+  assert(kinematic());
   dBodySetLinearVel(ode_.get(), v_WB_W.x(), v_WB_W.y(), v_WB_W.z());
   dBodySetAngularVel(ode_.get(), w_WB_W.x(), w_WB_W.y(), w_WB_W.z());
   seat_X_WB_ = X_WB_at_end;
@@ -110,6 +115,8 @@ void Body::begin_kinematic_step() {
 void Body::end_kinematic_step() {
   place_ode_body(seat_X_WB_);
   move_is_due_ = false;
+  // ODE need not step it: it steps a disabled body all the same where a free one touches it.
+  dBodyDisable(ode_.get());
 }
 
 void Body::set_velocity_W(const Vector3d& v_WB_W, const Vector3d& w_WB_W) {

@@ -56,6 +56,8 @@ class Body {
   /// turning the shorter way.  What it touches sees that velocity, which has the bound of every body: for a jump there
   /// is set_pose.  Without a call it stands still in a step.
   void move_to(const Pose& X_WB_at_end, double step_s);
+  /// The same for who knows the velocities of the step: of the origin of B, and the angular one.
+  void move_to(const Pose& X_WB_at_end, const Vector3d& v_WB_W, const Vector3d& w_WB_W);
   /// Of a free body; others do not take it.
   void set_velocity_W(const Vector3d& v_WB_W, const Vector3d& w_WB_W);
 

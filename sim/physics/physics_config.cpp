@@ -115,6 +115,7 @@ void BodyConfig::read(ParamReader& in) {
   in.read("position_m", position_m, any_place(), "origin of the body's frame in the frame of the vehicle");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch and yaw of the body's frame in the frame of the vehicle");
   in.read_list("parts", parts, "part", "shapes that move as one");
+  in.read("kinematic", kinematic, "a device moves it, such as naive_drive; it pushes others and no force moves it");
   in.read("hydrodynamics", hydrodynamics, "mass and forces in water by published coefficients, see docs/marine.md");
 }
 

@@ -80,6 +80,7 @@ struct BodyConfig {
   Vector3d position_m = Vector3d::Zero();  ///< of the body frame B in the vehicle frame V
   Vector3d rpy_rad = Vector3d::Zero();
   std::vector<PartConfig> parts;
+  bool kinematic = false;  ///< a device moves it; no force does
   std::optional<HydrodynamicsConfig> hydrodynamics;  ///< its mass is that of the body, whatever the parts weigh
   SourcePlace place;                                 ///< where the body was written, for errors found while building
 

@@ -122,7 +122,10 @@ void PhysicsWorld::Impl::solve(std::int64_t step_number) {
   const bool some_too_large = config.solver == "auto" && counts.largest_island_rows > config.quick_above_rows;
   counts.quick = config.solver == "quick" || some_too_large;
   if (counts.quick) dRandSetSeed(step_seed(seed, step_number));
-  if (some_too_large)
+  const bool nothing_is_free = moving.size() == kinematic.size();  // then ODE would but look at each body
+  if (nothing_is_free)
+    counts.quick = false;
+  else if (some_too_large)
     step_islands_by_size();
   else if (counts.quick)
     dWorldQuickStep(world.get(), step_s);

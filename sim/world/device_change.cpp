@@ -88,6 +88,8 @@ bool World::change_device(const std::string& full_name, const ConfigNode& values
   }
   const auto changed = changed_device(device->config(), device->vehicle().config(), config_, values, who, diagnostics);
   if (changed) device->change(*changed, now());
+  for (Sensing& sensing : sensing_)
+    if (sensing.device == device) sensing.due_step = device->next_sample_step();
   return changed.has_value();
 }
 

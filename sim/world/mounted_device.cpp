@@ -86,6 +86,11 @@ MountedDevice::MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig&
       noise_random_(host.seed, full_name_),
       link_random_(host.seed, full_name_ + "#link") {
   if (built_.controller) mailbox_ = bus_.open_mailbox(command_channel_, Bus::default_mailbox_capacity);
+  acting_.actuator = built_.actuator.get();
+  acting_.systems = &vehicle.systems();
+  acting_.watchdog = from_seconds(config_.watchdog_s);
+  acting_.is_actuator = type_.is_actuator();
+  acting_.always_on = type_.always_on;
   report_outlet_ = std::make_unique<Outlet>(*this, report_channel_);
   truth_outlet_ = std::make_unique<Outlet>(*this, truth_channel_);
   plan_schedule();
@@ -158,28 +163,28 @@ void MountedDevice::receive(Time now, std::span<const std::byte> payload) {
   if (type_.is_actuator() && (vehicle_.systems().estopped || faults_.stuck())) return;
   try {
     built_.controller->receive(now, payload);
-    last_command_ = now;
-    safe_ = false;
+    acting_.last_command = now;
+    acting_.safe = false;
   } catch (const std::runtime_error& error) {
     host_.complain({command_channel_, error.what()});
   }
 }
 
 void MountedDevice::make_safe() {
-  if (safe_) return;
+  if (acting_.safe) return;
   built_.actuator->make_safe(config_.safe);
-  safe_ = true;
+  acting_.safe = true;
 }
 
 void MountedDevice::act(Time now, double step_s) {
-  const VehicleSystems& systems = vehicle_.systems();
-  if (type_.is_actuator()) {
-    const bool stale = config_.watchdog_s > 0 && last_command_.count() >= 0 && !faults_.stuck() &&
-                       now - last_command_ > from_seconds(config_.watchdog_s);
-    if (stale || systems.estopped || !works()) make_safe();
+  const bool works = acting_.always_on || acting_.systems->powered;
+  if (acting_.is_actuator) {
+    const bool stale = acting_.watchdog.count() > 0 && acting_.last_command.count() >= 0 && !faults_.stuck() &&
+                       now - acting_.last_command > acting_.watchdog;
+    if (stale || acting_.systems->estopped || !works) make_safe();
   }
-  built_.actuator->act({now, step_s, works() ? faults_.effectiveness() : 0.0});
-  if (systems.metered && works()) vehicle_.systems().drawn_J += built_.actuator->power_W() * step_s;
+  acting_.actuator->act({now, step_s, works ? faults_.effectiveness() : 0.0});
+  if (acting_.systems->metered && works) acting_.systems->drawn_J += acting_.actuator->power_W() * step_s;
 }
 
 void MountedDevice::sweep(const World& world, Time now) {
@@ -269,6 +274,7 @@ void MountedDevice::clear_faults() {
 void MountedDevice::change(const DeviceConfig& changed, Time now) {
   const bool other_rate = changed.rate_hz != config_.rate_hz || changed.phase_s != config_.phase_s;
   config_ = changed;  // what must stay as it is, changed_device() refuses to change
+  acting_.watchdog = from_seconds(config_.watchdog_s);
   if (built_.change) built_.change(*changed.params);
   if (!other_rate) return;
   // The new rate counts from time 0 as the old one did; the next sample is the first one after now.
@@ -281,8 +287,8 @@ void MountedDevice::hash_state(StateHash& hash) const {
   hash.add(samples_planned_);
   hash.add(next_sample_step_);
   hash.add(static_cast<std::int64_t>(last_sample_.count()));
-  hash.add(static_cast<std::int64_t>(last_command_.count()));
-  hash.add(safe_);
+  hash.add(static_cast<std::int64_t>(acting_.last_command.count()));
+  hash.add(acting_.safe);
   faults_.hash_state(hash);
   if (frozen_)
     for (const Bytes& payload : *frozen_) hash.add_bytes(payload.data(), payload.size());

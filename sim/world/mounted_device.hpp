@@ -13,6 +13,8 @@
 
 namespace sim {
 
+struct VehicleSystems;
+
 /// A message that a device could not use.
 struct BadMessage {
   std::string channel;
@@ -41,7 +43,8 @@ class MountedDevice {
   /// Hands the controller the messages that have come; with a latency they become events.
   void take_mail(Time now, std::int64_t step_number);
   void act(Time now, double step_s);
-  bool sample_is_due(std::int64_t step_number) const { return step_number >= next_sample_step_; }
+  /// Of the step after which it samples next.
+  std::int64_t next_sample_step() const { return next_sample_step_; }
   /// See Sensor::sweep; called after each step of a sensor that sweeps.
   void sweep(const World& world, Time now);
   /// Samples; the reports wait for publish().  Sensors that cast rays may do so at the same time in several threads.
@@ -66,7 +69,8 @@ class MountedDevice {
   bool casts_rays() const { return type_.casts_rays; }
   std::int64_t rays() const { return built_.sensor->rays(); }
   bool acts() const { return built_.actuator != nullptr; }
-  bool has_mailbox() const { return mailbox_ != nullptr; }
+  /// Null when it takes no messages.
+  Mailbox* mailbox() const { return mailbox_.get(); }
   int number() const { return number_; }
   const std::string& full_name() const { return full_name_; }
   const std::string& report_channel() const { return report_channel_; }
@@ -91,6 +95,19 @@ class MountedDevice {
   void plan_schedule();
   void plan_next_sample();
 
+  /// What act() needs in every step, side by side.
+  struct Acting {
+    Actuator* actuator = nullptr;
+    VehicleSystems* systems = nullptr;
+    Time watchdog{0};          ///< 0: none
+    Time last_command{-1};     ///< the last one that was good; -1: none yet
+    bool is_actuator = false;  ///< has safe states
+    bool always_on = false;
+    bool safe = false;  ///< the actuator was made safe, and no command came since
+  };
+
+  Acting acting_;
+  DeviceFaults faults_;
   DeviceConfig config_;
   const DeviceType& type_;
   DeviceHost& host_;
@@ -101,7 +118,6 @@ class MountedDevice {
   std::string full_name_;
   std::string report_channel_, truth_channel_, command_channel_;
   Pose X_BS_;
-  DeviceFaults faults_;
   BuiltDevice built_;
   std::unique_ptr<Mailbox> mailbox_;
   std::unique_ptr<Outlet> report_outlet_, truth_outlet_;
@@ -111,9 +127,7 @@ class MountedDevice {
   std::int64_t samples_planned_ = 0;
   std::int64_t next_sample_step_ = 1;
   Time last_sample_{-1};
-  Time last_command_{-1};            ///< the last one that was good; -1: none yet
   std::optional<Pose> X_WS_before_;  ///< at the end of the last step, for sweep()
-  bool safe_ = false;                ///< the actuator was made safe, and no command came since
   /// What a stuck sensor repeats, and the time stamp in it.
   std::optional<std::vector<Bytes>> frozen_;
   std::int64_t frozen_utime_ = 0;

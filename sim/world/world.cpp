@@ -90,9 +90,10 @@ Vehicle& World::build_vehicle(const VehicleInstance& instance) {
 void World::build_parts_of(Vehicle& vehicle, const VehicleInstance& instance) {
   const VehicleConfig& config = *instance.config;
   for (const BodyConfig& body : config.bodies) {
-    Body& built = physics_->add_body(vehicle.group(), body, instance.X_WV);
+    Body& built =
+        physics_->add_body(vehicle.group(), body, instance.X_WV, body.kinematic ? Motion::kinematic : Motion::free);
     vehicle.add_body(body.name, built);
-    hydrodynamics_.add_body(built, body);
+    if (!body.kinematic) hydrodynamics_.add_body(built, body);
   }
   for (const JointConfig& joint : config.joints) {
     Body* second = joint.bodies[1] == "world" ? nullptr : &vehicle.body(joint.bodies[1]);
@@ -110,6 +111,7 @@ void World::add_device(Vehicle& vehicle, const DeviceConfig& config) {
   }
   const int number = free_numbers_.back();
   auto device = std::make_unique<MountedDevice>(*this, vehicle, config, host_, number);
+  if (device->mailbox()) device->mailbox()->raise_on_arrival(mail_flags_.of(number));
   free_numbers_.pop_back();
   vehicle.add_device(*device);
   for (const ChannelKind kind : all_channel_kinds)
@@ -123,14 +125,17 @@ void World::sort_devices() {
   sensing_.clear();
   for (const auto& device : devices_) {
     if (!device) continue;
-    if (device->has_mailbox()) listening_.push_back(device.get());
+    if (device->mailbox()) listening_.push_back({mail_flags_.of(device->number()).get(), device.get()});
     if (device->acts()) acting_.push_back(device.get());
-    if (device->senses()) sensing_.push_back(device.get());
+    if (device->senses())
+      sensing_.push_back({device->next_sample_step(), device.get(), device->casts_rays(), device->sweeps()});
   }
 }
 
 void World::step() {
-  for (MountedDevice* device : listening_) device->take_mail(now(), step_number_);
+  for (const Listening& listening : listening_)
+    if (listening.mail->load(std::memory_order_relaxed) && listening.mail->exchange(false, std::memory_order_acquire))
+      listening.device->take_mail(now(), step_number_);
   hydrodynamics_.begin_step();
   for (MountedDevice* device : acting_) device->act(now(), step_s_);
   hydrodynamics_.step();
@@ -147,15 +152,16 @@ void World::step() {
 void World::sense() {
   due_.clear();
   casting_.clear();
-  for (MountedDevice* device : sensing_) {
-    const bool due = device->sample_is_due(step_number_);
-    if (due) due_.push_back(device);
-    if (device->casts_rays() && (due || device->sweeps())) casting_.push_back({device, due});
+  for (Sensing& sensing : sensing_) {
+    const bool due = step_number_ >= sensing.due_step;
+    if (due) due_.push_back(&sensing);
+    if (sensing.casts_rays && (due || sensing.sweeps)) casting_.push_back({sensing.device, due});
   }
   if (!casting_.empty()) cast_rays();
-  for (MountedDevice* device : due_) {
-    if (!device->casts_rays()) device->sample(*this, now(), step_number_);
-    device->publish_reports();
+  for (Sensing* sensing : due_) {
+    if (!sensing->casts_rays) sensing->device->sample(*this, now(), step_number_);
+    sensing->due_step = sensing->device->next_sample_step();
+    sensing->device->publish_reports();
   }
   counts_.samples += static_cast<std::int64_t>(due_.size());
 }

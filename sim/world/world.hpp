@@ -19,6 +19,7 @@
 #include "sim/physics/physics_world.hpp"
 #include "sim/thread_pool.hpp"
 #include "sim/world/event_queue.hpp"
+#include "sim/world/mail_flags.hpp"
 #include "sim/world/mounted_device.hpp"
 #include "sim/world/vehicle.hpp"
 #include "sim/world/world_config.hpp"
@@ -204,13 +205,27 @@ class World {
   std::vector<std::unique_ptr<MountedDevice>> devices_;
   std::vector<int> free_numbers_;  // of devices that were removed; the last is used first
   // The devices each stage visits, in device order.
-  std::vector<MountedDevice*> listening_, acting_, sensing_;
+  /// A device with a mailbox, and whether there may be something in it.
+  struct Listening {
+    std::atomic<bool>* mail;
+    MountedDevice* device;
+  };
+  /// A sensor, and the step after which it samples next.
+  struct Sensing {
+    std::int64_t due_step;
+    MountedDevice* device;
+    bool casts_rays, sweeps;
+  };
+  std::vector<Listening> listening_;
+  std::vector<MountedDevice*> acting_;
+  std::vector<Sensing> sensing_;
+  MailFlags mail_flags_;
   /// What this step has to sense.
   struct Casting {
     MountedDevice* device;
     bool due;
   };
-  std::vector<MountedDevice*> due_;
+  std::vector<Sensing*> due_;
   std::vector<Casting> casting_;
   std::unique_ptr<ThreadPool> threads_;  // null: one thread
   std::unique_ptr<Script> script_;

@@ -42,5 +42,6 @@ void add_log_command(CLI::App& app, int& exit_code);
 void add_bench_command(CLI::App& app, int& exit_code);
 void add_mesh_command(CLI::App& app, int& exit_code);
 void add_fidelity_command(CLI::App& app, int& exit_code);
+void add_medium_command(CLI::App& app, int& exit_code);
 
 }  // namespace tools

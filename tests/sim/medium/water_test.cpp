@@ -1,0 +1,121 @@
+#include <gmock/gmock.h>
+
+#include "sim/medium/sea_water.hpp"
+#include "tests/sim/medium/medium_worlds.hpp"
+
+namespace {
+
+using sim::Vector3d;
+using test_support::error_of;
+using test_support::make_medium;
+using testing::HasSubstr;
+
+TEST(SeaWater, SoundIsAsFastAsTheEquationsSay) {
+  // closed_forms.csv sound_speed_*, at the tolerance there.
+  EXPECT_NEAR(sim::mackenzie_mps(10, 35, 0), 1489.8034, 0.01);
+  EXPECT_NEAR(sim::mackenzie_mps(25, 35, 1000), 1550.744027, 0.01);
+  EXPECT_NEAR(sim::mackenzie_mps(4, 34, 500), 1473.383072, 0.01);
+  EXPECT_NEAR(sim::mackenzie_mps(20, 30, 50), 1516.603617, 0.01);
+  EXPECT_NEAR(sim::medwin_mps(10, 35, 0), 1489.99, 0.01);
+  EXPECT_NEAR(sim::medwin_mps(25, 35, 1000), 1550.35625, 0.01);
+  EXPECT_NEAR(sim::medwin_mps(4, 34, 500), 1473.43856, 0.01);
+  EXPECT_NEAR(sim::medwin_mps(20, 30, 50), 1516.62, 0.01);
+  EXPECT_NEAR(sim::chen_millero_mps(40, 40, 10000), 1731.995394, 0.01);
+  EXPECT_NEAR(sim::chen_millero_mps(10, 35, 0), 1489.822336, 0.01);
+  EXPECT_NEAR(sim::chen_millero_mps(5, 35, 2000), 1503.865092, 0.01);
+}
+
+TEST(SeaWater, DensityHasTheCheckValuesOfUnesco) {
+  // Unesco technical papers in marine science 36 (1981), check values of the equation, to their last digit.
+  EXPECT_NEAR(sim::eos80_kgpm3(5, 0, 0), 999.96675, 5e-6);
+  EXPECT_NEAR(sim::eos80_kgpm3(5, 35, 0), 1027.67547, 5e-6);
+  EXPECT_NEAR(sim::eos80_kgpm3(5, 0, 10000), 1044.12802, 5e-6);
+  EXPECT_NEAR(sim::eos80_kgpm3(25, 35, 10000), 1062.53817, 5e-6);
+}
+
+TEST(Water, PressureGrowsWithTheDepth) {
+  const sim::Medium medium = make_medium("water: {}");
+  // closed_forms.csv hydrostatic_pressure: 101325 + 1025 * 9.80665 * 25.
+  EXPECT_NEAR(medium.pressure_Pa({3, 4, -25}), 352620.4062, 35);
+  EXPECT_EQ(medium.pressure_Pa({3, 4, 1}), 101325);
+  EXPECT_EQ(medium.density_kgpm3({0, 0, -1}), 1025);
+  EXPECT_EQ(medium.density_kgpm3({0, 0, 1}), 1.225);
+}
+
+TEST(Water, StandsAtTheHeightOfItsSurface) {
+  const sim::Medium medium = make_medium("water: {surface_m: -3, density_kgpm3: 1000}");
+  EXPECT_EQ(medium.surface_m(1, 2), -3);
+  EXPECT_EQ(medium.depth_m({0, 0, -5}), 2);
+  EXPECT_FALSE(medium.in_water({0, 0, -2}));
+  EXPECT_DOUBLE_EQ(medium.pressure_Pa({0, 0, -5}), 101325 + 2000 * 9.80665);
+}
+
+TEST(Water, ProfileIsLinearBetweenItsRowsAndGoesOnAtItsEnds) {
+  const sim::Medium medium = make_medium(R"(
+water:
+  profile:
+    - {depth_m: 10, temperature_C: 20, salinity_psu: 30, density_kgpm3: 1020, sound_speed_mps: 1500}
+    - {depth_m: 50, temperature_C: 10, salinity_psu: 35, density_kgpm3: 1028, sound_speed_mps: 1480}
+)");
+  EXPECT_NEAR(medium.temperature_C({0, 0, -20}), 17.5, 1e-12);
+  EXPECT_NEAR(medium.salinity_psu({0, 0, -20}), 31.25, 1e-12);
+  EXPECT_NEAR(medium.density_kgpm3({0, 0, -20}), 1022, 1e-9);
+  EXPECT_NEAR(medium.water_at({0, 0, -20}).density_kgpm3, 1022, 1e-9);
+  EXPECT_NEAR(medium.sound_speed_mps({0, 0, -20}), 1495, 1e-9);
+  EXPECT_EQ(medium.temperature_C({0, 0, -5}), 20);
+  EXPECT_EQ(medium.temperature_C({0, 0, 5}), 20);
+  EXPECT_EQ(medium.temperature_C({0, 0, -500}), 10);
+  // The weight of the water above: 10 m of 1020, 40 m of 1024 on average, 50 m of 1028.
+  EXPECT_NEAR(medium.pressure_Pa({0, 0, -100}), 101325 + 9.80665 * (10 * 1020 + 40 * 1024 + 50 * 1028), 1e-6);
+  // Half way: 20 m from 1020 to 1024.
+  EXPECT_NEAR(medium.pressure_Pa({0, 0, -30}), 101325 + 9.80665 * (10 * 1020 + 20 * 1022), 1e-6);
+}
+
+TEST(Water, DensityFollowsTheEquationOfState) {
+  const sim::Medium medium = make_medium("water: {density: eos80, temperature_C: 5, salinity_psu: 35}");
+  EXPECT_NEAR(medium.density_kgpm3({0, 0, -1e-6}), 1027.67547, 1e-4);
+  // Where the pressure is 1000 dbar the density must be that of the equation there: between rows 20 m apart the error
+  // of a straight line is (20 m)^2 / 8 times the second derivative, 1e-11 / m^2 of the density.
+  const Vector3d deep(0, 0, -1000);
+  const double dbar = (medium.pressure_Pa(deep) - 101325) / 1e4;
+  EXPECT_NEAR(medium.density_kgpm3(deep), sim::eos80_kgpm3(5, 35, dbar), 1e-4);
+  // dp/dz = rho g, by a central difference.
+  const double slope = (medium.pressure_Pa({0, 0, -1001}) - medium.pressure_Pa({0, 0, -999})) / 2;
+  EXPECT_NEAR(slope, medium.density_kgpm3(deep) * 9.80665, 1e-3);
+}
+
+TEST(Water, SoundSpeedIsThatOfTheChosenEquation) {
+  const Vector3d p_W(0, 0, -500);
+  const std::string water = "temperature_C: 4, salinity_psu: 34, ";
+  EXPECT_NEAR(make_medium("water: {" + water + "sound_speed: mackenzie}").sound_speed_mps(p_W), 1473.383072, 0.01);
+  EXPECT_NEAR(make_medium("water: {" + water + "sound_speed: medwin}").sound_speed_mps(p_W), 1473.43856, 0.01);
+  const double dbar = 1025 * 9.80665 * 500 / 1e4;
+  EXPECT_NEAR(make_medium("water: {" + water + "sound_speed: unesco}").sound_speed_mps(p_W),
+              sim::chen_millero_mps(4, 34, dbar), 1e-9);
+  EXPECT_EQ(make_medium("water: {sound_speed_mps: 1500}").sound_speed_mps(p_W), 1500);
+  EXPECT_EQ(make_medium("water: {sound_speed_mps: 1500}").sound_speed_mps({0, 0, 2}), 340.3);
+}
+
+TEST(Water, ADryWorldHasNone) {
+  const sim::Medium medium = make_medium("{}");
+  EXPECT_FALSE(medium.has_water());
+  EXPECT_FALSE(medium.in_water({0, 0, -100}));
+  EXPECT_EQ(medium.pressure_Pa({0, 0, -100}), 101325);
+  EXPECT_EQ(medium.water_at({0, 0, -1}).density_kgpm3, 0);
+  sim::StateHash none, of_medium;
+  medium.hash_state(of_medium);
+  EXPECT_EQ(of_medium.value(), none.value());
+}
+
+TEST(Water, BadColumnsAreRefused) {
+  EXPECT_THAT(error_of("water: {profile: [{depth_m: 5}, {depth_m: 5}]}"), HasSubstr("must grow from row to row"));
+  EXPECT_THAT(error_of("water: {profile: [{depth_m: -5}]}"), HasSubstr("'depth_m' must be >= 0"));
+  EXPECT_THAT(error_of("water: {profile: [{depth_m: 0, density_kgpm3: 1000}, {depth_m: 5}]}"),
+              HasSubstr("'density_kgpm3' must be in all rows"));
+  EXPECT_THAT(error_of("water: {density: eos80, density_kgpm3: 1000}"), HasSubstr("leave 'density_kgpm3' out"));
+  EXPECT_THAT(error_of("water: {temperature_C: 4, profile: [{depth_m: 0}]}"),
+              HasSubstr("not for water with a 'profile'"));
+  EXPECT_THAT(error_of("waves: {type: jonswap}"), HasSubstr("'waves' needs 'water'"));
+}
+
+}  // namespace

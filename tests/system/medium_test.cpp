@@ -1,0 +1,52 @@
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "tests/system/shoal_program.hpp"
+
+namespace {
+
+using namespace system_test;
+using testing::HasSubstr;
+
+Ended medium(const std::string& of_world, std::vector<std::string> arguments) {
+  const ScratchFolder folder;
+  std::ofstream(folder.file("sea.yaml")) << "shoal: 1\nphysics: {gravity_mps2: 9.80665}\nmedium: " << of_world << "\n";
+  arguments.insert(arguments.begin(), {"medium", folder.file("sea.yaml")});
+  return run_shoal(arguments);
+}
+
+TEST(MediumCommand, ShowsAPlace) {
+  const Ended ended = medium("{water: {temperature_C: 4, salinity_psu: 34}, wind: {velocity_mps: [5, 0, 0]}}",
+                             {"--at", "1,2,-500", "--time", "3"});
+  ASSERT_EQ(ended.exit_code, 0) << ended.errors;
+  // Mackenzie's 1473.383 m/s; 101325 + 1025 * 9.80665 * 500.
+  EXPECT_THAT(ended.output, HasSubstr("1473.38 m/s"));
+  EXPECT_THAT(ended.output, HasSubstr("5127233.1 Pa"));
+  EXPECT_THAT(ended.output, HasSubstr("5.000 0.000 0.000 m/s east north up"));
+}
+
+TEST(MediumCommand, ShowsTheWaterByDepth) {
+  const Ended ended = medium("{water: {}}", {"--at", "0,0,-30", "--profile"});
+  ASSERT_EQ(ended.exit_code, 0) << ended.errors;
+  for (const char* row : {"\n0 10.000", "\n1 10.000", "\n20 10.000", "\n30 10.000 35.000 1025.000"})
+    EXPECT_THAT(ended.output, HasSubstr(row));
+}
+
+TEST(MediumCommand, MeasuresTheWaves) {
+  const Ended ended =
+      medium("{water: {}, waves: {type: regular, height_m: 1, period_s: 5}}", {"--waves", "500", "--at", "3,4,0"});
+  ASSERT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr("Hs = 4 std      1.41"));  // 4 * 0.5 / sqrt(2)
+  EXPECT_THAT(ended.output, HasSubstr("Tz              5.000 s over 99 waves"));
+}
+
+TEST(MediumCommand, SaysWhatIsWrong) {
+  EXPECT_EQ(medium("{water: {}}", {"--waves", "100"}).exit_code, 2);
+  EXPECT_EQ(medium("{}", {"--profile"}).exit_code, 2);
+  const Ended ended = medium("{water: {}}", {"--at", "1,2"});
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_THAT(ended.errors, HasSubstr("three numbers in metres"));
+}
+
+}  // namespace
