@@ -211,6 +211,7 @@ Vector6d CoefficientModel::forces(const CraftState& state, const Vector6d& nu_r)
   Vector6d tau = Vector6d::Zero();
   const double share = immersed(state);
   if (share > 0) tau = share * damping(state, nu_r);
+  if (config_.windage) add_windage(state, tau);
   add_restoring(state, tau);
   return tau;
 }
@@ -276,6 +277,20 @@ void CoefficientModel::add_hull_lift(const Vector6d& nu_r, double density, Vecto
   const double cosine = u / in_plane, sine = w / in_plane;
   tau[0] += -drag * cosine + lift * sine;
   tau[2] += -drag * sine - lift * cosine;
+}
+
+void CoefficientModel::add_windage(const CraftState& state, Vector6d& tau) const {
+  constexpr double air_density_kgpm3 = 1.225;
+  const WindageConfig& area = *config_.windage;
+  const double u = state.v_air.x() - state.nu[0], v = state.v_air.y() - state.nu[1];
+  const double speed = std::hypot(u, v);
+  const double pressure_per_speed = 0.5 * air_density_kgpm3 * speed;
+  const double sideways = pressure_per_speed * area.sway_coefficient * area.lateral_area_m2 * v;
+  tau[0] += pressure_per_speed * area.surge_coefficient * area.frontal_area_m2 * u;
+  tau[1] += sideways;
+  tau[3] += sideways * area.height_m;  // over the origin: -z
+  // sin(2 angle) = 2 u v / speed^2, of the wind as it blows; q takes the square out again.
+  tau[5] += air_density_kgpm3 * area.yaw_coefficient * area.lateral_area_m2 * area.length_m * -u * v;
 }
 
 void CoefficientModel::add_restoring(const CraftState& state, Vector6d& tau) const {

@@ -8,12 +8,13 @@ namespace sim {
 
 /// How a craft lies in the water, in forward-right-down.
 struct CraftState {
-  Vector6d nu;             ///< velocity over ground of the origin, then angular velocity; m/s, rad/s
-  Vector3d v_water;        ///< of the water at the origin, m/s
-  Vector3d a_water;        ///< acceleration of the water in waves, m/s^2
-  Vector3d down;           ///< unit vector towards the centre of the earth
-  double heading_rad = 0;  ///< clockwise from north
-  double depth_m = 0;      ///< of the origin below the surface
+  Vector6d nu;                        ///< velocity over ground of the origin, then angular velocity; m/s, rad/s
+  Vector3d v_water;                   ///< of the water at the origin, m/s
+  Vector3d v_air = Vector3d::Zero();  ///< of the wind, m/s; looked at where there is windage
+  Vector3d a_water;                   ///< acceleration of the water in waves, m/s^2
+  Vector3d down;                      ///< unit vector towards the centre of the earth
+  double heading_rad = 0;             ///< clockwise from north
+  double depth_m = 0;                 ///< of the origin below the surface
   double surface_roll_rad = 0, surface_pitch_rad = 0;  ///< of the surface along its water plane, as roll and pitch
   double density_kgpm3 = 0;                            ///< of the water
 };
@@ -60,6 +61,7 @@ class CoefficientModel {
   Vector6d damping(const CraftState& state, const Vector6d& nu_r) const;
   void add_cross_flow(const Vector6d& nu_r, double density, Vector6d& tau) const;
   void add_hull_lift(const Vector6d& nu_r, double density, Vector6d& tau) const;
+  void add_windage(const CraftState& state, Vector6d& tau) const;
   void add_restoring(const CraftState& state, Vector6d& tau) const;
   double cross_flow_drag(double speed) const;
   void fold_derivatives();

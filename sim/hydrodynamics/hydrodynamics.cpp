@@ -122,6 +122,10 @@ CraftState Hydrodynamics::state_of(const CoefficientBody& craft) const {
     state.v_water = flipped(R_BW * water.velocity_W);
   }
   state.a_water = flipped(R_BW * water.acceleration_W);
+  if (model.config().windage) {
+    const double height_m = model.config().windage->height_m;
+    state.v_air = flipped(R_BW * medium_.air_velocity_W(X_WB.translation() + Vector3d(0, 0, height_m)));
+  }
   state.depth_m = water.surface_m - X_WB.translation().z();
   state.density_kgpm3 = water.density_kgpm3;
   if (model.config().waterline && medium_.has_waves()) {

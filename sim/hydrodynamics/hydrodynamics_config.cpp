@@ -123,6 +123,19 @@ void WaterlineConfig::read(ParamReader& in) {
   in.read("load_at_m", load_at_m, between(-1000, 1000), "where the load is");
 }
 
+void WindageConfig::read(ParamReader& in) {
+  in.require("frontal_area_m2");
+  in.read("frontal_area_m2", frontal_area_m2, at_least(0), "over the water, seen from ahead");
+  in.require("lateral_area_m2");
+  in.read("lateral_area_m2", lateral_area_m2, at_least(0), "over the water, seen from the side");
+  in.read("surge_coefficient", surge_coefficient, between(0, 5), "of the force ahead; 0.5 to 0.9 for ships");
+  in.read("sway_coefficient", sway_coefficient, between(0, 5), "of the force sideways; 0.7 to 0.95 for ships");
+  in.read("yaw_coefficient", yaw_coefficient, between(-1, 1),
+          "of the moment about the vertical; 0.05 to 0.2 for ships");
+  in.read("height_m", height_m, between(-100, 100), "of the middle of the lateral area over the origin");
+  in.read("length_m", length_m, above(0), "over all");
+}
+
 void PublishedQuirks::read(ParamReader& in) {
   in.read_choice(
       "added_mass_coriolis", added_mass_coriolis, {"full", "without_munk", "none"},
@@ -206,6 +219,7 @@ void HydrodynamicsConfig::read(ParamReader& in) {
   if (frame == "flu" && waterline) {
     waterline->load_at_m = to_frd(waterline->load_at_m);
   }
+  in.read("windage", windage, "what the wind does to the part over the water");
   in.read("quirks", quirks, "what some published models do and the physics does not");
   if (about == "origin") {
     const Vector3d& r = center_of_mass_m;

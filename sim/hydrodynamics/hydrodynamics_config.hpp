@@ -58,6 +58,19 @@ struct WaterlineConfig {
   void read(ParamReader& in);
 };
 
+/// What the wind does to the part of a craft that is over the water (Fossen 2011, eq. 8.23 to 8.30), by the angle at
+/// which it comes: X = q C_X A_F cos, Y = q C_Y A_L sin, N = q C_N A_L L sin(2 angle), K = Y times the height.
+struct WindageConfig {
+  double frontal_area_m2 = 0;
+  double lateral_area_m2 = 0;
+  double surge_coefficient = 0.7;
+  double sway_coefficient = 0.8;
+  double yaw_coefficient = 0.05;  ///< positive: wind from abeam of the bow turns the bow away from it
+  double height_m = 0;            ///< of the middle of the lateral area over the origin
+  double length_m = 1;            ///< over all
+  void read(ParamReader& in);
+};
+
 /// What some published models do and the physics does not.
 struct PublishedQuirks {
   /// full; without_munk: added mass couples no sway, heave and turning; none: no Coriolis forces of added mass.
@@ -91,6 +104,7 @@ struct HydrodynamicsConfig {
   std::optional<CrossFlowConfig> cross_flow;
   std::optional<HullLiftConfig> hull_lift;
   std::optional<WaterlineConfig> waterline;
+  std::optional<WindageConfig> windage;
   PublishedQuirks quirks;
   SourcePlace place;
 

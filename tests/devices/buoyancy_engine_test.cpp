@@ -30,8 +30,8 @@ TEST(BuoyancyEngine, LiftsByTheWeightOfTheWaterThatItDisplaces) {
 }
 
 TEST(BuoyancyEngine, TakesFractionsOfItsLimits) {
-  WetBox box(wet_device("type: buoyancy_engine, command: fraction, max_m3: 0.001, min_m3: -0.002, rate_m3ps: 1000"), deep,
-             9.81);
+  WetBox box(wet_device("type: buoyancy_engine, command: fraction, max_m3: 0.001, min_m3: -0.002, rate_m3ps: 1000"),
+             deep, 9.81);
   box.command(0.5);
   EXPECT_NEAR(lift(box), 0.0005 * 1000 * 9.81, 1e-9);
   box.command(-0.5);
