@@ -44,7 +44,8 @@ void Sail::act(const sim::ActContext& context) {
   const sim::Medium& medium = mount_.world().medium();
   const WaterFlow flow = mount_.flow();
   if (flow.density_kgpm3 > 0 && flow.depth_m > 0) return;
-  const sim::Vector3d v_D = mount_.in_D(flow, flow.v_WD_W - medium.air_velocity_W(flow.p_WD));
+  const sim::Vector3d v_WD_W = flow.body.v_WB_W + flow.body.w_WB_W.cross(flow.p_WD - flow.body.p_WB);
+  const sim::Vector3d v_D = mount_.in_D(flow, v_WD_W - medium.air_velocity_W(flow.p_WD));
   const double square = v_D.x() * v_D.x() + v_D.y() * v_D.y();
   if (square < 1e-12) return;
   const double speed = std::sqrt(square);

@@ -4,23 +4,29 @@ namespace devices {
 
 WaterFlow WaterMount::flow() const {
   WaterFlow flow;
+  const sim::BodyInWater& around = world_.hydrodynamics().around(body_);
+  if (!around.known) return flow_without_cache();
+  flow.body = around.motion;
+  flow.p_WD = around.motion.p_WB + around.motion.R_WB * p_BD_;
+  flow.density_kgpm3 = around.water.density_kgpm3;
+  flow.depth_m = around.water.surface_m - flow.p_WD.z();
+  flow.water_W = around.water.velocity_W;
+  const sim::Vector3d v_B = around.v_B + around.w_B.cross(p_BD_);
+  flow.v_D = turned_ ? sim::Vector3d(R_BD_.transpose() * v_B) : v_B;
+  return flow;
+}
+
+/// A body that the water does nothing to can have a propeller all the same.
+WaterFlow WaterMount::flow_without_cache() const {
+  WaterFlow flow;
   flow.body = body_.motion();
   const sim::Vector3d lever_W = flow.body.R_WB * p_BD_;
   flow.p_WD = flow.body.p_WB + lever_W;
-  flow.v_WD_W = flow.body.v_WB_W + flow.body.w_WB_W.cross(lever_W);
-  const auto take = [&](const sim::LocalWater& water) {
-    flow.density_kgpm3 = water.density_kgpm3;
-    flow.depth_m = water.surface_m - flow.p_WD.z();
-    flow.water_W = water.velocity_W;
-  };
-  const sim::LocalWater& water = world_.hydrodynamics().water_at(body_);
-  // A body that the water does nothing to can have a propeller all the same.
-  if (water.density_kgpm3 == 0 && world_.medium().has_water())
-    take(world_.medium().water_at(flow.p_WD));
-  else
-    take(water);
-  const sim::Vector3d through_W = flow.v_WD_W - flow.water_W;
-  flow.v_D = in_D(flow, through_W);
+  const sim::LocalWater water = world_.medium().water_at(flow.p_WD);
+  flow.density_kgpm3 = water.density_kgpm3;
+  flow.depth_m = water.surface_m - flow.p_WD.z();
+  flow.water_W = water.velocity_W;
+  flow.v_D = in_D(flow, flow.body.v_WB_W + flow.body.w_WB_W.cross(lever_W) - flow.water_W);
   return flow;
 }
 

@@ -10,7 +10,6 @@ namespace devices {
 struct WaterFlow {
   sim::BodyMotion body;
   sim::Vector3d p_WD;        ///< origin of the device frame
-  sim::Vector3d v_WD_W;      ///< its velocity over ground, m/s
   sim::Vector3d v_D;         ///< its velocity through the water, in D, m/s
   sim::Vector3d water_W;     ///< velocity of the water at the body, m/s
   double depth_m = 0;        ///< of that origin below the surface
@@ -27,6 +26,7 @@ class WaterMount {
         R_BD_(context.config.X_BS().linear()),
         turned_(!R_BD_.isIdentity(0)) {}
 
+  /// At the start of the step, before any force acts.
   WaterFlow flow() const;
   /// A velocity in the world, in the axes of D.
   sim::Vector3d in_D(const WaterFlow& flow, const sim::Vector3d& v_W) const {
@@ -54,6 +54,7 @@ class WaterMount {
   sim::Vector3d p_BD_;
   sim::Matrix3d R_BD_;
   bool turned_;
+  WaterFlow flow_without_cache() const;
 };
 
 /// Share of something of this height that is under water when its middle is at `depth_m`: 0 to 1, smooth at both ends.

@@ -37,6 +37,7 @@ class CoefficientModel {
                              const Matrix3d& inertia) const;
 
   const HydrodynamicsConfig& config() const { return config_; }
+  bool current_by_yaw_only() const { return current_by_yaw_only_; }
   const Matrix6d& mass() const { return mass_; }  ///< rigid and added
   double weight_N() const { return weight_N_; }
   double buoyancy_N() const { return buoyancy_N_; }

@@ -45,9 +45,11 @@ void Hydrodynamics::add_body(Body& body, const BodyConfig& config) {
     if (radius_m == 0) return;
   }
   wetted_.push_back({&body, radius_m});
-  if (water_.size() <= static_cast<std::size_t>(body.number()))
-    water_.resize(static_cast<std::size_t>(body.number()) + 1);
-  water_[static_cast<std::size_t>(body.number())] = medium_.water_at(body.X_WB().translation());
+  const auto number = static_cast<std::size_t>(body.number());
+  if (around_.size() <= number) around_.resize(number + 1);
+  around_[number] = {};
+  around_[number].known = true;
+  around_[number].water = medium_.water_at(body.X_WB().translation());
 }
 
 void Hydrodynamics::add_craft(Body& body, const HydrodynamicsConfig& config) {
@@ -77,84 +79,89 @@ void Hydrodynamics::check_step(const CoefficientModel& model, const Hydrodynamic
 void Hydrodynamics::remove_group(int group) {
   std::erase_if(crafts_, [&](const CoefficientBody& craft) { return craft.body->group() == group; });
   floaters_.remove_group(group);
+  for (const Wetted& wetted : wetted_)
+    if (wetted.body->group() == group) around_[static_cast<std::size_t>(wetted.body->number())] = {};
   std::erase_if(wetted_, [&](const Wetted& wetted) { return wetted.body->group() == group; });
 }
 
 void Hydrodynamics::begin_step() {
   const double highest_m = medium_.highest_surface_m();
   for (Wetted& wetted : wetted_) {
-    const Vector3d p_WB = wetted.body->X_WB().translation();
-    LocalWater& water = water_[static_cast<std::size_t>(wetted.body->number())];
-    if (p_WB.z() - wetted.radius_m > highest_m) {
-      water.surface_m = highest_m;
+    BodyInWater& around = around_[static_cast<std::size_t>(wetted.body->number())];
+    around.motion = wetted.body->motion();
+    const BodyMotion& motion = around.motion;
+    around.w_B = motion.R_WB.transpose() * motion.w_WB_W;
+    if (motion.p_WB.z() - wetted.radius_m > highest_m) {
+      around.water.surface_m = highest_m;
+      around.v_B = motion.R_WB.transpose() * (motion.v_WB_W - around.water.velocity_W);
       continue;
     }
-    water = medium_.water_at(p_WB);
-    if (wetted.left_the_current || medium_.current_known(p_WB)) continue;
-    wetted.left_the_current = true;
-    if (complain_)
-      complain_("body '" + wetted.body->name() + "'",
-                "has left the file of the current at " + number_text(p_WB.x()) + ", " + number_text(p_WB.y()));
+    around.water = medium_.water_at(motion.p_WB);
+    around.v_B = motion.R_WB.transpose() * (motion.v_WB_W - around.water.velocity_W);
+    if (!wetted.left_the_current && !medium_.current_known(motion.p_WB)) tell_of_the_current(wetted, motion.p_WB);
   }
 }
 
-const LocalWater& Hydrodynamics::water_at(const Body& body) const {
-  static const LocalWater none;
-  const auto number = static_cast<std::size_t>(body.number());
-  return number < water_.size() ? water_[number] : none;
+void Hydrodynamics::tell_of_the_current(Wetted& wetted, const Vector3d& p_WB) {
+  wetted.left_the_current = true;
+  if (complain_)
+    complain_("body '" + wetted.body->name() + "'",
+              "has left the file of the current at " + number_text(p_WB.x()) + ", " + number_text(p_WB.y()));
 }
 
-CraftState Hydrodynamics::state_of(const CoefficientBody& craft) const {
-  const Body& body = *craft.body;
-  const LocalWater& water = water_[static_cast<std::size_t>(body.number())];
-  const Pose X_WB = body.X_WB();
-  const Matrix3d R_BW = X_WB.linear().transpose();
+CraftState Hydrodynamics::state_of(const CoefficientModel& model, const BodyInWater& around) const {
+  const BodyMotion& motion = around.motion;
+  const LocalWater& water = around.water;
+  const Matrix3d& R_WB = motion.R_WB;
   CraftState state;
-  state.nu << flipped(R_BW * body.v_WB_W()), flipped(R_BW * body.w_WB_W());
-  state.down = flipped(-R_BW.col(2));
-  const CoefficientModel& model = *craft.model;
-  if (model.config().quirks.current == "yaw_only") {
-    const double heading = std::atan2(X_WB.linear()(0, 0), X_WB.linear()(1, 0));
+  state.nu << flipped(R_WB.transpose() * motion.v_WB_W), flipped(around.w_B);
+  state.down = {-R_WB(2, 0), R_WB(2, 1), R_WB(2, 2)};
+  if (model.current_by_yaw_only()) {
+    const double heading = std::atan2(R_WB(0, 0), R_WB(1, 0));
     const double north = water.velocity_W.y(), east = water.velocity_W.x();
     state.v_water = {north * std::cos(heading) + east * std::sin(heading),
                      east * std::cos(heading) - north * std::sin(heading), -water.velocity_W.z()};
   } else {
-    state.v_water = flipped(R_BW * water.velocity_W);
+    state.v_water = state.nu.head<3>() - flipped(around.v_B);
   }
-  state.a_water = flipped(R_BW * water.acceleration_W);
+  if (medium_.has_waves())
+    state.a_water = flipped(R_WB.transpose() * water.acceleration_W);
+  else
+    state.a_water.setZero();
   if (model.config().windage) {
     const double height_m = model.config().windage->height_m;
-    state.v_air = flipped(R_BW * medium_.air_velocity_W(X_WB.translation() + Vector3d(0, 0, height_m)));
+    state.v_air = flipped(R_WB.transpose() * medium_.air_velocity_W(motion.p_WB + Vector3d(0, 0, height_m)));
   }
-  state.depth_m = water.surface_m - X_WB.translation().z();
+  state.depth_m = water.surface_m - motion.p_WB.z();
   state.density_kgpm3 = water.density_kgpm3;
   if (model.config().waterline && medium_.has_waves()) {
     const WaterlineConfig& plane = *model.config().waterline;
     const auto surface_at = [&](double x, double y) {
-      const Vector3d p_W = X_WB * Vector3d(x, y, 0);
+      const Vector3d p_W = motion.p_WB + R_WB * Vector3d(x, y, 0);
       return medium_.surface_m(p_W.x(), p_W.y());
     };
     const double bow = surface_at(plane.length_m / 2, 0), stern = surface_at(-plane.length_m / 2, 0),
                  port = surface_at(0, plane.beam_m / 2), starboard = surface_at(0, -plane.beam_m / 2);
     state.surface_pitch_rad = std::atan((bow - stern) / plane.length_m);
     state.surface_roll_rad = std::atan((port - starboard) / plane.beam_m);
-    state.depth_m = (bow + stern + port + starboard) / 4 - X_WB.translation().z();
+    state.depth_m = (bow + stern + port + starboard) / 4 - motion.p_WB.z();
   }
   return state;
 }
 
 void Hydrodynamics::step(double gravity_mps2) {
   step_crafts();
-  floaters_.step(gravity_mps2, water_);
+  floaters_.step(gravity_mps2, around_);
 }
 
 void Hydrodynamics::step_crafts() {
   for (const CoefficientBody& craft : crafts_) {
     Body& body = *craft.body;
     const CoefficientModel& model = *craft.model;
-    const CraftState state = state_of(craft);
+    const BodyInWater& around = around_[static_cast<std::size_t>(body.number())];
+    const Matrix3d& R_WB = around.motion.R_WB;
+    const CraftState state = state_of(model, around);
     check_speed(body, model, state, step_s_);
-    const Matrix3d R_WB = body.X_WB().linear();
     const Vector3d force = flipped(R_WB.transpose() * body.applied_force_W());
     Vector6d tau;
     tau << force, flipped(R_WB.transpose() * body.applied_torque_W()) + model.config().center_of_mass_m.cross(force);

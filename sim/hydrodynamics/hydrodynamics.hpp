@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/hydrodynamics/body_in_water.hpp"
 #include "sim/hydrodynamics/coefficient_model.hpp"
 #include "sim/hydrodynamics/immersed_bodies.hpp"
 #include "sim/medium/medium.hpp"
@@ -28,7 +29,12 @@ class Hydrodynamics {
   /// Looks at the water around each body, before actuators act on it.
   void begin_step();
   /// The water at a body's origin in this step.
-  const LocalWater& water_at(const Body& body) const;
+  const LocalWater& water_at(const Body& body) const { return around(body).water; }
+  /// `known` is false for a body that the water does nothing to.
+  const BodyInWater& around(const Body& body) const {
+    const auto number = static_cast<std::size_t>(body.number());
+    return number < around_.size() ? around_[number] : nowhere_;
+  }
   /// Adds what the water does to the forces that actuators have put on the bodies in this step.
   void step(double gravity_mps2);
   /// Whom to tell, in a step, what goes wrong: who and what.
@@ -49,7 +55,8 @@ class Hydrodynamics {
   };
   void add_craft(Body& body, const HydrodynamicsConfig& config);
   void step_crafts();
-  CraftState state_of(const CoefficientBody& craft) const;
+  CraftState state_of(const CoefficientModel& model, const BodyInWater& around) const;
+  void tell_of_the_current(Wetted& wetted, const Vector3d& p_WB);
   void check_step(const CoefficientModel& model, const HydrodynamicsConfig& config, const std::string& who) const;
 
   const Medium& medium_;
@@ -57,8 +64,9 @@ class Hydrodynamics {
   double step_s_;
   std::vector<CoefficientBody> crafts_;  // in the order in which they came
   ImmersedBodies floaters_;              // bodies without coefficients
-  std::vector<LocalWater> water_;        // by body number
-  std::vector<Wetted> wetted_;           // bodies whose water begin_step() looks at
+  std::vector<BodyInWater> around_;      // by body number
+  const BodyInWater nowhere_;
+  std::vector<Wetted> wetted_;  // bodies whose water begin_step() looks at
   std::vector<std::string> warnings_;
   Complain complain_;
   // Vehicles that are alike share a model.

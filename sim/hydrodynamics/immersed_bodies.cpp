@@ -112,9 +112,9 @@ void ImmersedBodies::remove_group(int group) {
   std::erase_if(bodies_, [&](const ImmersedBody& body) { return body.body->group() == group; });
 }
 
-void ImmersedBodies::step(double gravity_mps2, std::span<const LocalWater> water) {
+void ImmersedBodies::step(double gravity_mps2, std::span<const BodyInWater> around) {
   for (const ImmersedBody& body : bodies_) {
-    const LocalWater& at_origin = water[static_cast<std::size_t>(body.body->number())];
+    const LocalWater& at_origin = around[static_cast<std::size_t>(body.body->number())].water;
     step_body(body, gravity_mps2, at_origin);
   }
 }

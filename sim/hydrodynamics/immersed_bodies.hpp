@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/hydrodynamics/body_in_water.hpp"
 #include "sim/hydrodynamics/immersed_piece.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/physics/body.hpp"
@@ -19,8 +20,8 @@ class ImmersedBodies {
   /// left out.  Appends what is to be said about it to `warnings`.  Throws ConfigError (meshes).
   double add(Body& body, const BodyConfig& config, double gravity_mps2, std::vector<std::string>& warnings);
   void remove_group(int group);
-  /// Adds to the forces on each body.  `water`: at the origin of each body, by body number.
-  void step(double gravity_mps2, std::span<const LocalWater> water);
+  /// Adds to the forces on each body.  `around`: by body number.
+  void step(double gravity_mps2, std::span<const BodyInWater> around);
 
  private:
   /// What a step needs of a body, side by side.

@@ -21,8 +21,8 @@ using BodyHandle = std::unique_ptr<dxBody, BodyDeleter>;
 
 /// Where a body is and how it moves.
 struct BodyMotion {
-  Matrix3d R_WB;
-  Vector3d p_WB, v_WB_W, w_WB_W;
+  Matrix3d R_WB = Matrix3d::Identity();
+  Vector3d p_WB = Vector3d::Zero(), v_WB_W = Vector3d::Zero(), w_WB_W = Vector3d::Zero();
 };
 
 /// One ODE body, free or kinematic, or a fixed one without.  ODE's frame sits at the centre of mass; this class speaks

@@ -1,87 +1,86 @@
-// Marine vehicles in still water with a current: what a step of one of them costs, in CPU time.
+// Fleets in water with a current: what a step of one vehicle costs, in CPU time, reports to the in-process bus.
 #include <benchmark/benchmark.h>
 
 #include <string>
 
+#include "shoal/actuator_command_t.hpp"
+#include "shoal/message_codec.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/world.hpp"
 
 namespace {
 
-std::string world_text(int vehicles, const std::string& body, const std::string& devices) {
-  return "shoal: 1\nphysics: {step_s: 0.02}\n"
-         "medium: {water: {}, current: {velocity_mps: [0.2, 0.1, 0]}}\n"
+/// `vehicle`: `file: ...` or `model: {...}`, indented by four spaces.
+std::string world_text(std::int64_t vehicles, double step_s, const std::string& vehicle) {
+  return "shoal: 1\nphysics: {step_s: " + std::to_string(step_s) +
+         "}\nmedium: {water: {}, current: [{velocity_mps: [0.2, 0.1, 0]}]}\n"
          "vehicles:\n  - name: auv\n    count: " +
          std::to_string(vehicles) +
-         "\n    position_m: [0, 0, -20]\n    placement: {pattern: grid, spacing_m: 5}\n"
-         "    model:\n      shoal: 1\n      vehicle: bench\n      bodies:\n" +
-         body + "      devices:\n" + devices;
+         "\n    position_m: [0, 0, -20]\n    placement: {pattern: grid, spacing_m: 5}\n    " + vehicle + "\n";
 }
 
-const char* remus = R"(
-        - name: hull
-          hydrodynamics:
-            frame: frd
-            mass_kg: 31.9
-            inertia_kgm2: [0.117, 4.22, 4.22]
-            center_of_mass_m: [0, 0, 0.02]
-            added_mass: [0.863, 30.29, 30.29, 0.0352, 3.594, 3.594]
-            linear_damping: [1.638, 3.11, 3.11, 0.611, 11.2, 7.81]
-            cross_flow: {length_m: 1.6, height_m: 0.19, reynolds_length_m: 1.6,
-                         drag_coefficient: [10211, 0.80, 60881, 0.80, 149262, 0.80, 200000, 0.80, 200000, 0.98,
-                                            297098, 0.90, 409798, 0.57, 578922, 0.27, 1068686, 0.32, 4937305, 0.55]}
-            hull_lift: {area_m2: 0.2128, lift_slope: 0.266, drag_coefficient: 0.057, induced_drag: 6.25}
-          parts: [PARTS]
-)";
+const std::string worlds = SHOAL_SOURCE_DIR "/worlds/bench.yaml";
 
-std::string with_parts(bool parts) {
-  std::string text = remus;
-  text.replace(text.find("PARTS"), 5,
-               parts ? "{shape: capsule, radius_m: 0.095, length_m: 1.4, rpy_deg: [0, 90, 0]}" : "");
-  return text;
+/// Propellers and fins of a fleet at work.
+void set_off(sim::World& world, sim::Bus& bus) {
+  for (const auto& vehicle : world.vehicles()) {
+    const auto send = [&](const std::string& device, double value) {
+      bus.publish(vehicle->name() + "." + device + ".cmd", shoal::encode(shoal::actuator_command_t{0, value}),
+                  world.now());
+    };
+    send("propeller", 1100 + 10 * (vehicle->number() % 20));
+    send("rudder", 0.01 * (vehicle->number() % 7 - 3));
+    send("stern_planes", 0.002 * (vehicle->number() % 5 - 2));
+  }
 }
 
-const char* sensors = R"(
-        - {name: heading, type: compass, rate_hz: 1}
-        - {name: depth, type: inclinometer, rate_hz: 1}
-)";
-
-void run(benchmark::State& state, const std::string& text) {
-  const sim::LoadedWorld loaded = sim::load_world_text(text, "worlds/bench.yaml");
+void run(benchmark::State& state, const std::string& text, double step_s, bool commanded) {
+  const sim::LoadedWorld loaded = sim::load_world_text(text, worlds);
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus);
-  for (int i = 0; i < 100; ++i) world.step();
+  if (commanded) set_off(world, bus);
+  for (int i = 0; i < 200; ++i) world.step();
   for (auto _ : state) world.step();
   const auto vehicles = static_cast<double>(state.range(0));
   state.counters["us_per_step"] = benchmark::Counter(static_cast<double>(state.iterations()) * vehicles * 1e-6,
                                                      benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
   state.counters["times_real"] =
-      benchmark::Counter(static_cast<double>(state.iterations()) * 0.02, benchmark::Counter::kIsRate);
+      benchmark::Counter(static_cast<double>(state.iterations()) * step_s, benchmark::Counter::kIsRate);
 }
 
-void Coefficients(benchmark::State& state) {
-  run(state, world_text(static_cast<int>(state.range(0)), with_parts(state.range(1) != 0),
-                        state.range(2) != 0 ? sensors : "        []\n"));
+/// REMUS 100 by coefficients, with strips, propeller, fins, depth and heading at 1 Hz, and a hull that can collide.
+void Remus(benchmark::State& state) {
+  run(state, world_text(state.range(0), 0.02, "file: remus100_fleet.yaml"), 0.02, true);
 }
-BENCHMARK(Coefficients)
-    ->ArgNames({"vehicles", "parts", "sensors"})
-    ->ArgsProduct({{1, 100, 10000}, {0, 1}, {0, 1}})
-    ->Unit(benchmark::kMicrosecond);
+BENCHMARK(Remus)->Arg(1)->Arg(100)->Arg(1000)->Arg(10000)->Unit(benchmark::kMicrosecond);
 
+/// The naive mode alone: a body without parts that nothing reports.
 void Naive(benchmark::State& state) {
-  const bool parts = state.range(1) != 0;
   run(state,
-      world_text(static_cast<int>(state.range(0)),
-                 std::string("        - name: hull\n          kinematic: true\n          parts: [") +
-                     (parts ? "{shape: capsule, radius_m: 0.095, length_m: 1.4, rpy_deg: [0, 90, 0]}" : "") + "]\n",
-                 std::string("        - {name: drive, type: naive_drive, start_speed_mps: 1.5}\n") +
-                     (state.range(2) != 0 ? sensors : "")));
+      world_text(state.range(0), 0.02,
+                 "model: {shoal: 1, vehicle: naive, bodies: [{name: hull, kinematic: true, parts: []}], "
+                 "devices: [{name: drive, type: naive_drive, start_speed_mps: 1.5}]}"),
+      0.02, false);
 }
-BENCHMARK(Naive)
-    ->ArgNames({"vehicles", "parts", "sensors"})
-    ->ArgsProduct({{1, 100, 10000}, {0, 1}, {0, 1}})
-    ->Unit(benchmark::kMicrosecond);
+BENCHMARK(Naive)->Arg(1)->Arg(100)->Arg(1000)->Arg(10000)->Unit(benchmark::kMicrosecond);
+
+/// Naive AUVs with depth and heading at 1 Hz, without a hull that can collide.
+void NaiveFleet(benchmark::State& state) {
+  run(state,
+      world_text(state.range(0), 0.02,
+                 "model: {shoal: 1, vehicle: naive, bodies: [{name: hull, kinematic: true, parts: []}], "
+                 "devices: [{name: drive, type: naive_drive, start_speed_mps: 1.5}, "
+                 "{name: depth, type: pressure, rate_hz: 1}, {name: heading, type: compass, rate_hz: 1}]}"),
+      0.02, false);
+}
+BENCHMARK(NaiveFleet)->Arg(1)->Arg(100)->Arg(1000)->Arg(10000)->Unit(benchmark::kMicrosecond);
+
+/// The same as shipped: with a hull.
+void NaiveAuv(benchmark::State& state) {
+  run(state, world_text(state.range(0), 0.02, "file: naive_auv.yaml"), 0.02, false);
+}
+BENCHMARK(NaiveAuv)->Arg(100)->Arg(10000)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 

@@ -55,6 +55,7 @@ class ScriptedBus final : public sim::Bus {
       return message;
     }
     std::uint64_t dropped() const override { return 0; }
+    void raise_on_arrival(std::shared_ptr<std::atomic<bool>>) override {}
     std::queue<sim::Message> messages;
   };
 };

@@ -207,6 +207,6 @@ objects:
 }
 
 INSTANTIATE_TEST_SUITE_P(Steps, StillWater, testing::Values(0.001, 0.005, 0.02, 0.05),
-                         [](const auto& info) { return "Of" + std::to_string(int(info.param * 1000 + 0.5)) + "ms"; });
+                         [](const auto& each) { return "Of" + std::to_string(int(each.param * 1000 + 0.5)) + "ms"; });
 
 }  // namespace
