@@ -8,6 +8,7 @@
 #include "sim/math.hpp"
 #include "sim/random/random.hpp"
 #include "sim/state_hash.hpp"
+#include "sim/step_memory.hpp"
 #include "sim/time.hpp"
 
 namespace sim {
@@ -102,7 +103,7 @@ enum class SafeState {
 };
 
 /// The model of an actuator: acts on physics, knows no message.
-class Actuator {
+class Actuator : public VisitedInSteps {
  public:
   virtual ~Actuator() = default;
   /// Called before each physics step.

@@ -9,6 +9,7 @@
 #include "sim/math.hpp"
 #include "sim/physics/motion.hpp"
 #include "sim/state_hash.hpp"
+#include "sim/step_memory.hpp"
 
 namespace sim {
 
@@ -27,7 +28,7 @@ struct BodyMotion {
 
 /// One ODE body, free or kinematic, or a fixed one without.  ODE's frame sits at the centre of mass; this class speaks
 /// of the body frame B that the vehicle file defines.
-class Body {
+class Body : public VisitedInSteps {
  public:
   const std::string& name() const { return name_; }  ///< such as `rover1/chassis`
   int number() const { return number_; }

@@ -86,11 +86,12 @@ MountedDevice::MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig&
       noise_random_(host.seed, full_name_),
       link_random_(host.seed, full_name_ + "#link") {
   if (built_.controller) mailbox_ = bus_.open_mailbox(command_channel_, Bus::default_mailbox_capacity);
-  acting_.actuator = built_.actuator.get();
-  acting_.systems = &vehicle.systems();
-  acting_.watchdog = from_seconds(config_.watchdog_s);
-  acting_.is_actuator = type_.is_actuator();
-  acting_.always_on = type_.always_on;
+  acting_->actuator = built_.actuator.get();
+  acting_->systems = &vehicle.systems();
+  acting_->watchdog = from_seconds(config_.watchdog_s);
+  acting_->safe_state = config_.safe;
+  acting_->is_actuator = type_.is_actuator();
+  acting_->always_on = type_.always_on;
   report_outlet_ = std::make_unique<Outlet>(*this, report_channel_);
   truth_outlet_ = std::make_unique<Outlet>(*this, truth_channel_);
   plan_schedule();
@@ -163,28 +164,24 @@ void MountedDevice::receive(Time now, std::span<const std::byte> payload) {
   if (type_.is_actuator() && (vehicle_.systems().estopped || faults_.stuck())) return;
   try {
     built_.controller->receive(now, payload);
-    acting_.last_command = now;
-    acting_.safe = false;
+    acting_->last_command = now;
+    acting_->safe = false;
   } catch (const std::runtime_error& error) {
     host_.complain({command_channel_, error.what()});
   }
 }
 
-void MountedDevice::make_safe() {
-  if (acting_.safe) return;
-  built_.actuator->make_safe(config_.safe);
-  acting_.safe = true;
-}
-
-void MountedDevice::act(Time now, double step_s) {
-  const bool works = acting_.always_on || acting_.systems->powered;
-  if (acting_.is_actuator) {
-    const bool stale = acting_.watchdog.count() > 0 && acting_.last_command.count() >= 0 && !faults_.stuck() &&
-                       now - acting_.last_command > acting_.watchdog;
-    if (stale || acting_.systems->estopped || !works) make_safe();
+void Acting::act(Time now, double step_s) {
+  const bool works = always_on || systems->powered;
+  if (is_actuator) {
+    const bool stale = watchdog.count() > 0 && last_command.count() >= 0 && !stuck && now - last_command > watchdog;
+    if ((stale || systems->estopped || !works) && !safe) {
+      actuator->make_safe(safe_state);
+      safe = true;
+    }
   }
-  acting_.actuator->act({now, step_s, works ? faults_.effectiveness() : 0.0});
-  if (acting_.systems->metered && works) acting_.systems->drawn_J += acting_.actuator->power_W() * step_s;
+  actuator->act({now, step_s, works ? effectiveness : 0.0});
+  if (systems->metered && works) systems->drawn_J += actuator->power_W() * step_s;
 }
 
 void MountedDevice::sweep(const World& world, Time now) {
@@ -264,17 +261,22 @@ void MountedDevice::handle(const Event& event) {
 
 void MountedDevice::set_fault(const FaultConfig& fault) {
   faults_.set(fault);
+  acting_->effectiveness = faults_.effectiveness();
+  acting_->stuck = faults_.stuck();
 }
 
 void MountedDevice::clear_faults() {
   faults_.clear();
+  acting_->effectiveness = faults_.effectiveness();
+  acting_->stuck = faults_.stuck();
   frozen_.reset();
 }
 
 void MountedDevice::change(const DeviceConfig& changed, Time now) {
   const bool other_rate = changed.rate_hz != config_.rate_hz || changed.phase_s != config_.phase_s;
   config_ = changed;  // what must stay as it is, changed_device() refuses to change
-  acting_.watchdog = from_seconds(config_.watchdog_s);
+  acting_->watchdog = from_seconds(config_.watchdog_s);
+  acting_->safe_state = config_.safe;
   if (built_.change) built_.change(*changed.params);
   if (!other_rate) return;
   // The new rate counts from time 0 as the old one did; the next sample is the first one after now.
@@ -287,8 +289,8 @@ void MountedDevice::hash_state(StateHash& hash) const {
   hash.add(samples_planned_);
   hash.add(next_sample_step_);
   hash.add(static_cast<std::int64_t>(last_sample_.count()));
-  hash.add(static_cast<std::int64_t>(acting_.last_command.count()));
-  hash.add(acting_.safe);
+  hash.add(static_cast<std::int64_t>(acting_->last_command.count()));
+  hash.add(acting_->safe);
   faults_.hash_state(hash);
   if (frozen_)
     for (const Bytes& payload : *frozen_) hash.add_bytes(payload.data(), payload.size());

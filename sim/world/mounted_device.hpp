@@ -30,6 +30,22 @@ struct DeviceHost {
   std::function<void(BadMessage)> complain;
 };
 
+/// What a step needs to let an actuator act; the rest of its device stays out of the way.
+struct Acting : VisitedInSteps {
+  Actuator* actuator = nullptr;
+  VehicleSystems* systems = nullptr;
+  Time watchdog{0};          ///< 0: none
+  Time last_command{-1};     ///< the last one that was good; -1: none yet
+  double effectiveness = 1;  ///< by faults
+  SafeState safe_state = SafeState::stop;
+  bool is_actuator = false;  ///< has safe states
+  bool always_on = false;
+  bool stuck = false;
+  bool safe = false;  ///< the actuator was made safe, and no command came since
+
+  void act(Time now, double step_s);
+};
+
 /// A device in its vehicle, with what the framework puts around every device: the schedule of samples, latency,
 /// jitter, dropout, the truth channel, the mailbox, faults, the watchdog, power and emergency stop.
 class MountedDevice {
@@ -42,7 +58,6 @@ class MountedDevice {
 
   /// Hands the controller the messages that have come; with a latency they become events.
   void take_mail(Time now, std::int64_t step_number);
-  void act(Time now, double step_s);
   /// Of the step after which it samples next.
   std::int64_t next_sample_step() const { return next_sample_step_; }
   /// See Sensor::sweep; called after each step of a sensor that sweeps.
@@ -68,7 +83,8 @@ class MountedDevice {
   bool sweeps() const { return type_.sweeps; }
   bool casts_rays() const { return type_.casts_rays; }
   std::int64_t rays() const { return built_.sensor->rays(); }
-  bool acts() const { return built_.actuator != nullptr; }
+  /// Its actuator is null when it has none.
+  Acting* acting() const { return acting_.get(); }
   /// Null when it takes no messages.
   Mailbox* mailbox() const { return mailbox_.get(); }
   int number() const { return number_; }
@@ -89,25 +105,11 @@ class MountedDevice {
 
   void receive(Time now, std::span<const std::byte> payload);
   void report(Time now);
-  void make_safe();
   bool works() const;
   Time next_latency();
   void plan_schedule();
   void plan_next_sample();
 
-  /// What act() needs in every step, side by side.
-  struct Acting {
-    Actuator* actuator = nullptr;
-    VehicleSystems* systems = nullptr;
-    Time watchdog{0};          ///< 0: none
-    Time last_command{-1};     ///< the last one that was good; -1: none yet
-    bool is_actuator = false;  ///< has safe states
-    bool always_on = false;
-    bool safe = false;  ///< the actuator was made safe, and no command came since
-  };
-
-  Acting acting_;
-  DeviceFaults faults_;
   DeviceConfig config_;
   const DeviceType& type_;
   DeviceHost& host_;
@@ -118,7 +120,9 @@ class MountedDevice {
   std::string full_name_;
   std::string report_channel_, truth_channel_, command_channel_;
   Pose X_BS_;
+  DeviceFaults faults_;
   BuiltDevice built_;
+  std::unique_ptr<Acting> acting_ = std::make_unique<Acting>();
   std::unique_ptr<Mailbox> mailbox_;
   std::unique_ptr<Outlet> report_outlet_, truth_outlet_;
   Random noise_random_, link_random_;

@@ -130,7 +130,7 @@ void World::sort_devices() {
   for (const auto& device : devices_) {
     if (!device) continue;
     if (device->mailbox()) listening_.push_back({mail_flags_.of(device->number()).get(), device.get()});
-    if (device->acts()) acting_.push_back(device.get());
+    if (device->acting()->actuator != nullptr) acting_.push_back(device->acting());
     if (device->senses())
       sensing_.push_back({device->next_sample_step(), device.get(), device->casts_rays(), device->sweeps()});
   }
@@ -141,7 +141,7 @@ void World::step() {
     if (listening.mail->load(std::memory_order_relaxed) && listening.mail->exchange(false, std::memory_order_acquire))
       listening.device->take_mail(now(), step_number_);
   hydrodynamics_.begin_step();
-  for (MountedDevice* device : acting_) device->act(now(), step_s_);
+  for (Acting* acting : acting_) acting->act(now(), step_s_);
   hydrodynamics_.step(physics_->gravity_mps2());
   script_->step();
   physics_->step(step_number_);

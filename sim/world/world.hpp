@@ -217,7 +217,7 @@ class World {
     bool casts_rays, sweeps;
   };
   std::vector<Listening> listening_;
-  std::vector<MountedDevice*> acting_;
+  std::vector<Acting*> acting_;
   std::vector<Sensing> sensing_;
   MailFlags mail_flags_;
   /// What this step has to sense.
