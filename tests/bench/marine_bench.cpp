@@ -55,6 +55,18 @@ void Remus(benchmark::State& state) {
 }
 BENCHMARK(Remus)->Arg(1)->Arg(100)->Arg(1000)->Arg(10000)->Unit(benchmark::kMicrosecond);
 
+/// Boats by coefficients in a sea of 200 waves.
+void OttersInASea(benchmark::State& state) {
+  std::string text = world_text(state.range(0), 0.02, "file: otter.yaml");
+  const std::string calm = "medium: {water: {}, ";
+  text.replace(
+      text.find(calm), calm.size(),
+      calm + "waves: {type: jonswap, significant_height_m: 0.5, peak_period_s: 4, components: 200, spreading: 4}, ");
+  text.replace(text.find("[0, 0, -20]"), 11, "[0, 0, 0]");
+  run(state, text, 0.02, false);
+}
+BENCHMARK(OttersInASea)->Arg(1)->Arg(100)->Unit(benchmark::kMicrosecond);
+
 /// The naive mode alone: a body without parts that nothing reports.
 void Naive(benchmark::State& state) {
   run(state,
