@@ -61,7 +61,7 @@ void OttersInASea(benchmark::State& state) {
   const std::string calm = "medium: {water: {}, ";
   text.replace(
       text.find(calm), calm.size(),
-      calm + "waves: {type: jonswap, significant_height_m: 0.5, peak_period_s: 4, components: 200, spreading: 4}, ");
+      calm + "waves: {type: jonswap, hs_m: 0.5, tp_s: 4, components: 200, spreading: 4}, ");
   text.replace(text.find("[0, 0, -20]"), 11, "[0, 0, 0]");
   run(state, text, 0.02, false);
 }
