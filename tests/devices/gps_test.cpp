@@ -72,8 +72,8 @@ TEST(Gps, IsLostUnderWaterAndComesBackAfterItsTime) {
 
 TEST(Gps, IsLostWhileAWaveIsOverIt) {
   // 0.2 m over still water, in waves 0.5 m high above it: under water while cos(wt) > 0.4.
-  test::TestWorld test(test::marine_world("type: gps", "[0, 0, 0.2]", "[]", "",
-                                          "{water: {}, waves: {type: regular, height_m: 1, period_s: 5}}"));
+  test::TestWorld test(test::held_in_place(test::marine_world(
+      "type: gps", "[0, 0, 0.2]", "[]", "", "{water: {}, waves: {type: regular, height_m: 1, period_s: 5}}")));
   test::Listener<shoal::gps_data_t> fixes(test, "r1.s");
   test.run_for(50);
   int without = 0, changes = 0, last = -1;

@@ -94,9 +94,9 @@ TEST(SonarUnderWater, RaysEndAtTheSurface) {
 TEST(SonarUnderWater, LooksUpAtTheWaves) {
   // 10 m under still water: it hears the surface as far above as the wave lifts it.  A beam of 2 degrees sees 0.35 m
   // of a wave 39 m long, whose slope is at most 0.08: the nearest of it is 14 mm off at most.
-  test::TestWorld test(marine_world(std::string(down) + ", surface_echo: true", "[0, 0, -10]", "[]", "",
-                                    "{water: {}, waves: {type: regular, height_m: 1, period_s: 5, phase_deg: 0}}",
-                                    "[180, 0, 0]"));
+  test::TestWorld test(test::held_in_place(
+      marine_world(std::string(down) + ", surface_echo: true", "[0, 0, -10]", "[]", "",
+                   "{water: {}, waves: {type: regular, height_m: 1, period_s: 5, phase_deg: 0}}", "[180, 0, 0]")));
   test::Listener<sonar_range_t> truths(test, "r1.s.truth");
   test.run_for(5);
   double highest = 0, lowest = 100;
@@ -112,8 +112,8 @@ TEST(SonarUnderWater, LooksUpAtTheWaves) {
 
 TEST(SonarUnderWater, ASonarJustUnderTheSurfaceIsInAirInATrough) {
   // 0.2 m deep in waves of 0.5 m: in air while cos(wt) < -0.4, for acos(0.4) / pi of the time.
-  test::TestWorld test(marine_world(down, "[0, 0, -0.2]", bottom_at(-20), "",
-                                    "{water: {}, waves: {type: regular, height_m: 1, period_s: 5}}"));
+  test::TestWorld test(test::held_in_place(marine_world(
+      down, "[0, 0, -0.2]", bottom_at(-20), "", "{water: {}, waves: {type: regular, height_m: 1, period_s: 5}}")));
   test::Listener<sonar_range_t> truths(test, "r1.s.truth");
   test.run_for(50);
   int deaf = 0;

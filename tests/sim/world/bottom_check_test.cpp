@@ -31,7 +31,7 @@ TEST(BottomCheck, IsForCraftThatLookForTheBottom) {
 TEST(BottomCheck, IsForAutopilotsThatKeepAnAltitude) {
   const auto warnings = [](const std::string& keys) {
     return warnings_with(
-        "{name: thruster, type: thruster, max_thrust_N: 20}, "
+        "{name: thruster, type: thruster, command: thrust_N, max: 20, min: -20}, "
         "{name: pilot, type: autopilot, thrusters: [thruster], " +
         keys + "}");
   };
@@ -39,7 +39,7 @@ TEST(BottomCheck, IsForAutopilotsThatKeepAnAltitude) {
   EXPECT_EQ(warnings("hold: {altitude_m: 3}"), 1u);
   EXPECT_EQ(warnings("waypoints: [{at_m: [10, 0], depth_m: 3}]"), 0u);
   EXPECT_EQ(warnings("waypoints: [{at_m: [10, 0], depth_m: 3}, {at_m: [20, 0], altitude_m: 3}]"), 1u);
-  EXPECT_EQ(warnings("lawnmower: {altitude_m: 5}"), 1u);
+  EXPECT_EQ(warnings("lawnmower: {corner_m: [0, 0], altitude_m: 5}"), 1u);
 }
 
 }  // namespace
