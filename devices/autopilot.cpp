@@ -224,6 +224,12 @@ void Autopilot::drive_helm(const Demand& demand, sim::Time now) {
   vehicle_.bus().publish(channel, shoal::encode(message), now);
 }
 
+bool Autopilot::needs_bottom() const {
+  if (params_.hold.altitude_m) return true;
+  const std::vector<Waypoint> points = params_.route();
+  return std::any_of(points.begin(), points.end(), [](const Waypoint& point) { return point.altitude_m.has_value(); });
+}
+
 void Autopilot::hash_state(sim::StateHash& hash) const {
   hash.add(static_cast<int>(mode_));
   for (const double number : {wanted_.speed_mps, wanted_.heading_rad, wanted_.height_m}) hash.add(number);

@@ -39,6 +39,8 @@ class Autopilot final : public sim::Sensor {
   Autopilot(const Params& params, const sim::DeviceContext& context);
   void measure(const sim::SenseContext& context) override;
   void disturb(double, sim::Random&) override {}
+  /// It is told to keep an altitude somewhere.
+  bool needs_bottom() const override;
   void hash_state(sim::StateHash& hash) const override;
   const Reading& reading() const { return reading_; }
   const Route& route() const { return route_; }

@@ -55,6 +55,8 @@ class Sensor {
   virtual void disturb(double dt_s, Random& random) = 0;
   /// About how many rays a sample takes: whether it is worth sharing the work among threads.
   virtual std::int64_t rays() const { return 0; }
+  /// It looks for the bottom though it does not cast rays as the scanners do: a world without one is worth a warning.
+  virtual bool needs_bottom() const { return false; }
   /// Something sent to this device at a simulated time arrives, see World::schedule_arrival.
   virtual void arrive(Time /*at*/, std::span<const std::byte> /*payload*/) {}
   /// The reading and everything that outlasts a sample.

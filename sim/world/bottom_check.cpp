@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/world/mounted_device.hpp"
+#include "sim/world/vehicle.hpp"
 #include "sim/world/vehicle_config.hpp"
 #include "sim/world/world.hpp"
 
@@ -21,6 +23,12 @@ bool in_water(const World& world, const Vehicle& vehicle, const VehicleConfig& c
   });
 }
 
+bool looks_for_bottom(const Vehicle& vehicle) {
+  return std::any_of(vehicle.devices().begin(), vehicle.devices().end(), [](const MountedDevice* device) {
+    return device->casts_rays() || (device->senses() && device->sensor()->needs_bottom());
+  });
+}
+
 }  // namespace
 
 std::vector<std::string> bottom_warnings(const World& world) {
@@ -28,7 +36,7 @@ std::vector<std::string> bottom_warnings(const World& world) {
   std::string first;
   int more = -1;
   for (const auto& vehicle : world.vehicles()) {
-    if (!in_water(world, *vehicle, vehicle->config())) continue;
+    if (!looks_for_bottom(*vehicle) || !in_water(world, *vehicle, vehicle->config())) continue;
     RayFilter others;
     others.exclude_group = vehicle->group();
     const Vector3d p_W = vehicle->X_WV().translation();

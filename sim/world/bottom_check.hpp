@@ -7,8 +7,8 @@ namespace sim {
 
 class World;
 
-/// A line when vehicles that are in water, or float on it, have no ground below them: what looks down from there sees
-/// nothing.
+/// A line when vehicles that are in water, or float on it, have no ground below them and a device that would look for
+/// it, because it casts rays or because it says so (Sensor::needs_bottom).
 std::vector<std::string> bottom_warnings(const World& world);
 
 }  // namespace sim

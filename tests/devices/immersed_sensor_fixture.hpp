@@ -24,6 +24,16 @@ inline std::string marine_world(const std::string& device, const std::string& po
          device + "}]\n" + vehicles;
 }
 
+/// The same world with the box held in place, in gravity, without which there are no waves.
+inline std::string held_in_place(std::string yaml) {
+  const auto replace = [&](const std::string& what, const std::string& by) {
+    yaml.replace(yaml.find(what), what.size(), by);
+  };
+  replace("gravity_mps2: 0", "gravity_mps2: 9.80665");
+  replace("name: hull, ", "name: hull, kinematic: true, ");
+  return yaml;
+}
+
 /// A bottom through (0, 0, z_m), turned by the pitch about y: its normal leans towards +x.
 inline std::string bottom_at(double z_m, double pitch_deg = 0) {
   const double pitch_rad = sim::degrees_to_radians(pitch_deg);

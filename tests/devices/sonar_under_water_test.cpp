@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "shoal/multibeam_t.hpp"
 #include "shoal/side_scan_t.hpp"
@@ -87,6 +89,38 @@ TEST(SonarUnderWater, RaysEndAtTheSurface) {
   EXPECT_NEAR(surface.range_m, 10, 0.01);
   EXPECT_NEAR(look_up(", surface_echo: true, surface_backscatter_dB: -20", sea).strength_dB - surface.strength_dB, 10,
               1e-9);
+}
+
+TEST(SonarUnderWater, LooksUpAtTheWaves) {
+  // 10 m under still water: it hears the surface as far above as the wave lifts it.  A beam of 2 degrees sees 0.35 m
+  // of a wave 39 m long, whose slope is at most 0.08: the nearest of it is 14 mm off at most.
+  test::TestWorld test(test::held_in_place(
+      marine_world(std::string(down) + ", surface_echo: true", "[0, 0, -10]", "[]", "",
+                   "{water: {}, waves: {type: regular, height_m: 1, period_s: 5, phase_deg: 0}}", "[180, 0, 0]")));
+  test::Listener<sonar_range_t> truths(test, "r1.s.truth");
+  test.run_for(5);
+  double highest = 0, lowest = 100;
+  for (const sonar_range_t& each : truths.take_all()) {
+    const double t = static_cast<double>(each.utime) * 1e-6;
+    ASSERT_EQ(each.valid, 1) << t;
+    EXPECT_NEAR(each.range_m, 10 + 0.5 * std::cos(2 * std::numbers::pi * t / 5), 0.014) << t;
+    highest = std::max(highest, each.range_m);
+    lowest = std::min(lowest, each.range_m);
+  }
+  EXPECT_NEAR(highest - lowest, 1, 0.01);
+}
+
+TEST(SonarUnderWater, ASonarJustUnderTheSurfaceIsInAirInATrough) {
+  // 0.2 m deep in waves of 0.5 m: in air while cos(wt) < -0.4, for acos(0.4) / pi of the time.
+  test::TestWorld test(test::held_in_place(marine_world(
+      down, "[0, 0, -0.2]", bottom_at(-20), "", "{water: {}, waves: {type: regular, height_m: 1, period_s: 5}}")));
+  test::Listener<sonar_range_t> truths(test, "r1.s.truth");
+  test.run_for(50);
+  int deaf = 0;
+  const auto all = truths.take_all();
+  for (const sonar_range_t& each : all) deaf += each.valid == 0;
+  // Ten waves, two changes each, a sample early or late.
+  EXPECT_NEAR(deaf / static_cast<double>(all.size()), std::acos(0.4) / std::numbers::pi, 20.0 / 5000);
 }
 
 TEST(SonarUnderWater, TheWaterAbsorbsByTheFrequency) {

@@ -8,6 +8,7 @@ namespace {
 
 using namespace system_test;
 using testing::HasSubstr;
+using testing::Not;
 
 Ended medium(const std::string& of_world, std::vector<std::string> arguments) {
   const ScratchFolder folder;
@@ -47,6 +48,21 @@ TEST(MediumCommand, SaysWhatIsWrong) {
   const Ended ended = medium("{water: {}}", {"--at", "1,2"});
   EXPECT_EQ(ended.exit_code, 2);
   EXPECT_THAT(ended.errors, HasSubstr("three numbers in metres"));
+}
+
+TEST(Water, ThatIsMissingForCoefficientsIsWarnedOfOnce) {
+  const ScratchFolder folder;
+  const auto errors_of = [&](const std::string& medium) {
+    write_file(folder.file("world.yaml"),
+               "shoal: 1\n" + medium + "vehicles:\n  - {name: first, file: " + source("vehicles/otter.yaml") +
+                   "}\n  - {name: second, position_m: [9, 0, 0], file: " + source("vehicles/otter.yaml") + "}\n");
+    const Ended ended = run_shoal({"check", folder.file("world.yaml")});
+    EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+    return ended.errors;
+  };
+  EXPECT_THAT(errors_of(""), HasSubstr("vehicle 'first' has hydrodynamics, but the world has no 'medium: water:'"));
+  EXPECT_THAT(errors_of(""), Not(HasSubstr("second")));
+  EXPECT_EQ(errors_of("medium: {water: {}}\n"), "");
 }
 
 }  // namespace

@@ -52,6 +52,7 @@ vehicles:
       shoal: 1
       vehicle: auv
       bodies: [{name: hull, parts: [{shape: sphere, radius_m: 0.1, density_kgpm3: 1025}]}]
+      devices: [{name: altimeter, type: altimeter}]
 )";
   const auto warnings_at = [&](const std::string& x) {
     std::string yaml = std::string(beach) + auv;

@@ -2,14 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/fidelity/closed_forms.hpp"
+
 namespace {
 
 TEST(Absorption, ThorpHasTheValuesOfTheReference) {
-  // closed_forms.csv, absorption_thorp: 0.1 %.
-  const double expected[][2] = {{1, 0.06900409047}, {5, 0.3823108974}, {10, 1.187029939}, {15, 2.463405615},
-                                {25, 6.104805101},  {30, 8.280377913}, {50, 17.46712268}, {100, 34.06866276}};
-  for (const auto& [frequency_kHz, dBpkm] : expected)
-    EXPECT_NEAR(sim::thorp_dBpkm(frequency_kHz), dBpkm, 1e-3 * dBpkm) << frequency_kHz;
+  for (const auto& form : test::closed_forms_of("absorption_thorp"))
+    test::expect_closed_form(sim::thorp_dBpkm(form.at("f_kHz")), form);
 }
 
 TEST(Absorption, FrancoisAndGarrisonIsNearThorpInColdSeaWater) {

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "tests/fidelity/closed_forms.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/sim/medium/medium_worlds.hpp"
 
@@ -11,6 +12,8 @@ namespace {
 
 using sim::Time;
 using sim::Vector3d;
+using test::closed_forms_of;
+using test::expect_closed_form;
 using test_support::error_of;
 using test_support::make_medium;
 using test_support::read_medium;
@@ -39,20 +42,30 @@ TEST(Current, OneEntryNeedsNoList) {
 }
 
 TEST(Current, ProfilesOfDnvFallToTheBottom) {
-  // closed_forms.csv current_power_law_1_7 and current_wind_linear.
-  const sim::Medium tidal =
-      make_medium("{water: {}, current: [{type: power_law, speed_mps: 0.8, direction_deg: 90, water_depth_m: 50}]}");
-  EXPECT_NEAR(tidal.water_velocity_W({0, 0, -30}).y(), 0.7018453297, 1e-9);
-  EXPECT_EQ(tidal.water_velocity_W({0, 0, -60}).norm(), 0);
-  const sim::Medium windy = make_medium("{water: {}, current: [{type: wind_driven, speed_mps: 0.3}]}");
-  EXPECT_NEAR(windy.water_velocity_W({0, 0, -10}).x(), 0.24, 1e-12);
-  EXPECT_EQ(windy.water_velocity_W({0, 0, -60}).norm(), 0);
+  for (const auto& form : closed_forms_of("current_power_law_1_7")) {
+    const sim::Medium tidal =
+        make_medium("{water: {}, current: [{type: power_law, speed_mps: " + std::to_string(form.at("V_surface")) +
+                    ", direction_deg: 90, water_depth_m: " + std::to_string(form.at("water_depth")) + "}]}");
+    EXPECT_NEAR(tidal.water_velocity_W({0, 0, -form.at("depth")}).y(), form.expected, 1e-9);
+    EXPECT_EQ(tidal.water_velocity_W({0, 0, -form.at("water_depth") - 10}).norm(), 0);
+  }
+  for (const auto& form : closed_forms_of("current_wind_linear")) {
+    const sim::Medium windy =
+        make_medium("{water: {}, current: [{type: wind_driven, speed_mps: " + std::to_string(form.at("V_surface")) +
+                    ", reference_depth_m: " + std::to_string(form.at("d0")) + "}]}");
+    EXPECT_NEAR(windy.water_velocity_W({0, 0, -form.at("depth")}).x(), form.expected, 1e-12);
+    EXPECT_EQ(windy.water_velocity_W({0, 0, -60}).norm(), 0);
+  }
 }
 
 TEST(GaussMarkov, IsDiscretisedExactly) {
-  // closed_forms.csv gauss_markov: sigma_w 0.01, mu 0.02: std = sigma_w / sqrt(2 mu) = 0.05, T = 1 / mu = 50 s.
-  EXPECT_NEAR(sim::fresh_std(0.05, 10, 50), 0.02870888164, 1e-11);
-  EXPECT_NEAR(sim::kept_share(10, 50), 0.8187307531, 1e-10);
+  // std = sigma_w / sqrt(2 mu), T = 1 / mu.
+  for (const auto& form : closed_forms_of("gauss_markov", "exact_discrete_noise_std")) {
+    const double mu = form.at("mu"), std = form.at("sigma_w") / std::sqrt(2 * mu);
+    EXPECT_NEAR(sim::fresh_std(std, form.at("dt"), 1 / mu), form.expected, 1e-11);
+  }
+  for (const auto& form : closed_forms_of("gauss_markov", "autocorrelation"))
+    EXPECT_NEAR(sim::kept_share(form.at("lag"), 1 / form.at("mu")), form.expected, 1e-10);
 }
 
 TEST(GaussMarkov, HasItsVarianceAndCorrelation) {
@@ -69,8 +82,8 @@ TEST(GaussMarkov, HasItsVarianceAndCorrelation) {
     squares += values[i].squaredNorm();
     products += values[i].dot(values[i + 10]);
   }
-  EXPECT_NEAR(squares / (3.0 * 99990), 0.0025, 0.00025);
-  EXPECT_NEAR(products / squares, 0.8187307531, 0.05);
+  expect_closed_form(squares / (3.0 * 99990), "gauss_markov", "sigma_w=0.01;mu=0.02", "stationary_variance");
+  expect_closed_form(products / squares, "gauss_markov", "mu=0.02;lag=10", "autocorrelation");
 }
 
 TEST(GaussMarkov, DoesNotDependOnTheStepsThatLedThere) {

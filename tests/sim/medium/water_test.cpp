@@ -1,28 +1,25 @@
 #include <gmock/gmock.h>
 
 #include "sim/medium/sea_water.hpp"
+#include "tests/fidelity/closed_forms.hpp"
 #include "tests/sim/medium/medium_worlds.hpp"
 
 namespace {
 
 using sim::Vector3d;
+using test::closed_forms_of;
+using test::expect_closed_form;
 using test_support::error_of;
 using test_support::make_medium;
 using testing::HasSubstr;
 
 TEST(SeaWater, SoundIsAsFastAsTheEquationsSay) {
-  // closed_forms.csv sound_speed_*, at the tolerance there.
-  EXPECT_NEAR(sim::mackenzie_mps(10, 35, 0), 1489.8034, 0.01);
-  EXPECT_NEAR(sim::mackenzie_mps(25, 35, 1000), 1550.744027, 0.01);
-  EXPECT_NEAR(sim::mackenzie_mps(4, 34, 500), 1473.383072, 0.01);
-  EXPECT_NEAR(sim::mackenzie_mps(20, 30, 50), 1516.603617, 0.01);
-  EXPECT_NEAR(sim::medwin_mps(10, 35, 0), 1489.99, 0.01);
-  EXPECT_NEAR(sim::medwin_mps(25, 35, 1000), 1550.35625, 0.01);
-  EXPECT_NEAR(sim::medwin_mps(4, 34, 500), 1473.43856, 0.01);
-  EXPECT_NEAR(sim::medwin_mps(20, 30, 50), 1516.62, 0.01);
-  EXPECT_NEAR(sim::chen_millero_mps(40, 40, 10000), 1731.995394, 0.01);
-  EXPECT_NEAR(sim::chen_millero_mps(10, 35, 0), 1489.822336, 0.01);
-  EXPECT_NEAR(sim::chen_millero_mps(5, 35, 2000), 1503.865092, 0.01);
+  for (const auto& form : closed_forms_of("sound_speed_mackenzie"))
+    expect_closed_form(sim::mackenzie_mps(form.at("T"), form.at("S"), form.at("depth")), form);
+  for (const auto& form : closed_forms_of("sound_speed_medwin"))
+    expect_closed_form(sim::medwin_mps(form.at("T"), form.at("S"), form.at("depth")), form);
+  for (const auto& form : closed_forms_of("sound_speed_unesco_chen_millero"))
+    expect_closed_form(sim::chen_millero_mps(form.at("T68"), form.at("S"), form.at("p_dbar")), form);
 }
 
 TEST(SeaWater, DensityHasTheCheckValuesOfUnesco) {
@@ -34,10 +31,12 @@ TEST(SeaWater, DensityHasTheCheckValuesOfUnesco) {
 }
 
 TEST(Water, PressureGrowsWithTheDepth) {
+  for (const auto& form : closed_forms_of("hydrostatic_pressure")) {
+    const sim::Medium medium = make_medium("water: {density_kgpm3: " + std::to_string(form.at("rho")) + "}");
+    expect_closed_form(medium.pressure_Pa({3, 4, -form.at("depth")}), form);
+    EXPECT_EQ(medium.pressure_Pa({3, 4, 1}), form.at("p_atm"));
+  }
   const sim::Medium medium = make_medium("water: {}");
-  // closed_forms.csv hydrostatic_pressure: 101325 + 1025 * 9.80665 * 25.
-  EXPECT_NEAR(medium.pressure_Pa({3, 4, -25}), 352620.4062, 35);
-  EXPECT_EQ(medium.pressure_Pa({3, 4, 1}), 101325);
   EXPECT_EQ(medium.density_kgpm3({0, 0, -1}), 1025);
   EXPECT_EQ(medium.density_kgpm3({0, 0, 1}), 1.225);
 }
@@ -87,8 +86,10 @@ TEST(Water, DensityFollowsTheEquationOfState) {
 TEST(Water, SoundSpeedIsThatOfTheChosenEquation) {
   const Vector3d p_W(0, 0, -500);
   const std::string water = "temperature_C: 4, salinity_psu: 34, ";
-  EXPECT_NEAR(make_medium("water: {" + water + "sound_speed: mackenzie}").sound_speed_mps(p_W), 1473.383072, 0.01);
-  EXPECT_NEAR(make_medium("water: {" + water + "sound_speed: medwin}").sound_speed_mps(p_W), 1473.43856, 0.01);
+  const auto mackenzie = make_medium("water: {" + water + "sound_speed: mackenzie}");
+  expect_closed_form(mackenzie.sound_speed_mps(p_W), "sound_speed_mackenzie", "T=4;S=34;depth=500", "c");
+  const auto medwin = make_medium("water: {" + water + "sound_speed: medwin}");
+  expect_closed_form(medwin.sound_speed_mps(p_W), "sound_speed_medwin", "T=4;S=34;depth=500", "c");
   const double dbar = 1025 * 9.80665 * 500 / 1e4;
   EXPECT_NEAR(make_medium("water: {" + water + "sound_speed: unesco}").sound_speed_mps(p_W),
               sim::chen_millero_mps(4, 34, dbar), 1e-9);

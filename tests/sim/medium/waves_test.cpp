@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "tests/fidelity/closed_forms.hpp"
 #include "tests/sim/medium/medium_worlds.hpp"
 
 namespace {
@@ -11,6 +12,10 @@ namespace {
 using sim::Time;
 using sim::Vector3d;
 using sim::WavesConfig;
+using test::closed_form;
+using test::closed_forms_of;
+using test::ClosedForm;
+using test::expect_closed_form;
 using test_support::error_of;
 using test_support::make_medium;
 using testing::HasSubstr;
@@ -19,10 +24,12 @@ constexpr double g = 9.80665, pi = std::numbers::pi;
 constexpr double deep = std::numeric_limits<double>::infinity();
 
 TEST(WaveNumber, IsThatOfDeepAndOfFiniteWater) {
-  // closed_forms.csv deep_water_wave and finite_depth_wave.
-  EXPECT_NEAR(2 * pi / sim::wave_number(2 * pi / 5, g, deep), 39.01942057, 1e-7);
-  EXPECT_NEAR(2 * pi / sim::wave_number(2 * pi / 8, g, deep), 99.88971665, 1e-7);
-  EXPECT_NEAR(2 * pi / sim::wave_number(2 * pi / 8, g, 10), 70.88340808, 1e-7);
+  // Rows have 10 digits.
+  for (const auto& form : closed_forms_of("deep_water_wave", "wavelength"))
+    EXPECT_NEAR(2 * pi / sim::wave_number(2 * pi / form.at("T"), form.at("g"), deep), form.expected, 1e-7);
+  for (const auto& form : closed_forms_of("finite_depth_wave", "wavelength"))
+    EXPECT_NEAR(2 * pi / sim::wave_number(2 * pi / form.at("T"), form.at("g"), form.at("water_depth")), form.expected,
+                1e-7);
   for (const double depth_m : {0.1, 1.0, 30.0, 1000.0})
     for (const double omega : {0.1, 1.0, 5.0, 20.0}) {
       const double k = sim::wave_number(omega, g, depth_m);
@@ -31,32 +38,37 @@ TEST(WaveNumber, IsThatOfDeepAndOfFiniteWater) {
 }
 
 TEST(Spectrum, HasThePeakOfItsFormula) {
-  // closed_forms.csv pierson_moskowitz and jonswap, peak_spectral_density.
-  EXPECT_NEAR(sim::pierson_moskowitz_m2s(2 * pi / 5, 1, 5), 0.07124789787, 1e-10);
-  EXPECT_NEAR(sim::pierson_moskowitz_m2s(2 * pi / 8, 2, 8), 0.4559865464, 1e-9);
-  EXPECT_NEAR(sim::jonswap_m2s(2 * pi / 5, 1, 5, 3.3), 0.1545535071, 1e-10);
-  EXPECT_NEAR(sim::jonswap_m2s(2 * pi / 8, 2, 8, 3.3), 0.9891424457, 1e-9);
+  for (const auto& form : closed_forms_of("pierson_moskowitz", "peak_spectral_density"))
+    EXPECT_NEAR(sim::pierson_moskowitz_m2s(2 * pi / form.at("Tp"), form.at("Hs"), form.at("Tp")), form.expected, 1e-9);
+  for (const auto& form : closed_forms_of("jonswap", "peak_spectral_density"))
+    EXPECT_NEAR(sim::jonswap_m2s(2 * pi / form.at("Tp"), form.at("Hs"), form.at("Tp"), form.at("gamma")), form.expected,
+                1e-9);
   EXPECT_DOUBLE_EQ(sim::jonswap_m2s(1.7, 1, 5, 1), sim::pierson_moskowitz_m2s(1.7, 1, 5));
   EXPECT_EQ(sim::jonswap_m2s(0, 1, 5, 3.3), 0);
 }
 
 TEST(RegularWave, RunsWithItsPhaseSpeed) {
-  sim::Medium medium =
-      make_medium("{water: {}, waves: {type: regular, height_m: 2, period_s: 5, direction_deg: 90, phase_deg: 0}}");
-  EXPECT_NEAR(medium.surface_m(7, 0), 1, 1e-9);
-  EXPECT_NEAR(medium.surface_m(0, 39.01942057 / 2), -1, 1e-9);
-  medium.advance_to(Time{1000000});
-  EXPECT_NEAR(medium.surface_m(7, 7.803884113), 1, 1e-9);  // closed_forms.csv deep_water_wave, phase_speed
-  EXPECT_EQ(medium.surface_m(3, 4, Time{1000000}), medium.surface_m(3, 4));
+  for (const auto& form : closed_forms_of("deep_water_wave", "phase_speed")) {
+    const double period_s = form.at("T");
+    sim::Medium medium =
+        make_medium("{water: {}, waves: {type: regular, height_m: 2, period_s: " + std::to_string(period_s) +
+                    ", direction_deg: 90, phase_deg: 0}}");
+    EXPECT_NEAR(medium.surface_m(7, 0), 1, 1e-9);
+    EXPECT_NEAR(medium.surface_m(0, form.expected * period_s / 2), -1, 1e-9);
+    medium.advance_to(Time{1000000});
+    EXPECT_NEAR(medium.surface_m(7, form.expected), 1, 1e-9);
+    EXPECT_EQ(medium.surface_m(3, 4, Time{1000000}), medium.surface_m(3, 4));
+  }
 }
 
 TEST(RegularWave, OrbitsShrinkWithTheDepth) {
-  // closed_forms.csv deep_water_wave, amplitude 1 and depth 10.  Depth counts from the momentary surface: where the
-  // elevation is 0 that is the still one.
-  for (const auto& [period_s, speed] : {std::pair{5.0, 0.2511180465}, {8.0, 0.4187100088}}) {
-    const sim::Medium medium = make_medium(
-        "{water: {}, waves: {type: regular, height_m: 2, period_s: " + std::to_string(period_s) + ", phase_deg: 90}}");
-    const sim::LocalWater water = medium.water_at({0, 0, -10});
+  // Depth counts from the momentary surface: where the elevation is 0 that is the still one.
+  for (const auto& form : closed_forms_of("deep_water_wave", "orbital_speed")) {
+    const double period_s = form.at("T"), speed = form.expected;
+    const sim::Medium medium =
+        make_medium("{water: {}, waves: {type: regular, height_m: " + std::to_string(2 * form.at("amplitude")) +
+                    ", period_s: " + std::to_string(period_s) + ", phase_deg: 90}}");
+    const sim::LocalWater water = medium.water_at({0, 0, -form.at("depth")});
     EXPECT_NEAR(water.surface_m, 0, 1e-9);
     EXPECT_NEAR(water.velocity_W.norm(), speed, 1e-8);
     // phase 90 degrees: the elevation is -a sin(kx - wt), which rises at the origin.
@@ -106,7 +118,7 @@ TEST(RegularWave, KeepsTheWaterWhole) {
 
 TEST(RegularWave, PressureFollowsTheWaterAndIsAirAtTheSurface) {
   const sim::Medium medium = make_medium("{water: {}, waves: {type: regular, height_m: 1, period_s: 5, phase_deg: 0}}");
-  const double k = 2 * pi / 39.01942057, wavelength = 39.01942057;
+  const double wavelength = closed_form("deep_water_wave", "T=5", "wavelength").expected, k = 2 * pi / wavelength;
   // Under the crest 10.5 m below it, under the trough 9.5 m: rho g (z + a e^(-k d)).
   EXPECT_NEAR(medium.pressure_Pa({0, 0, -10}), 101325 + 1025 * g * (10 + 0.5 * std::exp(-k * 10.5)), 1e-3);
   EXPECT_NEAR(medium.pressure_Pa({wavelength / 2, 0, -10}), 101325 + 1025 * g * (10 - 0.5 * std::exp(-k * 9.5)), 1e-3);
@@ -144,23 +156,31 @@ Record record_of(const std::string& waves, double tp_s, int places) {
   return {sum / count, squares / count, sim::to_seconds(step) * count / rises};
 }
 
+std::vector<ClosedForm> rows_of_spectra() {
+  std::vector<ClosedForm> rows = closed_forms_of("pierson_moskowitz");
+  for (const ClosedForm& row : closed_forms_of("jonswap")) rows.push_back(row);
+  return rows;
+}
+
+/// The `waves:` of a row.
+std::string spectrum_of(const ClosedForm& form) {
+  return "type: " + form.name + ", hs_m: " + std::to_string(form.at("Hs")) +
+         ", tp_s: " + std::to_string(form.at("Tp")) +
+         (form.name == "jonswap" ? ", gamma: " + std::to_string(form.at("gamma")) : "");
+}
+
 TEST(IrregularWaves, HaveTheirHeightAndPeriod) {
   // A record of 200 Tp at one place knows the variance of a Gaussian sea to 7 % (sqrt(pi int S^2 / (m0^2 T))); 40
-  // places make that 1.1 %.  closed_forms.csv pierson_moskowitz and jonswap: variance 5 %, Tz 5 %; asked for here: Hs 3
-  // %.
-  struct Case {
-    std::string waves;
-    double hs_m, tp_s, variance_m2, tz_s;
-  };
-  for (const Case& c : {Case{"type: pierson_moskowitz, hs_m: 1, tp_s: 5", 1, 5, 0.0625, 3.553253647},
-                        Case{"type: pierson_moskowitz, hs_m: 2, tp_s: 8", 2, 8, 0.25, 5.685205835},
-                        Case{"type: jonswap, hs_m: 1, tp_s: 5", 1, 5, 0.0625, 3.88819945},
-                        Case{"type: jonswap, hs_m: 2, tp_s: 8, spreading: 10", 2, 8, 0.25, 6.221119119}}) {
-    const Record record = record_of(c.waves, c.tp_s, 40);
-    EXPECT_NEAR(4 * std::sqrt(record.variance_m2), c.hs_m, 0.03 * c.hs_m) << c.waves;
-    EXPECT_NEAR(record.variance_m2, c.variance_m2, 0.05 * c.variance_m2) << c.waves;
-    EXPECT_NEAR(record.tz_s, c.tz_s, 0.05 * c.tz_s) << c.waves;
-    EXPECT_NEAR(record.mean_m, 0, 0.02 * c.hs_m) << c.waves;
+  // places make that 1.1 %.  The rows: variance 5 %, Tz 5 %; asked for here: Hs 3 %.
+  for (const ClosedForm& variance : rows_of_spectra()) {
+    if (variance.quantity != "variance") continue;
+    const std::string waves = spectrum_of(variance) + (variance.at("Hs") > 1 ? ", spreading: 10" : "");
+    const Record record = record_of(waves, variance.at("Tp"), 40);
+    const double hs_m = variance.at("Hs");
+    EXPECT_NEAR(4 * std::sqrt(record.variance_m2), hs_m, 0.03 * hs_m) << waves;
+    expect_closed_form(record.variance_m2, variance);
+    expect_closed_form(record.tz_s, variance.name, variance.parameters, "Tz");
+    EXPECT_NEAR(record.mean_m, 0, 0.02 * hs_m) << waves;
   }
 }
 
@@ -183,20 +203,21 @@ Moments moments_of(const std::string& waves, std::uint64_t seed) {
 }
 
 TEST(IrregularWaves, HaveTheMomentsOfTheirSpectrum) {
-  // closed_forms.csv, Tz and T1 with its cut-off at 40 wp: 5 % there, 1 % here, as bins are narrow; m0 is exact.
-  for (std::uint64_t seed = 1; seed < 6; ++seed) {
-    const Moments pm = moments_of("type: pierson_moskowitz, hs_m: 1, tp_s: 5, cutoff: 40", seed);
-    EXPECT_NEAR(pm.m0, 0.0625, 1e-12);
-    EXPECT_NEAR(2 * pi * std::sqrt(pm.m0 / pm.m2), 3.553253647, 0.036);
-    EXPECT_NEAR(2 * pi * pm.m0 / pm.m1, 3.858932857, 0.039);
-    const Moments jonswap = moments_of("type: jonswap, hs_m: 2, tp_s: 8, cutoff: 40", seed);
-    EXPECT_NEAR(jonswap.m0, 0.25, 1e-12);
-    EXPECT_NEAR(2 * pi * std::sqrt(jonswap.m0 / jonswap.m2), 6.221119119, 0.063);
-    EXPECT_NEAR(2 * pi * jonswap.m0 / jonswap.m1, 6.674716671, 0.067);
-    // What the default cut-off at 10 wp leaves out: (5/32) Hs^2 wp^2 / 100 of m2, 0.6 % of Tz.
-    const Moments cut = moments_of("type: jonswap, hs_m: 2, tp_s: 8", seed);
-    EXPECT_NEAR(2 * pi * std::sqrt(cut.m0 / cut.m2), 6.221119119, 0.01 * 6.22 + 0.006 * 6.22);
-  }
+  // Tz and T1 of the rows with their cut-off at 40 wp: 5 % there, 1 % here, as bins are narrow; m0 is exact.
+  for (const ClosedForm& row : rows_of_spectra())
+    for (std::uint64_t seed = 1; seed < 6; ++seed) {
+      const Moments sums = moments_of(spectrum_of(row) + ", cutoff: 40", seed);
+      const auto expect = [&](double value, double tolerance) {
+        EXPECT_NEAR(value, row.expected, tolerance) << row.quantity << " of " << spectrum_of(row);
+      };
+      if (row.quantity == "variance") expect(sums.m0, 1e-12);
+      if (row.quantity == "Tz") expect(2 * pi * std::sqrt(sums.m0 / sums.m2), 0.01 * row.expected);
+      if (row.quantity == "T1") expect(2 * pi * sums.m0 / sums.m1, 0.01 * row.expected);
+    }
+  // What the default cut-off at 10 wp leaves out: (5/32) Hs^2 wp^2 / 100 of m2, 0.6 % of Tz.
+  const ClosedForm tz = closed_form("jonswap", "Hs=2", "Tz");
+  const Moments cut = moments_of(spectrum_of(tz), 1);
+  EXPECT_NEAR(2 * pi * std::sqrt(cut.m0 / cut.m2), tz.expected, 0.016 * tz.expected);
 }
 
 TEST(IrregularWaves, SpreadAboutTheirDirection) {

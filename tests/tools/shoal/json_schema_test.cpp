@@ -49,8 +49,8 @@ struct Verdict {
 };
 
 Verdict validate(const std::string& schemas, const std::string& arguments) {
-  const std::string command =
-      SHOAL_SOURCE_DIR "/tests/tools/shoal/validate_yaml.py " + schemas + " " + arguments + " 2>&1";
+  const std::string command = "/usr/bin/python3 -B " SHOAL_SOURCE_DIR "/tests/tools/shoal/validate_yaml.py " + schemas +
+                              " " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   Verdict verdict;
   char block[4096];
