@@ -4,6 +4,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "shoal/actuator_command_t.hpp"
 #include "sim/world/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 
@@ -70,6 +71,19 @@ TEST(CoefficientModel, MovesABlueRov2AsPublishedAndHalfTheStepIsHalfTheError) {
   const double coarse = rms_against("bluerov2h_steps.csv", "0.01"), fine = rms_against("bluerov2h_steps.csv", "0.005");
   EXPECT_LT(fine, 0.01);
   EXPECT_NEAR(coarse / fine, 2, 0.2);
+}
+
+TEST(CoefficientModel, ARemusGoesAsternUntilItsThrustIsItsDrag) {
+  test::TestWorld test(
+      "shoal: 1\nphysics: {step_s: 0.01}\nmedium: {water: {density_kgpm3: 1025}}\n"
+      "vehicles: [{name: auv, file: remus100.yaml, position_m: [0, 0, -50]}]\n");
+  test.send("auv.propeller.cmd", shoal::actuator_command_t{0, -1000});
+  test.run_for(60);
+  const sim::Body& body = test.world.vehicles()[0]->body("hull");
+  // Astern its propeller has the thrust of standing water, K_T0 0.4566, less the deduction of a tenth.
+  const double thrust_N = 0.9 * 0.4566 * 1025 * std::pow(0.14, 4) * std::pow(1000.0 / 60, 2);
+  const double speed_mps = std::sqrt(thrust_N / (0.5 * 1025 * 0.2128 * 0.0570392));
+  EXPECT_NEAR((body.X_WB().linear().transpose() * body.v_WB_W()).x(), -speed_mps, 0.01 * speed_mps);
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include "sim/world/vehicle.hpp"
 #include "tests/sim/hydrodynamics/floating_worlds.hpp"
 
-// Water takes energy from what swings in it, and never brings any.  Semi-implicit Euler steps of h keep the energy of a
-// swing of rate omega but for its share h omega / 2, by which it goes up and down within each swing.
+// Still water takes energy from what moves in it, and never brings any.  Semi-implicit Euler steps of h let the energy
+// of a swing of rate omega go up and down by h omega / 2 of it within each swing, and on the mean keep it.
 
 namespace {
 
@@ -53,10 +53,15 @@ TEST_P(Swings, WithoutDragTheyKeepTheirEnergy) {
     }
     return sum / steps;
   };
-  const double start_J = energy_of_box_J(box) - at_rest_J, first_J = swing_J(10);
-  std::printf("box step %g: start %g first %g", step_s, start_J, first_J);
-  for (int i = 0; i < 35; ++i) std::printf(" %.4f", swing_J(10) / first_J);
-  std::printf("\n");
+  // A mean over some ten swings hides what goes up and down within each.  Nothing pumps: no mean of six minutes is 1 %
+  // over the first.  What the steps take away is allowed, up to a tenth.
+  const double first_J = swing_J(10);
+  EXPECT_GT(first_J, 30);
+  for (int i = 1; i <= 35; ++i) {
+    const double now_J = swing_J(10);
+    ASSERT_LT(now_J, 1.01 * first_J) << "after " << 10 * i << " s";
+    ASSERT_GT(now_J, 0.9 * first_J) << "after " << 10 * i << " s";
+  }
 }
 
 TEST_P(Swings, ABallHeavesNoHigherThanItDid) {
@@ -137,8 +142,8 @@ TEST_P(ShippedVehicle, OnlyLosesEnergyWhenLetGo) {
     least_J = std::min(least_J, now_J);
     rise_J = std::max(rise_J, now_J - least_J);
   }
-  std::printf("%s %g: swing %g rise %g share %g; h rate %g; fell %g\n", file.c_str(), step_s, swing_J, rise_J,
-              rise_J / swing_J, 2 * step_s / model.longest_step().step_s, (start_J - least_J) / swing_J);
+  // Drag takes more in each step than the step adds, so that nothing but rounding is left to rise.
+  EXPECT_LE(rise_J, 1e-9 * swing_J);
   EXPECT_GT(start_J - least_J, 0.5 * swing_J);
 }
 

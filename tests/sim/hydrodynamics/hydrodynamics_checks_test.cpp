@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sim/config/message_text.hpp"
 #include "sim/hydrodynamics/coefficient_model.hpp"
 #include "sim/world/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
