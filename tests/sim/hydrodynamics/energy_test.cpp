@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <ostream>
 
 #include "sim/hydrodynamics/coefficient_model.hpp"
 #include "sim/hydrodynamics/immersed_volume.hpp"
@@ -89,6 +90,7 @@ INSTANTIATE_TEST_SUITE_P(Steps, Swings, testing::Values(0.001, 0.005, 0.02, 0.05
 struct Release {
   std::string file;
   double depth_m, step_s, roll_deg;
+  friend void PrintTo(const Release& release, std::ostream* out) { *out << release.file << ", " << release.step_s; }
 };
 
 class ShippedVehicle : public testing::TestWithParam<Release> {
