@@ -86,4 +86,26 @@ TEST(CoefficientModel, ARemusGoesAsternUntilItsThrustIsItsDrag) {
   EXPECT_NEAR((body.X_WB().linear().transpose() * body.v_WB_W()).x(), -speed_mps, 0.01 * speed_mps);
 }
 
+/// A BlueROV2 that is pressed on the bottom with 20 N beyond its buoyancy and pushed ahead: its speed after 10 s.
+double speed_on_the_bottom_mps(double push_N) {
+  test::TestWorld test(
+      "shoal: 1\nphysics: {step_s: 0.005}\nmedium: {water: {}}\ncontacts: [{between: [any, any], friction: 0.5}]\n"
+      "objects: [{name: bottom, fixed: true, position_m: [0, 0, -10], parts: [{shape: plane}]}]\n"
+      "vehicles: [{name: rov, file: bluerov2.yaml, position_m: [0, 0, -9.87]}]\n");
+  sim::Body& body = test.world.vehicles()[0]->body("frame");
+  while (test.world.now() < sim::from_seconds(10)) {
+    const double push_now_N = test.world.now() < sim::from_seconds(5) ? 0 : push_N;
+    body.add_force_W({push_now_N, 0, -22}, body.X_WB().translation());
+    test.world.step();
+  }
+  return body.v_WB_W().norm();
+}
+
+// The limit that docs/marine.md gives: friction compares the acceleration along, of 17 kg, with mu times that down, of
+// 26.07 kg, so that it slips at 0.5 * 20 / 26.07 * 17 = 6.5 N.
+TEST(CoefficientModel, FrictionOnTheBottomHoldsByAccelerations) {
+  EXPECT_LT(speed_on_the_bottom_mps(6.2), 0.001);
+  EXPECT_GT(speed_on_the_bottom_mps(6.9), 0.01);
+}
+
 }  // namespace

@@ -64,15 +64,15 @@ TEST(HullLift, ItGrowsWithTheAngleUpToHalfARightAngleAndIsGoneAcrossTheFlow) {
     EXPECT_NEAR(tau[0], pressure * 1.5 * alpha * std::sin(alpha), 1e-9) << degrees;
     EXPECT_NEAR(tau[2], -pressure * 1.5 * alpha * std::cos(alpha), 1e-9) << degrees;
   }
-  // No jump where ahead becomes astern, nor on the way there.
-  Vector6d last = forces_at(model, along(0.8, 0.6));
-  for (double degrees = 37; degrees < 143; degrees += 0.01) {
-    const double alpha = degrees * std::numbers::pi / 180;
-    const Vector6d tau = forces_at(model, along(std::cos(alpha), std::sin(alpha)));
-    // At most 4 times the slope of the line: 1.5 for the fall within 45 degrees of what has grown over 90.
-    EXPECT_LT((tau - last).norm(), pressure * 1.5 * 4 * 0.01 * std::numbers::pi / 180 + (degrees < 37.005 ? 1 : 0));
-    last = tau;
+  // No jump on the way to 90 degrees, where ahead becomes astern, nor there: the force of slope 1.5 times the angle,
+  // at most pi / 2, falls within 45 degrees and turns, by less than 4 times 1.5 per radian.
+  const double step = 1e-4;
+  for (double alpha = 0.6; alpha < std::numbers::pi - 0.6; alpha += step) {
+    const Vector6d here = forces_at(model, along(std::cos(alpha), std::sin(alpha))),
+                   next = forces_at(model, along(std::cos(alpha + step), std::sin(alpha + step)));
+    ASSERT_LT((next - here).norm(), pressure * 1.5 * 4 * step) << alpha;
   }
+  EXPECT_LT(forces_at(model, along(0, 1)).norm(), 1e-9);
 }
 
 /// The force of a single derivative of 2 in its row, at a motion of +0.5 and of -0.5.
