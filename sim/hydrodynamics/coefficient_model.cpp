@@ -17,6 +17,14 @@ Matrix3d cross_matrix(const Vector3d& v) {
   return m;
 }
 
+/// The share of its lift that a hull keeps at an angle of attack of 0 to 90 degrees: all of it up to 45, none across
+/// the flow, where what was ahead becomes astern.
+double kept_lift(double alpha_rad) {
+  constexpr double stall_rad = std::numbers::pi / 4;
+  const double stalled = std::clamp(std::abs(alpha_rad) / stall_rad - 1, 0.0, 1.0);
+  return 1 - stalled * stalled * (3 - 2 * stalled);
+}
+
 double signed_square(double x) {
   return std::abs(x) * x;
 }
@@ -194,7 +202,7 @@ Vector6d CoefficientModel::acceleration(const CraftState& state, const Vector6d&
     Vector6d accelerated = Vector6d::Zero();
     accelerated.head<3>() = state.a_water;
     total += share * (config_.added_mass * accelerated);
-    const Vector3d displaced = weight_N_ / gravity_mps2_ * share * state.a_water;
+    const Vector3d displaced = displaced_kg(state) * share * state.a_water;
     total.head<3>() += displaced;
     total.tail<3>() += config_.center_of_buoyancy_m.cross(displaced);
   }
@@ -271,12 +279,14 @@ void CoefficientModel::add_hull_lift(const Vector6d& nu_r, double density, Vecto
   const double square = nu_r.head<3>().squaredNorm(), in_plane = std::sqrt(u * u + w * w);
   if (in_plane < 1e-12) return;
   const double pressure = 0.5 * density * square * hull.area_m2;
-  const double C_L = hull.lift_slope * std::atan2(w, u);
+  // A hull that goes astern is taken for its mirror image: the angle is that between its axis and its way.
+  const double alpha = std::atan2(w, std::abs(u));
+  const double C_L = hull.lift_slope * alpha * kept_lift(alpha);
   const double lift = pressure * C_L;
   const double drag = pressure * (hull.drag_coefficient + hull.induced_drag * C_L * C_L);
   const double cosine = u / in_plane, sine = w / in_plane;
-  tau[0] += -drag * cosine + lift * sine;
-  tau[2] += -drag * sine - lift * cosine;
+  tau[0] += -drag * cosine + (u < 0 ? -lift : lift) * sine;
+  tau[2] += -drag * sine - lift * std::abs(cosine);
 }
 
 void CoefficientModel::add_windage(const CraftState& state, Vector6d& tau) const {
@@ -324,6 +334,12 @@ void CoefficientModel::add_restoring(const CraftState& state, Vector6d& tau) con
   const Vector3d buoyancy = -full * immersed(state) * state.down;
   tau.head<3>() += weight + buoyancy;
   tau.tail<3>() += config_.center_of_mass_m.cross(weight) + config_.center_of_buoyancy_m.cross(buoyancy);
+}
+
+/// Of water, when all of the craft is under it.  One with a waterline floats: it displaces its mass.
+double CoefficientModel::displaced_kg(const CraftState& state) const {
+  if (config_.waterline) return config_.mass_kg;
+  return buoyancy_N_ >= 0 ? buoyancy_N_ / gravity_mps2_ : *config_.volume_m3 * state.density_kgpm3;
 }
 
 Vector6d CoefficientModel::equivalent_wrench(const Vector6d& nu_dot, const Vector3d& v, const Vector3d& w,

@@ -13,7 +13,6 @@ struct CraftState {
   Vector3d v_air = Vector3d::Zero();  ///< of the wind, m/s; looked at where there is windage
   Vector3d a_water;                   ///< acceleration of the water in waves, m/s^2
   Vector3d down;                      ///< unit vector towards the centre of the earth
-  double heading_rad = 0;             ///< clockwise from north
   double depth_m = 0;                 ///< of the origin below the surface
   double surface_roll_rad = 0, surface_pitch_rad = 0;  ///< of the surface along its water plane, as roll and pitch
   double density_kgpm3 = 0;                            ///< of the water
@@ -65,6 +64,7 @@ class CoefficientModel {
   void add_windage(const CraftState& state, Vector6d& tau) const;
   void add_restoring(const CraftState& state, Vector6d& tau) const;
   double cross_flow_drag(double speed) const;
+  double displaced_kg(const CraftState& state) const;
   void fold_derivatives();
   void find_rates();
 

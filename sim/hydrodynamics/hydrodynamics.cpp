@@ -78,6 +78,7 @@ void Hydrodynamics::check_step(const CoefficientModel& model, const Hydrodynamic
 
 void Hydrodynamics::remove_group(int group) {
   std::erase_if(crafts_, [&](const CoefficientBody& craft) { return craft.body->group() == group; });
+  std::erase_if(models_, [](const auto& known) { return known.second.expired(); });
   floaters_.remove_group(group);
   for (const Wetted& wetted : wetted_)
     if (wetted.body->group() == group) around_[static_cast<std::size_t>(wetted.body->number())] = {};

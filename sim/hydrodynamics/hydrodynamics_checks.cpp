@@ -23,14 +23,24 @@ std::string derivative_name(const DerivativeTerm& term) {
   return name;
 }
 
-bool check_added_mass(const Matrix6d& A, ParamReader& in) {
+template <typename Matrix>
+double smallest_eigenvalue(const Matrix& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Matrix>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[0];
+}
+
+/// False: below zero by more than the rounding of its numbers.
+bool not_negative(double eigenvalue, const Matrix6d& matrix) {
+  return eigenvalue >= -1e-9 * matrix.cwiseAbs().maxCoeff();
+}
+
+void check_added_mass(const Matrix6d& A, ParamReader& in) {
   const char* key = key_of_added_mass(in);
   for (int i = 0; i < 6; ++i) {
     if (A(i, i) >= 0) continue;
     in.error(key, std::string("the added mass in ") + axes[i] + " must be >= 0, got " + number_text(A(i, i)) +
                       ": papers print derivatives such as " + rows[i] + "_" + states[i] +
                       "dot, which are its negative");
-    return false;
+    return;
   }
   const double scale = A.cwiseAbs().maxCoeff();
   for (int i = 0; i < 6; ++i)
@@ -38,38 +48,25 @@ bool check_added_mass(const Matrix6d& A, ParamReader& in) {
       if (std::abs(A(i, j) - A(j, i)) <= 1e-6 * scale) continue;
       in.error(key, std::string("the added mass must be symmetric, got ") + number_text(A(i, j)) + " between " +
                         axes[i] + " and " + axes[j] + " and " + number_text(A(j, i)) + " the other way");
-      return false;
+      return;
     }
-  return true;
+  const double least = smallest_eigenvalue(A);
+  if (!not_negative(least, A))
+    in.error(key, "the matrix of added mass has a negative eigenvalue, " + number_text(least) +
+                      ": its couplings are too large for its diagonal");
 }
 
-Matrix6d rigid_mass(const HydrodynamicsConfig& config) {
-  const Vector3d& r = config.center_of_mass_m;
-  Matrix3d S;
-  S << 0, -r.z(), r.y(), r.z(), 0, -r.x(), -r.y(), r.x(), 0;
-  const double m = config.mass_kg;
-  Matrix6d rigid;
-  rigid << m * Matrix3d::Identity(), -m * S, m * S, config.inertia_kgm2 - m * S * S;
-  return rigid;
-}
-
-template <typename Matrix>
-double smallest_eigenvalue(const Matrix& matrix) {
-  return Eigen::SelfAdjointEigenSolver<Matrix>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[0];
-}
-
-bool check_inertia(const HydrodynamicsConfig& config, ParamReader& in) {
+void check_inertia(const HydrodynamicsConfig& config, ParamReader& in) {
   const Matrix3d& I = config.inertia_kgm2;
   if ((I - I.transpose()).cwiseAbs().maxCoeff() > 1e-9 * I.cwiseAbs().maxCoeff()) {
     in.error("inertia_kgm2", "'inertia_kgm2' must be symmetric");
-    return false;
+    return;
   }
   const double least = smallest_eigenvalue(I);
-  if (least > 0) return true;
-  in.error("inertia_kgm2",
-           "'inertia_kgm2' about the centre of mass must be positive definite, its smallest eigenvalue is " +
-               number_text(least) + "; see 'inertia_about'");
-  return false;
+  if (!(least > 0))
+    in.error("inertia_kgm2",
+             "'inertia_kgm2' about the centre of mass must be positive definite, its smallest eigenvalue is " +
+                 number_text(least) + "; see 'inertia_about'");
 }
 
 void check_damping(const char* key, const Matrix6d& damping, ParamReader& in) {
@@ -77,6 +74,24 @@ void check_damping(const char* key, const Matrix6d& damping, ParamReader& in) {
     if (!(damping(i, i) >= 0))
       in.error(key, std::string("'") + key + "' must be >= 0 in " + axes[i] + ", got " + number_text(damping(i, i)) +
                         ": negative, it would push the vehicle on; papers print derivatives, which are its negative");
+}
+
+/// That no combination of motions is driven: what damping takes is nu' D nu, of which only the symmetric part counts.
+void check_damping_couplings(const HydrodynamicsConfig& config, ParamReader& in) {
+  const Matrix6d& D = config.linear_damping;
+  if (!(D.diagonal().minCoeff() >= 0)) return;  // was said
+  const double least = smallest_eigenvalue(Matrix6d((D + D.transpose()) / 2));
+  if (!not_negative(least, D))
+    in.error("linear_damping", "the symmetric part of 'linear_damping' has a negative eigenvalue, " +
+                                   number_text(least) + ": there are motions that it would push on");
+}
+
+void check_waterline(const WaterlineConfig& plane, ParamReader& in) {
+  const double alone = plane.heave_Npm * plane.pitch_Nmprad, coupled = plane.heave_pitch_N * plane.heave_pitch_N;
+  if (!(alone > coupled))
+    in.error("waterline", "'heave_pitch_N' squared must stay below 'heave_Npm' times 'pitch_Nmprad', got " +
+                              number_text(coupled) + " and " + number_text(alone) +
+                              ": heaving and pitching at once, it would be pushed over");
 }
 
 void check_derivatives(const HydrodynamicsConfig& config, ParamReader& in) {
@@ -94,14 +109,11 @@ void check_coefficients(const HydrodynamicsConfig& config, ParamReader& in) {
   if (in.describing() || config.model != "coefficients" || !(config.mass_kg > 0)) return;
   check_damping("linear_damping", config.linear_damping, in);
   check_damping("quadratic_damping", config.quadratic_damping, in);
+  check_damping_couplings(config, in);
   check_derivatives(config, in);
-  const bool inertia_is_good = !in.has("inertia_kgm2") || check_inertia(config, in);
-  if (!check_added_mass(config.added_mass, in) || !inertia_is_good) return;
-  const double least = smallest_eigenvalue(Matrix6d(rigid_mass(config) + config.added_mass));
-  if (!(least > 0))
-    in.error(
-        key_of_added_mass(in),
-        "rigid and added mass together must be positive definite, the smallest eigenvalue is " + number_text(least));
+  if (config.waterline) check_waterline(*config.waterline, in);
+  if (in.has("inertia_kgm2")) check_inertia(config, in);
+  check_added_mass(config.added_mass, in);
 }
 
 std::vector<std::string> doubts_about(const HydrodynamicsConfig& config, const std::string& who) {

@@ -52,6 +52,14 @@ struct SpheroidConfig {
   }
 };
 
+/// True when the force turns round with the motion, as a hull that is the same to port and starboard, above and below,
+/// has it: surge in X, sway, roll and yaw in Y, K and N, heave and pitch in Z and M.  Other squares are the same both
+/// ways, such as X_vv and M_rr.
+bool reverses(int row, int motion) {
+  constexpr int plane[] = {0, 1, 2, 1, 2, 1};
+  return plane[row] == plane[motion];
+}
+
 /// Reads `X_uu`, `Y_uv`, `N_|v|r`, `M_qdot`.  False: the name is none of these.  `second` -2: an acceleration.
 bool parse_derivative(std::string_view name, DerivativeTerm& term) {
   if (name.size() < 3 || name[1] != '_') return false;
@@ -73,7 +81,8 @@ bool parse_derivative(std::string_view name, DerivativeTerm& term) {
   if (letters.empty() || letters.size() > 2) return false;
   term.first = state(letters[0]);
   term.second = letters.size() == 2 ? state(letters[1]) : -1;
-  term.absolute = letters.size() == 2 && (bars || letters[0] == letters[1]);
+  term.absolute =
+      letters.size() == 2 && (bars || (letters[0] == letters[1] && term.first >= 0 && reverses(term.row, term.first)));
   return term.first >= 0 && (letters.size() == 1 || term.second >= 0);
 }
 

@@ -14,7 +14,7 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 /// A hydrodynamic force named as SNAME does: `coefficient` times one or two components of the velocity, such as
-/// Y_uv (u v), N_rr (|r| r), X_u.  Rows and states: 0 to 5 are X u, Y v, Z w, K p, M q, N r.
+/// Y_uv (u v), N_rr (|r| r), X_rr (r r), X_u.  Rows and states: 0 to 5 are X u, Y v, Z w, K p, M q, N r.
 struct DerivativeTerm {
   int row = 0;
   int first = 0;

@@ -24,6 +24,10 @@ class ActionCheck {
     if (action.kind == ActionKind::fault || action.kind == ActionKind::clear_fault || action.kind == ActionKind::set)
       check_device(action);
     if (action.kind == ActionKind::publish) encode(action);
+    if (action.kind == ActionKind::gravity && world_.medium.water)
+      error(action,
+            "'gravity_mps2' cannot change in a world with water: pressure, waves and published weights are for " +
+                number_text(world_.physics.gravity_mps2) + " m/s^2, which the world begins with");
   }
 
  private:

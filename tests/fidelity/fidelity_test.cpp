@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
+#include <map>
 
 #include "sim/config/diagnostics.hpp"
 #include "tests/scratch_folder.hpp"
@@ -22,14 +24,40 @@ tools::FidelityResult run(const std::string& name, const tools::FidelityOptions&
   return tools::run_fidelity_case(*found, options);
 }
 
+/// The bars that Shoal has set itself, by the group of the case: what is in the file may be tighter, not looser.
+struct Bars {
+  double position_rms_m, position_max_m;
+};
+const double any = std::numeric_limits<double>::infinity();
+
+Bars bars_of(const std::string& name) {
+  static const std::map<std::string, Bars> of_cases{{"remus100_zigzag", {0.15, 0.25}}, {"otter_payload", {0.15, 0.25}}};
+  static const std::map<std::string, Bars> of_groups{{"remus100", {0.10, 0.25}},
+                                                     {"otter", {0.10, 0.25}},
+                                                     {"prestero", {0.2, any}},
+                                                     {"bluerov2h", {0.05, any}},
+                                                     {"bluerov2wu", {0.05, any}}};
+  if (const auto one = of_cases.find(name); one != of_cases.end()) return one->second;
+  return of_groups.at(name.substr(0, name.find('_')));
+}
+
+TEST(Fidelity, NoBarIsLooserThanItWasSet) {
+  for (const tools::FidelityCase& of : tools::read_fidelity_file(cases_file).cases) {
+    const Bars bars = bars_of(of.name);
+    EXPECT_LE(of.bars.position_rms_m.value_or(any), bars.position_rms_m) << of.name;
+    if (bars.position_max_m < any) {
+      EXPECT_LE(of.bars.position_max_m.value_or(any), bars.position_max_m) << of.name;
+    }
+    EXPECT_LE(of.bars.velocity_rms_mps.value_or(any), 0.01) << of.name;
+  }
+}
+
 TEST(Fidelity, EveryPublishedTrajectoryKeepsItsBarsAtFiveMilliseconds) {
   const tools::FidelityFile file = tools::read_fidelity_file(cases_file);
   EXPECT_EQ(file.cases.size(), 24u);
   for (const tools::FidelityCase& of : file.cases) {
     const tools::FidelityResult result = tools::run_fidelity_case(of);
     EXPECT_LE(of.step_s, 0.005);
-    EXPECT_TRUE(of.bars.position_rms_m && *of.bars.position_rms_m <= 0.2) << of.name;
-    EXPECT_TRUE(of.bars.velocity_rms_mps && *of.bars.velocity_rms_mps <= 0.01) << of.name;
     EXPECT_THAT(result.missed, testing::IsEmpty()) << of.name;
   }
 }

@@ -1,9 +1,9 @@
+#include "tests/fidelity/closed_forms.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <numbers>
-#include <sstream>
 
 #include "sim/hydrodynamics/coefficient_model.hpp"
 #include "sim/hydrodynamics/spheroid.hpp"
@@ -15,30 +15,6 @@ namespace {
 
 using sim::Vector3d;
 using sim::Vector6d;
-
-struct Row {
-  double expected = NAN, tolerance = 0;
-};
-
-/// A row of closed_forms.csv by case, quantity and a part of its parameters; its tolerance as an absolute one.
-Row closed_form(const std::string& name, const std::string& quantity) {
-  std::ifstream in(SHOAL_SOURCE_DIR "/tests/fidelity/reference/closed_forms.csv");
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream cells(line);
-    std::string cell[7];
-    for (std::string& each : cell) std::getline(cells, each, ',');
-    if (cell[0] != name || cell[2] != quantity) continue;
-    const double expected = std::stod(cell[3]), tolerance = std::stod(cell[5]);
-    return {expected, cell[6] == "rel" ? tolerance * std::abs(expected) : tolerance};
-  }
-  ADD_FAILURE() << "no row " << name << ", " << quantity;
-  return {};
-}
-
-void expect_row(double value, const std::string& name, const std::string& quantity) {
-  const Row row = closed_form(name, quantity);
-  EXPECT_NEAR(value, row.expected, row.tolerance) << name << ", " << quantity;
-}
 
 /// A body at some depth that can be pushed along.
 struct Craft {
@@ -63,8 +39,8 @@ TEST(ClosedForms, QuadraticDragSlowsACoastingHull) {
       "{mass_kg: 30.48, inertia_kgm2: [1, 1, 1], added_mass: [0.93, 0, 0, 0, 0, 0], derivatives: {X_uu: -1.62}}");
   craft.body.set_velocity_W({1.5, 0, 0}, Vector3d::Zero());
   craft.run_for(60);
-  expect_row(craft.u(), "quadratic_coast", "u");
-  expect_row(craft.x(), "quadratic_coast", "distance");
+  test::expect_closed_form(craft.u(), "quadratic_coast", "", "u");
+  test::expect_closed_form(craft.x(), "quadratic_coast", "", "distance");
 }
 
 TEST(ClosedForms, LinearDragStopsACoastingHull) {
@@ -73,9 +49,9 @@ TEST(ClosedForms, LinearDragStopsACoastingHull) {
       "linear_damping: [77.55, 0, 0, 0, 0, 0]}");
   craft.body.set_velocity_W({1.5, 0, 0}, Vector3d::Zero());
   craft.run_for(2);
-  expect_row(craft.u(), "linear_coast", "u");
+  test::expect_closed_form(craft.u(), "linear_coast", "", "u");
   craft.run_for(30);
-  expect_row(craft.x(), "linear_coast", "distance_total");
+  test::expect_closed_form(craft.x(), "linear_coast", "", "distance_total");
 }
 
 TEST(ClosedForms, AForceAgainstQuadraticDragGivesTheHyperbolicTangent) {
@@ -83,8 +59,8 @@ TEST(ClosedForms, AForceAgainstQuadraticDragGivesTheHyperbolicTangent) {
       "{mass_kg: 13.5, inertia_kgm2: [1, 1, 1], added_mass: [6.36, 0, 0, 0, 0, 0], "
       "quadratic_damping: [141, 0, 0, 0, 0, 0]}");
   craft.run_for(1, {30, 0, 0});
-  expect_row(craft.u(), "thrust_accel_quadratic", "u");
-  expect_row(craft.x(), "thrust_accel_quadratic", "distance");
+  test::expect_closed_form(craft.u(), "thrust_accel_quadratic", "", "u");
+  test::expect_closed_form(craft.x(), "thrust_accel_quadratic", "", "distance");
 }
 
 TEST(ClosedForms, ASubmergedHullRollsAboutItsCentreOfBuoyancy) {
@@ -101,7 +77,7 @@ TEST(ClosedForms, ASubmergedHullRollsAboutItsCentreOfBuoyancy) {
     if (before * p < 0) {
       const double at = sim::to_seconds(craft.test.world.now()) - 0.001 * p / (p - before);
       if (crossings++ == 0) first = at;
-      if (crossings == 5) expect_row((at - first) / 2, "submerged_roll_period", "period");
+      if (crossings == 5) test::expect_closed_form((at - first) / 2, "submerged_roll_period", "", "period");
     }
     before = p;
     ASSERT_LT(craft.test.world.now(), sim::from_seconds(20));
@@ -114,14 +90,14 @@ TEST(ClosedForms, ACurrentTakesANeutralBodyAlong) {
       "linear_damping: [12, 12, 12, 0, 0, 0]}",
       "{water: {}, current: {velocity_mps: [0.4, 0, 0]}}");
   craft.run_for(10);
-  expect_row(craft.x(), "passive_drift_linear", "x");
+  test::expect_closed_form(craft.x(), "passive_drift_linear", "", "x");
 }
 
 TEST(ClosedForms, AddedMassOfASpheroid) {
   const Vector6d added = sim::spheroid_added_mass(0.8, 0.095, 1025);
-  expect_row(added[0], "prolate_spheroid_added_mass", "A11");
-  expect_row(added[1], "prolate_spheroid_added_mass", "A22");
-  expect_row(added[4], "prolate_spheroid_added_mass", "A55");
+  test::expect_closed_form(added[0], "prolate_spheroid_added_mass", "", "A11");
+  test::expect_closed_form(added[1], "prolate_spheroid_added_mass", "", "A22");
+  test::expect_closed_form(added[4], "prolate_spheroid_added_mass", "", "A55");
   EXPECT_EQ(added[1], added[2]);
   EXPECT_EQ(added[4], added[5]);
   EXPECT_EQ(added[3], 0);
@@ -156,14 +132,14 @@ Vector6d forces_at(const Vector6d& nu, const Vector6d& added_mass) {
 
 TEST(ClosedForms, TheMunkMomentTurnsAHullAcrossItsWay) {
   const Vector6d nu = (Vector6d() << 1.5, 0.1, 0, 0, 0, 0).finished();
-  expect_row(forces_at(nu, sim::spheroid_added_mass(0.8, 0.095, 1025))[5], "munk_moment", "N");
+  test::expect_closed_form(forces_at(nu, sim::spheroid_added_mass(0.8, 0.095, 1025))[5], "munk_moment", "", "N");
 }
 
 TEST(ClosedForms, AddedMassHasItsCoriolisForces) {
   const Vector6d nu = (Vector6d() << 0.8, 0.3, 0, 0, 0, 0.4).finished();
   const Vector6d force = forces_at(nu, (Vector6d() << 6.36, 7.12, 0, 0, 0, 0).finished());
-  expect_row(force[0], "added_mass_coriolis", "X");
-  expect_row(force[1], "added_mass_coriolis", "Y");
+  test::expect_closed_form(force[0], "added_mass_coriolis", "", "X");
+  test::expect_closed_form(force[1], "added_mass_coriolis", "", "Y");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "shoal/actuator_command_t.hpp"
 #include "sim/world/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 
@@ -70,6 +71,41 @@ TEST(CoefficientModel, MovesABlueRov2AsPublishedAndHalfTheStepIsHalfTheError) {
   const double coarse = rms_against("bluerov2h_steps.csv", "0.01"), fine = rms_against("bluerov2h_steps.csv", "0.005");
   EXPECT_LT(fine, 0.01);
   EXPECT_NEAR(coarse / fine, 2, 0.2);
+}
+
+TEST(CoefficientModel, ARemusGoesAsternUntilItsThrustIsItsDrag) {
+  test::TestWorld test(
+      "shoal: 1\nphysics: {step_s: 0.01}\nmedium: {water: {density_kgpm3: 1025}}\n"
+      "vehicles: [{name: auv, file: remus100.yaml, position_m: [0, 0, -50]}]\n");
+  test.send("auv.propeller.cmd", shoal::actuator_command_t{0, -1000});
+  test.run_for(60);
+  const sim::Body& body = test.world.vehicles()[0]->body("hull");
+  // Astern its propeller has the thrust of standing water, K_T0 0.4566, less the deduction of a tenth.
+  const double thrust_N = 0.9 * 0.4566 * 1025 * std::pow(0.14, 4) * std::pow(1000.0 / 60, 2);
+  const double speed_mps = std::sqrt(thrust_N / (0.5 * 1025 * 0.2128 * 0.0570392));
+  EXPECT_NEAR((body.X_WB().linear().transpose() * body.v_WB_W()).x(), -speed_mps, 0.01 * speed_mps);
+}
+
+/// A BlueROV2 that is pressed on the bottom with 20 N beyond its buoyancy and pushed ahead: its speed after 10 s.
+double speed_on_the_bottom_mps(double push_N) {
+  test::TestWorld test(
+      "shoal: 1\nphysics: {step_s: 0.005}\nmedium: {water: {}}\ncontacts: [{between: [any, any], friction: 0.5}]\n"
+      "objects: [{name: bottom, fixed: true, position_m: [0, 0, -10], parts: [{shape: plane}]}]\n"
+      "vehicles: [{name: rov, file: bluerov2.yaml, position_m: [0, 0, -9.87]}]\n");
+  sim::Body& body = test.world.vehicles()[0]->body("frame");
+  while (test.world.now() < sim::from_seconds(10)) {
+    const double push_now_N = test.world.now() < sim::from_seconds(5) ? 0 : push_N;
+    body.add_force_W({push_now_N, 0, -22}, body.X_WB().translation());
+    test.world.step();
+  }
+  return body.v_WB_W().norm();
+}
+
+// The limit that docs/marine.md gives: friction compares the acceleration along, of 17 kg, with mu times that down, of
+// 26.07 kg, so that it slips at 0.5 * 20 / 26.07 * 17 = 6.5 N.
+TEST(CoefficientModel, FrictionOnTheBottomHoldsByAccelerations) {
+  EXPECT_LT(speed_on_the_bottom_mps(6.2), 0.001);
+  EXPECT_GT(speed_on_the_bottom_mps(6.9), 0.01);
 }
 
 }  // namespace

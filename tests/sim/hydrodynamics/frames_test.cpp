@@ -28,7 +28,8 @@ class SkewedSet {
         << ", cross_flow: {length_m: 1.2, height_m: 0.2}, hull_lift: {area_m2: 0.1, lift_slope: 1, induced_drag: 2}"
         << ", derivatives: {" << derivative("Y_uv", {1, 0, 1}, -3) << ", " << derivative("M_uw", {4, 0, 2}, -2) << ", "
         << derivative("N_|v|r", {5, 5}, -1.5) << ", " << derivative("Z_q", {2, 4}, -0.7) << ", "
-        << derivative("K_pr", {3, 3, 5}, 0.4) << "}}";
+        << derivative("X_rr", {0}, 0.3) << ", " << derivative("M_vv", {4}, -0.2) << ", "
+        << derivative("M_ww", {4, 2}, -0.6) << ", " << derivative("K_pr", {3, 3, 5}, 0.4) << "}}";
     return out.str();
   }
 

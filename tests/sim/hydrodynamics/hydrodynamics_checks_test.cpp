@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sim/config/message_text.hpp"
 #include "sim/hydrodynamics/coefficient_model.hpp"
 #include "sim/world/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
@@ -33,10 +34,38 @@ TEST(HydrodynamicsChecks, AddedMassIsSymmetric) {
               HasSubstr("the added mass must be symmetric, got -1.93 between sway and yaw and 1.93 the other way"));
 }
 
-TEST(HydrodynamicsChecks, MassIsPositiveDefinite) {
-  // 10 + 1 kg and 1 + 0.1 kg m^2 with 20 kg m between them: 11 * 1.1 < 20^2.
-  EXPECT_THAT(error_of(inertia + ", derivatives: {Y_vdot: -1, N_rdot: -0.1, Y_rdot: -20, N_vdot: -20}"),
-              HasSubstr("rigid and added mass together must be positive definite, the smallest eigenvalue is -14.5"));
+TEST(HydrodynamicsChecks, AddedMassIsNotNegativeInAnyDirection) {
+  // The block [[4, 6], [6, 4]] has the eigenvalues 10 and -2.  With 20 kg of body, all of it would be positive.
+  EXPECT_THAT(error_of(inertia + ", derivatives: {Y_vdot: -4, N_rdot: -4, Y_rdot: -6, N_vdot: -6}"),
+              HasSubstr("the matrix of added mass has a negative eigenvalue, -2: its couplings are too large"));
+  // A flat plate off its origin: 4 * 9 = 6 * 6, an eigenvalue of 0.
+  EXPECT_EQ(error_of(inertia + ", derivatives: {Y_vdot: -4, N_rdot: -9, Y_rdot: -6, N_vdot: -6}"), "");
+}
+
+TEST(HydrodynamicsChecks, DampingBrakesEveryMotion) {
+  const auto couplings = [](double one, double other) {
+    return inertia + ", linear_damping: [1, 0, 0, 0, 0, 0,  0, 2, 0, 0, 0, " + sim::number_text(one) +
+           ",  0, 0, 3, 0, 0, 0,  0, 0, 0, 1, 0, 0,  0, 0, 0, 0, 1, 0,  0, " + sim::number_text(other) +
+           ", 0, 0, 0, 2]";
+  };
+  // Half of 4 + 3 beside 2 and 2: 2 - 3.5.
+  EXPECT_THAT(error_of(couplings(4, 3)),
+              HasSubstr("the symmetric part of 'linear_damping' has a negative eigenvalue, -1.5: there are motions"));
+  // What has opposite signs takes no energy and brings none, however large.
+  EXPECT_EQ(error_of(couplings(40, -40)), "");
+}
+
+TEST(HydrodynamicsChecks, AWaterlineHoldsAgainstHeaveAndPitchAtOnce) {
+  const auto waterline = [](const std::string& coupling) {
+    return inertia + ", waterline: {heave_Npm: 100, roll_Nmprad: 50, pitch_Nmprad: 25, heave_pitch_N: " + coupling +
+           "}";
+  };
+  EXPECT_EQ(error_of(waterline("-49")), "");
+  EXPECT_THAT(error_of(waterline("50")),
+              HasSubstr("'heave_pitch_N' squared must stay below 'heave_Npm' times 'pitch_Nmprad', got 2500 and 2500"));
+}
+
+TEST(HydrodynamicsChecks, InertiaIsPositiveDefinite) {
   EXPECT_THAT(error_of(", inertia_kgm2: [1, 1, -1]"),
               HasSubstr("must be positive definite, its smallest eigenvalue is -1"));
   // 10 kg half a metre off already have 2.5 kg m^2 about the origin.
@@ -76,27 +105,16 @@ TEST(HydrodynamicsChecks, AStepTooLongForStiffForcesIsRefused) {
               HasSubstr("the restoring forces are too stiff for 'step_s' 0.05: they need a step below 0.02 s"));
 }
 
-sim::HydrodynamicsConfig config_of(const std::string& text) {
-  sim::Diagnostics diagnostics;
-  const sim::ConfigNode node = sim::parse_config_text(text, "test", diagnostics);
-  sim::HydrodynamicsConfig config;
-  sim::ParamReader in(node, "", diagnostics);
-  config.read(in);
-  in.finish();
-  diagnostics.throw_if_any();
-  return config;
-}
-
 TEST(HydrodynamicsChecks, AHullThatTurnsOverIsDoubted) {
   const std::string rest = ", mass_kg: 10, inertia_kgm2: [1, 1, 1], center_of_mass_m: [0, 0, 0.02]}";
-  EXPECT_THAT(sim::doubts_about(config_of("{frame: frd" + rest), "auv"), testing::IsEmpty());
-  EXPECT_THAT(sim::doubts_about(config_of("{frame: flu" + rest), "auv"),
+  EXPECT_THAT(sim::doubts_about(test::config_of("{frame: frd" + rest), "auv"), testing::IsEmpty());
+  EXPECT_THAT(sim::doubts_about(test::config_of("{frame: flu" + rest), "auv"),
               testing::ElementsAre(HasSubstr("auv: its centre of mass lies 0.02 m above its centre of buoyancy")));
 }
 
 TEST(HydrodynamicsChecks, QuadraticDragThatOvershootsInAStepIsSeen) {
-  const sim::CoefficientModel model(config_of("{mass_kg: 10, inertia_kgm2: [1, 1, 1], derivatives: {X_uu: -100}}"),
-                                    9.81);
+  const sim::CoefficientModel model(
+      test::config_of("{mass_kg: 10, inertia_kgm2: [1, 1, 1], derivatives: {X_uu: -100}}"), 9.81);
   sim::Vector6d nu = sim::Vector6d::Zero();
   // In one step from u to u (1 - h 100 u / 10): to its negative at h u = 0.2.
   nu[0] = 19;
