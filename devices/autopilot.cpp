@@ -276,6 +276,8 @@ void take_helm(Autopilot& autopilot, std::span<const std::byte> payload) {
   check("heading_rad", command.heading_rad, -1e3, 1e3);
   check("depth_m", command.depth_m, -far_m, far_m);
   check("altitude_m", command.altitude_m, 0, far_m);
+  if (!std::isnan(command.depth_m) && !std::isnan(command.altitude_m))
+    throw std::runtime_error("give depth_m or altitude_m, the other as NaN; got both");
   autopilot.set_helm(command);
 }
 

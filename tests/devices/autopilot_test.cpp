@@ -147,6 +147,31 @@ TEST(Autopilot, TakesSetpointsAndLeavesWhatIsNaN) {
   EXPECT_EQ(state.depth_m, 11);
 }
 
+TEST(Autopilot, RefusesADepthAndAnAltitudeInOneCommand) {
+  AutopilotWorld test(
+      world_with("remus100_survey.yaml", "      devices.autopilot.hold: {speed_mps: 1.5, depth_m: 10}\n"));
+  test.run_for(1);
+  test.helm(1.5, 0, 12, 0);
+  auto state = test.state_after(1);
+  EXPECT_EQ(test.world.counts().bad_messages, 1);
+  EXPECT_EQ(state.depth_m, 10);
+  test.helm(nothing, nothing, nothing, 3);
+  state = test.state_after(1);
+  EXPECT_EQ(state.altitude_m, 3);
+  EXPECT_EQ(test.world.counts().bad_messages, 1);
+}
+
+TEST(Autopilot, AnEventThatGivesADepthAloneIsAboutTheDepth) {
+  AutopilotWorld test(
+      world_with("remus100_survey.yaml", "      devices.autopilot.hold: {speed_mps: 1, depth_m: 10}\n") +
+      "events: [{name: deeper, at: 1, do: [{publish: v.autopilot.cmd, type: shoal.helm_command_t, "
+      "value: {depth_m: 12}}]}]\n");
+  const auto state = test.state_after(2);
+  EXPECT_EQ(state.depth_m, 12);
+  EXPECT_EQ(state.speed_mps, 1);
+  EXPECT_TRUE(std::isnan(state.altitude_m));
+}
+
 TEST(Autopilot, TakesARouteAStationAndGoesOn) {
   AutopilotWorld test(world_with("bluerov2_station.yaml", "      devices.autopilot.mode: hold\n"));
   shoal::waypoints_command_t route{};
