@@ -117,7 +117,8 @@ CraftAbilities AutopilotActuators::abilities() const {
 Limited AutopilotActuators::share(const Wrench& wrench, const sim::Vector3d& v_B, double density_kgpm3) {
   const double density = density_kgpm3 > 0 ? density_kgpm3 : plan_density_kgpm3;
   Limited limited;
-  limited.thrusters = allocation_->allocate(wrench, forces_N_) < 1;
+  constexpr double all = 1 - 1e-9;  // but for rounding
+  limited.thrusters = allocation_->allocate(wrench, forces_N_) < all;
   for (std::size_t i = 0; i < propellers_.size(); ++i) {
     Propeller& propeller = propellers_[i];
     propeller.device.command =

@@ -102,6 +102,16 @@ TEST(Autopilot, ABoatWithTwoPropellersGoesRoundItsWaypoints) {
   EXPECT_NEAR((test.place().head<2>() - Eigen::Vector2d(30, 30)).norm(), 0, 8);  // it stopped at the second
 }
 
+TEST(Autopilot, ABoatWhosePropellersPushAheadOnlyTurnsAndGoes) {
+  AutopilotWorld test(world_with("otter_autopilot.yaml",
+                                 "      devices.port.min: 0\n      devices.starboard.min: 0\n"
+                                 "      devices.autopilot.hold: {speed_mps: 1, heading_deg: 170}\n",
+                                 "{water: {}}", 0));
+  const auto state = test.state_after(90);
+  EXPECT_NEAR(state.heading_error_rad, 0, 0.02);
+  EXPECT_NEAR(state.speed_error_mps, 0, 0.02);
+}
+
 TEST(Autopilot, ABoatStaysOverAPlaceByHeadingIntoTheCurrent) {
   AutopilotWorld test(world_with("otter_autopilot.yaml", "      devices.autopilot.mode: station\n", across, 0));
   const auto state = test.state_after(300);
