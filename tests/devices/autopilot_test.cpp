@@ -141,6 +141,28 @@ vehicles:
   EXPECT_NEAR(state.heading_rad, -std::asin(0.2), 0.02);
 }
 
+TEST(Autopilot, ANaiveAuvKeepsItsAltitudeWhateverTheTide) {
+  AutopilotWorld test(R"(
+shoal: 1
+physics: {step_s: 0.02}
+medium: {water: {}, tides: [{amplitude_m: 5}]}
+objects: [{name: bottom, fixed: true, position_m: [0, 0, -30], parts: [{shape: plane}]}]
+vehicles:
+  - name: v
+    position_m: [0, 0, -20]
+    model:
+      shoal: 1
+      vehicle: naive
+      bodies: [{name: hull, kinematic: true, parts: []}]
+      devices:
+        - {name: drive, type: naive_drive}
+        - {name: autopilot, type: autopilot, helm: drive, hold: {speed_mps: 1.5, altitude_m: 6}}
+)");
+  const auto state = test.state_after(120);
+  EXPECT_NEAR(state.altitude_error_m, 0, 0.01);
+  EXPECT_NEAR(test.place().z(), -24, 0.01);
+}
+
 TEST(Autopilot, TakesSetpointsAndLeavesWhatIsNaN) {
   AutopilotWorld test(world_with("remus100_survey.yaml",
                                  "      devices.autopilot.hold: {speed_mps: 1, heading_deg: 0, depth_m: 10}\n"));
