@@ -147,7 +147,11 @@ CraftMotion Autopilot::motion_of(const sim::World& world) const {
   motion.X_WS = body_.X_WB();
   motion.v_WS_W = body_.v_WB_W();
   const sim::Matrix3d R_SW = motion.X_WS.linear().transpose();
-  motion.v_S = R_SW * (motion.v_WS_W - world.hydrodynamics().water_at(body_).velocity_W);
+  // The water does nothing to a kinematic body, and so is not looked up for it in each step.
+  const sim::BodyInWater& around = world.hydrodynamics().around(body_);
+  const sim::Vector3d water_W =
+      around.known ? around.water.velocity_W : world.medium().water_velocity_W(motion.X_WS.translation());
+  motion.v_S = R_SW * (motion.v_WS_W - water_W);
   motion.w_S = R_SW * body_.w_WB_W();
   return motion;
 }

@@ -141,6 +141,27 @@ vehicles:
   EXPECT_NEAR(state.heading_rad, -std::asin(0.2), 0.02);
 }
 
+TEST(Autopilot, TheSpeedOfANaiveAuvIsThroughTheWater) {
+  AutopilotWorld test(R"(
+shoal: 1
+physics: {step_s: 0.01}
+medium: {water: {}, current: [{velocity_mps: [0.6, 0, 0]}]}
+vehicles:
+  - name: v
+    position_m: [0, 0, -5]
+    model:
+      shoal: 1
+      vehicle: naive
+      bodies: [{name: hull, kinematic: true, parts: [{shape: sphere, radius_m: 0.1}]}]
+      devices:
+        - {name: drive, type: naive_drive}
+        - {name: autopilot, type: autopilot, helm: drive, hold: {speed_mps: 1.5, heading_deg: 0}}
+)");
+  const auto state = test.state_after(60);
+  // It is carried along at 2.1 m/s over ground.
+  EXPECT_NEAR(state.speed_error_mps, 0, 1e-3);
+}
+
 TEST(Autopilot, ANaiveAuvKeepsItsAltitudeWhateverTheTide) {
   AutopilotWorld test(R"(
 shoal: 1
