@@ -231,8 +231,9 @@ void Autopilot::drive_helm(const Demand& demand, sim::Time now) {
 void Autopilot::hash_state(sim::StateHash& hash) const {
   hash.add(static_cast<int>(mode_));
   for (const double number : {wanted_.speed_mps, wanted_.heading_rad, wanted_.height_m}) hash.add(number);
-  for (const std::optional<double>& number : {depth_wanted_m_, altitude_wanted_m_})
-    if (number) hash.add(*number);
+  hash_optional(hash, depth_wanted_m_);
+  hash_optional(hash, altitude_wanted_m_);
+  hash.add(wanted_.station_m.has_value());
   if (wanted_.station_m) hash.add(sim::Vector3d(wanted_.station_m->x(), wanted_.station_m->y(), 0));
   hash.add(limited_.thrusters);
   hash.add(limited_.fins);

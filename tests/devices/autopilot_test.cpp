@@ -284,6 +284,15 @@ TEST(Autopilot, RefusesBadCommandsAndGoesOn) {
   EXPECT_EQ(state.speed_mps, 1);
 }
 
+TEST(Autopilot, ADepthIsAnotherStateThanAnAltitude) {
+  const auto hash_of = [](const std::string& hold) {
+    return AutopilotWorld(world_with("remus100_survey.yaml", "      devices.autopilot.hold: " + hold + "\n"))
+        .world.state_hash();
+  };
+  EXPECT_EQ(hash_of("{depth_m: 5}"), hash_of("{depth_m: 5}"));
+  EXPECT_NE(hash_of("{depth_m: 5}"), hash_of("{altitude_m: 5}"));
+}
+
 TEST(Autopilot, SaysWhatIsWrongWithItsParameters) {
   const auto error = [](const std::string& file, const std::string& overrides) {
     return test::error_of_world(world_with(file, overrides));
