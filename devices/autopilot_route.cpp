@@ -122,7 +122,8 @@ void Route::hash_state(sim::StateHash& hash) const {
   for (const Waypoint& point : points_) {
     hash.add(point.p_W.x());
     hash.add(point.p_W.y());
-    for (const std::optional<double>& number : {point.depth_m, point.altitude_m, point.speed_mps}) hash_optional(hash, number);
+    for (const std::optional<double>& number : {point.depth_m, point.altitude_m, point.speed_mps})
+      hash_optional(hash, number);
   }
   hash.add(static_cast<std::uint64_t>(to_));
   hash.add(loop_);

@@ -96,6 +96,7 @@ double ThrustAllocation::nearest(const Wrench& wanted, std::vector<bool> dropped
 
 double ThrustAllocation::allocate(const Wrench& wanted, Eigen::VectorXd& forces_N) const {
   forces_N = Eigen::VectorXd::Zero(effect_.cols());
+  if (!wanted.allFinite()) return 0;
   for (std::size_t i = 0; i < axes_.size(); ++i)
     forces_N += inverse_.col(static_cast<Eigen::Index>(i)) * wanted[axes_[i]];
   std::vector<bool> dropped(thrusters_.size());

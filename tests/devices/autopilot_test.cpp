@@ -251,6 +251,37 @@ TEST(Autopilot, TakesARouteAStationAndGoesOn) {
   EXPECT_EQ(state.waypoint, 0);
 }
 
+TEST(Autopilot, ReckonsWithTheDensityOfItsFins) {
+  const auto rudder_of = [](const std::string& keys) {
+    AutopilotWorld test(R"(
+shoal: 1
+physics: {step_s: 0.01}
+medium: {water: {}}
+vehicles:
+  - name: v
+    position_m: [0, 0, -10]
+    model:
+      shoal: 1
+      vehicle: auv
+      bodies: [{name: hull, hydrodynamics: {mass_kg: 30, inertia_kgm2: [0.2, 4, 4]}, parts: [{shape: sphere, radius_m: 0.1}]}]
+      devices:
+        - {name: propeller, type: thruster, position_m: [-0.8, 0, 0]}
+        - {name: rudder, type: fin, position_m: [-0.7, 0, 0], area_m2: 0.5)" +
+                        keys + R"(}
+        - {name: elevator, type: fin, position_m: [-0.7, 0, 0], rpy_deg: [90, 0, 0], area_m2: 0.5)" +
+                        keys + R"(}
+        - {name: autopilot, type: autopilot, thrusters: [propeller], fins: [rudder, elevator], hold: {heading_deg: 1}}
+)");
+    test::Listener<shoal::actuator_command_t> rudder(test, "v.rudder.cmd");
+    test.run_for(0.02);
+    return rudder.take_all().front().value;
+  };
+  const double plain = rudder_of("");
+  ASSERT_NE(plain, 0);
+  ASSERT_LT(std::abs(plain), 0.2) << "not at its limit";
+  EXPECT_NEAR(rudder_of(", density_kgpm3: 2050") / plain, 0.5, 1e-9);
+}
+
 TEST(Autopilot, SwitchedOffItLeavesTheActuatorsToOthers) {
   AutopilotWorld test(world_with("remus100_survey.yaml", "      devices.autopilot.mode: 'off'\n"));
   test::Listener<shoal::actuator_command_t> commands(test, "v.propeller.cmd");

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <stdexcept>
 
 namespace {
@@ -130,6 +131,26 @@ TEST(ThrustAllocation, OthersTakeOverWhatAOneWayThrusterCannotGive) {
   Eigen::VectorXd forces;
   EXPECT_NEAR(allocation.allocate(wanted, forces), 1, 1e-12);
   EXPECT_NEAR((forces - Eigen::Vector3d(0, -15, -15)).norm(), 0, 1e-12);
+}
+
+TEST(ThrustAllocation, NoForceForAWrenchThatIsNoNumber) {
+  const ThrustAllocation allocation(heavy(), {});
+  Wrench wanted = some_wrench();
+  wanted[2] = std::numeric_limits<double>::quiet_NaN();
+  Eigen::VectorXd forces;
+  EXPECT_EQ(allocation.allocate(wanted, forces), 0);
+  EXPECT_TRUE(forces.isZero());
+}
+
+TEST(ThrustAllocation, AThrusterThatPushesNowhereIsLeftOut) {
+  std::vector<ThrusterPlace> two{thruster({0, 0, 0}, {0, 0, 0}), thruster({0, 0, 0}, {0, 0, 0}, 0)};
+  const ThrustAllocation allocation(two, {0});
+  Wrench wanted = Wrench::Zero();
+  wanted[0] = 10;
+  Eigen::VectorXd forces;
+  EXPECT_NEAR(allocation.allocate(wanted, forces), 1, 1e-12);
+  EXPECT_NEAR(forces[0], 10, 1e-12);
+  EXPECT_EQ(forces[1], 0);
 }
 
 TEST(ThrustAllocation, SaysWhichAxisTheThrustersCannotGive) {
