@@ -8,6 +8,8 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/thrust_rudder_command_t.hpp"
 #include "shoal/thrust_rudder_elevator_command_t.hpp"
+#include "sim/config/message_text.hpp"
+#include "sim/world/notice.hpp"
 #include "sim/world/vehicle.hpp"
 #include "sim/world/world.hpp"
 
@@ -56,6 +58,15 @@ void NaiveDrive::take_pose() {
   p_WB_ = X_WB_.translation();
   yaw_rad_ = sim::yaw_of(X_WB_.linear());
   pitch_rad_ = std::asin(std::clamp(X_WB_.linear()(2, 0), -1.0, 1.0));
+}
+
+/// Says once that a current from a file carries it no more.
+void NaiveDrive::look_for_the_current() {
+  if (!params_.drifts || left_the_current_ || world_.medium().current_known(p_WB_)) return;
+  left_the_current_ = true;
+  sim::notice(
+      world_, "body '" + body_.name() + "'",
+      "has left the file of the current at " + sim::number_text(p_WB_.x()) + ", " + sim::number_text(p_WB_.y()));
 }
 
 double NaiveDrive::wanted_turn(double speed_share) const {
@@ -111,6 +122,7 @@ void NaiveDrive::act(const sim::ActContext& context) {
   constexpr double moved = 1e-6;
   if ((body_.X_WB().translation() - p_WB_).squaredNorm() > moved * moved) take_pose();
 
+  look_for_the_current();
   const sim::Medium& medium = world_.medium();
   speed_mps_ += (speed_target_mps_ * context.effectiveness - speed_mps_) * speed_share_;
   const double speed_share = params_.steerage_speed_mps > 0 ? speed_mps_ / params_.steerage_speed_mps : 1;

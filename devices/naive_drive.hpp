@@ -55,6 +55,7 @@ class NaiveDrive final : public sim::Actuator {
   double wanted_climb(double surface_m) const;
   Path path(double surface_m);
   void take_pose();
+  void look_for_the_current();
 
   // What each step needs, side by side.
   sim::Body& body_;
@@ -68,6 +69,7 @@ class NaiveDrive final : public sim::Actuator {
   double heading_target_rad_ = std::numeric_limits<double>::quiet_NaN();  // NaN: by rudder
   double depth_target_m_ = std::numeric_limits<double>::quiet_NaN();      // NaN: by elevator
   double rudder_ = 0, elevator_ = 0;
+  bool left_the_current_ = false;                         // was said
   double step_s_ = 0, speed_share_ = 0, turn_share_ = 0;  // of the way to the target in a step
   Params params_;
 };
