@@ -273,8 +273,8 @@ vehicles:
         - {name: autopilot, type: autopilot, thrusters: [propeller], fins: [rudder, elevator], hold: {heading_deg: 1}}
 )");
     test::Listener<shoal::actuator_command_t> rudder(test, "v.rudder.cmd");
-    test.run_for(0.02);
-    return rudder.take_all().front().value;
+    test.run_for(0.15);
+    return rudder.last().value;
   };
   const double plain = rudder_of("");
   ASSERT_NE(plain, 0);

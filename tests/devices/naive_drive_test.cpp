@@ -121,8 +121,7 @@ TEST_F(NaiveDrive, ADepthAboveTheSurfaceIsTheSurface) {
 }
 
 TEST_F(NaiveDrive, StaysInTheWaterAmongWaves) {
-  start(", rise_mps: 0.5", "medium: {water: {}, waves: {type: regular, height_m: 2, period_s: 6}}
-");
+  start(", rise_mps: 0.5", "medium: {water: {}, waves: {type: regular, height_m: 2, period_s: 6}}\n");
   controls(1, 0, -1);
   test->run_for(30);
   for (int i = 0; i < 200; ++i) {
@@ -137,8 +136,7 @@ TEST_F(NaiveDrive, StaysInTheWaterAmongWaves) {
 
 TEST_F(NaiveDrive, CountsItsDepthFromTheStillSurfaceWithoutTheTide) {
   // High water at the start: 5 m over the still surface at 2 m.
-  start("", "medium: {water: {surface_m: 2}, tides: [{amplitude_m: 5}]}
-");
+  start("", "medium: {water: {surface_m: 2}, tides: [{amplitude_m: 5}]}\n");
   helm(2, 0, 20);
   test->run_for(120);
   EXPECT_GT(test->world.medium().surface_m(0, 0), 6);
