@@ -147,7 +147,11 @@ CraftMotion Autopilot::motion_of(const sim::World& world) const {
   motion.X_WS = body_.X_WB();
   motion.v_WS_W = body_.v_WB_W();
   const sim::Matrix3d R_SW = motion.X_WS.linear().transpose();
-  motion.v_S = R_SW * (motion.v_WS_W - world.hydrodynamics().water_at(body_).velocity_W);
+  // The water does nothing to a kinematic body, and so is not looked up for it in each step.
+  const sim::BodyInWater& around = world.hydrodynamics().around(body_);
+  const sim::Vector3d water_W =
+      around.known ? around.water.velocity_W : world.medium().water_velocity_W(motion.X_WS.translation());
+  motion.v_S = R_SW * (motion.v_WS_W - water_W);
   motion.w_S = R_SW * body_.w_WB_W();
   return motion;
 }
@@ -233,8 +237,9 @@ bool Autopilot::needs_bottom() const {
 void Autopilot::hash_state(sim::StateHash& hash) const {
   hash.add(static_cast<int>(mode_));
   for (const double number : {wanted_.speed_mps, wanted_.heading_rad, wanted_.height_m}) hash.add(number);
-  for (const std::optional<double>& number : {depth_wanted_m_, altitude_wanted_m_})
-    if (number) hash.add(*number);
+  hash_optional(hash, depth_wanted_m_);
+  hash_optional(hash, altitude_wanted_m_);
+  hash.add(wanted_.station_m.has_value());
   if (wanted_.station_m) hash.add(sim::Vector3d(wanted_.station_m->x(), wanted_.station_m->y(), 0));
   hash.add(limited_.thrusters);
   hash.add(limited_.fins);
@@ -282,6 +287,8 @@ void take_helm(Autopilot& autopilot, std::span<const std::byte> payload) {
   check("heading_rad", command.heading_rad, -1e3, 1e3);
   check("depth_m", command.depth_m, -far_m, far_m);
   check("altitude_m", command.altitude_m, 0, far_m);
+  if (!std::isnan(command.depth_m) && !std::isnan(command.altitude_m))
+    throw std::runtime_error("give depth_m or altitude_m, the other as NaN; got both");
   autopilot.set_helm(command);
 }
 

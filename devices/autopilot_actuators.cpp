@@ -95,8 +95,8 @@ void AutopilotActuators::add_fins(const AutopilotParams& params, const sim::Devi
     const sim::Pose X_BF = config->X_BS();
     sim::Vector3d one = fin->coefficients ? fin->coefficients->moment : sim::Vector3d::Zero();
     if (!fin->coefficients)
-      one =
-          0.5 * plan_density_kgpm3 * fin->area_m2 * fin->foil.slope() * X_BF.translation().cross(X_BF.linear().col(1));
+      one = 0.5 * fin->density_kgpm3.value_or(plan_density_kgpm3) * fin->area_m2 * fin->foil.slope() *
+            X_BF.translation().cross(X_BF.linear().col(1));
     torque.col(static_cast<Eigen::Index>(i)) = one.tail<2>();
     planes_.push_back({{params.fins[i]}, fin->limit_rad});
   }
@@ -117,7 +117,8 @@ CraftAbilities AutopilotActuators::abilities() const {
 Limited AutopilotActuators::share(const Wrench& wrench, const sim::Vector3d& v_B, double density_kgpm3) {
   const double density = density_kgpm3 > 0 ? density_kgpm3 : plan_density_kgpm3;
   Limited limited;
-  limited.thrusters = allocation_->allocate(wrench, forces_N_) < 1;
+  constexpr double all = 1 - 1e-9;  // but for rounding
+  limited.thrusters = allocation_->allocate(wrench, forces_N_) < all;
   for (std::size_t i = 0; i < propellers_.size(); ++i) {
     Propeller& propeller = propellers_[i];
     propeller.device.command =

@@ -24,6 +24,11 @@ void check_one_height(sim::ParamReader& in, const std::optional<double>& depth_m
 
 }  // namespace
 
+void hash_optional(sim::StateHash& hash, const std::optional<double>& number) {
+  hash.add(number.has_value());
+  if (number) hash.add(*number);
+}
+
 void Waypoint::read(sim::ParamReader& in) {
   read_point(in, "at_m", p_W, "[east, north] in the world frame");
   in.read("depth_m", depth_m, sim::any_place(), "below the still surface; unset: as before");
@@ -118,7 +123,7 @@ void Route::hash_state(sim::StateHash& hash) const {
     hash.add(point.p_W.x());
     hash.add(point.p_W.y());
     for (const std::optional<double>& number : {point.depth_m, point.altitude_m, point.speed_mps})
-      if (number) hash.add(*number);
+      hash_optional(hash, number);
   }
   hash.add(static_cast<std::uint64_t>(to_));
   hash.add(loop_);

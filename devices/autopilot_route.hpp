@@ -9,6 +9,9 @@
 
 namespace devices {
 
+/// Unset is another state than any number.
+void hash_optional(sim::StateHash& hash, const std::optional<double>& number);
+
 /// A point of a route in the world's horizontal plane.  What is unset stays as it was.
 struct Waypoint {
   Eigen::Vector2d p_W = Eigen::Vector2d::Zero();

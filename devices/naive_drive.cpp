@@ -8,6 +8,8 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/thrust_rudder_command_t.hpp"
 #include "shoal/thrust_rudder_elevator_command_t.hpp"
+#include "sim/config/message_text.hpp"
+#include "sim/world/notice.hpp"
 #include "sim/world/vehicle.hpp"
 #include "sim/world/world.hpp"
 
@@ -35,6 +37,7 @@ void NaiveDrive::Params::read(sim::ParamReader& in) {
 NaiveDrive::NaiveDrive(const Params& params, const sim::DeviceContext& context)
     : body_(context.body),
       world_(context.world),
+      still_surface_m_(world_.config().medium.water ? world_.config().medium.water->surface_m : 0),
       speed_mps_(params.start_speed_mps),
       speed_target_mps_(params.start_speed_mps) {
   if (!body_.kinematic())
@@ -57,6 +60,15 @@ void NaiveDrive::take_pose() {
   pitch_rad_ = std::asin(std::clamp(X_WB_.linear()(2, 0), -1.0, 1.0));
 }
 
+/// Says once that a current from a file carries it no more.
+void NaiveDrive::look_for_the_current() {
+  if (!params_.drifts || left_the_current_ || world_.medium().current_known(p_WB_)) return;
+  left_the_current_ = true;
+  sim::notice(
+      world_, "body '" + body_.name() + "'",
+      "has left the file of the current at " + sim::number_text(p_WB_.x()) + ", " + sim::number_text(p_WB_.y()));
+}
+
 double NaiveDrive::wanted_turn(double speed_share) const {
   const double most = params_.max_turn_rate_radps * std::min(1.0, std::abs(speed_share));
   if (std::isnan(heading_target_rad_))
@@ -65,14 +77,36 @@ double NaiveDrive::wanted_turn(double speed_share) const {
   return std::clamp(params_.heading_gain_per_s * error, -most, most);
 }
 
-/// Speed upwards.
-double NaiveDrive::wanted_climb(double depth_m) const {
-  const double most = std::abs(speed_mps_) * std::sin(params_.max_pitch_rad);
+/// Of the momentary surface.  Without water nothing says how deep it is: the world's zero does.
+double NaiveDrive::surface_over_m() const {
+  return world_.medium().has_water() ? world_.medium().surface_m(p_WB_.x(), p_WB_.y()) : still_surface_m_;
+}
+
+/// Speed upwards; `surface_m`: of the momentary surface.
+double NaiveDrive::wanted_climb(double surface_m) const {
+  const double z_m = p_WB_.z(), most = std::abs(speed_mps_) * std::sin(params_.max_pitch_rad);
+  // The nearer to the surface, the slower it rises.
+  const double level = params_.depth_gain_per_s * std::max(0.0, surface_m - z_m);
   if (std::isnan(depth_target_m_)) {
-    const double rise = depth_m > 0 ? std::min(params_.rise_mps, params_.depth_gain_per_s * depth_m) : 0;
-    return rise - elevator_ * most;
+    const double climb = std::min(params_.rise_mps, level) - elevator_ * most;
+    return world_.medium().has_water() ? std::min(climb, level) : climb;
   }
-  return std::clamp(params_.depth_gain_per_s * (depth_m - depth_target_m_), -most, most);
+  const double climb = params_.depth_gain_per_s * (still_surface_m_ - depth_target_m_ - z_m);
+  return std::clamp(world_.medium().has_water() ? std::min(climb, level) : climb, -most, most);
+}
+
+/// The path that depth or elevator ask for.
+NaiveDrive::Path NaiveDrive::path(double surface_m) {
+  Path path{speed_mps_, 0, 0};
+  if (params_.surface) return path;
+  path.climb_mps = climb_mps_ = wanted_climb(surface_m);
+  if (std::abs(speed_mps_) > 1e-3) {
+    const double sine = std::clamp(climb_mps_ / speed_mps_, -1.0, 1.0);
+    const double most = std::sin(params_.max_pitch_rad);
+    path.pitch_rad = std::asin(std::clamp(sine, -most, most));
+    path.forward_mps = speed_mps_ * std::sqrt(1 - sine * sine);
+  }
+  return path;
 }
 
 void NaiveDrive::act(const sim::ActContext& context) {
@@ -88,6 +122,7 @@ void NaiveDrive::act(const sim::ActContext& context) {
   constexpr double moved = 1e-6;
   if ((body_.X_WB().translation() - p_WB_).squaredNorm() > moved * moved) take_pose();
 
+  look_for_the_current();
   const sim::Medium& medium = world_.medium();
   speed_mps_ += (speed_target_mps_ * context.effectiveness - speed_mps_) * speed_share_;
   const double speed_share = params_.steerage_speed_mps > 0 ? speed_mps_ / params_.steerage_speed_mps : 1;
@@ -95,30 +130,16 @@ void NaiveDrive::act(const sim::ActContext& context) {
   yaw_rad_ = sim::wrap_angle(yaw_rad_ + h * turn_radps_);
 
   sim::Vector3d v_W = params_.drifts ? medium.water_velocity_W(p_WB_) : sim::Vector3d(sim::Vector3d::Zero());
-  double pitch_rad = 0;
-  double forward_mps = speed_mps_;
-  if (params_.surface) {
-    v_W.z() = 0;
-  } else {
-    // Without water nothing says how deep it is: the world's zero does.
-    const double depth_m = medium.has_water() ? medium.depth_m(p_WB_) : -p_WB_.z();
-    climb_mps_ = wanted_climb(depth_m);
-    if (std::abs(speed_mps_) > 1e-3) {
-      const double sine = std::clamp(climb_mps_ / speed_mps_, -1.0, 1.0);
-      const double most = std::sin(params_.max_pitch_rad);
-      pitch_rad = std::asin(std::clamp(sine, -most, most));
-      forward_mps = speed_mps_ * std::sqrt(1 - sine * sine);
-    }
-    v_W.z() += climb_mps_;
-  }
+  if (params_.surface) v_W.z() = 0;
+  const double surface_m = params_.surface ? 0 : surface_over_m();
+  const auto [forward_mps, climb_mps, pitch_rad] = path(surface_m);
   const double cos_yaw = std::cos(yaw_rad_), sin_yaw = std::sin(yaw_rad_);
-  v_W.x() += forward_mps * cos_yaw;
-  v_W.y() += forward_mps * sin_yaw;
-  const sim::Vector3d p_before = p_WB_;
+  v_W += sim::Vector3d(forward_mps * cos_yaw, forward_mps * sin_yaw, climb_mps);
+  const double z_before_m = p_WB_.z();
   p_WB_ += h * v_W;
-  if (params_.surface && medium.has_water()) {
-    p_WB_.z() = medium.surface_m(p_WB_.x(), p_WB_.y());
-    v_W.z() = (p_WB_.z() - p_before.z()) / h;
+  if (medium.has_water() && (params_.surface || p_WB_.z() > surface_m)) {
+    p_WB_.z() = params_.surface ? surface_over_m() : surface_m;
+    v_W.z() = (p_WB_.z() - z_before_m) / h;
   }
   const double cos_pitch = std::cos(pitch_rad), sin_pitch = std::sin(pitch_rad);
   X_WB_.linear() << cos_yaw * cos_pitch, -sin_yaw, -cos_yaw * sin_pitch,  //
@@ -140,7 +161,7 @@ void NaiveDrive::make_safe(sim::SafeState safe) {
 void NaiveDrive::set_helm(double speed_mps, double heading_rad, double depth_m) {
   if (!std::isnan(speed_mps)) speed_target_mps_ = std::clamp(speed_mps, -params_.max_astern_mps, params_.max_speed_mps);
   if (!std::isnan(heading_rad)) heading_target_rad_ = sim::wrap_angle(heading_rad);
-  if (!std::isnan(depth_m)) depth_target_m_ = depth_m;
+  if (!std::isnan(depth_m)) depth_target_m_ = world_.medium().has_water() ? std::max(0.0, depth_m) : depth_m;
 }
 
 void NaiveDrive::set_controls(double thrust, double rudder, double elevator) {

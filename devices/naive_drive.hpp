@@ -10,7 +10,8 @@ namespace devices {
 /// contact that stops it.  The cheapest marine vehicle, for thousands.
 ///
 /// Speed and turn rate tend to their targets with their time constants; the path angle is what the depth asks for, or
-/// the elevator; the water carries the vehicle along.  x and y of the body are its own, roll is none.
+/// the elevator; the water carries the vehicle along.  Depth counts from the still surface.  It does not rise out of
+/// the water: it levels out below the surface.  x and y of the body are its own, roll is none.
 class NaiveDrive final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
@@ -39,20 +40,27 @@ class NaiveDrive final : public sim::Actuator {
   void make_safe(sim::SafeState safe) override;
   void hash_state(sim::StateHash& hash) const override;
 
-  /// NaN leaves a setpoint as it is.
+  /// NaN leaves a setpoint as it is.  In water a depth below 0 is 0.
   void set_helm(double speed_mps, double heading_rad, double depth_m);
   /// -1 to 1 each; positive rudder turns counter-clockwise, positive elevator takes it down.
   void set_controls(double thrust, double rudder, double elevator);
   bool surface() const { return params_.surface; }
 
  private:
+  struct Path {
+    double forward_mps, climb_mps, pitch_rad;
+  };
   double wanted_turn(double speed_share) const;
-  double wanted_climb(double depth_m) const;
+  double surface_over_m() const;
+  double wanted_climb(double surface_m) const;
+  Path path(double surface_m);
   void take_pose();
+  void look_for_the_current();
 
   // What each step needs, side by side.
   sim::Body& body_;
   const sim::World& world_;
+  double still_surface_m_;  // without tide and waves; without water the world's zero stands for it
   double speed_mps_, turn_radps_ = 0, climb_mps_ = 0;
   double yaw_rad_ = 0, pitch_rad_ = 0;
   sim::Vector3d p_WB_ = sim::Vector3d::Zero();
@@ -61,6 +69,7 @@ class NaiveDrive final : public sim::Actuator {
   double heading_target_rad_ = std::numeric_limits<double>::quiet_NaN();  // NaN: by rudder
   double depth_target_m_ = std::numeric_limits<double>::quiet_NaN();      // NaN: by elevator
   double rudder_ = 0, elevator_ = 0;
+  bool left_the_current_ = false;                         // was said
   double step_s_ = 0, speed_share_ = 0, turn_share_ = 0;  // of the way to the target in a step
   Params params_;
 };

@@ -30,8 +30,10 @@ class ThrustAllocation {
   /// yaw, heave, sway, roll, pitch.  Throws std::invalid_argument where the thrusters cannot give them all.
   ThrustAllocation(std::vector<ThrusterPlace> thrusters, const std::vector<int>& axes);
 
-  /// Forces of the thrusters, N.  Where one would be over its limit all are scaled by one number, so that the direction
-  /// of the wrench stays; the number is returned, 1 when nothing is over.
+  /// Forces of the thrusters, N.  What is asked of a thruster the way in which it cannot push is dropped, and the
+  /// others come as near to the wrench as they can.  Where one would be over its limit all are scaled by one number, so
+  /// that the direction of the wrench stays.  The share of the wrench that they give is returned: 1 when nothing was
+  /// dropped or is over.
   double allocate(const Wrench& wanted, Eigen::VectorXd& forces_N) const;
   /// What such forces give together.
   Wrench wrench_of(const Eigen::VectorXd& forces_N) const { return effect_ * forces_N; }
@@ -40,6 +42,8 @@ class ThrustAllocation {
 
  private:
   bool controllable(const std::vector<int>& axes) const;
+  bool cannot_push(Eigen::Index thruster, double force_N) const;
+  double nearest(const Wrench& wanted, std::vector<bool> dropped, Eigen::VectorXd& forces_N) const;
 
   std::vector<ThrusterPlace> thrusters_;
   Eigen::Matrix<double, 6, Eigen::Dynamic> effect_;  // wrench of a unit force of each

@@ -54,8 +54,10 @@ void Thruster::Params::read(sim::ParamReader& in) {
   in.read("k_q0", k_q0, sim::between(0, 10), "kt_kq: torque coefficient without inflow");
   in.read("k_q_slope", k_q_slope, sim::between(0, 10), "kt_kq: loss of the torque coefficient per advance ratio");
   in.read("full_speed_rpm", full_speed_rpm, sim::above_to(0, 1e6), "kt_kq: shaft speed at effort 1");
-  in.read("wake_fraction", wake_fraction, sim::between(0, 1), "share of the speed that the hull takes from the inflow");
-  in.read("thrust_deduction", thrust_deduction, sim::between(0, 1), "share of the thrust that the hull loses again");
+  // Without inflow or thrust it would be no thruster, and no autopilot could reckon with it.
+  in.read("wake_fraction", wake_fraction, sim::between(0, 0.99),
+          "share of the speed that the hull takes from the inflow");
+  in.read("thrust_deduction", thrust_deduction, sim::between(0, 0.99), "share of the thrust that the hull loses again");
   in.read_choice("inflow", inflow,
                  {{"water", Inflow::water}, {"water_speed", Inflow::water_speed}, {"ground", Inflow::ground}},
                  "water: along the axis, where the propeller is; water_speed: speed of the body through the water; "

@@ -60,7 +60,10 @@ void describe_actions(ParamReader& in) {
   describe_text(in, "values", "set: dotted key: value");
   describe_text(in, "publish", "channel, with `type` and `value`");
   describe_text(in, "type", "publish: message type, such as shoal.twist_command_t");
-  describe_text(in, "value", "publish: member: value; members that are missing are 0, utime is the time");
+  describe_text(
+      in, "value",
+      "publish: member: value; members that are missing are 0, or NaN in commands where that means as before; utime is "
+      "the time");
   describe_text(in, "actor", "actor that gets a `command`");
   describe_text(in, "command", "actor: start, stop, forward or back");
   describe_text(in, "trigger", "event that fires now");

@@ -29,23 +29,34 @@ bool looks_for_bottom(const Vehicle& vehicle) {
   });
 }
 
+bool over_nothing(const World& world, const Vehicle& vehicle) {
+  if (!looks_for_bottom(vehicle) || !in_water(world, vehicle, vehicle.config())) return false;
+  RayFilter others;
+  others.exclude_group = vehicle.group();
+  return !world.scene().cast(vehicle.X_WV().translation(), -Vector3d::UnitZ(), deepest_m, others);
+}
+
+std::vector<std::string> lines_about(const std::vector<const Vehicle*>& over_nothing) {
+  if (over_nothing.empty()) return {};
+  const std::size_t more = over_nothing.size() - 1;
+  const std::string others = more == 0 ? "" : " (nor below " + std::to_string(more) + " more)";
+  return {"there is no bottom below vehicle '" + over_nothing[0]->name() + "'" + others +
+          ": what looks down from there sees nothing"};
+}
+
 }  // namespace
 
 std::vector<std::string> bottom_warnings(const World& world) {
-  if (!world.medium().has_water()) return {};
-  std::string first;
-  int more = -1;
-  for (const auto& vehicle : world.vehicles()) {
-    if (!looks_for_bottom(*vehicle) || !in_water(world, *vehicle, vehicle->config())) continue;
-    RayFilter others;
-    others.exclude_group = vehicle->group();
-    const Vector3d p_W = vehicle->X_WV().translation();
-    if (world.scene().cast(p_W, -Vector3d::UnitZ(), deepest_m, others)) continue;
-    if (++more == 0) first = vehicle->name();
-  }
-  if (more < 0) return {};
-  const std::string others = more == 0 ? "" : " (nor below " + std::to_string(more) + " more)";
-  return {"there is no bottom below vehicle '" + first + "'" + others + ": what looks down from there sees nothing"};
+  std::vector<const Vehicle*> found;
+  if (world.medium().has_water())
+    for (const auto& vehicle : world.vehicles())
+      if (over_nothing(world, *vehicle)) found.push_back(vehicle.get());
+  return lines_about(found);
+}
+
+std::vector<std::string> bottom_warnings(const World& world, const Vehicle& vehicle) {
+  if (!world.medium().has_water() || !over_nothing(world, vehicle)) return {};
+  return lines_about({&vehicle});
 }
 
 }  // namespace sim

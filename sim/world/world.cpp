@@ -7,6 +7,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/script/script.hpp"
 #include "sim/world/bottom_check.hpp"
+#include "sim/world/notice.hpp"
 
 namespace sim {
 
@@ -24,7 +25,7 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
                                               static_cast<std::uint64_t>(config.run.seed))),
       medium_(config.medium, config.physics.gravity_mps2, static_cast<std::uint64_t>(config.run.seed)),
       hydrodynamics_(medium_, config.physics.gravity_mps2, config.physics.step_s) {
-  hydrodynamics_.set_complain([this](const std::string& who, const std::string& text) { complain(who, text); });
+  hydrodynamics_.set_complain([this](const std::string& who, const std::string& text) { notice(*this, who, text); });
   known_materials_.insert("default");
   for (const MaterialConfig& material : config.materials) known_materials_.insert(material.name);
   known_contacts_ = config.contacts;

@@ -5,6 +5,7 @@
 
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/world/bottom_check.hpp"
 #include "sim/world/world.hpp"
 
 // What changes a world while it runs.
@@ -119,6 +120,7 @@ const Vehicle& World::add_vehicle(const VehicleInstance& instance) {
   Vehicle& vehicle = build_vehicle(instance);
   check_place_is_free(vehicle, instance.place);
   for (const std::string& warning : hydrodynamics_.take_warnings()) spdlog::warn("{}", warning);
+  for (const std::string& warning : bottom_warnings(*this, vehicle)) spdlog::warn("{}", warning);
   sort_devices();
   return vehicle;
 }

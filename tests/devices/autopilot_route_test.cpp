@@ -35,6 +35,20 @@ TEST(Route, HeadsForALineAtTheAngleOfItsLookahead) {
   EXPECT_NEAR(aim.distance_m, std::hypot(80, 10), 1e-12);
 }
 
+TEST(Route, APointWithADepthIsAnotherStateThanOneWithAnAltitude) {
+  const auto hash_of = [](const devices::Waypoint& point) {
+    devices::Route route({10, 0, 3});
+    route.start({point}, false, {0, 0});
+    sim::StateHash hash;
+    route.hash_state(hash);
+    return hash.value();
+  };
+  devices::Waypoint deep = at(100, 0), high = at(100, 0);
+  deep.depth_m = 5;
+  high.altitude_m = 5;
+  EXPECT_NE(hash_of(deep), hash_of(high));
+}
+
 TEST(Route, ACurrentLeavesAnErrorWithoutTheIntegralAndNoneWithIt) {
   const Vector2d across(0, 0.3);
   devices::Route plain({10, 0, 3}), integral({10, 0.3, 3});

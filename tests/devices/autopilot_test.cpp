@@ -102,6 +102,16 @@ TEST(Autopilot, ABoatWithTwoPropellersGoesRoundItsWaypoints) {
   EXPECT_NEAR((test.place().head<2>() - Eigen::Vector2d(30, 30)).norm(), 0, 8);  // it stopped at the second
 }
 
+TEST(Autopilot, ABoatWhosePropellersPushAheadOnlyTurnsAndGoes) {
+  AutopilotWorld test(world_with("otter_autopilot.yaml",
+                                 "      devices.port.min: 0\n      devices.starboard.min: 0\n"
+                                 "      devices.autopilot.hold: {speed_mps: 1, heading_deg: 170}\n",
+                                 "{water: {}}", 0));
+  const auto state = test.state_after(90);
+  EXPECT_NEAR(state.heading_error_rad, 0, 0.02);
+  EXPECT_NEAR(state.speed_error_mps, 0, 0.02);
+}
+
 TEST(Autopilot, ABoatStaysOverAPlaceByHeadingIntoTheCurrent) {
   AutopilotWorld test(world_with("otter_autopilot.yaml", "      devices.autopilot.mode: station\n", across, 0));
   const auto state = test.state_after(300);
@@ -131,6 +141,49 @@ vehicles:
   EXPECT_NEAR(state.heading_rad, -std::asin(0.2), 0.02);
 }
 
+TEST(Autopilot, TheSpeedOfANaiveAuvIsThroughTheWater) {
+  AutopilotWorld test(R"(
+shoal: 1
+physics: {step_s: 0.01}
+medium: {water: {}, current: [{velocity_mps: [0.6, 0, 0]}]}
+vehicles:
+  - name: v
+    position_m: [0, 0, -5]
+    model:
+      shoal: 1
+      vehicle: naive
+      bodies: [{name: hull, kinematic: true, parts: [{shape: sphere, radius_m: 0.1}]}]
+      devices:
+        - {name: drive, type: naive_drive}
+        - {name: autopilot, type: autopilot, helm: drive, hold: {speed_mps: 1.5, heading_deg: 0}}
+)");
+  const auto state = test.state_after(60);
+  // It is carried along at 2.1 m/s over ground.
+  EXPECT_NEAR(state.speed_error_mps, 0, 1e-3);
+}
+
+TEST(Autopilot, ANaiveAuvKeepsItsAltitudeWhateverTheTide) {
+  AutopilotWorld test(R"(
+shoal: 1
+physics: {step_s: 0.02}
+medium: {water: {}, tides: [{amplitude_m: 5}]}
+objects: [{name: bottom, fixed: true, position_m: [0, 0, -30], parts: [{shape: plane}]}]
+vehicles:
+  - name: v
+    position_m: [0, 0, -20]
+    model:
+      shoal: 1
+      vehicle: naive
+      bodies: [{name: hull, kinematic: true, parts: []}]
+      devices:
+        - {name: drive, type: naive_drive}
+        - {name: autopilot, type: autopilot, helm: drive, hold: {speed_mps: 1.5, altitude_m: 6}}
+)");
+  const auto state = test.state_after(120);
+  EXPECT_NEAR(state.altitude_error_m, 0, 0.01);
+  EXPECT_NEAR(test.place().z(), -24, 0.01);
+}
+
 TEST(Autopilot, TakesSetpointsAndLeavesWhatIsNaN) {
   AutopilotWorld test(world_with("remus100_survey.yaml",
                                  "      devices.autopilot.hold: {speed_mps: 1, heading_deg: 0, depth_m: 10}\n"));
@@ -145,6 +198,31 @@ TEST(Autopilot, TakesSetpointsAndLeavesWhatIsNaN) {
   EXPECT_EQ(state.speed_mps, 1.2);
   EXPECT_EQ(state.heading_rad, 1);
   EXPECT_EQ(state.depth_m, 11);
+}
+
+TEST(Autopilot, RefusesADepthAndAnAltitudeInOneCommand) {
+  AutopilotWorld test(
+      world_with("remus100_survey.yaml", "      devices.autopilot.hold: {speed_mps: 1.5, depth_m: 10}\n"));
+  test.run_for(1);
+  test.helm(1.5, 0, 12, 0);
+  auto state = test.state_after(1);
+  EXPECT_EQ(test.world.counts().bad_messages, 1);
+  EXPECT_EQ(state.depth_m, 10);
+  test.helm(nothing, nothing, nothing, 3);
+  state = test.state_after(1);
+  EXPECT_EQ(state.altitude_m, 3);
+  EXPECT_EQ(test.world.counts().bad_messages, 1);
+}
+
+TEST(Autopilot, AnEventThatGivesADepthAloneIsAboutTheDepth) {
+  AutopilotWorld test(
+      world_with("remus100_survey.yaml", "      devices.autopilot.hold: {speed_mps: 1, depth_m: 10}\n") +
+      "events: [{name: deeper, at: 1, do: [{publish: v.autopilot.cmd, type: shoal.helm_command_t, "
+      "value: {depth_m: 12}}]}]\n");
+  const auto state = test.state_after(2);
+  EXPECT_EQ(state.depth_m, 12);
+  EXPECT_EQ(state.speed_mps, 1);
+  EXPECT_TRUE(std::isnan(state.altitude_m));
 }
 
 TEST(Autopilot, TakesARouteAStationAndGoesOn) {
@@ -171,6 +249,37 @@ TEST(Autopilot, TakesARouteAStationAndGoesOn) {
   state = test.state_after(1);
   EXPECT_EQ(state.mode, 2);
   EXPECT_EQ(state.waypoint, 0);
+}
+
+TEST(Autopilot, ReckonsWithTheDensityOfItsFins) {
+  const auto rudder_of = [](const std::string& keys) {
+    AutopilotWorld test(R"(
+shoal: 1
+physics: {step_s: 0.01}
+medium: {water: {}}
+vehicles:
+  - name: v
+    position_m: [0, 0, -10]
+    model:
+      shoal: 1
+      vehicle: auv
+      bodies: [{name: hull, hydrodynamics: {mass_kg: 30, inertia_kgm2: [0.2, 4, 4]}, parts: [{shape: sphere, radius_m: 0.1}]}]
+      devices:
+        - {name: propeller, type: thruster, position_m: [-0.8, 0, 0]}
+        - {name: rudder, type: fin, position_m: [-0.7, 0, 0], area_m2: 0.5)" +
+                        keys + R"(}
+        - {name: elevator, type: fin, position_m: [-0.7, 0, 0], rpy_deg: [90, 0, 0], area_m2: 0.5)" +
+                        keys + R"(}
+        - {name: autopilot, type: autopilot, thrusters: [propeller], fins: [rudder, elevator], hold: {heading_deg: 1}}
+)");
+    test::Listener<shoal::actuator_command_t> rudder(test, "v.rudder.cmd");
+    test.run_for(0.15);
+    return rudder.last().value;
+  };
+  const double plain = rudder_of("");
+  ASSERT_NE(plain, 0);
+  ASSERT_LT(std::abs(plain), 0.2) << "not at its limit";
+  EXPECT_NEAR(rudder_of(", density_kgpm3: 2050") / plain, 0.5, 1e-9);
 }
 
 TEST(Autopilot, SwitchedOffItLeavesTheActuatorsToOthers) {
@@ -204,6 +313,15 @@ TEST(Autopilot, RefusesBadCommandsAndGoesOn) {
   EXPECT_EQ(test.world.counts().bad_messages, 4);
   EXPECT_EQ(state.mode, 1);
   EXPECT_EQ(state.speed_mps, 1);
+}
+
+TEST(Autopilot, ADepthIsAnotherStateThanAnAltitude) {
+  const auto hash_of = [](const std::string& hold) {
+    return AutopilotWorld(world_with("remus100_survey.yaml", "      devices.autopilot.hold: " + hold + "\n"))
+        .world.state_hash();
+  };
+  EXPECT_EQ(hash_of("{depth_m: 5}"), hash_of("{depth_m: 5}"));
+  EXPECT_NE(hash_of("{depth_m: 5}"), hash_of("{altitude_m: 5}"));
 }
 
 TEST(Autopilot, SaysWhatIsWrongWithItsParameters) {

@@ -100,6 +100,49 @@ TEST_F(NaiveDrive, RisesWhenNobodyAsksForADepthAndStaysAtTheSurface) {
   EXPECT_NEAR(pose().translation().z(), 0, 0.01);
 }
 
+TEST_F(NaiveDrive, LevelsOutBelowTheSurfaceWithItsElevatorUp) {
+  start(", start_speed_mps: 2, depth_gain_per_s: 0.2");
+  controls(1, 0, -1);
+  for (int i = 0; i < 100; ++i) {
+    test->run_for(1);
+    ASSERT_LE(pose().translation().z(), 0) << i << " s";
+  }
+  // The last metres go as exp(-0.2 t), of which 60 s leave less than a millimetre.
+  EXPECT_NEAR(pose().translation().z(), 0, 1e-3);
+  EXPECT_NEAR(std::asin(pose().linear()(2, 0)), 0, 1e-3);
+  EXPECT_NEAR(velocity().x(), 2, 1e-3);
+}
+
+TEST_F(NaiveDrive, ADepthAboveTheSurfaceIsTheSurface) {
+  start("");
+  helm(2, 0, -30);
+  test->run_for(90);
+  EXPECT_NEAR(pose().translation().z(), 0, 1e-3);
+}
+
+TEST_F(NaiveDrive, StaysInTheWaterAmongWaves) {
+  start(", rise_mps: 0.5", "medium: {water: {}, waves: {type: regular, height_m: 2, period_s: 6}}\n");
+  controls(1, 0, -1);
+  test->run_for(30);
+  for (int i = 0; i < 200; ++i) {
+    const sim::Time before = test->world.now();
+    const sim::Vector3d place = pose().translation();
+    test->run_for(0.02);
+    const double surface_m = test->world.medium().surface_m(place.x(), place.y(), before);
+    ASSERT_LE(pose().translation().z(), surface_m + 1e-9) << i;
+    ASSERT_GT(pose().translation().z(), -4) << i;
+  }
+}
+
+TEST_F(NaiveDrive, CountsItsDepthFromTheStillSurfaceWithoutTheTide) {
+  // High water at the start: 5 m over the still surface at 2 m.
+  start("", "medium: {water: {surface_m: 2}, tides: [{amplitude_m: 5}]}\n");
+  helm(2, 0, 20);
+  test->run_for(120);
+  EXPECT_GT(test->world.medium().surface_m(0, 0), 6);
+  EXPECT_NEAR(pose().translation().z(), -18, 0.01);
+}
+
 TEST_F(NaiveDrive, ASurfaceCraftLiesInTheSurface) {
   start(", surface: true, start_speed_mps: 1", "medium: {water: {surface_m: 3}}\n");
   test->run_for(2);

@@ -227,6 +227,20 @@ TEST(Thruster, IgnoresACommandThatIsNoNumber) {
   EXPECT_NEAR(thrust(box, std::nan("")), 40, rounding_N);
 }
 
+TEST(Thruster, StaysFiniteAtTheEndsOfItsOscillator) {
+  for (const char* keys :
+       {"natural_frequency_radps: 1e5, damping_ratio: 1e3", "natural_frequency_radps: 0.001",
+        "natural_frequency_radps: 1e5, damping_ratio: 1e-9", "natural_frequency_radps: 0.001, damping_ratio: 1e3",
+        "natural_frequency_radps: 0.001, damping_ratio: 0.9999999999999999"}) {
+    WetBox box(wet_device(std::string("type: thruster, command: thrust_N, max: 100, ") + keys));
+    box.send("b.d.cmd", shoal::actuator_command_t{0, 50});
+    box.run_for(0.1);
+    const double level = box.device<devices::Thruster>().level();
+    EXPECT_GE(level, 0) << keys;
+    EXPECT_LE(level, 100.1) << keys;
+  }
+}
+
 TEST(Thruster, SaysWhatIsWrongWithItsParameters) {
   const auto error = [](const std::string& keys) { return test::error_of_device("type: thruster, " + keys); };
   EXPECT_THAT(error("command: rpm"), HasSubstr("'max' is missing: the largest level in the unit of 'command'"));
@@ -237,6 +251,12 @@ TEST(Thruster, SaysWhatIsWrongWithItsParameters) {
               HasSubstr("the levels of 'table' must grow, got 0 before -1"));
   EXPECT_THAT(error("curve: kt_kq"), HasSubstr("'full_speed_rpm' is missing"));
   EXPECT_THAT(error("lag_s: 1, natural_frequency_radps: 5"), HasSubstr("exclude each other"));
+  EXPECT_THAT(error("thrust_deduction: 1"), HasSubstr("'thrust_deduction' must be >= 0 and <= 0.99, got 1"));
+  EXPECT_THAT(error("wake_fraction: 1"), HasSubstr("'wake_fraction' must be >= 0 and <= 0.99, got 1"));
+  EXPECT_THAT(error("natural_frequency_radps: 5, damping_ratio: 1e200"), HasSubstr("'damping_ratio' must be"));
+  EXPECT_THAT(error("natural_frequency_radps: 1e200"),
+              HasSubstr("'natural_frequency_radps' must be >= 0 and <= 100000"));
+  EXPECT_THAT(error("natural_frequency_radps: 1e-9"), HasSubstr("must be 0 or at least 0.001"));
   EXPECT_THAT(error("lag_s: -1"), HasSubstr("'lag_s' must be >= 0, got -1"));
   EXPECT_THAT(error("turns: up"), HasSubstr("'turns'"));
   EXPECT_EQ(error("max: 1"), "");

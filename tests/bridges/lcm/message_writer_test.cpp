@@ -2,11 +2,15 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
+#include "shoal/helm_command_t.hpp"
 #include "shoal/image_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/modem_send_t.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "shoal/pose_t.hpp"
+#include "shoal/waypoints_command_t.hpp"
 
 namespace {
 
@@ -69,8 +73,32 @@ TEST(MessageWriter, WritesEveryTypeFromNothing) {
   for (const auto& [name, schema] : shoal::embedded_types().all()) {
     const Written written = write(name, "{}");
     EXPECT_EQ(written.errors, "") << name;
-    EXPECT_FALSE(shoal::validate(schema, written.payload, shoal::Finite::required)) << name;
+    EXPECT_FALSE(shoal::validate(schema, written.payload, shoal::Finite::any)) << name;
   }
+}
+
+TEST(MessageWriter, LeavesAsBeforeWhatACommandDoesNotName) {
+  const Written helm = write("shoal.helm_command_t", "{speed_mps: 1.5, depth_m: .nan}");
+  ASSERT_EQ(helm.errors, "");
+  const auto command = shoal::decode<shoal::helm_command_t>(helm.payload, shoal::Finite::any);
+  EXPECT_EQ(command.utime, 0);
+  EXPECT_EQ(command.speed_mps, 1.5);
+  for (const double number : {command.heading_rad, command.depth_m, command.altitude_m})
+    EXPECT_TRUE(std::isnan(number)) << number;
+  const Written route = write("shoal.waypoints_command_t", "{x_m: [1, 2], y_m: [3, 4]}");
+  ASSERT_EQ(route.errors, "");
+  const auto points = shoal::decode<shoal::waypoints_command_t>(route.payload, shoal::Finite::any);
+  ASSERT_EQ(points.n, 2);
+  EXPECT_TRUE(std::isnan(points.depth_m[1]));
+  EXPECT_TRUE(std::isnan(points.speed_mps));
+  const Written mixed = write("shoal.waypoints_command_t", "{x_m: [1, 2], y_m: [3, 4], depth_m: [.nan, 7]}");
+  EXPECT_EQ(shoal::decode<shoal::waypoints_command_t>(mixed.payload, shoal::Finite::any).depth_m[1], 7);
+}
+
+TEST(MessageWriter, TakesNaNOnlyWhereItMeansSomething) {
+  EXPECT_THAT(write("shoal.waypoints_command_t", "{x_m: [.nan], y_m: [1]}").errors, HasSubstr("must be finite"));
+  EXPECT_THAT(write("shoal.pose_t", "{pos: [.nan, 0, 0]}").errors, HasSubstr("'pos[0]' must be finite, got '.nan'"));
+  EXPECT_THAT(write("shoal.helm_command_t", "{depth_m: .inf}").errors, HasSubstr("must be finite"));
 }
 
 TEST(MessageWriter, SaysWhatDoesNotFitAndWhere) {

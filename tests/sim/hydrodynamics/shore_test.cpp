@@ -1,3 +1,5 @@
+#include <gmock/gmock.h>
+
 #include "sim/world/bottom_check.hpp"
 #include "sim/world/vehicle.hpp"
 #include "tests/sim/hydrodynamics/floating_worlds.hpp"
@@ -6,8 +8,8 @@
 
 namespace {
 
-
 using test::TestWorld;
+using testing::HasSubstr;
 
 /// A beach that falls away to the east: the water line is at x = 0.
 const char* beach = R"(
@@ -66,6 +68,21 @@ vehicles:
   const auto warnings = sim::bottom_warnings(open.world);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0], "there is no bottom below vehicle 'auv1': what looks down from there sees nothing");
+}
+
+TEST(Shore, SaysThatThereIsNoBottomBelowANewcomerToo) {
+  TestWorld test(
+      std::string("shoal: 1\nmedium: {water: {}}\n") +
+      "vehicles:\n  - name: auv1\n    position_m: [0, 0, -1]\n    model:\n      shoal: 1\n      vehicle: auv\n"
+      "      bodies: [{name: hull, parts: [{shape: sphere, radius_m: 0.1, density_kgpm3: 1025}]}]\n");
+  sim::VehicleInstance instance = test.loaded.config.vehicles[0];
+  instance.name = "auv2";
+  instance.X_WV.translation().x() = 5;
+  testing::internal::CaptureStdout();
+  test.world.add_vehicle(instance);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("there is no bottom below vehicle 'auv2': what"));
+  ASSERT_EQ(sim::bottom_warnings(test.world).size(), 1u);
+  EXPECT_THAT(sim::bottom_warnings(test.world)[0], HasSubstr("'auv1' (nor below 1 more)"));
 }
 
 TEST(Shore, ASecondRunOfFloatingBodiesGivesTheSameBits) {

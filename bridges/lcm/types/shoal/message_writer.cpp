@@ -26,6 +26,31 @@ ConfigNode map_of(const std::string& key, const ConfigNode& value) {
   return map;
 }
 
+/// Members of a type in which NaN says "as before".
+struct AsBefore {
+  const char* type;
+  std::vector<std::string> members;
+};
+
+bool nan_means_as_before(const MessageSchema& schema, const Member& member) {
+  static const std::vector<AsBefore> table{
+      {"shoal.helm_command_t", {"speed_mps", "heading_rad", "depth_m", "altitude_m"}},
+      {"shoal.station_command_t", {"x_m", "y_m", "depth_m", "heading_rad"}},
+      {"shoal.waypoints_command_t", {"depth_m", "speed_mps"}},
+  };
+  return std::any_of(table.begin(), table.end(), [&](const AsBefore& row) {
+    return schema.name == row.type &&
+           std::find(row.members.begin(), row.members.end(), member.name) != row.members.end();
+  });
+}
+
+bool is_nan(const ConfigNode& value) {
+  if (value.kind != Kind::scalar || value.quoted) return false;
+  for (const char* word : {".nan", ".NaN", ".NAN", "nan", "NaN"})
+    if (value.scalar == word) return true;
+  return false;
+}
+
 class Writer {
  public:
   explicit Writer(sim::Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
@@ -41,7 +66,8 @@ class Writer {
       if (member.length_slot >= 0)
         write_length(member, lengths[static_cast<std::size_t>(member.length_slot)], given, who);
       else
-        write_dimension(member, given ? *given : ConfigNode{}, {lengths, 0, member.name, who, depth});
+        write_dimension(member, given ? *given : ConfigNode{},
+                        {lengths, 0, member.name, who, depth, nan_means_as_before(schema, member)});
     }
   }
 
@@ -58,6 +84,7 @@ class Writer {
     std::string name;
     const std::string& who;
     int depth;
+    bool as_before;  // NaN may be written, and what is missing is NaN
   };
 
   void refuse_unknown(const MessageSchema& schema, const ConfigNode& value, const std::string& who) {
@@ -138,8 +165,11 @@ class Writer {
   void write_value(const Member& member, const ConfigNode& value, const Spot& spot) {
     if (member.type == WireType::compound)
       return write(*member.compound, value, spot.who.empty() ? spot.name : spot.who + ": " + spot.name, spot.depth + 1);
+    const bool missing = value.kind == Kind::null;
+    if (spot.as_before && (missing || is_nan(value)))
+      return put_real(member.type, std::numeric_limits<double>::quiet_NaN());
     // What is missing is 0.
-    const ConfigNode map = value.kind == Kind::null ? ConfigNode{} : map_of(spot.name, value);
+    const ConfigNode map = missing ? ConfigNode{} : map_of(spot.name, value);
     sim::ParamReader in(map, spot.who, diagnostics_);
     const char* key = spot.name.c_str();
     if (member.type == WireType::string) return write_string(in, key);
@@ -168,6 +198,10 @@ class Writer {
     const double most = type == WireType::float32 ? static_cast<double>(std::numeric_limits<float>::max())
                                                   : std::numeric_limits<double>::max();
     in.read(key, number, sim::between(-most, most), "");
+    put_real(type, number);
+  }
+
+  void put_real(WireType type, double number) {
     if (type == WireType::float32)
       put_word(std::bit_cast<std::uint32_t>(static_cast<float>(number)), 4);
     else

@@ -9,9 +9,10 @@
 namespace shoal {
 
 /// Encodes a map `{member: value}` as a message of the type `type`, such as `shoal.pose_t`.  Members that are missing
-/// are 0, empty or false; a member that is the length of arrays follows from them.  A `byte` array may be given as
-/// text.  Unknown types and members, values of another type or out of range, lists of another length go to
-/// `diagnostics` at their place, and the result is empty.
+/// are 0, empty or false, or NaN where NaN means "as before" (shoal.helm_command_t, station_command_t,
+/// waypoints_command_t), which `.nan` says too; a member that is the length of arrays follows from them.  A `byte`
+/// array may be given as text.  Unknown types and members, values of another type or out of range, lists of another
+/// length go to `diagnostics` at their place, and the result is empty.
 std::vector<std::byte> encode_message(const MessageTypes& types, const std::string& type, const sim::ConfigNode& value,
                                       sim::Diagnostics& diagnostics);
 

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+namespace sim {
+
+class World;
+
+/// Warns, with the time of the world, of something that is worth to know and no bad message: those are for
+/// World::complain, which counts them.
+void notice(const World& world, const std::string& who, const std::string& text);
+
+}  // namespace sim
