@@ -33,8 +33,13 @@ void Fin::Params::read(sim::ParamReader& in) {
   in.read_deg("limit_deg", limit_rad, sim::above_to(0, 90), "it turns so far to each side");
   in.read("rate_limit_degps", rate_limit_degps, sim::above(0), "of its servo; absent: no limit");
   lag.read(in);
-  if (!in.describing() && (model == Model::coefficients) != coefficients.has_value())
+  if (in.describing()) return;
+  if (model == Model::coefficients && !coefficients)
+    in.error("'coefficients' is missing: 'model' coefficients needs it");
+  if (model != Model::coefficients && coefficients)
     in.error("coefficients", "'coefficients' belongs to 'model' coefficients, and only to it");
+  if (coefficients && coefficients->force.isZero(0) && coefficients->moment.isZero(0))
+    in.error("coefficients", "'coefficients' must have a force or a moment that is not 0");
 }
 
 Fin::Fin(const Params& params, const sim::DeviceContext& context) : mount_(context), foil_(params.foil) {
@@ -48,6 +53,8 @@ void Fin::change(const Params& params) {
   command_ = std::clamp(command_, -params.limit_rad, params.limit_rad);
   span_m_ = std::sqrt(params.area_m2 * params.foil.aspect_ratio);
   foil_ = Foil(params.foil);
+  if (params.coefficients)
+    largest_coefficient_ = std::max(params.coefficients->force.norm(), params.coefficients->moment.norm());
 }
 
 void Fin::set_command(double angle_rad) {
@@ -64,35 +71,40 @@ void Fin::act(const sim::ActContext& context) {
   const double share = share_under_water(flow.depth_m, span_m_);
   if (share == 0) return;
   if (params_.model == Model::coefficients)
-    act_as_published(flow, angle, share);
+    act_as_published(flow, angle, share, context.step_s);
   else if (params_.flow == Flow::body)
-    lift_by_speed_of_body(flow, angle, share);
+    lift_by_speed_of_body(flow, angle, share, context.step_s);
   else
-    lift_locally(flow, angle, share);
+    lift_locally(flow, angle, share, context.step_s);
 }
 
-void Fin::lift_locally(const WaterFlow& flow, double angle_rad, double scale) {
+void Fin::lift_locally(const WaterFlow& flow, double angle_rad, double scale, double step_s) {
   const double square = flow.v_D.x() * flow.v_D.x() + flow.v_D.y() * flow.v_D.y();
   if (square < 1e-12) return;
   const double speed = std::sqrt(square);
   const double pressure = 0.5 * params_.density_kgpm3.value_or(flow.density_kgpm3) * square * params_.area_m2 * scale;
   const Eigen::Vector2d force = pressure * foil_.force(flow.v_D.x() / speed, flow.v_D.y() / speed, angle_rad);
-  mount_.add_force_D(flow, {force.x(), force.y(), 0});
+  const double bound = std::min(1.0, mount_.largest_force_N(speed, step_s) / force.norm());
+  mount_.add_force_D(flow, {bound * force.x(), bound * force.y(), 0});
 }
 
-void Fin::lift_by_speed_of_body(const WaterFlow& flow, double angle_rad, double scale) {
+void Fin::lift_by_speed_of_body(const WaterFlow& flow, double angle_rad, double scale, double step_s) {
   const sim::Vector3d v_D = mount_.in_D(flow, flow.body.v_WB_W - flow.water_W);
   const double square = v_D.x() * v_D.x() + v_D.y() * v_D.y();
-  const double lift = 0.5 * params_.density_kgpm3.value_or(flow.density_kgpm3) * square * params_.area_m2 *
-                      foil_.slope() * angle_rad * scale;
+  const double most = mount_.largest_force_N(std::sqrt(square), step_s);
+  const double lift = std::clamp(0.5 * params_.density_kgpm3.value_or(flow.density_kgpm3) * square * params_.area_m2 *
+                                     foil_.slope() * angle_rad * scale,
+                                 -most, most);
   mount_.add_force_D(flow, {-lift * angle_rad, lift, 0});
 }
 
-void Fin::act_as_published(const WaterFlow& flow, double angle_rad, double scale) {
+void Fin::act_as_published(const WaterFlow& flow, double angle_rad, double scale, double step_s) {
   const sim::BodyMotion& body = flow.body;
   const double u = body.R_WB.col(0).dot(body.v_WB_W - flow.water_W);
-  const double factor = u * u * angle_rad * scale;
-  if (factor == 0) return;
+  const double published = u * u * angle_rad * scale;
+  if (published == 0) return;
+  const double most = mount_.largest_force_N(std::abs(u), step_s);
+  const double factor = published * std::min(1.0, most / (std::abs(published) * largest_coefficient_));
   const sim::Vector3d force_B = factor * params_.coefficients->force;
   const sim::Vector3d moment_B = factor * params_.coefficients->moment;
   mount_.body().add_force_W(body.R_WB * force_B, body.p_WB);

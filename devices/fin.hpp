@@ -62,15 +62,16 @@ class Fin final : public sim::Actuator {
   double angle_rad() const { return lag_.value(); }
 
  private:
-  void lift_locally(const WaterFlow& flow, double angle_rad, double scale);
-  void lift_by_speed_of_body(const WaterFlow& flow, double angle_rad, double scale);
-  void act_as_published(const WaterFlow& flow, double angle_rad, double scale);
+  void lift_locally(const WaterFlow& flow, double angle_rad, double scale, double step_s);
+  void lift_by_speed_of_body(const WaterFlow& flow, double angle_rad, double scale, double step_s);
+  void act_as_published(const WaterFlow& flow, double angle_rad, double scale, double step_s);
 
   Params params_;
   WaterMount mount_;
   Lag lag_;
   double command_ = 0;
   double span_m_ = 0;
+  double largest_coefficient_ = 1;  // of force or moment
   Foil foil_;
 };
 

@@ -53,7 +53,8 @@ void Sail::act(const sim::ActContext& context) {
   const double boom = std::clamp(std::atan2(my, mx), -sheet, sheet);
   const double pressure = 0.5 * medium.density_kgpm3(flow.p_WD) * square * params_.area_m2;
   const Eigen::Vector2d force = pressure * foil_.force(mx, my, boom);
-  mount_.add_force_D(flow, {force.x(), force.y(), 0});
+  const double bound = std::min(1.0, mount_.largest_force_N(speed, context.step_s) / force.norm());
+  mount_.add_force_D(flow, {bound * force.x(), bound * force.y(), 0});
 }
 
 void Sail::hash_state(sim::StateHash& hash) const {

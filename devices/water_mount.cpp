@@ -1,5 +1,7 @@
 #include "devices/water_mount.hpp"
 
+#include <Eigen/Eigenvalues>
+
 namespace devices {
 
 WaterFlow WaterMount::flow() const {
@@ -14,6 +16,12 @@ WaterFlow WaterMount::flow() const {
   const sim::Vector3d v_B = around.v_B + around.w_B.cross(p_BD_);
   flow.v_D = turned_ ? sim::Vector3d(R_BD_.transpose() * v_B) : v_B;
   return flow;
+}
+
+double WaterMount::mass_at(const sim::Body& body, const sim::Vector3d& p_BD) {
+  if (!(body.mass_kg() > 0)) return 0;
+  const double smallest_inertia = Eigen::SelfAdjointEigenSolver<sim::Matrix3d>(body.inertia_C_B()).eigenvalues()[0];
+  return 1 / (1 / body.mass_kg() + (p_BD - body.p_BC()).squaredNorm() / smallest_inertia);
 }
 
 /// A body that the water does nothing to can have a propeller all the same.

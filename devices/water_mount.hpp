@@ -24,7 +24,8 @@ class WaterMount {
         body_(context.body),
         p_BD_(context.config.X_BS().translation()),
         R_BD_(context.config.X_BS().linear()),
-        turned_(!R_BD_.isIdentity(0)) {}
+        turned_(!R_BD_.isIdentity(0)),
+        mass_at_D_kg_(mass_at(body_, p_BD_)) {}
 
   /// At the start of the step, before any force acts.
   WaterFlow flow() const;
@@ -37,6 +38,9 @@ class WaterMount {
     const sim::Vector3d v_B = turned_ ? sim::Vector3d(R_BD_ * v_D) : v_D;
     return flow.body.R_WB * v_B;
   }
+  /// The largest force of a flow of this speed: one that stops the flow at D in a step.  A larger one would turn it
+  /// round, which no lift and no drag does.
+  double largest_force_N(double speed_mps, double step_s) const { return mass_at_D_kg_ * speed_mps / step_s; }
   /// At the origin of D.
   void add_force_D(const WaterFlow& flow, const sim::Vector3d& force_N) {
     body_.add_force_W(in_W(flow, force_N), flow.p_WD);
@@ -54,6 +58,9 @@ class WaterMount {
   sim::Vector3d p_BD_;
   sim::Matrix3d R_BD_;
   bool turned_;
+  double mass_at_D_kg_;
+  /// What a force at a place of the body has to move at least, without added mass.
+  static double mass_at(const sim::Body& body, const sim::Vector3d& p_BD);
   WaterFlow flow_without_cache() const;
 };
 

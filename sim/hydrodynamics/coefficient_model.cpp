@@ -156,18 +156,47 @@ double CoefficientModel::immersed(const CraftState& state) const {
   return share * share * (3 - 2 * share);
 }
 
-Vector6d CoefficientModel::acceleration(const CraftState& state, const Vector6d& tau) const {
+/// d/dt of the velocity of the water in the axes of the body, which turn.
+Vector3d CoefficientModel::water_turning(const CraftState& state) const {
   const Vector3d w = state.nu.tail<3>();
-  Vector3d v_c = state.v_water;
-  Vector3d v_c_dot;
-  if (current_by_yaw_only_)
-    v_c_dot = Vector3d(w.z() * v_c.y(), -w.z() * v_c.x(), 0);
-  else
-    v_c_dot = -w.cross(v_c);
-  Vector6d nu_r = state.nu;
-  nu_r.head<3>() -= v_c;
-  const Vector3d v_r = nu_r.head<3>();
+  const Vector3d& v_c = state.v_water;
+  if (current_by_yaw_only_) return {w.z() * v_c.y(), -w.z() * v_c.x(), 0};
+  return -w.cross(v_c);
+}
 
+Vector6d CoefficientModel::acceleration(const CraftState& state, const Vector6d& tau) const {
+  Vector6d nu_r = state.nu;
+  nu_r.head<3>() -= state.v_water;
+  const double share = immersed(state);
+  const Vector6d total = total_forces(state, tau, nu_r, share);
+  Vector6d nu_dot;
+  if (share == 1)
+    nu_dot = mass_inverse_ * total;
+  else
+    nu_dot = (mass_ - (1 - share) * config_.added_mass).llt().solve(total);
+  nu_dot.head<3>() += water_turning(state);
+  return nu_dot;
+}
+
+Vector6d CoefficientModel::stiff_acceleration(const CraftState& state, const Vector6d& tau, double step_s) const {
+  Vector6d nu_r = state.nu;
+  nu_r.head<3>() -= state.v_water;
+  const double share = immersed(state);
+  Matrix6d left = mass_ - (1 - share) * config_.added_mass;
+  // Derivative of the damping, and what an explicit step of turning adds to the energy: (step |w|)^2 of it.
+  const double turning = step_s * nu_r.tail<3>().squaredNorm();
+  const Vector6d rates =
+      share * (linear_rate_ + 2 * quadratic_rate_.cwiseProduct(nu_r.cwiseAbs())) + turning * Vector6d::Ones();
+  left.diagonal() += step_s * rates.cwiseProduct(mass_.diagonal());
+  Vector6d nu_dot = left.llt().solve(total_forces(state, tau, nu_r, share));
+  nu_dot.head<3>() += water_turning(state);
+  return nu_dot;
+}
+
+Vector6d CoefficientModel::total_forces(const CraftState& state, const Vector6d& tau, const Vector6d& nu_r,
+                                        double share) const {
+  const Vector3d w = state.nu.tail<3>();
+  const Vector3d v_r = nu_r.head<3>();
   Vector6d total = tau + forces(state, nu_r);
   // Rigid body, in the parametrization in which its Coriolis matrix does not depend on the linear velocity, so that it
   // may act on the relative velocity (Fossen 2011, property 8.1).
@@ -177,7 +206,6 @@ Vector6d CoefficientModel::acceleration(const CraftState& state, const Vector6d&
   total.head<3>() -= f;
   total.tail<3>() -= w.cross(config_.inertia_kgm2 * w) + r_g.cross(f);
   // Added mass: Kirchhoff's equations.  It goes as the craft leaves the water.
-  const double share = immersed(state);
   const Matrix6d& A = config_.added_mass;
   Vector3d a, b;
   if (added_mass_is_diagonal_) {
@@ -206,13 +234,7 @@ Vector6d CoefficientModel::acceleration(const CraftState& state, const Vector6d&
     total.head<3>() += displaced;
     total.tail<3>() += config_.center_of_buoyancy_m.cross(displaced);
   }
-  Vector6d nu_dot;
-  if (share == 1)
-    nu_dot = mass_inverse_ * total;
-  else
-    nu_dot = (mass_ - (1 - share) * A).llt().solve(total);
-  nu_dot.head<3>() += v_c_dot;
-  return nu_dot;
+  return total;
 }
 
 Vector6d CoefficientModel::forces(const CraftState& state, const Vector6d& nu_r) const {

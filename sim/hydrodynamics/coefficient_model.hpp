@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "sim/hydrodynamics/hydrodynamics_config.hpp"
 #include "sim/math.hpp"
 #include "sim/medium/medium.hpp"
@@ -27,6 +29,9 @@ class CoefficientModel {
 
   /// d(nu)/dt under the forces `tau` (N, N m about the origin) of everything but the water, weight and buoyancy.
   Vector6d acceleration(const CraftState& state, const Vector6d& tau) const;
+  /// The same for a step that is too long for the damping at this velocity: damping and Coriolis forces are those at
+  /// the end of the step, linearised (backward Euler), so that they brake at any speed.
+  Vector6d stiff_acceleration(const CraftState& state, const Vector6d& tau, double step_s) const;
   /// The forces of the water but those that come with acceleration, with weight and buoyancy.
   Vector6d forces(const CraftState& state, const Vector6d& nu_r) const;
 
@@ -47,10 +52,11 @@ class CoefficientModel {
     const char* why;
   };
   StepLimit longest_step() const;
-  /// True when drag that grows with speed is too stiff for a step of `step_s` at this velocity in the water: the speed
-  /// would change its sign in a step and grow.
-  bool too_fast_for_step(const Vector6d& nu_r, double step_s) const {
-    return ((linear_rate_ + quadratic_rate_.cwiseProduct(nu_r.cwiseAbs())) * step_s).maxCoeff() > 2;
+  /// The fastest rate of damping at this velocity in the water, or of turning, 1/s.  An explicit step has to be shorter
+  /// than 2 over it.
+  double fastest_rate(const Vector6d& nu_r) const {
+    return std::max((linear_rate_ + quadratic_rate_.cwiseProduct(nu_r.cwiseAbs())).maxCoeff(),
+                    2 * nu_r.tail<3>().norm());
   }
 
   /// Share of the hull under water, 0 to 1.
@@ -58,6 +64,9 @@ class CoefficientModel {
 
  private:
   enum class Coriolis { full, without_munk, none };
+  /// All forces at this moment, and d(nu)/dt of the water in the axes of the body.
+  Vector6d total_forces(const CraftState& state, const Vector6d& tau, const Vector6d& nu_r, double share) const;
+  Vector3d water_turning(const CraftState& state) const;
   Vector6d damping(const CraftState& state, const Vector6d& nu_r) const;
   void add_cross_flow(const Vector6d& nu_r, double density, Vector6d& tau) const;
   void add_hull_lift(const Vector6d& nu_r, double density, Vector6d& tau) const;

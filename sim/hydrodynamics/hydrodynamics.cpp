@@ -1,5 +1,6 @@
 #include "sim/hydrodynamics/hydrodynamics.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -18,15 +19,6 @@ namespace {
 /// Takes forward-left-up to forward-right-down and back.
 Vector3d flipped(const Vector3d& v) {
   return {v.x(), -v.y(), -v.z()};
-}
-
-/// Throws PhysicsFault when the drag would throw the body about, and more so with every step.
-void check_speed(const Body& body, const CoefficientModel& model, const CraftState& state, double step_s) {
-  Vector6d nu_r = state.nu;
-  nu_r.head<3>() -= state.v_water;
-  if (model.too_fast_for_step(nu_r, step_s) && model.immersed(state) > 0) [[unlikely]]
-    throw PhysicsFault("body '" + body.name() + "': its drag at " + number_text(nu_r.head<3>().norm()) + " m/s and " +
-                       number_text(nu_r.tail<3>().norm()) + " rad/s is too stiff for 'step_s' " + number_text(step_s));
 }
 
 }  // namespace
@@ -155,18 +147,32 @@ void Hydrodynamics::step(double gravity_mps2) {
   floaters_.step(gravity_mps2, around_);
 }
 
+void Hydrodynamics::tell_of_stiffness(CoefficientBody& craft, const Vector6d& nu_r, double fastest_rate) {
+  craft.stiffness_told = true;
+  const auto rounded = [](double value) { return fmt::format("{:.3g}", value); };
+  if (complain_)
+    complain_("body '" + craft.body->name() + "'",
+              "its drag at " + rounded(nu_r.head<3>().norm()) + " m/s and " + rounded(nu_r.tail<3>().norm()) +
+                  " rad/s is too stiff for 'step_s' " + number_text(step_s_) + ": a step below " +
+                  rounded(1 / fastest_rate) + " s follows it; until then it brakes by backward Euler");
+}
+
 void Hydrodynamics::step_crafts() {
-  for (const CoefficientBody& craft : crafts_) {
+  for (CoefficientBody& craft : crafts_) {
     Body& body = *craft.body;
     const CoefficientModel& model = *craft.model;
     const BodyInWater& around = around_[static_cast<std::size_t>(body.number())];
     const Matrix3d& R_WB = around.motion.R_WB;
     const CraftState state = state_of(model, around);
-    check_speed(body, model, state, step_s_);
+    Vector6d nu_r = state.nu;
+    nu_r.head<3>() -= state.v_water;
+    const double fastest = model.fastest_rate(nu_r);
+    const bool stiff = !(fastest * step_s_ < 1) && model.immersed(state) > 0;
+    if (stiff && !craft.stiffness_told) tell_of_stiffness(craft, nu_r, fastest);
     const Vector3d force = flipped(R_WB.transpose() * body.applied_force_W());
     Vector6d tau;
     tau << force, flipped(R_WB.transpose() * body.applied_torque_W()) + model.config().center_of_mass_m.cross(force);
-    const Vector6d nu_dot = model.acceleration(state, tau);
+    const Vector6d nu_dot = stiff ? model.stiff_acceleration(state, tau, step_s_) : model.acceleration(state, tau);
     const Vector6d wrench = model.equivalent_wrench(nu_dot, state.nu.head<3>(), state.nu.tail<3>(), body.mass_kg(),
                                                     model.config().inertia_kgm2);
     body.set_applied_W(R_WB * flipped(wrench.head<3>()), R_WB * flipped(wrench.tail<3>()));

@@ -47,6 +47,7 @@ class Hydrodynamics {
   struct CoefficientBody {
     Body* body;
     std::shared_ptr<const CoefficientModel> model;
+    bool stiffness_told = false;
   };
   struct Wetted {
     Body* body;
@@ -55,6 +56,7 @@ class Hydrodynamics {
   };
   void add_craft(Body& body, const HydrodynamicsConfig& config);
   void step_crafts();
+  void tell_of_stiffness(CoefficientBody& craft, const Vector6d& nu_r, double fastest_rate);
   CraftState state_of(const CoefficientModel& model, const BodyInWater& around) const;
   void tell_of_the_current(Wetted& wetted, const Vector3d& p_WB);
   void check_step(const CoefficientModel& model, const HydrodynamicsConfig& config, const std::string& who) const;
