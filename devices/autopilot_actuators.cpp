@@ -52,10 +52,29 @@ Wrench mass_of(const sim::DeviceContext& context) {
   return mass;
 }
 
+/// Two autopilots that drive one actuator would fight.
+void refuse_two_masters(const AutopilotParams& params, const sim::DeviceContext& context) {
+  const auto driven_by = [](const AutopilotParams& autopilot) {
+    std::vector<std::string> names = autopilot.thrusters;
+    names.insert(names.end(), autopilot.fins.begin(), autopilot.fins.end());
+    if (!autopilot.helm.empty()) names.push_back(autopilot.helm);
+    return names;
+  };
+  const std::vector<std::string> own = driven_by(params);
+  for (const sim::DeviceConfig& device : context.vehicle.config().devices) {
+    if (device.type != "autopilot" || device.name == context.config.name) continue;
+    const auto& other = static_cast<const sim::detail::ParamsOf<AutopilotParams>&>(*device.params).params;
+    for (const std::string& name : driven_by(other))
+      if (std::find(own.begin(), own.end(), name) != own.end())
+        refuse(context, "'" + name + "' is driven by autopilot '" + device.name + "' already");
+  }
+}
+
 }  // namespace
 
 AutopilotActuators::AutopilotActuators(const AutopilotParams& params, const sim::DeviceContext& context)
     : vehicle_(context.vehicle), epoch_us_(context.world.epoch_us()), mass_(mass_of(context)) {
+  refuse_two_masters(params, context);
   add_thrusters(params, context);
   add_fins(params, context);
 }

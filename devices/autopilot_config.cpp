@@ -55,6 +55,13 @@ void AutopilotParams::check(sim::ParamReader& in) const {
     in.error("helm", "'helm' stands in place of 'thrusters' and 'fins'");
   if (!thruster_weights.empty() && thruster_weights.size() != thrusters.size())
     in.error("thruster_weights", "'thruster_weights' must have one number for each thruster");
+  const auto twice = [&](const char* key, std::vector<std::string> names) {
+    std::sort(names.begin(), names.end());
+    const auto at = std::adjacent_find(names.begin(), names.end());
+    if (at != names.end()) in.error(key, std::string("'") + key + "' names '" + *at + "' twice");
+  };
+  twice("thrusters", thrusters);
+  twice("fins", fins);
   for (const std::string& axis : axes)
     if (std::find(wrench_axes().begin(), wrench_axes().end(), axis) == wrench_axes().end())
       in.error("axes", "'axes' must be of surge, sway, heave, roll, pitch, yaw; got '" + axis + "'");

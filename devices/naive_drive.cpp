@@ -26,6 +26,10 @@ void NaiveDrive::Params::read(sim::ParamReader& in) {
   in.read_deg("max_pitch_deg", max_pitch_rad, sim::between(0, 80), "steepest path down or up");
   in.read("heading_gain_per_s", heading_gain_per_s, sim::above_to(0, 100), "turn rate by error of the heading");
   in.read("depth_gain_per_s", depth_gain_per_s, sim::above_to(0, 100), "speed down by error of the depth");
+  constexpr double most = 4;  // above it swings for long: its damping is 1 / (2 sqrt(gain times time constant))
+  if (!in.describing() && heading_gain_per_s * turn_time_constant_s > most)
+    in.error("heading_gain_per_s", "'heading_gain_per_s' times 'turn_time_constant_s' must be <= 4, got " +
+                                       sim::number_text(heading_gain_per_s * turn_time_constant_s));
   in.read("rise_mps", rise_mps, sim::between(0, 100),
           "it rises so fast when nobody asks for a depth: positive buoyancy");
   in.read("surface", surface, "a surface craft: it stays on the water and takes no depth");
@@ -43,6 +47,15 @@ NaiveDrive::NaiveDrive(const Params& params, const sim::DeviceContext& context)
   if (!body_.kinematic())
     sim::throw_config_error(context.config.place, "device '" + context.full_name() + "'",
                             "its body must have 'kinematic: true'");
+  const auto& bodies = context.vehicle.config().bodies;
+  const auto body_of = [&](const sim::DeviceConfig& device) {
+    return device.body.empty() ? bodies.front().name : device.body;
+  };
+  for (const sim::DeviceConfig& device : context.vehicle.config().devices)
+    if (device.type == "naive_drive" && device.name != context.config.name &&
+        body_of(device) == body_of(context.config))
+      sim::throw_config_error(context.config.place, "device '" + context.full_name() + "'",
+                              "its body is moved by device '" + device.name + "' already");
   change(params);
   take_pose();
 }
@@ -74,7 +87,9 @@ double NaiveDrive::wanted_turn(double speed_share) const {
   if (std::isnan(heading_target_rad_))
     return rudder_ * params_.max_turn_rate_radps * std::clamp(speed_share, -1.0, 1.0);
   const double error = sim::wrap_angle(heading_target_rad_ - yaw_rad_);
-  return std::clamp(params_.heading_gain_per_s * error, -most, most);
+  // No faster than to the heading in one step.
+  const double gain = std::min(params_.heading_gain_per_s, 1 / step_s_);
+  return std::clamp(gain * error, -most, most);
 }
 
 /// Of the momentary surface.  Without water nothing says how deep it is: the world's zero does.

@@ -122,6 +122,12 @@ std::vector<std::string> doubts_about(const HydrodynamicsConfig& config, const s
   if (!config.waterline && above > 0)
     doubts.push_back(config.place.text() + ": " + who + ": its centre of mass lies " + number_text(above) +
                      " m above its centre of buoyancy, so that it turns over; is 'frame' " + config.frame + " right?");
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> principal(config.inertia_kgm2);
+  const Vector3d moments = principal.eigenvalues();  // growing
+  if (moments[2] > (1 + 1e-9) * (moments[0] + moments[1]))
+    doubts.push_back(config.place.text() + ": " + who + ": no solid has its principal moments of inertia, " +
+                     number_text(moments[0]) + ", " + number_text(moments[1]) + " and " + number_text(moments[2]) +
+                     " kg m^2: none is larger than the sum of the others");
   return doubts;
 }
 

@@ -172,6 +172,7 @@ void HydrodynamicsConfig::read(ParamReader& in) {
   in.read("weight_N", weight_N, above(0), "instead of mass times gravity");
   in.read("buoyancy_N", buoyancy_N, at_least(0), "of the whole vehicle under water; absent: of volume_m3");
   in.read("volume_m3", volume_m3, above(0), "of displaced water; absent: it floats in balance");
+  if (buoyancy_N && volume_m3) in.error("volume_m3", "needs either 'buoyancy_N' or 'volume_m3', not both");
   in.read("center_of_buoyancy_m", center_of_buoyancy_m, between(-1000, 1000), "in the body's frame");
   in.read("hull_height_m", hull_height_m, above(0), "over which it emerges; absent: of a ball of its volume");
   in.read("hull_length_m", hull_length_m, at_least(0), "over which it emerges when it stands upright");

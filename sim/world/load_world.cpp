@@ -1,5 +1,6 @@
 #include "sim/world/load_world.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -151,13 +152,16 @@ void make_paths_absolute(ConfigNode& node, bool of_terrain = false) {
 /// Says once that coefficients do nothing here.
 void warn_of_missing_water(const WorldConfig& world) {
   if (world.medium.water) return;
+  std::vector<std::string> dry;
   for (const VehicleInstance& vehicle : world.vehicles)
-    for (const BodyConfig& body : vehicle.config->bodies)
-      if (body.hydrodynamics && body.hydrodynamics->model == "coefficients") {
-        spdlog::warn("vehicle '{}' has hydrodynamics, but the world has no 'medium: water:', so it falls like a stone",
-                     vehicle.name);
-        return;
-      }
+    if (std::any_of(vehicle.config->bodies.begin(), vehicle.config->bodies.end(), [](const BodyConfig& body) {
+          return body.hydrodynamics && body.hydrodynamics->model == "coefficients";
+        }))
+      dry.push_back(vehicle.name);
+  if (dry.empty()) return;
+  const std::string more = dry.size() == 1 ? "" : fmt::format(" (and {} more)", dry.size() - 1);
+  spdlog::warn("vehicle '{}'{} has hydrodynamics, but the world has no 'medium: water:', so it falls like a stone",
+               dry.front(), more);
 }
 
 LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& options, Diagnostics& diagnostics) {

@@ -339,6 +339,8 @@ TEST(Autopilot, SaysWhatIsWrongWithItsParameters) {
               HasSubstr("'axes' must be of surge, sway, heave, roll, pitch, yaw; got 'jaw'"));
   EXPECT_THAT(error("otter_autopilot.yaml", "      devices.autopilot.thruster_weights: [1]\n"),
               HasSubstr("'thruster_weights' must have one number for each thruster"));
+  EXPECT_THAT(error("otter_autopilot.yaml", "      devices.autopilot.thrusters: [port, starboard, port]\n"),
+              HasSubstr("'thrusters' names 'port' twice"));
   EXPECT_THAT(error("otter_autopilot.yaml", "      devices.autopilot.waypoints: [{at_m: [1, 2, 3]}]\n"),
               HasSubstr("'at_m' must be two numbers"));
   EXPECT_THAT(error("otter_autopilot.yaml", "      devices.autopilot.mode: waypoints\n"),

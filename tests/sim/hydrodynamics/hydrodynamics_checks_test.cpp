@@ -112,6 +112,17 @@ TEST(HydrodynamicsChecks, AHullThatTurnsOverIsDoubted) {
               testing::ElementsAre(HasSubstr("auv: its centre of mass lies 0.02 m above its centre of buoyancy")));
 }
 
+TEST(HydrodynamicsChecks, AnInertiaThatNoSolidHasIsDoubted) {
+  EXPECT_THAT(
+      sim::doubts_about(test::config_of("{mass_kg: 10, inertia_kgm2: [0.2, 4, 40]}"), "auv"),
+      testing::ElementsAre(HasSubstr("auv: no solid has its principal moments of inertia, 0.2, 4 and 40 kg m^2")));
+}
+
+TEST(HydrodynamicsChecks, BuoyancyIsGivenInOneWay) {
+  EXPECT_THAT(error_of(inertia + ", buoyancy_N: 100, volume_m3: 0.01", "0.01"),
+              HasSubstr("needs either 'buoyancy_N' or 'volume_m3', not both"));
+}
+
 TEST(HydrodynamicsChecks, TheRateOfDragGrowsWithTheSpeed) {
   const sim::CoefficientModel model(
       test::config_of("{mass_kg: 10, inertia_kgm2: [1, 1, 1], linear_damping: [20, 0, 0, 0, 0, 0], "
