@@ -207,4 +207,9 @@ LoadedWorld load_world_text(const std::string& text, const std::string& file_nam
   return load(std::move(root), {intern_file_name(file_name), 0, 0}, options, diagnostics);
 }
 
+LoadedWorld load_world_tree(ConfigNode root, const std::string& file_name, const LoadOptions& options) {
+  Diagnostics diagnostics;
+  return load(std::move(root), {intern_file_name(file_name), 0, 0}, options, diagnostics);
+}
+
 }  // namespace sim
