@@ -160,6 +160,16 @@ void warn_of_missing_water(const WorldConfig& world) {
       }
 }
 
+/// In water that weighs less than nothing all of hydrostatics turns over.
+void check_weight_of_water(const WorldConfig& world, const ConfigNode& root, Diagnostics& diagnostics) {
+  if (!world.medium.water || world.physics.gravity_mps2 >= 0) return;
+  const ConfigNode* physics = root.find("physics");
+  const ConfigNode* gravity = physics != nullptr ? physics->find("gravity_mps2") : nullptr;
+  diagnostics.error(
+      gravity != nullptr ? gravity->place : root.place, "physics",
+      "'gravity_mps2' must be 0 or more in a world with water, got " + number_text(world.physics.gravity_mps2));
+}
+
 LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& options, Diagnostics& diagnostics) {
   diagnostics.throw_if_any();
   LoadedWorld loaded;
@@ -169,6 +179,7 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   ParamReader in(root, "", diagnostics);
   loaded.config.read(in);
   in.finish();
+  check_weight_of_water(loaded.config, root, diagnostics);
   // Its devices would all be of unknown types, which would bury the mistake.
   if (!load_plugins(root, options, diagnostics)) diagnostics.throw_if_any();
   if (file.file != nullptr) loaded.config.file = *file.file;
