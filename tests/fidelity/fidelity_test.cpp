@@ -231,8 +231,7 @@ TEST_F(FidelityFiles, ALineTellsHowACaseWent) {
   result.position_rms_m = 0.03125;
   EXPECT_EQ(tools::fidelity_line(result, 2, 24), "2 of 24: turn: position rms 0.0312 m");
   result.missed = {"position_rms_m 0.03125 > 0.01"};
-  EXPECT_EQ(tools::fidelity_line(result, 2, 24),
-            "2 of 24: turn: position rms 0.0312 m, missed position_rms_m 0.03125 > 0.01");
+  EXPECT_EQ(tools::fidelity_line(result, 2, 24), "2 of 24: turn: position rms 0.0312 m, bars missed: 1");
 }
 
 }  // namespace

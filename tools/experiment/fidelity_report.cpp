@@ -149,7 +149,7 @@ std::string fidelity_table(const std::vector<FidelityResult>& results) {
 std::string fidelity_line(const FidelityResult& result, std::size_t number, std::size_t count) {
   std::string text =
       fmt::format("{} of {}: {}: position rms {:.4f} m", number, count, result.of.name, result.position_rms_m);
-  for (const std::string& missed : result.missed) text += ", missed " + missed;
+  if (!result.missed.empty()) text += fmt::format(", bars missed: {}", result.missed.size());
   return text;
 }
 

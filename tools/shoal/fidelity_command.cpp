@@ -33,6 +33,8 @@ int fidelity(const FidelityArguments& arguments) {
     const auto wanted = [&](const std::string& name) { return name == of.name || name == of.group; };
     return !arguments.names.empty() && std::none_of(arguments.names.begin(), arguments.names.end(), wanted);
   });
+  if (file.cases.empty() && arguments.names.empty())
+    throw CLI::ValidationError("CASES", "there is no case in " + arguments.cases);
   if (file.cases.empty()) throw CLI::ValidationError("--case", "no case has this name");
   std::vector<FidelityResult> results;
   bool passed = true;

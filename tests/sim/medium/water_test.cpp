@@ -168,7 +168,7 @@ std::string error_with_gravity(const std::string& gravity, const std::string& me
 
 TEST(Water, DoesNotFallUp) {
   EXPECT_EQ(error_with_gravity("-9.81", "{water: {}}"),
-            "w.yaml:2:26: physics: 'gravity_mps2' must be 0 or more in a world with water, got -9.81");
+            "w.yaml:2:25: physics: 'gravity_mps2' must be 0 or more in a world with water, got -9.81");
   EXPECT_EQ(error_with_gravity("-9.81", "{}"), "");
   // A tank where nothing weighs anything is good for looking at drag alone.
   EXPECT_EQ(error_with_gravity("0", "{water: {}}"), "");
