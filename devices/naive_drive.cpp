@@ -1,5 +1,7 @@
 #include "devices/naive_drive.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -77,9 +79,8 @@ void NaiveDrive::take_pose() {
 void NaiveDrive::look_for_the_current() {
   if (!params_.drifts || left_the_current_ || world_.medium().current_known(p_WB_)) return;
   left_the_current_ = true;
-  sim::notice(
-      world_, "body '" + body_.name() + "'",
-      "has left the file of the current at " + sim::number_text(p_WB_.x()) + ", " + sim::number_text(p_WB_.y()));
+  sim::notice(world_, "body '" + body_.name() + "'",
+              fmt::format("has left the file of the current at {:.1f}, {:.1f} m", p_WB_.x(), p_WB_.y()));
 }
 
 double NaiveDrive::wanted_turn(double speed_share) const {

@@ -99,7 +99,7 @@ void Hydrodynamics::tell_of_the_current(Wetted& wetted, const Vector3d& p_WB) {
   wetted.left_the_current = true;
   if (complain_)
     complain_("body '" + wetted.body->name() + "'",
-              "has left the file of the current at " + number_text(p_WB.x()) + ", " + number_text(p_WB.y()));
+              fmt::format("has left the file of the current at {:.1f}, {:.1f} m", p_WB.x(), p_WB.y()));
 }
 
 CraftState Hydrodynamics::state_of(const CoefficientModel& model, const BodyInWater& around) const {

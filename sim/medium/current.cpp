@@ -5,6 +5,8 @@
 #include <numbers>
 #include <string>
 
+#include "sim/terrain/terrain.hpp"
+
 namespace sim {
 
 namespace {
@@ -52,7 +54,11 @@ Current::Current(const std::vector<CurrentConfig>& entries, const std::vector<Ti
       vortices_.push_back(
           {{entry.center_m[0], entry.center_m[1]}, entry.peak_speed_mps, entry.core_radius_m, entry.core == "rankine"});
     } else if (entry.type == "grid") {
-      grids_.emplace_back(entry);
+      try {
+        grids_.emplace_back(entry);
+      } catch (const TerrainError& error) {
+        throw_config_error(entry.place, "medium: current " + std::to_string(i + 1), error.what());
+      }
     } else {
       by_depth_.push_back(entry);
     }

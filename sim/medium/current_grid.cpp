@@ -40,6 +40,13 @@ std::vector<std::string_view> split(std::string_view line) {
   throw TerrainError("line " + std::to_string(line) + ": " + text);
 }
 
+std::string bytes_of(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    throw TerrainError("is no file");
+  return whole_file<TerrainError>(path);
+}
+
 /// Columns may come in any order; others are left out.
 std::vector<CsvRow> parse_rows(std::string_view text) {
   constexpr std::array<const char*, 4> names{"x_m", "y_m", "east_mps", "north_mps"};
@@ -100,7 +107,7 @@ CurrentGrid::CurrentGrid(const CurrentConfig& config) : edge_(config.outside == 
   std::string path = (folder / config.file).string();
   try {
     if (!config.file.empty()) {
-      read_csv(whole_file<TerrainError>(path));
+      read_csv(bytes_of(path));
     } else {
       path = (folder / config.east_file).string();
       read_esri(path, (folder / config.north_file).string());
@@ -110,8 +117,7 @@ CurrentGrid::CurrentGrid(const CurrentConfig& config) : edge_(config.outside == 
         throw TerrainError("has a current of " + number_text(v.cwiseAbs().maxCoeff()) + " m/s, more than 100");
   } catch (const TerrainError& error) {
     const std::string text = error.what();
-    throw_config_error(config.place, "medium: current",
-                       text.starts_with("file ") ? text : "file '" + path + "' " + text);
+    throw TerrainError(text.starts_with("file ") ? text : "file '" + path + "' " + text);
   }
   west_m_ -= config.map_origin_m[0];
   south_m_ -= config.map_origin_m[1];
@@ -146,7 +152,7 @@ void CurrentGrid::read_csv(std::string_view text) {
 void CurrentGrid::read_esri(const std::string& east_path, const std::string& north_path) {
   const auto read = [](const std::string& path) {
     try {
-      return parse_ascii_grid(whole_file<TerrainError>(path), 1, Holes::nearest);
+      return parse_ascii_grid(bytes_of(path), 1, Holes::nearest);
     } catch (const TerrainError& error) {
       throw TerrainError("file '" + path + "' " + error.what());
     }

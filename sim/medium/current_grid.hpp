@@ -12,7 +12,7 @@ namespace sim {
 /// A current by place, the same at every depth and time: bilinear between the points of a regular grid.
 class CurrentGrid {
  public:
-  /// Reads the files of a current of type grid.  Throws ConfigError.
+  /// Reads the files of a current of type grid.  Throws TerrainError, which names the file.
   explicit CurrentGrid(const CurrentConfig& config);
 
   bool contains(double x_m, double y_m) const {

@@ -1,7 +1,11 @@
 #include "sim/medium/medium.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <limits>
+
+#include "sim/medium/stability.hpp"
 
 namespace sim {
 
@@ -19,6 +23,8 @@ Medium::Medium(const MediumConfig& config, double gravity_mps2, std::uint64_t se
     : config_(config), gravity_mps2_(gravity_mps2), still_m_(dry) {
   if (config.water) {
     column_.emplace(*config.water, gravity_mps2);
+    if (const auto depth_m = unstable_at_m(*config.water, *column_))
+      spdlog::warn("medium: water: 'profile' is lighter at {:g} m than above: such water would turn over", *depth_m);
     current_.emplace(config.current, config.tides, seed);
     if (config.waves) waves_.emplace(*config.waves, gravity_mps2, seed);
   }

@@ -30,7 +30,7 @@ struct LocalWater {
 /// LocalWater as at the surface.
 class Medium {
  public:
-  /// Throws ConfigError (files, waves that break).
+  /// Throws ConfigError (files, waves that break).  Warns of water that is lighter below than above.
   Medium(const MediumConfig& config, double gravity_mps2, std::uint64_t seed);
 
   bool has_water() const { return config_.water.has_value(); }

@@ -244,28 +244,27 @@ void WavesConfig::read(ParamReader& in) {
 
 namespace {
 
-/// `current:` with one entry may leave out the list around it.
-void read_current(ParamReader& in, std::vector<CurrentConfig>& current) {
-  const auto read_from = [&current](ParamReader& from) {
-    from.read_list("current", current, "current", "how the water flows; the entries add up");
-  };
-  const ConfigNode* node = in.has("current") ? in.child("current") : nullptr;
-  if (node == nullptr || node->kind != ConfigNode::Kind::map) return read_from(in);
+/// A list with one entry may leave out the list around it.
+template <typename Entry>
+void read_one_or_more(ParamReader& in, const char* key, std::vector<Entry>& entries, const char* kind,
+                      const char* meaning) {
+  const ConfigNode* node = in.has(key) ? in.child(key) : nullptr;
+  if (node == nullptr || node->kind != ConfigNode::Kind::map) return in.read_list(key, entries, kind, meaning);
   ConfigNode list;
   list.kind = ConfigNode::Kind::list;
   list.items = {*node};
   list.place = node->place;
-  const ConfigNode wrapped = map_node("current", list);
+  const ConfigNode wrapped = map_node(key, list);
   ParamReader of_one(wrapped, in.who(), in.diagnostics());
-  read_from(of_one);
+  of_one.read_list(key, entries, kind, meaning);
 }
 
 }  // namespace
 
 void MediumConfig::read(ParamReader& in) {
   in.read("water", water, "the sea, a lake or a tank; absent: the world is dry");
-  read_current(in, current);
-  in.read_list("tides", tides, "tide", "surface and current that go up and down; the entries add up");
+  read_one_or_more(in, "current", current, "current", "how the water flows; the entries add up");
+  read_one_or_more(in, "tides", tides, "tide", "surface and current that go up and down; the entries add up");
   in.read("waves", waves, "absent: the surface is flat");
   in.read("wind", wind, "absent: still air");
   if (in.describing()) return;

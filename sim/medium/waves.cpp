@@ -83,7 +83,7 @@ inline double wrapped(double turns) {
 void check_steepness(const WavesConfig& config, double gravity_mps2) {
   const double depth_m = config.water_depth_m.value_or(std::numeric_limits<double>::infinity());
   const auto fail = [&](const std::string& text) { throw_config_error(config.place, "medium: waves", text); };
-  if (!(gravity_mps2 > 0)) fail("waves need gravity; 'gravity_mps2' is 0");
+  if (!(gravity_mps2 > 0)) fail("waves need 'gravity_mps2' above 0, got " + number_text(gravity_mps2));
   if (config.type == WavesConfig::Type::regular) {
     const double k = wave_number(2 * std::numbers::pi / config.period_s, gravity_mps2, depth_m);
     const double highest_m = 0.142 * std::tanh(k * depth_m) * 2 * std::numbers::pi / k;

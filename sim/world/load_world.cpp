@@ -164,6 +164,16 @@ void warn_of_missing_water(const WorldConfig& world) {
                dry.front(), more);
 }
 
+/// In water that weighs less than nothing all of hydrostatics turns over.
+void check_weight_of_water(const WorldConfig& world, const ConfigNode& root, Diagnostics& diagnostics) {
+  if (!world.medium.water || world.physics.gravity_mps2 >= 0) return;
+  const ConfigNode* physics = root.find("physics");
+  const ConfigNode* gravity = physics != nullptr ? physics->find("gravity_mps2") : nullptr;
+  diagnostics.error(
+      gravity != nullptr ? gravity->place : root.place, "physics",
+      "'gravity_mps2' must be 0 or more in a world with water, got " + number_text(world.physics.gravity_mps2));
+}
+
 LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& options, Diagnostics& diagnostics) {
   diagnostics.throw_if_any();
   LoadedWorld loaded;
@@ -173,6 +183,7 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   ParamReader in(root, "", diagnostics);
   loaded.config.read(in);
   in.finish();
+  check_weight_of_water(loaded.config, root, diagnostics);
   // Its devices would all be of unknown types, which would bury the mistake.
   if (!load_plugins(root, options, diagnostics)) diagnostics.throw_if_any();
   if (file.file != nullptr) loaded.config.file = *file.file;
@@ -208,6 +219,11 @@ LoadedWorld load_world(const std::string& path, const LoadOptions& options) {
 LoadedWorld load_world_text(const std::string& text, const std::string& file_name, const LoadOptions& options) {
   Diagnostics diagnostics;
   ConfigNode root = parse_config_text(text, file_name, diagnostics);
+  return load(std::move(root), {intern_file_name(file_name), 0, 0}, options, diagnostics);
+}
+
+LoadedWorld load_world_tree(ConfigNode root, const std::string& file_name, const LoadOptions& options) {
+  Diagnostics diagnostics;
   return load(std::move(root), {intern_file_name(file_name), 0, 0}, options, diagnostics);
 }
 

@@ -25,5 +25,7 @@ struct LoadedWorld {
 LoadedWorld load_world(const std::string& path, const LoadOptions& options = {});
 /// The same from text.  `file_name` is used in messages, its directory to find vehicle files.
 LoadedWorld load_world_text(const std::string& text, const std::string& file_name, const LoadOptions& options = {});
+/// The same from a tree, whose errors are at the places that its nodes know.
+LoadedWorld load_world_tree(ConfigNode root, const std::string& file_name, const LoadOptions& options = {});
 
 }  // namespace sim

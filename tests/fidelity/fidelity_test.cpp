@@ -4,15 +4,25 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <map>
 
+#include "sim/bus/in_process_bus.hpp"
 #include "sim/config/diagnostics.hpp"
+#include "sim/config/message_text.hpp"
+#include "sim/world/bottom_check.hpp"
+#include "sim/world/load_world.hpp"
+#include "sim/world/world.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tools/experiment/fidelity_report.hpp"
 
 namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
 
 const std::string cases_file = SHOAL_SOURCE_DIR "/tests/fidelity/cases.yaml";
 
@@ -112,20 +122,21 @@ class FidelityFiles : public testing::Test {
     std::ofstream(folder_.file(name)) << text;
     return folder_.file(name);
   }
-  std::string error_of(const std::string& file) {
+  std::string error_of(const std::string& file, const tools::FidelityOptions& options = {}) {
     try {
-      for (const tools::FidelityCase& of : tools::read_fidelity_file(file).cases) tools::run_fidelity_case(of);
+      for (const tools::FidelityCase& of : tools::read_fidelity_file(file).cases) tools::run_fidelity_case(of, options);
     } catch (const sim::ConfigError& error) {
       return error.what();
     }
     return {};
   }
-  std::string cases(const std::string& more) {
-    return write("cases.yaml", "shoal: 1\ngroups:\n  - name: g\n    vehicle: " SHOAL_SOURCE_DIR
-                               "/vehicles/bluerov2.yaml\n" +
-                                   more + "    cases: [{name: c, reference: c.csv}]\n");
+  std::string cases(const std::string& more, const std::string& vehicle = SHOAL_SOURCE_DIR "/vehicles/bluerov2.yaml") {
+    return write("cases.yaml", "shoal: 1\ngroups:\n  - name: g\n    vehicle: " + vehicle + "\n" + more +
+                                   "    cases: [{name: c, reference: c.csv}]\n");
   }
   const std::string header = "t[s],x,y,z,phi,theta,psi,u,v,w,p,q,r,push\n";
+  /// At rest at a place.
+  static std::string row(double t) { return sim::number_text(t) + ",1,2,3,0,0,0.5,0,0,0,0,0,0,0\n"; }
   test_support::ScratchFolder folder_;
 };
 
@@ -150,25 +161,105 @@ TEST_F(FidelityFiles, TheReportHasTheTableThePicturesAndOurStates) {
     std::ifstream in(folder_.file("report/" + name), std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(in), {});
   };
-  EXPECT_THAT(read("fidelity.md"),
-              testing::AllOf(testing::HasSubstr("A word before."), testing::HasSubstr("## Mine"),
-                             testing::HasSubstr("![c](fidelity/c.png)"), testing::HasSubstr("| north (m) | 1.0000 |")));
+  EXPECT_THAT(read("fidelity.md"), AllOf(HasSubstr("A word before."), HasSubstr("## Mine"),
+                                         HasSubstr("![c](fidelity/c.png)"), HasSubstr("| north (m) | 1.0000 |")));
   EXPECT_THAT(read("fidelity/c.png"), testing::StartsWith("\x89PNG"));
   EXPECT_THAT(read("fidelity/c.csv"), testing::StartsWith("t,x,y,z,phi,theta,psi,u,v,w,p,q,r\n0,1,2,3,0,0,0.5,"));
 }
 
 TEST_F(FidelityFiles, MistakesInThemAreNamed) {
-  write("c.csv", header + "0,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n0.1,1,2,3,0,0,oops,0,0,0,0,0,0,0\n");
-  EXPECT_THAT(error_of(cases("")), testing::HasSubstr("c.csv:3:1: must have finite numbers, got 'oops'"));
-  write("c.csv", header + "0,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n0.1234,1,2,3,0,0,0,0,0,0,0,0,0,0\n");
-  EXPECT_THAT(error_of(cases("")), testing::HasSubstr("a step of 0.005 s does not meet the row at t = 0.1234 s"));
-  write("c.csv", header + "0,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n");
+  write("c.csv", header + row(0) + "0.1,1,2,3,0,0,oops,0,0,0,0,0,0,0\n");
+  EXPECT_THAT(error_of(cases("")), HasSubstr("c.csv:3:1: case 'c': must have finite numbers, got 'oops'"));
+  write("c.csv", header + row(0) + row(0.1234));
+  EXPECT_THAT(error_of(cases("")), HasSubstr("c.csv: case 'c': a step of 0.005 s does not meet the row at t = 0.1234"));
+  write("c.csv", header + row(0) + row(0.1));
   EXPECT_THAT(error_of(cases("    inputs: [{device: wheel, column: push}]\n")),
-              testing::HasSubstr("there is no device 'wheel'"));
-  EXPECT_THAT(error_of(cases("    inputs: [{device: wrench, column: pull}]\n")),
-              testing::HasSubstr("there is no column 'pull'"));
+              HasSubstr("cases.yaml:5:14: case 'c': vehicle 'bluerov2': there is no device 'wheel'; devices: wrench"));
+  EXPECT_THAT(
+      error_of(cases("    inputs: [{device: wrench, message: shoal.wrench_t, fields: {force_N: [pull, 0, 0]}}]\n")),
+      HasSubstr("c.csv:1:1: case 'c': there is no column 'pull'"));
   EXPECT_THAT(error_of(cases("    inputs: [{device: wrench}]\n")),
-              testing::HasSubstr("one of 'column' and 'fields' must be given"));
+              HasSubstr("one of 'column' and 'fields' must be given"));
+}
+
+TEST_F(FidelityFiles, AReferenceMustBeATrackOfTwoRowsOrMore) {
+  const auto error_with = [&](const std::string& text) {
+    write("c.csv", text);
+    return error_of(cases(""));
+  };
+  EXPECT_THAT(error_of(cases("")), HasSubstr("c.csv: case 'c': does not exist"));
+  EXPECT_THAT(error_with(""), HasSubstr("c.csv: case 'c': is empty"));
+  EXPECT_THAT(error_with(header), HasSubstr("c.csv: case 'c': must have two rows of numbers or more, has 0"));
+  EXPECT_THAT(error_with(header + row(0)), HasSubstr("c.csv: case 'c': must have two rows of numbers or more, has 1"));
+  EXPECT_THAT(error_with(header + row(0) + row(0.2) + row(0.1)),
+              HasSubstr("c.csv:4:1: case 'c': the time must rise, got 0.1 after 0.2"));
+  EXPECT_THAT(error_with(header + row(0.1) + row(0.2)),
+              HasSubstr("c.csv:2:1: case 'c': the first row must be at t = 0, got 0.1"));
+  EXPECT_THAT(error_with(header + row(0) + "0.1,1e308,2,3,0,0,0.5,0,0,0,0,0,0,0\n"),
+              HasSubstr("c.csv:3:1: case 'c': must have numbers from -1e9 to 1e9, got 1e308"));
+  EXPECT_THAT(error_with("x,y\n0,1\n"), HasSubstr("c.csv:1:1: case 'c': the first column must be t, got 'x'"));
+  EXPECT_EQ(error_with(header + row(0) + row(0.1)), "");
+}
+
+TEST_F(FidelityFiles, ADirectoryIsNoReference) {
+  std::filesystem::create_directory(folder_.file("c.csv"));
+  EXPECT_THAT(error_of(cases("")), HasSubstr("c.csv: case 'c': is no file"));
+}
+
+TEST_F(FidelityFiles, ErrorsAreAtTheLineOfTheCasesThatCausesThem) {
+  write("c.csv", header + row(0) + row(0.1));
+  EXPECT_THAT(error_of(cases("    world: {physics.foo: 3}\n")),
+              AllOf(HasSubstr(folder_.file("cases.yaml") + ":5:13: case 'c': "), HasSubstr("unknown key 'foo'")));
+  EXPECT_THAT(error_of(cases("    overrides: {bodies.frame.hydrodynamics.foo: 3}\n")),
+              AllOf(HasSubstr(folder_.file("cases.yaml") + ":5:17: case 'c': vehicle 'bluerov2': body 'frame'"),
+                    HasSubstr("unknown key 'foo'")));
+  EXPECT_THAT(error_of(cases("    step_s: 50\n")), HasSubstr(folder_.file("cases.yaml") + ":6:13: case 'c': "));
+  EXPECT_THAT(error_of(cases("", "nope.yaml")),
+              HasSubstr(folder_.file("cases.yaml") + ":4:14: case 'c': there is no vehicle file '" +
+                        folder_.file("nope.yaml")));
+}
+
+TEST_F(FidelityFiles, ErrorsOfOptionsNameTheOption) {
+  write("c.csv", header + row(0) + row(0.1));
+  EXPECT_THAT(error_of(cases(""), {.overrides = {{"a.b", "3"}}}),
+              AllOf(StartsWith("--override a.b: case 'c': vehicle 'bluerov2': "), HasSubstr("unknown key 'a'")));
+  EXPECT_THAT(error_of(cases(""), {.overrides = {{"devices.wrench.rate_hz", "fast"}}}),
+              StartsWith("--override devices.wrench.rate_hz: case 'c': vehicle 'bluerov2': device 'wrench'"));
+}
+
+TEST_F(FidelityFiles, AMessageThatADeviceDoesNotTakeIsRefusedBeforeTheRun) {
+  // The step does not meet the second row: who ran would say that.
+  write("c.csv", header + row(0) + row(0.1234));
+  EXPECT_THAT(error_of(cases("    inputs: [{device: wrench, column: push}]\n")),
+              HasSubstr("cases.yaml:5:14: case 'c': vehicle 'bluerov2': device 'wrench': takes shoal.wrench_t, not "
+                        "'shoal.actuator_command_t'"));
+  EXPECT_THAT(error_of(cases("    inputs: [{device: wrench, message: shoal.nope_t, fields: {a: 1}}]\n")),
+              HasSubstr("takes shoal.wrench_t, not 'shoal.nope_t'"));
+}
+
+TEST_F(FidelityFiles, NothingIsSaidOfABottomThatNoCaseHas) {
+  write("c.csv", header + row(0) + row(0.1));
+  const tools::FidelityFile file = tools::read_fidelity_file(cases(""));
+  const tools::FidelityCase& of = file.cases.front();
+  const auto warnings_of = [&](sim::ConfigNode tree) {
+    sim::InProcessBus bus;
+    return sim::bottom_warnings(
+        sim::World(sim::load_world_tree(std::move(tree), folder_.file("cases.yaml")).config, bus));
+  };
+  sim::ConfigNode tree = tools::fidelity_world(of, tools::read_fidelity_reference(of.reference));
+  EXPECT_THAT(warnings_of(tree), testing::IsEmpty());
+  std::erase_if(tree.entries, [](const auto& entry) { return entry.key == "objects"; });
+  // And of the vehicle by the name of its file.
+  EXPECT_THAT(warnings_of(tree), testing::ElementsAre(HasSubstr("below vehicle 'bluerov2'")));
+}
+
+TEST_F(FidelityFiles, ALineTellsHowACaseWent) {
+  tools::FidelityResult result;
+  result.of.name = "turn";
+  result.position_rms_m = 0.03125;
+  EXPECT_EQ(tools::fidelity_line(result, 2, 24), "2 of 24: turn: position rms 0.0312 m");
+  result.missed = {"position_rms_m 0.03125 > 0.01"};
+  EXPECT_EQ(tools::fidelity_line(result, 2, 24), "2 of 24: turn: position rms 0.0312 m, bars missed: 1");
 }
 
 }  // namespace

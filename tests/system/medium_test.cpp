@@ -24,7 +24,13 @@ TEST(MediumCommand, ShowsAPlace) {
   // Mackenzie's 1473.383 m/s; 101325 + 1025 * 9.80665 * 500.
   EXPECT_THAT(ended.output, HasSubstr("1473.38 m/s"));
   EXPECT_THAT(ended.output, HasSubstr("5127233.1 Pa"));
-  EXPECT_THAT(ended.output, HasSubstr("5.000 0.000 0.000 m/s east north up"));
+  EXPECT_THAT(ended.output, testing::ContainsRegex("wind +none \\(under water\\)"));
+}
+
+TEST(MediumCommand, ShowsTheWindOverTheWater) {
+  const Ended ended = medium("{water: {}, wind: {velocity_mps: [5, 0, 0]}}", {"--at", "1,2,10"});
+  ASSERT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_THAT(ended.output, testing::ContainsRegex("wind +5.000 0.000 0.000 m/s east north up"));
 }
 
 TEST(MediumCommand, ShowsTheWaterByDepth) {

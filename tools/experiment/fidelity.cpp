@@ -1,15 +1,15 @@
 #include "tools/experiment/fidelity.hpp"
 
 #include <algorithm>
-#include <charconv>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 
 #include "shoal/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/device/device_registry.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/world.hpp"
 
@@ -18,101 +18,7 @@ namespace tools {
 namespace {
 
 constexpr double deg = std::numbers::pi / 180;
-
-struct TrimEntry {
-  double heave_m = 0, pitch_rad = 0;
-  void read(sim::ParamReader& in) {
-    in.read("heave_m", heave_m, sim::between(-100, 100), "down, of the origin");
-    in.read_deg("pitch_deg", pitch_rad, sim::between(-45, 45), "bow up");
-  }
-};
-
-struct CaseEntry {
-  std::string name, text, reference;
-  TrimEntry trim;
-  sim::ConfigNode world, overrides;
-  FidelityBars bars;
-  void read(sim::ParamReader& in) {
-    in.require("name");
-    in.read_name("name", name, "of the case");
-    in.read("text", text, "a sentence for the report");
-    in.require("reference");
-    in.read("reference", reference, "CSV file, from the folder of this file");
-    in.read_raw("world", world, "dotted path: value, changes of the world, beside those of the group");
-    in.read_raw("overrides", overrides, "dotted path: value, changes of the vehicle, beside those of the group");
-    in.read("bars", bars, "instead of the group's");
-    in.read("trim", trim, "where the reference counts heave and pitch from, when its level at rest is not 0");
-  }
-};
-
-struct GroupEntry {
-  std::string name, title, vehicle;
-  sim::ConfigNode world, overrides;
-  double step_s = 0.005;
-  std::vector<FidelityInput> inputs;
-  FidelityBars bars;
-  std::vector<CaseEntry> cases;
-  void read(sim::ParamReader& in) {
-    in.require("name");
-    in.read_name("name", name, "of the group");
-    in.read("title", title, "heading in the report");
-    in.require("vehicle");
-    in.read("vehicle", vehicle, "vehicle file, from the folder of this file");
-    in.read_raw("world", world, "dotted path: value, such as `physics.gravity_mps2: 9.82`");
-    in.read_raw("overrides", overrides, "dotted path: value, changes of the vehicle");
-    in.read("step_s", step_s, sim::above(0), "time step");
-    in.read_list("inputs", inputs, "input", "how columns command devices");
-    in.read("bars", bars, "largest differences");
-    in.read_list("cases", cases, "case", "trajectories");
-  }
-};
-
-struct CaseFile {
-  int shoal = 1;
-  std::string text;
-  std::vector<GroupEntry> groups;
-  void read(sim::ParamReader& in) {
-    in.read("shoal", shoal, sim::between(1, 1), "version of the format");
-    in.read("text", text, "Markdown for the top of the report");
-    in.require("groups");
-    in.read_list("groups", groups, "group", "vehicles with their cases");
-  }
-};
-
-void append(sim::ConfigNode& to, const sim::ConfigNode& more) {
-  if (more.kind != sim::ConfigNode::Kind::map) return;
-  if (to.kind != sim::ConfigNode::Kind::map) to = {};
-  to.kind = sim::ConfigNode::Kind::map;
-  for (const sim::ConfigNode::Entry& entry : more.entries) {
-    std::erase_if(to.entries, [&](const auto& known) { return known.key == entry.key; });
-    to.entries.push_back(entry);
-  }
-}
-
-FidelityBars over(const FidelityBars& bars, const FidelityBars& usual) {
-  FidelityBars both = bars;
-  for (const auto bar : {&FidelityBars::position_rms_m, &FidelityBars::position_max_m, &FidelityBars::velocity_rms_mps,
-                         &FidelityBars::heading_rms_deg})
-    if (!(both.*bar)) both.*bar = usual.*bar;
-  return both;
-}
-
-[[noreturn]] void fail(const std::string& file, int line, const std::string& text) {
-  sim::throw_config_error({sim::intern_file_name(file), line, line > 0 ? 1 : 0}, "", text);
-}
-
-std::vector<std::string> cells_of(std::string line) {
-  if (!line.empty() && line.back() == '\r') line.pop_back();
-  std::vector<std::string> cells(1);
-  for (const char c : line) {
-    if (c == ',') {
-      cells.emplace_back();
-    } else if (c != ' ' && c != '\t' && c != '"') {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
+constexpr double bottom_m = 11000;  ///< below the start of a vehicle
 
 std::string list_of(std::initializer_list<double> values) {
   std::string text = "[";
@@ -156,13 +62,45 @@ void fill_in(sim::ConfigNode& node, const FidelityReference& reference, const st
     node = sim::scalar_node(sim::number_text(scale * row[reference.column(node.scalar)]), node.place);
 }
 
+/// `a, b, c`
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> words(1);
+  for (const char c : text) {
+    if (c == ',')
+      words.emplace_back();
+    else if (c != ' ')
+      words.back() += c;
+  }
+  return words;
+}
+
+/// Devices of the inputs are there and take their messages.  Throws ConfigError.
+void check_inputs(const FidelityCase& of, const sim::Vehicle& vehicle) {
+  const std::string who = "vehicle '" + vehicle.name() + "'";
+  for (const FidelityInput& input : of.inputs) {
+    std::vector<std::string> names;
+    const sim::DeviceConfig* found = nullptr;
+    for (const sim::DeviceConfig& device : vehicle.config().devices) {
+      if (device.name == input.device) found = &device;
+      names.push_back(device.name);
+    }
+    if (found == nullptr)
+      sim::throw_config_error(input.place, who,
+                              "there is no device '" + input.device + "'; devices: " + sim::list_text(names));
+    const std::string& messages = found->device_type->command_messages;
+    const std::vector<std::string> taken = words_of(messages);
+    if (std::find(taken.begin(), taken.end(), input.message) == taken.end())
+      sim::throw_config_error(input.place, who + ": device '" + input.device + "'",
+                              (messages.empty() ? "takes no messages" : "takes " + messages) + ", not '" +
+                                  sim::shortened(sim::printable(input.message)) + "'");
+  }
+}
+
 void send_inputs(const FidelityCase& of, const FidelityReference& reference, const std::vector<double>& row,
                  const std::string& vehicle, sim::World& world) {
   for (const FidelityInput& input : of.inputs) {
-    if (world.find_device(vehicle + "/" + input.device) == nullptr)
-      fail(of.vehicle, 0, "there is no device '" + input.device + "'");
     sim::ConfigNode fields = input.fields;
-    if (!input.column.empty()) fields = sim::map_node("value", sim::scalar_node(input.column, {}));
+    if (!input.column.empty()) fields = sim::map_node("value", sim::scalar_node(input.column, input.place));
     fill_in(fields, reference, row, input.scale);
     sim::Diagnostics diagnostics;
     const sim::Bytes bytes = shoal::encode_own_message(input.message, fields, diagnostics);
@@ -206,101 +144,11 @@ void compare(FidelityResult& result) {
 std::int64_t steps_to(double t, double step_s, const FidelityReference& reference) {
   const auto steps = static_cast<std::int64_t>(std::llround(t / step_s));
   if (std::abs(static_cast<double>(steps) * step_s - t) > 1e-7)
-    fail(reference.file, 0,
-         "a step of " + sim::number_text(step_s) + " s does not meet the row at t = " + sim::number_text(t) + " s");
+    sim::throw_config_error(
+        {sim::intern_file_name(reference.file), 0, 0}, "",
+        "a step of " + sim::number_text(step_s) + " s does not meet the row at t = " + sim::number_text(t) + " s");
   return steps;
 }
-
-}  // namespace
-
-void FidelityInput::read(sim::ParamReader& in) {
-  in.require("device");
-  in.read_name("device", device, "of the vehicle");
-  in.read("message", message, "type of its commands");
-  in.read("column", column, "column that becomes `value`");
-  in.read_raw("fields", fields, "of the message, with names of columns for numbers; instead of `column`");
-  in.read("scale", scale, sim::any_number(), "times the columns: 57.29577951308232 makes degrees of radians");
-  if (!in.describing() && in.has("column") == in.has("fields")) in.error("one of 'column' and 'fields' must be given");
-}
-
-void FidelityBars::read(sim::ParamReader& in) {
-  in.read("position_rms_m", position_rms_m, sim::at_least(0), "root mean square of the distance");
-  in.read("position_max_m", position_max_m, sim::at_least(0), "largest distance");
-  in.read("velocity_rms_mps", velocity_rms_mps, sim::at_least(0), "root mean square of the velocity's difference");
-  in.read("heading_rms_deg", heading_rms_deg, sim::at_least(0), "root mean square of the yaw's difference");
-}
-
-FidelityFile read_fidelity_file(const std::string& path) {
-  sim::Diagnostics diagnostics;
-  const sim::ConfigNode tree = sim::load_config_file(path, diagnostics);
-  diagnostics.throw_if_any();
-  CaseFile file;
-  sim::ParamReader in(tree, "", diagnostics);
-  file.read(in);
-  in.finish();
-  diagnostics.throw_if_any();
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  FidelityFile result{file.text, {}};
-  for (const GroupEntry& group : file.groups)
-    for (const CaseEntry& entry : group.cases) {
-      FidelityCase of;
-      of.name = entry.name;
-      of.text = entry.text;
-      of.group = group.name;
-      of.title = group.title.empty() ? group.name : group.title;
-      of.vehicle = (folder / group.vehicle).lexically_normal().string();
-      of.reference = (folder / entry.reference).lexically_normal().string();
-      append(of.world, group.world);
-      append(of.world, entry.world);
-      append(of.overrides, group.overrides);
-      append(of.overrides, entry.overrides);
-      of.step_s = group.step_s;
-      of.inputs = group.inputs;
-      of.bars = over(entry.bars, group.bars);
-      of.trim_heave_m = entry.trim.heave_m;
-      of.trim_pitch_rad = entry.trim.pitch_rad;
-      result.cases.push_back(std::move(of));
-    }
-  return result;
-}
-
-std::size_t FidelityReference::column(const std::string& name) const {
-  const auto found = std::find(columns.begin(), columns.end(), name);
-  if (found == columns.end())
-    fail(file, 1,
-         "there is no column '" + sim::shortened(sim::printable(name)) + "'; there are " + sim::list_text(columns));
-  return static_cast<std::size_t>(found - columns.begin());
-}
-
-FidelityReference read_fidelity_reference(const std::string& path) {
-  FidelityReference reference;
-  reference.file = path;
-  std::ifstream in(path);
-  std::string line;
-  if (!in || !std::getline(in, line)) fail(path, 0, "cannot be read");
-  for (const std::string& name : cells_of(line)) reference.columns.push_back(name.substr(0, name.find('[')));
-  for (int number = 2; std::getline(in, line); ++number) {
-    if (line.empty() || line == "\r") continue;
-    std::vector<double> row;
-    for (const std::string& cell : cells_of(line)) {
-      double value = 0;
-      const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-      if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value))
-        fail(path, number, "must have finite numbers, got '" + sim::shortened(sim::printable(cell)) + "'");
-      row.push_back(value);
-    }
-    if (row.size() != reference.columns.size())
-      fail(path, number,
-           "must have " + std::to_string(reference.columns.size()) + " numbers, got " + std::to_string(row.size()));
-    if (!reference.rows.empty() && !(row[0] > reference.rows.back()[0])) fail(path, number, "the time must rise");
-    reference.rows.push_back(std::move(row));
-  }
-  if (reference.columns.front() != "t") fail(path, 1, "the first column must be t");
-  if (reference.rows.empty() || reference.rows.front().front() != 0) fail(path, 2, "the first row must be at t = 0");
-  return reference;
-}
-
-namespace {
 
 FidelityState state_of(const FidelityCase& of, const FidelityReference& reference, const std::vector<double>& row) {
   FidelityState state;
@@ -310,37 +158,58 @@ FidelityState state_of(const FidelityCase& of, const FidelityReference& referenc
   return state;
 }
 
-}  // namespace
-
-std::string fidelity_world(const FidelityCase& of, const FidelityReference& reference, const FidelityOptions& options) {
-  const FidelityState start = state_of(of, reference, reference.rows.front());
-  const std::string text = "shoal: 1\nname: " + of.name +
-                           "\nphysics: {step_s: " + sim::number_text(options.step_s.value_or(of.step_s)) +
-                           "}\nmedium: {water: {}}\nvehicles:\n  - name: vehicle\n    file: " +
-                           std::filesystem::path(of.vehicle).filename().string() +
-                           "\n    position_m: " + list_of({start[1], start[0], -start[2]}) +
-                           "\n    rpy_deg: " + list_of({start[3] / deg, -start[4] / deg, 90 - start[5] / deg}) + "\n";
-  sim::Diagnostics diagnostics;
-  sim::ConfigNode world = sim::parse_config_text(text, of.name, diagnostics);
-  for (const sim::ConfigNode::Entry& change : of.world.entries)
-    sim::set_config_path(world, change.key, change.value, change.place, diagnostics);
-  sim::ConfigNode overrides = of.overrides;
-  for (const auto& [path, value] : options.overrides)
-    append(overrides, sim::map_node(path, sim::parse_config_text(value, path, diagnostics)));
-  if (!overrides.entries.empty())
-    sim::set_config_path(world, "vehicles.vehicle.overrides", overrides, overrides.place, diagnostics);
-  diagnostics.throw_if_any();
-  return sim::to_yaml(world);
+/// All of the tree as if it were written there.
+void set_places(sim::ConfigNode& node, const sim::SourcePlace& place) {
+  node.place = place;
+  for (sim::ConfigNode& item : node.items) set_places(item, place);
+  for (sim::ConfigNode::Entry& entry : node.entries) {
+    entry.place = place;
+    set_places(entry.value, place);
+  }
 }
 
-FidelityResult run_fidelity_case(const FidelityCase& of, const FidelityOptions& options) {
+/// Of the vehicle in its world: that of its file.
+std::string vehicle_name(const FidelityCase& of) {
+  std::string name = std::filesystem::path(of.vehicle).stem().string();
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-') c = '_';
+  return name;
+}
+
+/// What the case and the options change of the vehicle, those of the options last.
+sim::ConfigNode overrides_of(const FidelityCase& of, const FidelityOptions& options, sim::Diagnostics& diagnostics) {
+  sim::ConfigNode overrides = of.overrides;
+  overrides.kind = sim::ConfigNode::Kind::map;
+  for (const auto& [path, value] : options.overrides) {
+    const sim::SourcePlace place{sim::intern_file_name("--override " + path), 0, 0};
+    sim::ConfigNode node = sim::parse_config_text(value, *place.file, diagnostics);
+    set_places(node, place);
+    std::erase_if(overrides.entries, [&](const auto& known) { return known.key == path; });
+    overrides.entries.push_back({path, place, node});
+  }
+  return overrides;
+}
+
+/// The same errors, with the case behind the place that each begins with.
+[[noreturn]] void throw_for_case(const FidelityCase& of, const sim::ConfigError& error) {
+  std::vector<std::string> lines = error.lines();
+  for (std::string& line : lines) {
+    const std::size_t end = line.find(": ");
+    line.insert(end == std::string::npos ? 0 : end + 2, "case '" + of.name + "': ");
+  }
+  throw sim::ConfigError(lines);
+}
+
+FidelityResult run(const FidelityCase& of, const FidelityOptions& options) {
+  if (std::error_code error; !std::filesystem::is_regular_file(of.vehicle, error))
+    sim::throw_config_error(of.vehicle_place, "", "there is no vehicle file '" + of.vehicle + "'");
   const FidelityReference reference = read_fidelity_reference(of.reference);
-  const std::string folder = std::filesystem::path(of.vehicle).parent_path().string();
-  const sim::LoadedWorld loaded =
-      sim::load_world_text(fidelity_world(of, reference, options), folder + "/" + of.name + ".yaml");
+  const std::string file = of.place.file != nullptr ? *of.place.file : of.name;
+  const sim::LoadedWorld loaded = sim::load_world_tree(fidelity_world(of, reference, options), file);
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus);
   const sim::Vehicle& vehicle = *world.vehicles().front();
+  check_inputs(of, vehicle);
   set_velocity(vehicle, state_of(of, reference, reference.rows.front()));
 
   FidelityResult result;
@@ -356,6 +225,41 @@ FidelityResult run_fidelity_case(const FidelityCase& of, const FidelityOptions& 
   }
   compare(result);
   return result;
+}
+
+}  // namespace
+
+sim::ConfigNode fidelity_world(const FidelityCase& of, const FidelityReference& reference,
+                               const FidelityOptions& options) {
+  const FidelityState start = state_of(of, reference, reference.rows.front());
+  // No bottom is near; that there is none at all would be said of every case.
+  const std::string text = "shoal: 1\nname: " + of.name +
+                           "\nphysics: {step_s: " + sim::number_text(options.step_s.value_or(of.step_s)) +
+                           "}\nmedium: {water: {}}\nobjects:\n  - name: far_bottom\n    fixed: true\n    position_m: " +
+                           list_of({0, 0, -start[2] - bottom_m}) +
+                           "\n    parts: [{shape: plane}]\nvehicles:\n  - name: " + vehicle_name(of) +
+                           "\n    file: ''\n    position_m: " + list_of({start[1], start[0], -start[2]}) +
+                           "\n    rpy_deg: " + list_of({start[3] / deg, -start[4] / deg, 90 - start[5] / deg}) + "\n";
+  sim::Diagnostics diagnostics;
+  sim::ConfigNode world = sim::parse_config_text(text, of.name, diagnostics);
+  set_places(world, of.place);
+  sim::ConfigNode& vehicle = world.find("vehicles")->items.front();
+  const std::filesystem::path folder =
+      of.place.file != nullptr ? std::filesystem::path(*of.place.file).parent_path() : "";
+  vehicle.find("file")->scalar = std::filesystem::path(of.vehicle).lexically_proximate(folder).string();
+  vehicle.entries.push_back({"overrides", of.place, overrides_of(of, options, diagnostics)});
+  for (const sim::ConfigNode::Entry& change : of.world.entries)
+    sim::set_config_path(world, change.key, change.value, change.place, diagnostics);
+  diagnostics.throw_if_any();
+  return world;
+}
+
+FidelityResult run_fidelity_case(const FidelityCase& of, const FidelityOptions& options) {
+  try {
+    return run(of, options);
+  } catch (const sim::ConfigError& error) {
+    throw_for_case(of, error);
+  }
 }
 
 }  // namespace tools

@@ -17,6 +17,7 @@ struct FidelityInput {
   std::string column;      ///< becomes `value`
   sim::ConfigNode fields;  ///< of any other message: a text that is the name of a column becomes its number
   double scale = 1;        ///< times every column
+  sim::SourcePlace place;
   void read(sim::ParamReader& in);
 };
 
@@ -39,6 +40,7 @@ struct FidelityCase {
   std::vector<FidelityInput> inputs;
   FidelityBars bars;
   double trim_heave_m = 0, trim_pitch_rad = 0;  ///< the reference's level is not ours
+  sim::SourcePlace place, vehicle_place;        ///< in the file of cases
 };
 
 struct FidelityFile {
@@ -64,7 +66,8 @@ struct FidelityReference {
   std::string file;
 };
 
-/// Reads a CSV; a unit in brackets after a name is passed over.  Throws ConfigError with file and line.
+/// Reads a CSV of two rows or more with numbers up to 1e9; a unit in brackets after a name is passed over.  Throws
+/// ConfigError with file and line.
 FidelityReference read_fidelity_reference(const std::string& path);
 
 struct FidelityOptions {
@@ -86,12 +89,13 @@ struct FidelityResult {
   std::vector<std::string> missed;  ///< bars, as `position_rms_m 0.3 > 0.1`
 };
 
-/// The world of a case as YAML.
-std::string fidelity_world(const FidelityCase& of, const FidelityReference& reference,
-                           const FidelityOptions& options = {});
+/// The world of a case.  Its values know their places in the file of cases, those of `options` the option.
+sim::ConfigNode fidelity_world(const FidelityCase& of, const FidelityReference& reference,
+                               const FidelityOptions& options = {});
 
 /// Runs the vehicle of a case in a world of its own, its devices commanded over the in-process bus with what the
-/// reference's inputs were; row k holds from its time to that of row k + 1.  Throws ConfigError, PhysicsFault.
+/// reference's inputs were; row k holds from its time to that of row k + 1.  Throws ConfigError, which names the case,
+/// and PhysicsFault.
 FidelityResult run_fidelity_case(const FidelityCase& of, const FidelityOptions& options = {});
 
 }  // namespace tools

@@ -146,6 +146,13 @@ std::string fidelity_table(const std::vector<FidelityResult>& results) {
   return text;
 }
 
+std::string fidelity_line(const FidelityResult& result, std::size_t number, std::size_t count) {
+  std::string text =
+      fmt::format("{} of {}: {}: position rms {:.4f} m", number, count, result.of.name, result.position_rms_m);
+  if (!result.missed.empty()) text += fmt::format(", bars missed: {}", result.missed.size());
+  return text;
+}
+
 void write_fidelity_report(const std::string& folder, const std::string& text,
                            const std::vector<FidelityResult>& results, bool csv) {
   const std::filesystem::path pictures = std::filesystem::path(folder) / "fidelity";

@@ -28,16 +28,21 @@ int fidelity(const FidelityArguments& arguments) {
       throw CLI::ValidationError("--override", "must be path=value, got '" + change + "'");
     options.overrides[change.substr(0, equals)] = change.substr(equals + 1);
   }
+  FidelityFile file = read_fidelity_file(arguments.cases);
+  std::erase_if(file.cases, [&](const FidelityCase& of) {
+    const auto wanted = [&](const std::string& name) { return name == of.name || name == of.group; };
+    return !arguments.names.empty() && std::none_of(arguments.names.begin(), arguments.names.end(), wanted);
+  });
+  if (file.cases.empty() && arguments.names.empty())
+    throw CLI::ValidationError("CASES", "there is no case in " + arguments.cases);
+  if (file.cases.empty()) throw CLI::ValidationError("--case", "no case has this name");
   std::vector<FidelityResult> results;
   bool passed = true;
-  const FidelityFile file = read_fidelity_file(arguments.cases);
   for (const FidelityCase& of : file.cases) {
-    const auto wanted = [&](const std::string& name) { return name == of.name || name == of.group; };
-    if (!arguments.names.empty() && std::none_of(arguments.names.begin(), arguments.names.end(), wanted)) continue;
     results.push_back(run_fidelity_case(of, options));
     passed = passed && results.back().missed.empty();
+    std::cerr << fidelity_line(results.back(), results.size(), file.cases.size()) << '\n';
   }
-  if (results.empty()) throw CLI::ValidationError("--case", "no case has this name");
   std::cout << fidelity_table(results);
   for (const FidelityResult& result : results)
     for (const std::string& missed : result.missed) std::cout << result.of.name << ": missed " << missed << '\n';

@@ -59,7 +59,10 @@ void print_place(const sim::Medium& medium, const sim::Vector3d& p_W) {
   row("density", fmt::format("{:.3f}", medium.density_kgpm3(p_W)), "kg/m^3");
   row("pressure", fmt::format("{:.1f}", medium.pressure_Pa(p_W)), "Pa");
   row("sound speed", fmt::format("{:.2f}", medium.sound_speed_mps(p_W)), "m/s");
-  row("wind", vector_text(medium.air_velocity_W(p_W)), "m/s east north up");
+  if (medium.in_water(p_W))
+    row("wind", "none (under water)", "");
+  else
+    row("wind", vector_text(medium.air_velocity_W(p_W)), "m/s east north up");
 }
 
 /// By depth, from the surface to the depth of the place: rows at 1, 2 and 5 times powers of ten.

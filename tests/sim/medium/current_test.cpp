@@ -1,11 +1,16 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <numbers>
 
+#include "sim/bus/in_process_bus.hpp"
+#include "sim/world/load_world.hpp"
+#include "sim/world/world.hpp"
 #include "tests/fidelity/closed_forms.hpp"
 #include "tests/scratch_folder.hpp"
+#include "tests/sim/medium/log_capture.hpp"
 #include "tests/sim/medium/medium_worlds.hpp"
 
 namespace {
@@ -186,6 +191,34 @@ TEST(Current, BadGridsAreRefusedWithTheLine) {
   EXPECT_THAT(error(""), HasSubstr("has no rows"));
 }
 
+TEST(Current, ABadFileIsSaidOfItsEntry) {
+  const test_support::ScratchFolder folder;
+  std::filesystem::create_directory(folder.file("flow"));
+  const auto error = [&](const std::string& name) {
+    return error_of("{water: {}, current: [{velocity_mps: [1, 0, 0]}, {type: grid, file: " + name + "}]}",
+                    folder.file("world.yaml"));
+  };
+  EXPECT_THAT(error("flow"), HasSubstr(":1:50: medium: current 2: file '" + folder.file("flow") + "' is no file"));
+  EXPECT_THAT(error("none.csv"), HasSubstr("medium: current 2: file '" + folder.file("none.csv") + "' does not exist"));
+}
+
+TEST(Current, WhereABodyLeftItsFileIsSaidToTheDecimetre) {
+  const test_support::ScratchFolder folder;
+  write(folder.file("flow.csv"), "x_m,y_m,east_mps,north_mps\n0,0,1,0\n10,0,1,0\n0,10,1,0\n10,10,1,0\n");
+  const sim::LoadedWorld loaded = sim::load_world_text(R"(
+shoal: 1
+medium: {water: {}, current: [{type: grid, file: flow.csv}]}
+objects:
+  - {name: buoy, position_m: [10.16, 3.333333333333333, 0], parts: [{shape: sphere, radius_m: 1, density_kgpm3: 500}]}
+)",
+                                                       folder.file("world.yaml"));
+  sim::InProcessBus bus;
+  sim::World world(loaded.config, bus);
+  const test_support::LogCapture log;
+  world.step();
+  EXPECT_THAT(log.text(), HasSubstr("has left the file of the current at 10.2, 3.3 m (ignored"));
+}
+
 TEST(Current, KeysOfOtherTypesAreRefused) {
   EXPECT_THAT(error_of("{water: {}, current: [{type: vortex, std_mps: 1}]}"),
               HasSubstr("'std_mps' is not for type vortex"));
@@ -202,6 +235,13 @@ TEST(Tide, LiftsTheSurfaceAndMovesTheWater) {
   medium.advance_to(Time{30000000000});  // a quarter before high water: the flood is fastest
   EXPECT_NEAR(medium.surface_m(0, 0), 1, 1e-9);
   EXPECT_NEAR(medium.water_velocity_W({0, 0, -5}).x(), 0.5, 1e-9);
+}
+
+TEST(Tide, OneEntryNeedsNoList) {
+  const sim::Medium medium = make_medium("{water: {}, tides: {amplitude_m: 2, period_s: 40000}}");
+  EXPECT_NEAR(medium.surface_m(0, 0), 2, 1e-12);
+  EXPECT_THAT(error_of("{water: {}, tides: {amplitude: 2}}"), HasSubstr("medium: tide 1: unknown key 'amplitude'"));
+  EXPECT_THAT(error_of("{water: {}, tides: 2}"), HasSubstr("'tides' must be a list of maps, got '2'"));
 }
 
 TEST(Wind, GrowsWithTheHeight) {

@@ -1,7 +1,12 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "sim/medium/sea_water.hpp"
+#include "sim/medium/stability.hpp"
+#include "sim/world/load_world.hpp"
 #include "tests/fidelity/closed_forms.hpp"
+#include "tests/sim/medium/log_capture.hpp"
 #include "tests/sim/medium/medium_worlds.hpp"
 
 namespace {
@@ -117,6 +122,57 @@ TEST(Water, BadColumnsAreRefused) {
   EXPECT_THAT(error_of("water: {temperature_C: 4, profile: [{depth_m: 0}]}"),
               HasSubstr("not for water with a 'profile'"));
   EXPECT_THAT(error_of("waves: {type: jonswap}"), HasSubstr("'waves' needs 'water'"));
+}
+
+std::optional<double> unstable_at_m(const std::string& rows, const std::string& density) {
+  const sim::WaterConfig water =
+      *test_support::read_medium("water: {density: " + density + ", profile: [" + rows + "]}").water;
+  return sim::unstable_at_m(water, sim::WaterColumn(water, 9.80665));
+}
+
+TEST(Water, ThatIsLighterBelowThanAboveIsFound) {
+  const std::string heavy = "{depth_m: 0, density_kgpm3: 1020}, {depth_m: 5, density_kgpm3: 1020}, ";
+  EXPECT_EQ(unstable_at_m(heavy + "{depth_m: 20, density_kgpm3: 1021}", "constant"), std::nullopt);
+  EXPECT_EQ(unstable_at_m(heavy + "{depth_m: 20, density_kgpm3: 1019}", "constant"), 20);
+  // Cold over warm; salt over cold holds it.
+  EXPECT_EQ(unstable_at_m("{depth_m: 0, temperature_C: 5}, {depth_m: 30, temperature_C: 15}", "eos80"), 30);
+  EXPECT_EQ(
+      unstable_at_m("{depth_m: 0, temperature_C: 5, salinity_psu: 30}, {depth_m: 30, temperature_C: 15}", "eos80"),
+      std::nullopt);
+  // Without an equation of state the temperature has no weight.
+  EXPECT_EQ(unstable_at_m("{depth_m: 0, temperature_C: 5}, {depth_m: 30, temperature_C: 15}", "constant"),
+            std::nullopt);
+  // Water of one salinity that is mixed well from 4 to 6 km: it warms by 0.2 K as it is pressed.
+  EXPECT_EQ(unstable_at_m("{depth_m: 4000, temperature_C: 1.5}, {depth_m: 6000, temperature_C: 1.7}", "eos80"),
+            std::nullopt);
+  EXPECT_EQ(unstable_at_m("{depth_m: 4000, temperature_C: 1.5}, {depth_m: 6000, temperature_C: 3}", "eos80"), 6000);
+}
+
+TEST(Water, ThatIsLighterBelowThanAboveIsWarnedOfOnce) {
+  const test_support::LogCapture log;
+  const sim::Medium medium = make_medium(
+      "water: {profile: [{depth_m: 0, density_kgpm3: 1025}, {depth_m: 20, density_kgpm3: 1020}, {depth_m: 40, "
+      "density_kgpm3: 1015}]}");
+  const std::string text = log.text();
+  EXPECT_THAT(text, testing::EndsWith("'profile' is lighter at 20 m than above: such water would turn over\n"));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1);
+}
+
+std::string error_with_gravity(const std::string& gravity, const std::string& medium) {
+  try {
+    sim::load_world_text("shoal: 1\nphysics: {gravity_mps2: " + gravity + "}\nmedium: " + medium + "\n", "w.yaml");
+  } catch (const sim::ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Water, DoesNotFallUp) {
+  EXPECT_EQ(error_with_gravity("-9.81", "{water: {}}"),
+            "w.yaml:2:25: physics: 'gravity_mps2' must be 0 or more in a world with water, got -9.81");
+  EXPECT_EQ(error_with_gravity("-9.81", "{}"), "");
+  // A tank where nothing weighs anything is good for looking at drag alone.
+  EXPECT_EQ(error_with_gravity("0", "{water: {}}"), "");
 }
 
 }  // namespace

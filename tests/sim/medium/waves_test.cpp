@@ -307,4 +307,18 @@ TEST(Waves, ThatWouldBreakAreRefused) {
   EXPECT_THAT(error_of("{water: {}, waves: {sea_state: 3, hs_m: 1}}"), HasSubstr("leave 'hs_m' and 'tp_s' out"));
 }
 
+TEST(Waves, NeedGravityAndSayWhatItIs) {
+  const auto error = [](double gravity_mps2) -> std::string {
+    try {
+      const sim::Medium medium(test_support::read_medium("{water: {}, waves: {}}"), gravity_mps2, 1);
+    } catch (const sim::ConfigError& bad) {
+      return bad.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(error(-9.81), testing::HasSubstr("medium: waves: waves need 'gravity_mps2' above 0, got -9.81"));
+  EXPECT_THAT(error(0), testing::HasSubstr("above 0, got 0"));
+  EXPECT_EQ(error(9.81), "");
+}
+
 }  // namespace

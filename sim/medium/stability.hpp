@@ -1,0 +1,14 @@
+#pragma once
+
+#include <optional>
+
+#include "sim/medium/medium_config.hpp"
+#include "sim/medium/water_column.hpp"
+
+namespace sim {
+
+/// Depth (m) of the first row of the profile whose water is lighter than that of the row above it.  By an equation of
+/// state: at the same pressure, by more than where water is mixed well.  `column`: of this water.
+std::optional<double> unstable_at_m(const WaterConfig& water, const WaterColumn& column);
+
+}  // namespace sim
