@@ -216,7 +216,7 @@ objects:
   sim::World world(loaded.config, bus);
   const test_support::LogCapture log;
   world.step();
-  EXPECT_THAT(log.text(), HasSubstr("has left the file of the current at 10.2, 3.3 m (ignored"));
+  EXPECT_THAT(log.text(), HasSubstr("has left the file of the current at 10.2, 3.3 m"));
 }
 
 TEST(Current, KeysOfOtherTypesAreRefused) {
