@@ -54,7 +54,6 @@ double ImmersedBodies::add(Body& body, const BodyConfig& config, double gravity_
   for (const ImmersedPiece& piece : added.pieces) {
     added.radius_m = std::max(added.radius_m, piece.p_BP.norm() + piece.radius_m);
   }
-  added.smallest_inertia_kgm2 = body.inertia_C_B().diagonal().minCoeff();
   bodies_.push_back(std::move(added));
   return bodies_.back().radius_m;
 }
@@ -123,12 +122,12 @@ void ImmersedBodies::step_body(const ImmersedBody& body, double gravity_mps2, co
   sum.p_WC = X_WB * body.body->p_BC();
   sum.v_WC_W = body.body->velocity_at_W(body.body->p_BC());
   sum.w_W = body.body->w_WB_W();
-  drag_.begin(sum.v_WC_W, sum.w_W);
+  drag_.begin(sum.R_WB, sum.v_WC_W, sum.w_W);
   for (const ImmersedPiece& piece : body.pieces) add_piece(piece, gravity_mps2, at_origin, sum);
   if (!sum.wet) return;
   add_wind(body, sum);
   if (body.stiff && sum.afloat) add_stiffness(body, at_origin, sum);
-  apply(body, gravity_mps2, sum);
+  apply(*body.body, gravity_mps2, sum);
 }
 
 /// The force of the spring at the end of the step, for heave and for turning about level axes.  Heave is braked four
@@ -154,17 +153,16 @@ void ImmersedBodies::add_stiffness(const ImmersedBody& body, const LocalWater& w
 }
 
 /// ODE knows rigid mass only: solves with the added mass, and hands over the force that gives this acceleration.
-void ImmersedBodies::apply(const ImmersedBody& immersed, double gravity_mps2, const Wrench& sum) {
-  Body& body = *immersed.body;
+void ImmersedBodies::apply(Body& body, double gravity_mps2, const Wrench& sum) {
   const double mass = body.mass_kg();
   const Matrix3d I_W = sum.R_WB * body.inertia_C_B() * sum.R_WB.transpose();
   const Vector3d weight(0, 0, -mass * gravity_mps2);  // ODE adds it, and this torque too
   const Vector3d gyroscopic = sum.w_W.cross(I_W * sum.w_W);
   Vector6d f;
   f << body.applied_force_W() + sum.force_N + weight, body.applied_torque_W() + sum.torque_Nm - gyroscopic;
-  const double inertia = immersed.smallest_inertia_kgm2;
+  const Vector3d inertia = body.inertia_C_B().diagonal();
   const double dv = step_s_ * f.head<3>().norm() / (mass + sum.added_kg);
-  const double dw = step_s_ * f.tail<3>().norm() / inertia;
+  const Vector3d dw = step_s_ * (sum.R_WB.transpose() * f.tail<3>()).cwiseAbs().cwiseQuotient(inertia);
   Vector6d a;
   if (drag_.too_stiff(mass + sum.added_kg, inertia, dv, dw, step_s_)) {
     a = drag_.acceleration(sum.mass_matrix(mass, I_W), f, step_s_);

@@ -29,7 +29,6 @@ class ImmersedBodies {
   struct ImmersedBody {
     Body* body = nullptr;
     double radius_m = 0;  ///< about the origin of the body: no part is farther away
-    double smallest_inertia_kgm2 = 0;
     // Springs of its water line that are too stiff for the step, see find_stiffness(); 0: none.
     bool stiff = false;
     double stiff_Npm = 0;
@@ -45,7 +44,7 @@ class ImmersedBodies {
   void add_piece(const ImmersedPiece& piece, double gravity_mps2, const LocalWater& at_origin, Wrench& sum);
   WaterPlane surface_at(const ImmersedPiece& piece, const Vector3d& p_WP, const LocalWater& water) const;
   void add_stiffness(const ImmersedBody& body, const LocalWater& water, Wrench& sum) const;
-  void apply(const ImmersedBody& immersed, double gravity_mps2, const Wrench& sum);
+  void apply(Body& body, double gravity_mps2, const Wrench& sum);
   void add_wind(const ImmersedBody& body, const Wrench& sum);
 
   const Medium& medium_;

@@ -19,11 +19,16 @@ Matrix3d cross_matrix(const Vector3d& v) {
 
 }  // namespace
 
-void ImmersedDrag::begin(const Vector3d& v_WC_W, const Vector3d& w_W) {
+void ImmersedDrag::begin(const Matrix3d& R_WB, const Vector3d& v_WC_W, const Vector3d& w_W) {
+  R_WB_ = R_WB;
   twist_ << v_WC_W, w_W;
   force_N_.setZero();
   torque_Nm_.setZero();
-  linear_kgps_ = linear_kgpm_ = angular_Nms_ = angular_by_speed_Ns2_ = angular_by_rate_Nms2_ = reach_m_ = 0;
+  linear_kgps_ = linear_kgpm_ = 0;
+  angular_Nms_.setZero();
+  angular_by_speed_Ns2_.setZero();
+  angular_by_rate_Nms2_.setZero();
+  reach_m_.setZero();
   parts_.clear();
 }
 
@@ -47,22 +52,24 @@ void ImmersedDrag::add(const ImmersedPiece& piece, double share, double density_
   force_N_ += force;
   torque_Nm_ += at_CP_W.cross(force) + R_WP * turning;
   const double by_speed = 2 * part.pressure * piece.drag_area_m2.maxCoeff();
-  const double by_rate = 2 * part.pressure * piece.angular_drag_area_m5.maxCoeff();
-  const double arm_squared = at_CP_W.squaredNorm();
+  const Vector3d by_rate = 2 * part.pressure * piece.R_BP.cwiseAbs2() * piece.angular_drag_area_m5;
+  const Vector3d arm_squared_B = (R_WB_.transpose() * at_CP_W).cwiseAbs2();
+  const Vector3d reach_squared = Vector3d::Constant(arm_squared_B.sum()) - arm_squared_B;
   linear_kgpm_ += by_speed;
   linear_kgps_ += by_speed * part.speed;
-  angular_by_speed_Ns2_ += by_speed * arm_squared;
+  angular_by_speed_Ns2_ += by_speed * reach_squared;
   angular_by_rate_Nms2_ += by_rate;
-  angular_Nms_ += by_speed * part.speed * arm_squared + by_rate * part.rate;
-  reach_m_ = std::max(reach_m_, std::sqrt(arm_squared));
+  angular_Nms_ += by_speed * part.speed * reach_squared + by_rate * part.rate;
+  reach_m_ = reach_m_.cwiseMax(reach_squared.cwiseMax(0).cwiseSqrt());
 }
 
-bool ImmersedDrag::too_stiff(double mass_kg, double inertia_kgm2, double dv_mps, double dw_radps, double step_s) const {
+bool ImmersedDrag::too_stiff(double mass_kg, const Vector3d& inertia_kgm2, double dv_mps, const Vector3d& dw_radps,
+                             double step_s) const {
   constexpr double most = 0.25;  // of a velocity that drag may take away in a step
-  const double faster = dv_mps + dw_radps * reach_m_;
-  return step_s * (linear_kgps_ + linear_kgpm_ * faster) > most * mass_kg ||
-         step_s * (angular_Nms_ + angular_by_speed_Ns2_ * faster + angular_by_rate_Nms2_ * dw_radps) >
-             most * inertia_kgm2;
+  const double faster = dv_mps + dw_radps.dot(reach_m_);
+  if (step_s * (linear_kgps_ + linear_kgpm_ * faster) > most * mass_kg) return true;
+  const Vector3d rates = angular_Nms_ + angular_by_speed_Ns2_ * faster + angular_by_rate_Nms2_.cwiseProduct(dw_radps);
+  return (step_s * rates - most * inertia_kgm2).maxCoeff() > 0;
 }
 
 /// The factors `speed` and `rate` of the end of the step are found by iteration.  With the geometric mean of two

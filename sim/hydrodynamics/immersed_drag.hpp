@@ -12,7 +12,7 @@ namespace sim {
 class ImmersedDrag {
  public:
   /// For a body that moves like this, m/s and rad/s.
-  void begin(const Vector3d& v_WC_W, const Vector3d& w_W);
+  void begin(const Matrix3d& R_WB, const Vector3d& v_WC_W, const Vector3d& w_W);
   /// A piece in a fluid.  `share`: how much of it the fluid reaches; `at_CP_W`: where the pressure acts.
   void add(const ImmersedPiece& piece, double share, double density_kgpm3, const Vector3d& v_fluid_W,
            const Vector3d& at_CP_W, const Matrix3d& R_WP);
@@ -22,8 +22,10 @@ class ImmersedDrag {
   const Vector3d& torque_Nm() const { return torque_Nm_; }
 
   /// True when a step with the drag of its begin would be far off: drag changes much in the step, or what drives the
-  /// body would have changed its velocities by up to `dv_mps` and `dw_radps` without drag.
-  bool too_stiff(double mass_kg, double inertia_kgm2, double dv_mps, double dw_radps, double step_s) const;
+  /// body would have changed its velocities by up to `dv_mps` and `dw_radps` without drag.  Inertia and `dw_radps` are
+  /// about the axes of the body.
+  bool too_stiff(double mass_kg, const Vector3d& inertia_kgm2, double dv_mps, const Vector3d& dw_radps,
+                 double step_s) const;
   /// Backward Euler: the acceleration a that solves M a = `other` + drag(twist + h a).  Drag cannot turn a motion round
   /// there, and a body that is driven comes up to its terminal speed from below, in steps of any length.
   Vector6d acceleration(const Matrix6d& M, const Vector6d& other, double step_s);
@@ -38,10 +40,14 @@ class ImmersedDrag {
   };
   void factors(const Part& part, const Vector6d& twist, double& speed, double& rate) const;
 
+  Matrix3d R_WB_;
   Vector6d twist_;
   Vector3d force_N_, torque_Nm_;
-  // Bounds of d(drag) / d(velocity), and how they grow with the speed and the rate.
-  double linear_kgps_, linear_kgpm_, angular_Nms_, angular_by_speed_Ns2_, angular_by_rate_Nms2_, reach_m_;
+  // Bounds of d(drag) / d(velocity), and how they grow with the speed and the rate; of rotation about the axes of the
+  // body.
+  double linear_kgps_, linear_kgpm_;
+  Vector3d angular_Nms_, angular_by_speed_Ns2_, angular_by_rate_Nms2_;
+  Vector3d reach_m_;  ///< of the pieces from these axes
   std::vector<Part> parts_;
 };
 

@@ -127,7 +127,7 @@ TEST(Floating, TheCurrentTakesItAlong) {
   TestWorld test(
       "shoal: 1\nphysics: {step_s: 0.01}\nmedium: {water: {}, current: [{velocity_mps: [0.5, 0, 0]}]}\nobjects:\n"
       "  - {name: it, parts: [{shape: sphere, radius_m: 0.3, density_kgpm3: 512.5}]}\n");
-  test.run_for(120);
+  test.run_for(180);
   EXPECT_NEAR(body_of(test).v_WB_W().x(), 0.5, 0.02);
 }
 
