@@ -1,6 +1,6 @@
 #include "sim/hydrodynamics/immersed_bodies.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,8 +11,6 @@ namespace sim {
 
 namespace {
 
-/// Skin friction: a drag that grows with the speed instead of its square below this speed.  Without it no swing ends.
-constexpr double slow_mps = 0.005;
 /// In waves a part is cut into sections of this length, but not into more than 8.
 constexpr double section_m = 0.25;
 
@@ -29,19 +27,17 @@ struct ImmersedBodies::Wrench {
   Matrix3d R_WB;
   Vector3d p_WB, p_WC, v_WC_W, w_W;
   Vector3d force_N = Vector3d::Zero(), torque_Nm = Vector3d::Zero();  ///< all but drag
-  Vector3d drag_N = Vector3d::Zero(), drag_torque_Nm = Vector3d::Zero();
-  double linear_rate_kgps = 0;  ///< bound of d(drag force) / d(velocity)
-  double angular_rate_Nms = 0;  ///< bound of d(drag torque) / d(rate)
-  double added_kg = 0;          ///< added mass
-  double solver_mass_kg = 0;    ///< of add_stiffness(), upwards
+  double lift_N = 0;                                                  ///< buoyancy, upwards
+  double added_kg = 0;                                                ///< added mass
+  double solver_mass_kg = 0;                                          ///< of add_stiffness(), upwards
   Vector3d added_moment_kgm = Vector3d::Zero();
   Matrix3d added_inertia_kgm2 = Matrix3d::Zero();
   bool wet = false;
   bool afloat = false;  ///< the surface cuts a piece
 
-  void add_drag(const ImmersedPiece& piece, double share, double density, const Vector3d& v_fluid_W,
-                const Vector3d& at_CP_W, const Matrix3d& R_WP);
   void add_added_mass(double mass_kg, const Vector3d& at_CP_W, const Vector3d& a_fluid_W);
+  Vector6d acceleration(double mass_kg, const Matrix3d& I_W, const Vector6d& f) const;
+  Matrix6d mass_matrix(double mass_kg, const Matrix3d& I_W) const;
 };
 
 double ImmersedBodies::add(Body& body, const BodyConfig& config, double gravity_mps2,
@@ -57,9 +53,7 @@ double ImmersedBodies::add(Body& body, const BodyConfig& config, double gravity_
   }
   for (const ImmersedPiece& piece : added.pieces) {
     added.radius_m = std::max(added.radius_m, piece.p_BP.norm() + piece.radius_m);
-    added.added_mass |= piece.added_mass_coefficient > 0;
   }
-  added.smallest_inertia_kgm2 = body.inertia_C_B().diagonal().minCoeff();
   bodies_.push_back(std::move(added));
   return bodies_.back().radius_m;
 }
@@ -119,7 +113,7 @@ void ImmersedBodies::step(double gravity_mps2, std::span<const BodyInWater> arou
   }
 }
 
-void ImmersedBodies::step_body(const ImmersedBody& body, double gravity_mps2, const LocalWater& at_origin) const {
+void ImmersedBodies::step_body(const ImmersedBody& body, double gravity_mps2, const LocalWater& at_origin) {
   const Pose X_WB = body.body->X_WB();
   if (X_WB.translation().z() - body.radius_m > medium_.highest_surface_m()) return;
   Wrench sum;
@@ -128,56 +122,76 @@ void ImmersedBodies::step_body(const ImmersedBody& body, double gravity_mps2, co
   sum.p_WC = X_WB * body.body->p_BC();
   sum.v_WC_W = body.body->velocity_at_W(body.body->p_BC());
   sum.w_W = body.body->w_WB_W();
+  drag_.begin(sum.R_WB, sum.v_WC_W, sum.w_W);
   for (const ImmersedPiece& piece : body.pieces) add_piece(piece, gravity_mps2, at_origin, sum);
   if (!sum.wet) return;
   add_wind(body, sum);
-
-  // Drag of an explicit step must not turn the motion round.
-  const double mass = body.body->mass_kg();
-  const double rate =
-      std::max(sum.linear_rate_kgps / (mass + sum.added_kg), sum.angular_rate_Nms / body.smallest_inertia_kgm2);
-  const double drag_share = rate * step_s_ > 1 ? 1 / (rate * step_s_) : 1;
-  sum.force_N += drag_share * sum.drag_N;
-  sum.torque_Nm += drag_share * sum.drag_torque_Nm;
-
-  const bool stiff = body.stiff && sum.afloat;
-  if (!body.added_mass && !stiff) {
-    body.body->add_force_W(sum.force_N, sum.p_WC);
-    body.body->add_torque_W(sum.torque_Nm);
-    return;
-  }
-  if (stiff) add_stiffness(body, at_origin, sum);
-  apply_with_added_mass(*body.body, gravity_mps2, sum);
+  if (body.stiff && sum.afloat) add_stiffness(body, at_origin, sum);
+  apply(*body.body, gravity_mps2, sum);
 }
 
-/// Backward Euler: the force of the spring at the end of the step, for heave and for turning about level axes.
+/// The force of the spring at the end of the step, for heave and for turning about level axes.  Heave is braked four
+/// times as much as by backward Euler, so that a body comes up to its water line without shooting through it.  One that
+/// leaves the water within the step, with speed from below, keeps its speed: buoyancy and drag fade together.
 void ImmersedBodies::add_stiffness(const ImmersedBody& body, const LocalWater& water, Wrench& sum) const {
   const double h = step_s_;
   Matrix3d turning = sum.R_WB * body.stiff_Nmprad.asDiagonal() * sum.R_WB.transpose();
   turning.row(2).setZero();
   turning.col(2).setZero();
-  sum.force_N.z() -= h * body.stiff_Npm * (sum.v_WC_W.z() - water.velocity_W.z());
   sum.torque_Nm -= h * turning * sum.w_W;
-  sum.solver_mass_kg = h * h * body.stiff_Npm;
   sum.added_inertia_kgm2 += h * h * turning;
+  const double mass = body.body->mass_kg() + sum.added_kg;
+  if (h * h * body.stiff_Npm <= 2 * mass) return;
+  const double change_N = h * body.stiff_Npm * (sum.v_WC_W.z() - water.velocity_W.z());
+  if (change_N > sum.lift_N) {
+    sum.solver_mass_kg = 1e6 * mass;
+    return;
+  }
+  constexpr double brake = 4;
+  sum.force_N.z() -= brake * change_N;
+  sum.solver_mass_kg = brake * h * h * body.stiff_Npm;
 }
 
 /// ODE knows rigid mass only: solves with the added mass, and hands over the force that gives this acceleration.
-void ImmersedBodies::apply_with_added_mass(Body& body, double gravity_mps2, const Wrench& sum) {
+void ImmersedBodies::apply(Body& body, double gravity_mps2, const Wrench& sum) {
+  const double mass = body.mass_kg();
   const Matrix3d I_W = sum.R_WB * body.inertia_C_B() * sum.R_WB.transpose();
-  const Vector3d weight(0, 0, -body.mass_kg() * gravity_mps2);  // ODE adds it, and this torque too
+  const Vector3d weight(0, 0, -mass * gravity_mps2);  // ODE adds it, and this torque too
   const Vector3d gyroscopic = sum.w_W.cross(I_W * sum.w_W);
-  Eigen::Matrix<double, 6, 6> M;
-  const Matrix3d S = cross_matrix(sum.added_moment_kgm);
-  M.topLeftCorner<3, 3>() = (body.mass_kg() + sum.added_kg) * Matrix3d::Identity();
-  M(2, 2) += sum.solver_mass_kg;
-  M.topRightCorner<3, 3>() = -S;
-  M.bottomLeftCorner<3, 3>() = S;
-  M.bottomRightCorner<3, 3>() = I_W + sum.added_inertia_kgm2;
-  Eigen::Matrix<double, 6, 1> f;
+  Vector6d f;
   f << body.applied_force_W() + sum.force_N + weight, body.applied_torque_W() + sum.torque_Nm - gyroscopic;
-  const Eigen::Matrix<double, 6, 1> a = M.llt().solve(f);
-  body.set_applied_W(body.mass_kg() * a.head<3>() - weight, I_W * a.tail<3>() + gyroscopic);
+  const Vector3d inertia = body.inertia_C_B().diagonal();
+  const double dv = step_s_ * f.head<3>().norm() / (mass + sum.added_kg);
+  const Vector3d dw = step_s_ * (sum.R_WB.transpose() * f.tail<3>()).cwiseAbs().cwiseQuotient(inertia);
+  Vector6d a;
+  if (drag_.too_stiff(mass + sum.added_kg, inertia, dv, dw, step_s_)) {
+    a = drag_.acceleration(sum.mass_matrix(mass, I_W), f, step_s_);
+  } else {
+    f.head<3>() += drag_.force_N();
+    f.tail<3>() += drag_.torque_Nm();
+    a = sum.acceleration(mass, I_W, f);
+  }
+  body.set_applied_W(mass * a.head<3>() - weight, I_W * a.tail<3>() + gyroscopic);
+}
+
+Matrix6d ImmersedBodies::Wrench::mass_matrix(double mass_kg, const Matrix3d& I_W) const {
+  const Matrix3d S = cross_matrix(added_moment_kgm);
+  Matrix6d M;
+  M << (mass_kg + added_kg) * Matrix3d::Identity(), -S, S, I_W + added_inertia_kgm2;
+  M(2, 2) += solver_mass_kg;
+  return M;
+}
+
+/// Of the mass matrix [D, -S; S, J] the upper left is diagonal: (J + S D^-1 S) w' = t - S D^-1 f, v' = D^-1 (f + S w').
+Vector6d ImmersedBodies::Wrench::acceleration(double mass_kg, const Matrix3d& I_W, const Vector6d& f) const {
+  const double mass = mass_kg + added_kg;
+  const Vector3d by_mass(1 / mass, 1 / mass, 1 / (mass + solver_mass_kg));
+  const Matrix3d S = cross_matrix(added_moment_kgm), SD = S * by_mass.asDiagonal();
+  const Matrix3d J = I_W + added_inertia_kgm2 + SD * S;
+  Vector6d a;
+  a.tail<3>() = J.inverse() * (f.tail<3>() - SD * f.head<3>());
+  a.head<3>() = by_mass.cwiseProduct(f.head<3>() + added_moment_kgm.cross(a.tail<3>()));
+  return a;
 }
 
 WaterPlane ImmersedBodies::surface_at(const ImmersedPiece& piece, const Vector3d& p_WP, const LocalWater& water) const {
@@ -191,7 +205,7 @@ WaterPlane ImmersedBodies::surface_at(const ImmersedPiece& piece, const Vector3d
 }
 
 void ImmersedBodies::add_piece(const ImmersedPiece& piece, double gravity_mps2, const LocalWater& at_origin,
-                               Wrench& sum) const {
+                               Wrench& sum) {
   const Vector3d p_BP_W = sum.R_WB * piece.p_BP, p_WP = sum.p_WB + p_BP_W;
   // Near the origin of the body the water is that of the origin, unless there are waves.
   constexpr double near_m = 0.5;
@@ -202,8 +216,8 @@ void ImmersedBodies::add_piece(const ImmersedPiece& piece, double gravity_mps2, 
   ImmersedVolume immersed = piece.whole;
   if (p_WP.z() + piece.radius_m > water.surface_m - (medium_.has_waves() ? piece.radius_m : 0)) {
     const WaterPlane plane = surface_at(piece, p_WP, water);
-    sum.afloat = true;
     immersed = piece.immersed({R_WP.transpose() * plane.normal, plane.level_m});
+    sum.afloat |= immersed.volume_m3 > 0 && immersed.volume_m3 < (1 - 1e-9) * piece.whole.volume_m3;
   }
   if (immersed.volume_m3 <= 0) return;
   sum.wet = true;
@@ -212,29 +226,16 @@ void ImmersedBodies::add_piece(const ImmersedPiece& piece, double gravity_mps2, 
   // Froude and Krylov: the pressure that accelerates the water pushes what is in its place.
   const Vector3d lift = displaced_kg * (Vector3d(0, 0, gravity_mps2) + water.acceleration_W);
   sum.force_N += lift;
+  sum.lift_N += lift.z();
   sum.torque_Nm += at_CP_W.cross(lift);
   const double share = immersed.volume_m3 / piece.whole.volume_m3;
   // The pressure on a round side goes through its axis, however deep it lies.
   Vector3d pressed_P = immersed.centroid_m;
   if (piece.shape == ImmersedPiece::Shape::round) pressed_P.x() = pressed_P.y() = 0;
   if (piece.shape == ImmersedPiece::Shape::sphere) pressed_P.setZero();
-  sum.add_drag(piece, share, water.density_kgpm3, water.velocity_W, p_WP + R_WP * pressed_P - sum.p_WC, R_WP);
+  drag_.add(piece, share, water.density_kgpm3, water.velocity_W, p_WP + R_WP * pressed_P - sum.p_WC, R_WP);
   if (piece.added_mass_coefficient > 0)
     sum.add_added_mass(piece.added_mass_coefficient * displaced_kg, at_CP_W, water.acceleration_W);
-}
-
-void ImmersedBodies::Wrench::add_drag(const ImmersedPiece& piece, double share, double density,
-                                      const Vector3d& v_fluid_W, const Vector3d& at_CP_W, const Matrix3d& R_WP) {
-  const Vector3d v_P = R_WP.transpose() * (v_WC_W + w_W.cross(at_CP_W) - v_fluid_W);
-  const Vector3d w_P = R_WP.transpose() * w_W;
-  const double pressure = 0.5 * density * share;
-  const double speed = v_P.norm() + slow_mps, rate = w_P.norm() + slow_mps / piece.radius_m;
-  const Vector3d force = R_WP * (-pressure * speed * piece.drag_area_m2.cwiseProduct(v_P));
-  drag_N += force;
-  drag_torque_Nm += at_CP_W.cross(force) + R_WP * (-pressure * rate * piece.angular_drag_area_m5.cwiseProduct(w_P));
-  const double linear = 2 * pressure * speed * piece.drag_area_m2.maxCoeff();
-  linear_rate_kgps += linear;
-  angular_rate_Nms += linear * at_CP_W.squaredNorm() + 2 * pressure * rate * piece.angular_drag_area_m5.maxCoeff();
 }
 
 /// Water that goes along sits as a mass at the centroid of what is under water.
@@ -248,7 +249,7 @@ void ImmersedBodies::Wrench::add_added_mass(double mass_kg, const Vector3d& at_C
 }
 
 /// On the parts over water of a body that swims.
-void ImmersedBodies::add_wind(const ImmersedBody& body, Wrench& sum) const {
+void ImmersedBodies::add_wind(const ImmersedBody& body, const Wrench& sum) {
   const Vector3d wind_W = medium_.air_velocity_W(sum.p_WC);
   if (wind_W.isZero(0)) return;
   for (const ImmersedPiece& piece : body.pieces) {
@@ -256,7 +257,7 @@ void ImmersedBodies::add_wind(const ImmersedBody& body, Wrench& sum) const {
     const double over = p_WP.z() - medium_.surface_m(p_WP.x(), p_WP.y());
     const double share = std::clamp(0.5 + over / (2 * piece.radius_m), 0.0, 1.0);
     constexpr double air_density_kgpm3 = 1.225;
-    if (share > 0) sum.add_drag(piece, share, air_density_kgpm3, wind_W, p_WP - sum.p_WC, sum.R_WB * piece.R_BP);
+    if (share > 0) drag_.add(piece, share, air_density_kgpm3, wind_W, p_WP - sum.p_WC, sum.R_WB * piece.R_BP);
   }
 }
 

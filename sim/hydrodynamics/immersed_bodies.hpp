@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/hydrodynamics/body_in_water.hpp"
+#include "sim/hydrodynamics/immersed_drag.hpp"
 #include "sim/hydrodynamics/immersed_piece.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/physics/body.hpp"
@@ -28,8 +29,6 @@ class ImmersedBodies {
   struct ImmersedBody {
     Body* body = nullptr;
     double radius_m = 0;  ///< about the origin of the body: no part is farther away
-    double smallest_inertia_kgm2 = 0;
-    bool added_mass = false;
     // Springs of its water line that are too stiff for the step, see find_stiffness(); 0: none.
     bool stiff = false;
     double stiff_Npm = 0;
@@ -41,17 +40,18 @@ class ImmersedBodies {
   std::vector<ImmersedPiece> pieces_of(const Body& body, const BodyConfig& config, double longest_m,
                                        std::vector<std::string>& warnings);
   void find_stiffness(ImmersedBody& body, double gravity_mps2, std::vector<std::string>& warnings) const;
-  void step_body(const ImmersedBody& body, double gravity_mps2, const LocalWater& at_origin) const;
-  void add_piece(const ImmersedPiece& piece, double gravity_mps2, const LocalWater& at_origin, Wrench& sum) const;
+  void step_body(const ImmersedBody& body, double gravity_mps2, const LocalWater& at_origin);
+  void add_piece(const ImmersedPiece& piece, double gravity_mps2, const LocalWater& at_origin, Wrench& sum);
   WaterPlane surface_at(const ImmersedPiece& piece, const Vector3d& p_WP, const LocalWater& water) const;
   void add_stiffness(const ImmersedBody& body, const LocalWater& water, Wrench& sum) const;
-  static void apply_with_added_mass(Body& body, double gravity_mps2, const Wrench& sum);
-  void add_wind(const ImmersedBody& body, Wrench& sum) const;
+  void apply(Body& body, double gravity_mps2, const Wrench& sum);
+  void add_wind(const ImmersedBody& body, const Wrench& sum);
 
   const Medium& medium_;
   double step_s_;
   std::vector<ImmersedBody> bodies_;  // in the order in which they came
   PieceMeshes meshes_;
+  ImmersedDrag drag_;  // of the body that is at hand
 };
 
 }  // namespace sim

@@ -114,13 +114,33 @@ void PartConfig::read(ParamReader& in) {
 void PartConfig::read_water_keys(ParamReader& in) {
   if (!in.describing()) displaces_was_given = in.has("displaces");
   in.read("displaces", displaces, "water lifts and brakes the part; false: hollow, or there for the looks");
-  in.read("drag_coefficient", drag_coefficient, at_least(0),
-          "in water, by projected area: one number, or three along x, y and z of the part; none: that of the shape");
+  read_drag_coefficient(in);
   in.read("added_mass_coefficient", added_mass_coefficient, between(0, 100),
-          "in water: added mass over the mass of the water displaced");
-  if (drag_coefficient.size() > 3 || drag_coefficient.size() == 2)
-    in.error("drag_coefficient",
-             "'drag_coefficient' must be one number or three, got " + std::to_string(drag_coefficient.size()));
+          "in water: added mass over the mass of the water displaced; 0.5 is that of a sphere");
+}
+
+void PartConfig::read_drag_coefficient(ParamReader& in) {
+  const char* key = "drag_coefficient";
+  const char* meaning =
+      "in water, by projected area: one number, or three along x, y and z of the part; none: that of the shape";
+  if (in.describing()) {
+    ParamInfo info;
+    info.key = key;
+    info.type = "number or " + type_text(ParamKind::numbers);
+    info.rule = at_least(0).text();
+    info.initial = "[]";
+    info.meaning = meaning;
+    return in.describe(std::move(info));
+  }
+  if (in.has(key) && in.node()->find(key)->kind == ConfigNode::Kind::scalar) {
+    drag_coefficient.resize(1);
+    in.read(key, drag_coefficient[0], at_least(0), meaning);
+  } else {
+    in.read(key, drag_coefficient, at_least(0), meaning);
+  }
+  const std::size_t count = drag_coefficient.size();
+  if (count > 3 || count == 2)
+    in.error(key, "'drag_coefficient' must be one number or three, got " + std::to_string(count));
 }
 
 void BodyConfig::read(ParamReader& in) {

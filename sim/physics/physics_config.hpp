@@ -71,7 +71,7 @@ struct PartConfig {
   bool displaces = true;                 ///< a solid that water lifts and brakes
   bool displaces_was_given = false;      ///< `displaces` is written
   std::vector<double> drag_coefficient;  ///< one, or along x, y and z of the part; empty: that of the shape
-  double added_mass_coefficient = 0;     ///< added mass over the mass of the water displaced
+  double added_mass_coefficient = 0.5;   ///< added mass over the mass of the water displaced; 0.5: of a sphere
 
   SourcePlace place;      ///< where the part was written, for errors found while building
   std::string directory;  ///< of the YAML file, where mesh files are looked up
@@ -80,6 +80,7 @@ struct PartConfig {
 
  private:
   void read_water_keys(ParamReader& in);
+  void read_drag_coefficient(ParamReader& in);
 };
 
 /// Parts that move as one.
@@ -88,7 +89,7 @@ struct BodyConfig {
   Vector3d position_m = Vector3d::Zero();  ///< of the body frame B in the vehicle frame V
   Vector3d rpy_rad = Vector3d::Zero();
   std::vector<PartConfig> parts;
-  bool kinematic = false;  ///< a device moves it; no force does
+  bool kinematic = false;                            ///< a device moves it; no force does
   std::optional<HydrodynamicsConfig> hydrodynamics;  ///< its mass is that of the body, whatever the parts weigh
   SourcePlace place;                                 ///< where the body was written, for errors found while building
 
