@@ -93,6 +93,7 @@ CoefficientModel::CoefficientModel(const HydrodynamicsConfig& config, double gra
   coriolis_ = quirks.added_mass_coriolis == "full"           ? Coriolis::full
               : quirks.added_mass_coriolis == "without_munk" ? Coriolis::without_munk
                                                              : Coriolis::none;
+  find_turning();
   current_by_yaw_only_ = quirks.current == "yaw_only";
   fade_by_speed_in_water_ = quirks.fade_speed == "water";
 }
@@ -124,6 +125,20 @@ void CoefficientModel::find_rates() {
     for (const int turning : {4, 5}) quadratic[turning] += drag * L * L * L * L / 32;
   }
   quadratic_rate_ = quadratic.cwiseQuotient(mass);
+}
+
+void CoefficientModel::find_turning() {
+  const Vector6d mass = mass_.diagonal();
+  const bool munk = coriolis_ == Coriolis::full;
+  double lightest_share = 1;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    lightest_share = std::max(lightest_share, std::max(mass[j], mass[k]) / mass[i]);
+    spin_ratio_ = std::max(spin_ratio_, std::abs(mass[3 + j] - mass[3 + k]) / mass[3 + i]);
+    if (munk) munk_radpm_ = std::max(munk_radpm_, std::sqrt(std::abs(mass[j] - mass[k]) / mass[3 + i]));
+  }
+  spin_ratio_ = std::max(spin_ratio_, lightest_share);
+  munk_radpm_ *= std::sqrt(lightest_share);
 }
 
 CoefficientModel::StepLimit CoefficientModel::longest_step() const {

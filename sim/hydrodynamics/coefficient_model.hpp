@@ -52,11 +52,10 @@ class CoefficientModel {
     const char* why;
   };
   StepLimit longest_step() const;
-  /// The fastest rate of damping at this velocity in the water, or of turning, 1/s.  An explicit step has to be shorter
-  /// than 2 over it.
+  /// The fastest rate at this velocity in the water, of damping or of Coriolis forces, 1/s.  An explicit step has to be
+  /// shorter than 1 over it.
   double fastest_rate(const Vector6d& nu_r) const {
-    return std::max((linear_rate_ + quadratic_rate_.cwiseProduct(nu_r.cwiseAbs())).maxCoeff(),
-                    2 * nu_r.tail<3>().norm());
+    return std::max((linear_rate_ + quadratic_rate_.cwiseProduct(nu_r.cwiseAbs())).maxCoeff(), turning_rate(nu_r));
   }
 
   /// Share of the hull under water, 0 to 1.
@@ -76,6 +75,10 @@ class CoefficientModel {
   double displaced_kg(const CraftState& state) const;
   void fold_derivatives();
   void find_rates();
+  void find_turning();
+  double turning_rate(const Vector6d& nu_r) const {
+    return std::max(spin_ratio_ * nu_r.tail<3>().norm(), munk_radpm_ * nu_r.head<3>().norm());
+  }
 
   HydrodynamicsConfig config_;
   double gravity_mps2_;
@@ -85,6 +88,8 @@ class CoefficientModel {
   double weight_N_, buoyancy_N_, height_m_;
   Vector6d linear_diagonal_, quadratic_diagonal_;
   Vector6d linear_rate_, quadratic_rate_;  // damping over mass, axis by axis
+  double spin_ratio_ = 1;                  // rate at which Coriolis forces turn velocities, over the angular velocity
+  double munk_radpm_ = 0;                  // angular frequency by speed at which the Munk moment turns the body
   bool diagonal_damping_;
   bool added_mass_is_diagonal_;
   Coriolis coriolis_;

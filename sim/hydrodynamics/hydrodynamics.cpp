@@ -151,10 +151,11 @@ void Hydrodynamics::tell_of_stiffness(CoefficientBody& craft, const Vector6d& nu
   craft.stiffness_told = true;
   const auto rounded = [](double value) { return fmt::format("{:.3g}", value); };
   if (complain_)
-    complain_("body '" + craft.body->name() + "'",
-              "its drag at " + rounded(nu_r.head<3>().norm()) + " m/s and " + rounded(nu_r.tail<3>().norm()) +
-                  " rad/s is too stiff for 'step_s' " + number_text(step_s_) + ": a step below " +
-                  rounded(1 / fastest_rate) + " s follows it; until then it brakes by backward Euler");
+    complain_("body '" + craft.body->name() + "'", "what the water does at " + rounded(nu_r.head<3>().norm()) +
+                                                       " m/s and " + rounded(nu_r.tail<3>().norm()) +
+                                                       " rad/s is too fast for 'step_s' " + number_text(step_s_) +
+                                                       ": a step below " + rounded(1 / fastest_rate) +
+                                                       " s follows it; until then it brakes by backward Euler");
 }
 
 void Hydrodynamics::step_crafts() {

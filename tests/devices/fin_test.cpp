@@ -167,7 +167,7 @@ TEST(Fin, DoesNothingInAir) {
 
 TEST(Fin, SaysWhatIsWrongWithItsParameters) {
   const auto error = [](const std::string& keys) { return test::error_of_device("type: fin, " + keys); };
-  EXPECT_THAT(error("model: coefficients"), HasSubstr("'coefficients' belongs to 'model' coefficients"));
+  EXPECT_THAT(error("model: coefficients"), HasSubstr("'coefficients' is missing: 'model' coefficients needs it"));
   EXPECT_THAT(error("coefficients: {Y: 1}"), HasSubstr("'coefficients' belongs to 'model' coefficients"));
   EXPECT_THAT(error("area_m2: -1"), HasSubstr("'area_m2' must be > 0"));
   EXPECT_THAT(error("limit_deg: 120"), HasSubstr("'limit_deg' must be > 0 and <= 90, got 120"));

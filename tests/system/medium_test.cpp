@@ -66,7 +66,8 @@ TEST(Water, ThatIsMissingForCoefficientsIsWarnedOfOnce) {
     EXPECT_EQ(ended.exit_code, 0) << ended.errors;
     return ended.errors;
   };
-  EXPECT_THAT(errors_of(""), HasSubstr("vehicle 'first' has hydrodynamics, but the world has no 'medium: water:'"));
+  EXPECT_THAT(errors_of(""),
+              HasSubstr("vehicle 'first' (and 1 more) has hydrodynamics, but the world has no 'medium: water:'"));
   EXPECT_THAT(errors_of(""), Not(HasSubstr("second")));
   EXPECT_EQ(errors_of("medium: {water: {}}\n"), "");
 }

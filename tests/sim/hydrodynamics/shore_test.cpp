@@ -74,7 +74,8 @@ TEST(Shore, SaysThatThereIsNoBottomBelowANewcomerToo) {
   TestWorld test(
       std::string("shoal: 1\nmedium: {water: {}}\n") +
       "vehicles:\n  - name: auv1\n    position_m: [0, 0, -1]\n    model:\n      shoal: 1\n      vehicle: auv\n"
-      "      bodies: [{name: hull, parts: [{shape: sphere, radius_m: 0.1, density_kgpm3: 1025}]}]\n");
+      "      bodies: [{name: hull, parts: [{shape: sphere, radius_m: 0.1, density_kgpm3: 1025}]}]\n"
+      "      devices: [{name: altimeter, type: altimeter}]\n");
   sim::VehicleInstance instance = test.loaded.config.vehicles[0];
   instance.name = "auv2";
   instance.X_WV.translation().x() = 5;
