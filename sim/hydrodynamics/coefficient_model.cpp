@@ -137,7 +137,9 @@ void CoefficientModel::find_turning() {
     spin_ratio_ = std::max(spin_ratio_, std::abs(mass[3 + j] - mass[3 + k]) / mass[3 + i]);
     if (munk) munk_radpm_ = std::max(munk_radpm_, std::sqrt(std::abs(mass[j] - mass[k]) / mass[3 + i]));
   }
-  spin_ratio_ = std::max(spin_ratio_, lightest_share);
+  constexpr double most = 4;  // of a hull; beyond it somebody holds an axis by a mass
+  lightest_share = std::min(lightest_share, most);
+  spin_ratio_ = std::clamp(spin_ratio_, lightest_share, most);
   munk_radpm_ *= std::sqrt(lightest_share);
 }
 
@@ -197,15 +199,24 @@ Vector6d CoefficientModel::stiff_acceleration(const CraftState& state, const Vec
   Vector6d nu_r = state.nu;
   nu_r.head<3>() -= state.v_water;
   const double share = immersed(state);
-  Matrix6d left = mass_ - (1 - share) * config_.added_mass;
-  // Derivative of the damping, and what an explicit step of turning adds to the energy: (step |w|)^2 of it.
-  const double turning = step_s * nu_r.tail<3>().squaredNorm();
-  const Vector6d rates =
-      share * (linear_rate_ + 2 * quadratic_rate_.cwiseProduct(nu_r.cwiseAbs())) + turning * Vector6d::Ones();
+  const Matrix6d mass = mass_ - (1 - share) * config_.added_mass;
+  Matrix6d left = mass;
+  const Vector6d rates = share * (linear_rate_ + 2 * quadratic_rate_.cwiseProduct(nu_r.cwiseAbs()));
   left.diagonal() += step_s * rates.cwiseProduct(mass_.diagonal());
   Vector6d nu_dot = left.llt().solve(total_forces(state, tau, nu_r, share));
   nu_dot.head<3>() += water_turning(state);
-  return nu_dot;
+  // Coriolis forces do no work: what they would add to the energy in so long a step is taken out again.
+  const Vector3d turned = Vector3d(state.nu.tail<3>()).cross(Vector3d(state.nu.head<3>()));
+  Vector6d change = nu_dot;  // of the velocities as one sees them who does not turn along
+  change.head<3>() += turned;
+  Vector6d after = nu_r + step_s * change;
+  const double power = std::max(nu_r.dot(tau + forces(state, nu_r)), 0.0);
+  const double allowed = nu_r.dot(mass * nu_r) + 2 * step_s * power, found = after.dot(mass * after);
+  if (found <= allowed) return nu_dot;
+  after *= std::sqrt(allowed / found);
+  change = (after - nu_r) / step_s;
+  change.head<3>() -= turned;
+  return change;
 }
 
 Vector6d CoefficientModel::total_forces(const CraftState& state, const Vector6d& tau, const Vector6d& nu_r,
@@ -318,8 +329,9 @@ void CoefficientModel::add_hull_lift(const Vector6d& nu_r, double density, Vecto
   const double pressure = 0.5 * density * square * hull.area_m2;
   // A hull that goes astern is taken for its mirror image: the angle is that between its axis and its way.
   const double alpha = std::atan2(w, std::abs(u));
-  const double C_L = hull.lift_slope * alpha * kept_lift(alpha);
-  const double lift = pressure * C_L;
+  // The lift goes when the flow leaves the hull; the drag that came with it stays.
+  const double C_L = hull.lift_slope * alpha;
+  const double lift = pressure * C_L * kept_lift(alpha);
   const double drag = pressure * (hull.drag_coefficient + hull.induced_drag * C_L * C_L);
   const double cosine = u / in_plane, sine = w / in_plane;
   tau[0] += -drag * cosine + (u < 0 ? -lift : lift) * sine;

@@ -29,8 +29,8 @@ class CoefficientModel {
 
   /// d(nu)/dt under the forces `tau` (N, N m about the origin) of everything but the water, weight and buoyancy.
   Vector6d acceleration(const CraftState& state, const Vector6d& tau) const;
-  /// The same for a step that is too long for the damping at this velocity: damping and Coriolis forces are those at
-  /// the end of the step, linearised (backward Euler), so that they brake at any speed.
+  /// The same for a step that is too long for this velocity: damping is that at the end of the step, linearised
+  /// (backward Euler), and Coriolis forces add no energy, so that the body is not thrown about at any speed.
   Vector6d stiff_acceleration(const CraftState& state, const Vector6d& tau, double step_s) const;
   /// The forces of the water but those that come with acceleration, with weight and buoyancy.
   Vector6d forces(const CraftState& state, const Vector6d& nu_r) const;

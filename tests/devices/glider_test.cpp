@@ -82,7 +82,7 @@ TEST(Glider, ComesUpWhenItsCommandsStop) {
   test.run_for(15);
   const double deepest = test.body.X_WB().translation().z();
   EXPECT_LT(deepest, -20);
-  test.run_for(800);
+  test.run_for(400);
   EXPECT_NEAR(test.body.X_WB().translation().z(), 0, 0.3);
 }
 

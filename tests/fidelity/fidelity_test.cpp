@@ -237,20 +237,19 @@ TEST_F(FidelityFiles, AMessageThatADeviceDoesNotTakeIsRefusedBeforeTheRun) {
               HasSubstr("takes shoal.wrench_t, not 'shoal.nope_t'"));
 }
 
-TEST_F(FidelityFiles, NothingIsSaidOfABottomThatNoCaseHas) {
+TEST_F(FidelityFiles, ThereIsABottomFarBelowAndTheVehicleHasTheNameOfItsFile) {
   write("c.csv", header + row(0) + row(0.1));
   const tools::FidelityFile file = tools::read_fidelity_file(cases(""));
   const tools::FidelityCase& of = file.cases.front();
-  const auto warnings_of = [&](sim::ConfigNode tree) {
-    sim::InProcessBus bus;
-    return sim::bottom_warnings(
-        sim::World(sim::load_world_tree(std::move(tree), folder_.file("cases.yaml")).config, bus));
-  };
-  sim::ConfigNode tree = tools::fidelity_world(of, tools::read_fidelity_reference(of.reference));
-  EXPECT_THAT(warnings_of(tree), testing::IsEmpty());
-  std::erase_if(tree.entries, [](const auto& entry) { return entry.key == "objects"; });
-  // And of the vehicle by the name of its file.
-  EXPECT_THAT(warnings_of(tree), testing::ElementsAre(HasSubstr("below vehicle 'bluerov2'")));
+  const auto loaded = sim::load_world_tree(tools::fidelity_world(of, tools::read_fidelity_reference(of.reference)),
+                                           folder_.file("cases.yaml"));
+  sim::InProcessBus bus;
+  const sim::World world(loaded.config, bus);
+  const sim::Vehicle& vehicle = *world.vehicles()[0];
+  EXPECT_EQ(vehicle.name(), "bluerov2");
+  sim::RayFilter others;
+  others.exclude_group = vehicle.group();
+  EXPECT_TRUE(world.scene().cast(vehicle.X_WV().translation(), -sim::Vector3d::UnitZ(), 12000, others));
 }
 
 TEST_F(FidelityFiles, ALineTellsHowACaseWent) {

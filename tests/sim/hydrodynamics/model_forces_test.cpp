@@ -75,6 +75,13 @@ TEST(HullLift, ItGrowsWithTheAngleUpToHalfARightAngleAndIsGoneAcrossTheFlow) {
   EXPECT_LT(forces_at(model, along(0, 1)).norm(), 1e-9);
 }
 
+TEST(HullLift, TheDragOfTheLiftStaysAcrossTheFlow) {
+  const sim::CoefficientModel model =
+      model_of(", hull_lift: {area_m2: 0.2, lift_slope: 1.5, drag_coefficient: 0.06, induced_drag: 0.4}");
+  const double C_L = 1.5 * std::numbers::pi / 2, C_D = 0.06 + 0.4 * C_L * C_L;
+  EXPECT_NEAR(forces_at(model, along(0, 1))[2], -0.5 * density_kgpm3 * 0.2 * C_D, 1e-9);
+}
+
 /// The force of a single derivative of 2 in its row, at a motion of +0.5 and of -0.5.
 void expect_forces(const std::string& name, int row, int motion, double ahead, double back) {
   const sim::CoefficientModel model = model_of(", derivatives: {'" + name + "': " + (row == motion ? "-2" : "2") + "}");
