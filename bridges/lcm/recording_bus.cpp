@@ -59,9 +59,7 @@ class RecordingBus::RecordingMailbox final : public sim::Mailbox {
     return message;
   }
   std::uint64_t dropped() const override { return inner_->dropped(); }
-  void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) override {
-    inner_->raise_on_arrival(std::move(flag));
-  }
+  void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) override { inner_->raise_on_arrival(std::move(flag)); }
 
  private:
   RecordingBus& bus_;

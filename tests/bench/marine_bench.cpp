@@ -59,9 +59,8 @@ BENCHMARK(Remus)->Arg(1)->Arg(100)->Arg(1000)->Arg(10000)->Unit(benchmark::kMicr
 void OttersInASea(benchmark::State& state) {
   std::string text = world_text(state.range(0), 0.02, "file: otter.yaml");
   const std::string calm = "medium: {water: {}, ";
-  text.replace(
-      text.find(calm), calm.size(),
-      calm + "waves: {type: jonswap, hs_m: 0.5, tp_s: 4, components: 200, spreading: 4}, ");
+  text.replace(text.find(calm), calm.size(),
+               calm + "waves: {type: jonswap, hs_m: 0.5, tp_s: 4, components: 200, spreading: 4}, ");
   text.replace(text.find("[0, 0, -20]"), 11, "[0, 0, 0]");
   run(state, text, 0.02, false);
 }

@@ -80,7 +80,8 @@ TEST(InWaves, AMeshOfABoxMovesAsTheBox) {
   };
   const std::string mesh = std::string(SHOAL_SOURCE_DIR) + "/tests/sim/hydrodynamics/box_1m.obj";
   const sim::Pose box = place_after("{shape: box, size_m: [2, 2, 2], density_kgpm3: 500}");
-  const sim::Pose same = place_after("{shape: mesh, mesh: " + mesh + ", scale: 2, density_kgpm3: 500, drag_coefficient: [1.05]}");
+  const sim::Pose same =
+      place_after("{shape: mesh, mesh: " + mesh + ", scale: 2, density_kgpm3: 500, drag_coefficient: [1.05]}");
   // Masses and cuts are sums in another order; their last bits grow with the swings.
   EXPECT_LT((box.translation() - same.translation()).norm(), 1e-6);
 }
