@@ -72,9 +72,9 @@ CoefficientModel::CoefficientModel(const HydrodynamicsConfig& config, double gra
     : config_(config), gravity_mps2_(gravity_mps2) {
   const Matrix3d S = cross_matrix(config.center_of_mass_m);
   const double m = config.mass_kg;
-  inertia_O_ = config.inertia_kgm2 - m * S * S;
+  const Matrix3d inertia_O = config.inertia_kgm2 - m * S * S;  // about the origin
   Matrix6d rigid;
-  rigid << m * Matrix3d::Identity(), -m * S, m * S, inertia_O_;
+  rigid << m * Matrix3d::Identity(), -m * S, m * S, inertia_O;
   mass_ = rigid + config.added_mass;
   mass_inverse_ = mass_.inverse();
   weight_N_ = config.weight_N.value_or(m * gravity_mps2);

@@ -84,7 +84,6 @@ class CoefficientModel {
   double gravity_mps2_;
   Matrix6d mass_;
   Matrix6d mass_inverse_;
-  Matrix3d inertia_O_;  ///< about the origin
   double weight_N_, buoyancy_N_, height_m_;
   Vector6d linear_diagonal_, quadratic_diagonal_;
   Vector6d linear_rate_, quadratic_rate_;  // damping over mass, axis by axis
