@@ -66,6 +66,9 @@ class Medium {
   double salinity_psu(const Vector3d& p_W) const;
   /// In water or air, m/s.
   double sound_speed_mps(const Vector3d& p_W) const;
+  /// Mean of 1 / sound speed over the heights between two, s/m: of the water below the still surface, above it as at
+  /// the surface; of the air in a world without water.
+  double mean_slowness_spm(double z_m, double other_z_m) const;
 
   void hash_state(StateHash& hash) const;
 
