@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "devices/micromodem_rates.hpp"
 #include "tests/devices/modem_fixture.hpp"
 #include "tests/fidelity/closed_forms.hpp"
 
@@ -9,10 +10,10 @@ namespace {
 
 using Received = shoal::acoustic_received_t;
 
-/// a at the origin, b at 300 m, c at 600 m, 20 m deep.
+/// a at the origin, b 300 m to the east, c 300 m to the north of b (none hides another), 20 m deep.
 std::string three(const std::string& keys = "", const std::string& more = "") {
   const std::string modem = "{name: modem, type: acoustic_modem" + keys + "}";
-  return test::modem_sea({{"a", "[0, 0, -20]", modem}, {"b", "[300, 0, -20]", modem}, {"c", "[600, 0, -20]", modem}},
+  return test::modem_sea({{"a", "[0, 0, -20]", modem}, {"b", "[300, 0, -20]", modem}, {"c", "[300, 300, -20]", modem}},
                          more);
 }
 
@@ -42,25 +43,25 @@ TEST(AcousticModem, ArrivesAfterPreambleBitsAndTheWayOfTheSound) {
   test.run_for(0.3);
   const auto c = at_c.take_all();
   ASSERT_EQ(c.size(), 1u);
-  EXPECT_NEAR(c[0].travel_time_s, 0.4, 1e-6);
-  // Twice as far: 10 k log10(2) of spreading and 300 m of absorption more.
-  EXPECT_GT(b[0].level_db, c[0].level_db + 4.5);
+  EXPECT_NEAR(c[0].travel_time_s, std::hypot(0.2, 0.2), 1e-6);
+  // sqrt(2) times as far: 15 log10 of it by spreading, and 124 m of absorption more.
+  EXPECT_GT(b[0].level_db, c[0].level_db + 15 * std::log10(std::sqrt(2.0)));
 }
 
 TEST(AcousticModem, PacketsLastAsLongAsTheTableSays) {
   int found = 0;
   for (const auto& form : test::all_closed_forms()) {
     if (form.name != "micromodem_packet_time") continue;
-    for (int rate = 0; rate <= 6; ++rate) {
-      test::TestWorld test(three(", preset: micromodem_rate" + std::to_string(rate)));
+    for (const auto& rate : devices::micromodem_rates()) {
+      if (rate.bit_rate_bps != form.at("bps")) continue;
+      test::TestWorld test(three(", preset: micromodem_rate" + std::to_string(rate.number)));
       const auto& modem = test::device_of<devices::AcousticModem>(test, "a/modem");
       const auto bytes = static_cast<std::size_t>(form.at("frames") * form.at("frame_bytes"));
-      if (modem.longest_message_bytes() != bytes) continue;
-      const double bits_s = modem.duration_s(bytes) - 0.3;  // less the probe, which the table leaves out
-      if (std::abs(bits_s - form.expected) > form.tolerance) continue;
-      EXPECT_NEAR(bits_s, form.expected, 1e-6);
+      EXPECT_EQ(modem.longest_message_bytes(), bytes);
+      // Less the probe, which the table leaves out.
+      EXPECT_NEAR(modem.duration_s(bytes) - devices::micromodem_probe_s, form.expected, 1e-6);
+      EXPECT_EQ(modem.duration_s(1), modem.duration_s(static_cast<std::size_t>(form.at("frame_bytes"))));
       ++found;
-      break;
     }
   }
   EXPECT_EQ(found, 6);
