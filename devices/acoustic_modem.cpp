@@ -103,7 +103,8 @@ void AcousticModem::Params::read(sim::ParamReader& in) {
   in.read("receiver", receiver, "how it hears");
   in.read("serial", serial, "a pseudo-terminal or FIFO that any program can open");
   if (in.describing()) return;
-  if (bandwidth_Hz >= 2 * frequency_Hz) in.error("bandwidth_Hz", "'bandwidth_Hz' must be < 2 x frequency_Hz");
+  if (bandwidth_Hz >= 2 * frequency_Hz)
+    in.error("bandwidth_Hz", "'bandwidth_Hz' must be < 2 x frequency_Hz, got " + sim::number_text(bandwidth_Hz));
   if (max_message_bytes > frames * frame_bytes)
     in.error("max_message_bytes", "'max_message_bytes' must be <= frames x frame_bytes, that is " +
                                       std::to_string(frames * frame_bytes) + ", got " +

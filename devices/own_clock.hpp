@@ -8,12 +8,20 @@
 namespace devices {
 
 /// What the clock of a vehicle shows at a true time, both since the start of the run.
-inline sim::Time own_time(const sim::Vehicle& /*vehicle*/, sim::Time at) {
-  return at;
+template <typename Vehicle>
+sim::Time own_time(const Vehicle& vehicle, sim::Time at) {
+  if constexpr (requires { vehicle.clock().reading(at); })
+    return vehicle.clock().reading(at);
+  else
+    return at;
 }
 /// The true time when it shows this.
-inline sim::Time true_time(const sim::Vehicle& /*vehicle*/, sim::Time reading) {
-  return reading;
+template <typename Vehicle>
+sim::Time true_time(const Vehicle& vehicle, sim::Time reading) {
+  if constexpr (requires { vehicle.clock().true_time(reading); })
+    return vehicle.clock().true_time(reading);
+  else
+    return reading;
 }
 
 /// The first true time, not before `from`, when the vehicle's clock shows a whole multiple of `period` (in UTC: the

@@ -186,6 +186,44 @@ TEST(AcousticModem, DeliversAsTheBitErrorsOfTheClosedFormSay) {
   FAIL() << "no such row";
 }
 
+TEST(AcousticModem, DeliveryFallsOverRangeAsTheFadingSays) {
+  // One sender, receivers at growing ranges on bearings of their own.  Bits are spread over so much bandwidth that a
+  // packet that is noticed comes through: the share is that of fades that leave 6 dB, which is the normal
+  // distribution's.
+  const std::string modem =
+      "{name: modem, type: acoustic_modem, frame_bytes: 1, preamble_s: 0.05, source_level_dB: 135}";
+  const double ranges_m[] = {400, 800, 1200, 1600, 2000, 2600};
+  std::vector<test::Moored> vehicles{{"a", "[0, 0, -20]", modem}};
+  for (int i = 0; i < 6; ++i)
+    vehicles.push_back(
+        {"r" + std::to_string(i),
+         "[" + std::to_string(ranges_m[i] * std::cos(i)) + ", " + std::to_string(ranges_m[i] * std::sin(i)) + ", -20]",
+         modem});
+  const double sigma_dB = 6;
+  test::TestWorld test(test::modem_sea(vehicles, "acoustics: {fading: {type: log_normal, std_dB: 6}}\n"));
+  const int packets = 400;
+  for (int i = 0; i < packets; ++i) {
+    test.send("a.modem.cmd", test::bytes_to("x"));
+    test.run_for(0.15);
+  }
+  test.run_for(3);
+  double last = 2;
+  for (int i = 0; i < 6; ++i) {
+    const auto& channel = test.world.acoustics();
+    const sim::Vector3d there_W = test.world.find_vehicle("r" + std::to_string(i))->X_WV().translation();
+    const double snr_dB =
+        160 - channel.transmission_loss({0, 0, -20}, there_W, 25000).dB() - channel.ambient_level(25000, 4000).dB();
+    const double expected = 0.5 * std::erfc((6 - snr_dB) / (sigma_dB * std::sqrt(2.0)));
+    const auto& counts =
+        test::device_of<devices::AcousticModem>(test, "r" + std::to_string(i) + "/modem").transducer().counts();
+    const double share = static_cast<double>(counts.understood) / packets;
+    EXPECT_NEAR(share, expected, 4 * std::sqrt(expected * (1 - expected) / packets) + 0.01) << ranges_m[i];
+    EXPECT_LT(expected, last);
+    last = expected;
+  }
+  EXPECT_LT(last, 0.5);
+}
+
 TEST(AcousticModem, DropsTheOldestWhenItsQueueIsFull) {
   test::TestWorld test(three(", preset: high_rate, queue_messages: 2"));
   test::Listener<Received> at_b(test, "b.modem");
