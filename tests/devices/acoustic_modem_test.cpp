@@ -192,7 +192,7 @@ TEST(AcousticModem, DeliveryFallsOverRangeAsTheFadingSays) {
   // distribution's.
   const std::string modem =
       "{name: modem, type: acoustic_modem, frame_bytes: 1, preamble_s: 0.05, source_level_dB: 135}";
-  const double ranges_m[] = {400, 800, 1200, 1600, 2000, 2600};
+  const double ranges_m[] = {800, 1600, 2200, 2800, 3400, 4000};
   std::vector<test::Moored> vehicles{{"a", "[0, 0, -20]", modem}};
   for (int i = 0; i < 6; ++i)
     vehicles.push_back(
@@ -212,7 +212,7 @@ TEST(AcousticModem, DeliveryFallsOverRangeAsTheFadingSays) {
     const auto& channel = test.world.acoustics();
     const sim::Vector3d there_W = test.world.find_vehicle("r" + std::to_string(i))->X_WV().translation();
     const double snr_dB =
-        160 - channel.transmission_loss({0, 0, -20}, there_W, 25000).dB() - channel.ambient_level(25000, 4000).dB();
+        135 - channel.transmission_loss({0, 0, -20}, there_W, 25000).dB() - channel.ambient_level(25000, 4000).dB();
     const double expected = 0.5 * std::erfc((6 - snr_dB) / (sigma_dB * std::sqrt(2.0)));
     const auto& counts =
         test::device_of<devices::AcousticModem>(test, "r" + std::to_string(i) + "/modem").transducer().counts();
