@@ -57,6 +57,8 @@ class Medium {
   bool current_known(const Vector3d& p_W) const { return !current_ || current_->known(p_W.x(), p_W.y()); }
   /// Of the wind, m/s.  Below the surface: as at the surface.
   Vector3d air_velocity_W(const Vector3d& p_W) const;
+  /// Of the wind, without gusts, at its reference height, level; 0 without wind.
+  double mean_wind_mps() const { return config_.wind ? config_.wind->mean_mps().head<2>().norm() : 0; }
   /// Of water or air, kg/m^3.
   double density_kgpm3(const Vector3d& p_W) const;
   /// Absolute, of water or air, Pa; in waves with their dynamic pressure.
