@@ -130,8 +130,8 @@ std::string closed_forms_text(const std::vector<ClosedFormRow>& rows) {
   std::string text =
       "| case | parameters | quantity | expected | computed | tolerance | |\n|---|---|---|---|---|---|---|\n";
   for (const ClosedFormRow& row : rows)
-    text += fmt::format("| {} | {} | {} | {:.7g} {} | {:.7g} | {:.2g} | {} |\n", row.name, row.parameters, row.quantity,
-                        row.expected, row.unit == "-" ? "" : row.unit, row.computed, row.tolerance,
+    text += fmt::format("| {} | {} | {} | {:.6g}{} | {:.6g} | {:.2g} | {} |\n", row.name, row.parameters, row.quantity,
+                        row.expected, row.unit == "-" ? "" : " " + row.unit, row.computed, row.tolerance,
                         row.within() ? "ok" : "FAILS");
   return text;
 }

@@ -60,14 +60,14 @@ std::string budget_text(const AcousticLink& link, const LinkBudget& budget, cons
 
 std::string packets_text(const AcousticLink& link, const LinkBudget& budget, const std::vector<AcousticPacket>& packets,
                          const std::vector<double>& delivered) {
-  std::string text = fmt::format("{:<10}{:>8}{:>8}{:>9}{:>11}{:>12}{:>14}{:>11}\n", "modulation", "bit/s", "bytes",
+  std::string text = fmt::format("{:<10}{:>8}{:>8}{:>9}{:>11}{:>12}{:>16}{:>11}\n", "modulation", "bit/s", "bytes",
                                  "time_s", "Eb/N0_dB", "bit_error", "all_bits_right", "delivered");
   for (std::size_t i = 0; i < packets.size(); ++i) {
     const AcousticPacket& packet = packets[i];
     const sim::PowerRatio energy =
         sim::energy_per_bit(sim::to_power(budget.snr + link.coding_gain), link.bandwidth_Hz, packet.bit_rate_bps);
     const double bit_error = sim::bit_error_probability(packet.modulation, energy);
-    text += fmt::format("{:<10}{:>8g}{:>8}{:>9.3f}{:>11.1f}{:>12.3g}{:>14.4f}{:>11.4f}\n",
+    text += fmt::format("{:<10}{:>8g}{:>8}{:>9.3f}{:>11.1f}{:>12.3g}{:>16.4f}{:>11.4f}\n",
                         sim::to_string(packet.modulation), packet.bit_rate_bps, packet.bytes,
                         sim::packet_duration_s(8 * packet.bytes, packet.bit_rate_bps), sim::to_decibels(energy).dB(),
                         bit_error, sim::packet_success_probability(bit_error, 8 * packet.bytes), delivered[i]);
@@ -95,8 +95,8 @@ void draw_over_range(const std::vector<RangeRow>& rows, const std::vector<Acoust
   std::ofstream(scratch.path / "data.csv") << csv_text(rows, packets);
   std::string script = fmt::format(
       "set datafile separator ','\nset terminal pngcairo size 900,640\nset output {}\n"
-      "set multiplot layout 2,1 title {} noenhanced\nset grid\nset key outside right noenhanced\nset lmargin 9\n"
-      "set rmargin 24\nset xlabel 'range (m)'\nset ylabel 'signal over noise (dB)'\n"
+      "set multiplot layout 2,1 title {} noenhanced\nset grid\nset autoscale xfix\nset key outside right noenhanced\nset lmargin 9\n"
+      "set rmargin 30\nset xlabel 'range (m)'\nset ylabel 'signal over noise (dB)'\n"
       "plot 'data.csv' skip 1 using 1:5 with lines lw 2 title 'mean, in the band'\n"
       "set ylabel 'delivered'\nset yrange [-0.02:1.02]\nplot ",
       gnuplot_text(std::filesystem::absolute(png).string()), gnuplot_text(title));

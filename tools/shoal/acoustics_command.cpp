@@ -142,7 +142,7 @@ int show(AcousticsArguments& arguments) {
           .config;
   sim::InProcessBus bus;
   const sim::World world(config, bus);
-  if (!world.medium().has_water()) throw std::runtime_error("this world has no water to carry sound");
+  if (!world.medium().has_water()) throw CLI::ValidationError("WORLD", "has no water to carry sound");
   const AcousticLink link = link_of(arguments, world);
   for (const LinkEnd* end : {&link.from, &link.to})
     if (!world.medium().in_water(end->p_W)) std::cerr << "shoal: one end of the link is not under water\n";
