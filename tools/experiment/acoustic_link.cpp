@@ -6,8 +6,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "sim/acoustics/echoes.hpp"
 #include "sim/acoustics/fading.hpp"
-#include "sim/acoustics/multipath.hpp"
 #include "sim/acoustics/sound_path.hpp"
 #include "sim/random/random.hpp"
 
@@ -25,36 +25,19 @@ std::string packet_name(Modulation modulation, double bit_rate_bps, std::int64_t
   return fmt::format("{}_{:g}_{}", sim::to_string(modulation), bit_rate_bps, bytes);
 }
 
-/// What the paths do to the level, phases as they are by length.
-std::vector<sim::PathGain> paths_of(const AcousticLink& link, const LinkBudget& budget,
-                                    const sim::AcousticsConfig& acoustics, const sim::Medium& medium,
-                                    std::optional<double> water_depth_m) {
-  const sim::MultipathConfig& config = *acoustics.multipath;
-  const double deepest_m = std::max(medium.depth_m(link.from.p_W), medium.depth_m(link.to.p_W));
-  const double given_m = config.water_depth_m.value_or(water_depth_m.value_or(HUGE_VAL));
-  std::vector<sim::ImagePath> paths;
-  sim::image_paths(std::max(0.0, medium.depth_m(link.from.p_W)), std::max(0.0, medium.depth_m(link.to.p_W)),
-                   (link.to.p_W - link.from.p_W).head<2>().norm(), std::max(given_m, deepest_m), config.max_bounces,
-                   paths);
+/// What the echoes do to the direct path; `random` as for sim::echoes().
+sim::Echoes echoes_of(const AcousticLink& link, const LinkBudget& budget, const sim::AcousticsConfig& acoustics,
+                      const sim::Medium& medium, std::optional<double> water_depth_m, sim::Random* random) {
   sim::MultipathMedium water;
   water.frequency_Hz = link.centre_Hz;
-  water.sound_speed_mps = budget.range_m > 0 ? budget.range_m / budget.travel_time_s : 1500;
+  if (budget.travel_time_s > 0) water.sound_speed_mps = budget.range_m / budget.travel_time_s;
   water.absorption_dBpkm = budget.absorption_dBpkm;
   water.wind_mps = budget.wind_mps;
   water.spreading = acoustics.spreading;
-  std::vector<sim::PathGain> gains;
-  sim::path_gains(paths, config, water, gains);
-  return gains;
-}
-
-void add_echoes(LinkBudget& budget, const std::vector<sim::PathGain>& gains, double window_s) {
-  PowerRatio inside, late;
-  for (const sim::PathGain& gain : gains)
-    (gain.delay_s - gains[0].delay_s <= window_s ? inside : late) += sim::to_power(gain.gain);
-  const Decibels first = gains[0].gain;
-  budget.echoes = sim::to_decibels(inside) - first;
-  budget.late = budget.level + sim::to_decibels(late) - first;
-  budget.delay_spread_s = sim::combine(gains, window_s).spread_s;
+  const sim::LinkDepths depths{medium.depth_m(link.from.p_W), medium.depth_m(link.to.p_W),
+                               (link.to.p_W - link.from.p_W).head<2>().norm(),
+                               acoustics.multipath->water_depth_m.value_or(water_depth_m.value_or(HUGE_VAL))};
+  return sim::echoes(*acoustics.multipath, water, depths, random);
 }
 
 double success_at(const AcousticLink& link, const AcousticPacket& packet, PowerRatio ratio) {
@@ -126,8 +109,12 @@ LinkBudget link_budget(const AcousticLink& link, const sim::AcousticsConfig& aco
   budget.noise_per_Hz = noise.spectral_level(link.centre_Hz / 1000);
   budget.noise = noise.band_level(link.centre_Hz, link.bandwidth_Hz);
   budget.snr = budget.level - budget.noise;
-  if (acoustics.multipath)
-    add_echoes(budget, paths_of(link, budget, acoustics, medium, water_depth_m), acoustics.multipath->window_s);
+  if (acoustics.multipath) {
+    const sim::Echoes echoes = echoes_of(link, budget, acoustics, medium, water_depth_m, nullptr);
+    budget.echoes = sim::to_decibels(echoes.signal);
+    budget.late = budget.level + sim::to_decibels(echoes.late);
+    budget.delay_spread_s = echoes.spread_s;
+  }
   return budget;
 }
 
@@ -137,23 +124,14 @@ double delivery_probability(const AcousticLink& link, const AcousticPacket& pack
   const LinkBudget budget = link_budget(link, acoustics, medium, water_depth_m);
   const bool fades = acoustics.fading.type != sim::FadingConfig::Type::none;
   if (!fades && !acoustics.multipath) return success_at(link, packet, sim::to_power(budget.snr));
-  std::vector<sim::PathGain> gains;
-  if (acoustics.multipath) gains = paths_of(link, budget, acoustics, medium, water_depth_m);
-  const Decibels first = gains.empty() ? Decibels(0) : gains[0].gain;
-  const bool random_phases = acoustics.multipath && acoustics.multipath->phases == sim::MultipathConfig::Phases::random;
   sim::Random random(1, "delivery");
   double sum = 0;
   for (int i = 0; i < draws; ++i) {
     random.begin_step(i);
-    PowerRatio signal(1), late(0);
-    if (!gains.empty()) {
-      if (random_phases) sim::randomize_phases(gains, random);
-      const sim::MultipathSum paths = sim::combine(gains, acoustics.multipath->window_s);
-      signal = paths.signal / sim::to_power(first);
-      late = paths.interference / sim::to_power(first);
-    }
+    sim::Echoes echoes;
+    if (acoustics.multipath) echoes = echoes_of(link, budget, acoustics, medium, water_depth_m, &random);
     const PowerRatio faded = sim::to_power(sim::fade(acoustics.fading, random) + budget.level);
-    sum += success_at(link, packet, faded * signal / (sim::to_power(budget.noise) + faded * late));
+    sum += success_at(link, packet, faded * echoes.signal / (sim::to_power(budget.noise) + faded * echoes.late));
   }
   return sum / draws;
 }

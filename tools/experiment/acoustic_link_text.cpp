@@ -44,15 +44,19 @@ std::string budget_text(const AcousticLink& link, const LinkBudget& budget, cons
                                model_name(acoustics.absorption)));
   text += row_text("directivity, receiver", budget.to_gain, "");
   text += row_text("level at the receiver", budget.level, "re 1 uPa, direct path");
-  if (budget.echoes) text += row_text("echoes in the window", *budget.echoes, "phases averaged");
-  if (budget.late)
-    text += row_text("echoes that disturb", *budget.late,
-                     fmt::format("re 1 uPa; delays spread by {:.2f} ms rms", 1000 * budget.delay_spread_s));
+  if (budget.echoes)
+    text += row_text("echoes in the window", *budget.echoes,
+                     fmt::format("phases averaged; delays spread by {:.2f} ms rms", 1000 * budget.delay_spread_s));
+  if (budget.late && budget.late->dB() > -HUGE_VAL) text += row_text("echoes that disturb", *budget.late, "re 1 uPa");
   text +=
       row_text("noise per hertz", budget.noise_per_Hz,
                fmt::format("re 1 uPa^2/Hz; shipping {:g}, wind {:g} m/s", acoustics.noise.shipping, budget.wind_mps));
   text += row_text("noise in the band", budget.noise, fmt::format("re 1 uPa; {:g} Hz", link.bandwidth_Hz));
   text += row_text("signal over noise", budget.snr, "direct path");
+  if (budget.echoes && budget.late) {
+    const sim::PowerRatio both = sim::to_power(budget.noise) + sim::to_power(*budget.late);
+    text += row_text("signal over noise, echoes", budget.level + *budget.echoes - sim::to_decibels(both), "");
+  }
   text += fmt::format("{:<26}{:>8.4f} s    over {:.1f} m, {:.2f} m/s on average\n", "travel time", budget.travel_time_s,
                       budget.range_m, budget.range_m / std::max(budget.travel_time_s, 1e-12));
   return text;
@@ -95,7 +99,8 @@ void draw_over_range(const std::vector<RangeRow>& rows, const std::vector<Acoust
   std::ofstream(scratch.path / "data.csv") << csv_text(rows, packets);
   std::string script = fmt::format(
       "set datafile separator ','\nset terminal pngcairo size 900,640\nset output {}\n"
-      "set multiplot layout 2,1 title {} noenhanced\nset grid\nset autoscale xfix\nset key outside right noenhanced\nset lmargin 9\n"
+      "set multiplot layout 2,1 title {} noenhanced\nset grid\nset autoscale xfix\nset key outside right "
+      "noenhanced\nset lmargin 9\n"
       "set rmargin 30\nset xlabel 'range (m)'\nset ylabel 'signal over noise (dB)'\n"
       "plot 'data.csv' skip 1 using 1:5 with lines lw 2 title 'mean, in the band'\n"
       "set ylabel 'delivered'\nset yrange [-0.02:1.02]\nplot ",

@@ -119,6 +119,18 @@ AcousticLink link_of(const AcousticsArguments& arguments, const sim::World& worl
   return link;
 }
 
+/// Of what is below the middle of the link, for echoes; nothing where nothing is.
+std::optional<double> water_depth_m(const AcousticLink& link, const sim::World& world) {
+  sim::Vector3d p_W = (link.from.p_W + link.to.p_W) / 2;
+  const double surface_m = world.medium().surface_m(p_W.x(), p_W.y());
+  p_W.z() = std::min(link.from.p_W.z(), link.to.p_W.z());
+  sim::RayFilter filter;
+  filter.kind = sim::RayKind::sound;
+  const auto bottom = world.physics().scene().cast(p_W, -sim::Vector3d::UnitZ(), 12000, filter);
+  if (!bottom) return std::nullopt;
+  return surface_m - p_W.z() + bottom->range_m;
+}
+
 int show_closed_forms(const std::string& file) {
   const std::vector<ClosedFormRow> rows = acoustic_closed_forms(file);
   std::cout << closed_forms_text(rows);
@@ -146,17 +158,16 @@ int show(AcousticsArguments& arguments) {
   const AcousticLink link = link_of(arguments, world);
   for (const LinkEnd* end : {&link.from, &link.to})
     if (!world.medium().in_water(end->p_W)) std::cerr << "shoal: one end of the link is not under water\n";
+  const std::optional<double> depth_m = arguments.water_depth_m ? arguments.water_depth_m : water_depth_m(link, world);
   if (ranges_m.empty()) {
-    const LinkBudget budget = link_budget(link, config.acoustics, world.medium(), arguments.water_depth_m);
+    const LinkBudget budget = link_budget(link, config.acoustics, world.medium(), depth_m);
     std::vector<double> delivered;
     for (const AcousticPacket& packet : packets)
-      delivered.push_back(
-          delivery_probability(link, packet, config.acoustics, world.medium(), arguments.water_depth_m));
+      delivered.push_back(delivery_probability(link, packet, config.acoustics, world.medium(), depth_m));
     std::cout << budget_text(link, budget, config.acoustics) << '\n' << packets_text(link, budget, packets, delivered);
     return exit_ok;
   }
-  const std::vector<RangeRow> rows =
-      over_range(link, packets, ranges_m, config.acoustics, world.medium(), arguments.water_depth_m);
+  const std::vector<RangeRow> rows = over_range(link, packets, ranges_m, config.acoustics, world.medium(), depth_m);
   if (arguments.picture.empty())
     std::cout << csv_text(rows, packets);
   else
@@ -186,7 +197,9 @@ void add_options(CLI::App& command, AcousticsArguments& arguments) {
   command.add_option("--detection", arguments.detection_dB, "signal over noise that the receiver needs, dB; 6")
       ->check(number_from(-60, 100));
   command.add_option("--coding-gain", arguments.coding_gain_dB, "dB, added to Eb/N0; 0")->check(number_from(-60, 60));
-  command.add_option("--water-depth", arguments.water_depth_m, "of a flat bottom for echoes, m")
+  command
+      .add_option("--water-depth", arguments.water_depth_m,
+                  "of a flat bottom for echoes, m; absent: that of the world below the middle of the link")
       ->check(number_from(0.1, 12000));
   command.add_option("--ranges", arguments.ranges, "from:to:step, m: a table over range, as CSV");
   command.add_option("--picture", arguments.picture, "PNG file: signal over noise and delivery over range");
