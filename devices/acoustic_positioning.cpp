@@ -12,8 +12,9 @@ namespace {
 
 template <typename T>
 void append(sim::Bytes& to, const T& value) {
-  const auto* bytes = reinterpret_cast<const std::byte*>(&value);
-  to.insert(to.end(), bytes, bytes + sizeof(T));
+  const std::size_t at = to.size();
+  to.resize(at + sizeof(T));
+  std::memcpy(to.data() + at, &value, sizeof(T));
 }
 
 template <typename T>
@@ -24,6 +25,12 @@ T value_at(const sim::Bytes& from, std::size_t at) {
 }
 
 }  // namespace
+
+sim::ReceiverConfig receiver_of_tones() {
+  sim::ReceiverConfig receiver;
+  receiver.doppler_limit_mps = 20;
+  return receiver;
+}
 
 sim::Bytes encode_ping(std::int64_t number) {
   sim::Bytes payload;

@@ -5,12 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "sim/acoustics/signal.hpp"
+#include "sim/acoustics/transducer.hpp"
 #include "sim/device/device_registry.hpp"
 
 namespace devices {
 
 class Transponder;
+
+/// That of pings and answers: a tone of 26 kHz that fills 1 kHz is still in its band at 20 m/s.
+sim::ReceiverConfig receiver_of_tones();
 
 /// Payload of a ping: a number that the answers repeat, so that late ones are not taken for those to a later ping.
 sim::Bytes encode_ping(std::int64_t number);

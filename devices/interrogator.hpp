@@ -17,7 +17,7 @@ struct InterrogatorParams {
   double frequency_Hz = 26000;
   double bandwidth_Hz = 1000;
   double ping_s = 0.01;
-  sim::ReceiverConfig receiver{.doppler_limit_mps = 20};
+  sim::ReceiverConfig receiver = receiver_of_tones();
   void read(sim::ParamReader& in);
 };
 

@@ -24,7 +24,7 @@ class Transponder final : public sim::Sensor, public sim::AcousticListener {
     std::optional<double> answer_frequency_Hz;
     double bandwidth_Hz = 1000;
     double ping_s = 0.01;
-    sim::ReceiverConfig receiver{.doppler_limit_mps = 20};
+    sim::ReceiverConfig receiver = receiver_of_tones();
     void read(sim::ParamReader& in);
   };
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "sim/acoustics/channel.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/world/vehicle.hpp"
@@ -16,6 +18,7 @@ class AcousticProbe final : public sim::AcousticListener {
     std::string source;
     sim::Time sent{0}, begun{0}, ended{0};
     double travel_time_s = 0, closing_mps = 0;
+    sim::Vector3d p_sent_W = sim::Vector3d::Zero(), p_begun_W = sim::Vector3d::Zero();
     double level_dB = 0, snr_dB = 0, sinr_dB = 0;
     sim::SignalLoss loss = sim::SignalLoss::none;
   };
@@ -26,7 +29,8 @@ class AcousticProbe final : public sim::AcousticListener {
   bool listens_to(const sim::Signal&) const override { return listening; }
   void heard(const sim::Reception& heard) override {
     all.push_back({heard.signal, heard.source, heard.sent, heard.begun, heard.ended, heard.travel_time_s,
-                   heard.closing_mps, heard.level.dB(), heard.snr.dB(), heard.sinr.dB(), heard.loss});
+                   heard.closing_mps, heard.p_sent_W, heard.p_begun_W, heard.level.dB(), heard.snr.dB(),
+                   heard.sinr.dB(), heard.loss});
   }
   /// A signal to be noticed, from now on.
   static sim::Signal tone(double source_level_dB = 180, double duration_s = 0.01) {
