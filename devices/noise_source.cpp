@@ -14,7 +14,7 @@ void NoiseSource::Params::read(sim::ParamReader& in) {
   in.read("period_s", period_s, sim::between(1e-3, 1e6), "it sounds once in each; unset: all the time (continuous)");
   in.read("sound_s", sound_s, sim::between(1e-4, 1e6), "how long in each period");
   if (in.describing()) return;
-  if (kind == Kind::pulses && !period_s) in.error("kind", "pulses need a 'period_s'");
+  if (kind == Kind::pulses && !period_s) in.error("kind", "kind 'pulses' needs a 'period_s'");
   if (period_s && sound_s > *period_s) in.error("sound_s", "'sound_s' must be at most 'period_s'");
 }
 

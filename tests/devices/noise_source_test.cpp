@@ -124,7 +124,8 @@ TEST(NoiseSource, PulsesTravelAndDisturbOnlyWhatTheyOverlap) {
 }
 
 TEST(NoiseSource, SaysWhatIsWrongWithItsParameters) {
-  EXPECT_THAT(test::error_of_world(noise_world(", kind: pulses")), testing::HasSubstr("pulses need a 'period_s'"));
+  EXPECT_THAT(test::error_of_world(noise_world(", kind: pulses")),
+              testing::HasSubstr("kind 'pulses' needs a 'period_s'"));
   EXPECT_THAT(test::error_of_world(noise_world(", period_s: 0.01, sound_s: 0.1")),
               testing::HasSubstr("'sound_s' must be at most 'period_s'"));
   EXPECT_THAT(test::error_of_world(test::rover_world("        - {name: n, type: noise_source}\n")),
