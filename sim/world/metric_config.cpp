@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "sim/acoustics/signal.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/script/action.hpp"
@@ -68,7 +69,12 @@ constexpr const char* rule_forms[] = {"above", "above_metric", "below", "below_m
 }  // namespace
 
 const std::vector<std::string>& loss_causes() {
-  static const std::vector<std::string> causes{"weak", "overlap", "half_duplex", "doppler", "link", "blocked", "other"};
+  static const std::vector<std::string> causes = [] {
+    std::vector<std::string> words;
+    for (int loss = 1; loss < signal_losses; ++loss)  // 0: none
+      words.emplace_back(signal_loss_word(static_cast<SignalLoss>(loss)));
+    return words;
+  }();
   return causes;
 }
 

@@ -63,7 +63,7 @@ void declare_figures(ParamReader& in, const std::vector<MetricConfig>& metrics);
 /// Reports devices that are not there.  Call when the vehicles are known.
 void check_metrics(const WorldConfig& world, Diagnostics& diagnostics);
 
-/// Why a packet that reached a listener was not received, as in `NAME.lost_CAUSE`.
+/// The words of the SignalLoss, as in `NAME.lost_CAUSE`.
 const std::vector<std::string>& loss_causes();
 
 }  // namespace sim

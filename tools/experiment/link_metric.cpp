@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "tools/experiment/link_counts.hpp"
 #include "tools/experiment/metric.hpp"
 
@@ -14,20 +12,15 @@ class DeliveryMetric final : public Metric {
 
   void add_figures(Figures& figures) const override {
     const LinkCounts counts = link_counts(world_, config().vehicle, config().device);
-    const std::vector<std::string>& causes = sim::loss_causes();
-    std::map<std::string, std::int64_t> lost;
     std::int64_t all_lost = 0;
-    for (const auto& [cause, count] : counts.lost) {
-      lost[std::find(causes.begin(), causes.end(), cause) != causes.end() ? cause : "other"] += count;
-      all_lost += count;
-    }
+    for (const auto& [cause, count] : counts.lost) all_lost += count;
     const auto heard = static_cast<double>(counts.received + all_lost);
     add(figures, "sent", static_cast<double>(counts.sent));
     add(figures, "bytes_sent", static_cast<double>(counts.bytes_sent));
     add(figures, "received", static_cast<double>(counts.received));
     add(figures, "lost", static_cast<double>(all_lost));
     add(figures, "ratio", heard > 0 ? static_cast<double>(counts.received) / heard : no_figure);
-    for (const std::string& cause : causes) add(figures, ("lost_" + cause).c_str(), static_cast<double>(lost[cause]));
+    for (const auto& [cause, count] : counts.lost) add(figures, "lost_" + cause, static_cast<double>(count));
   }
 
  private:

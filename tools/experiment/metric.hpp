@@ -46,7 +46,9 @@ class Metric {
   const sim::MetricConfig& config() const { return config_; }
 
  protected:
-  void add(Figures& figures, const char* figure, double value) const { figures[config_.name + "." + figure] = value; }
+  void add(Figures& figures, const std::string& figure, double value) const {
+    figures[config_.name + "." + figure] = value;
+  }
 
  private:
   const sim::MetricConfig& config_;
