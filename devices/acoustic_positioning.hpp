@@ -21,8 +21,4 @@ class TransponderNetwork {
   std::vector<Transponder*> members_;
 };
 
-/// Time that sound takes along the straight line between two places under water, s: by the mean of 1 / c at nine places
-/// (Simpson's rule).
-double travel_time_s(const sim::Medium& medium, const sim::Vector3d& from_W, const sim::Vector3d& to_W);
-
 }  // namespace devices

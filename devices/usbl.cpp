@@ -6,6 +6,7 @@
 #include "devices/transponder.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/usbl_t.hpp"
+#include "sim/acoustics/sound_path.hpp"
 
 namespace devices {
 

@@ -24,7 +24,8 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
       physics_(std::make_unique<PhysicsWorld>(config.physics, config.materials, config.contacts, config.categories,
                                               static_cast<std::uint64_t>(config.run.seed))),
       medium_(config.medium, config.physics.gravity_mps2, static_cast<std::uint64_t>(config.run.seed)),
-      hydrodynamics_(medium_, config.physics.gravity_mps2, config.physics.step_s) {
+      hydrodynamics_(medium_, config.physics.gravity_mps2, config.physics.step_s),
+      acoustics_(config.acoustics, {medium_, *physics_, events_, static_cast<std::uint64_t>(config.run.seed)}) {
   hydrodynamics_.set_complain([this](const std::string& who, const std::string& text) { notice(*this, who, text); });
   known_materials_.insert("default");
   for (const MaterialConfig& material : config.materials) known_materials_.insert(material.name);
@@ -206,8 +207,12 @@ void World::cast_rays() {
 }
 
 void World::run_due_events() {
-  for (Event event; events_.take_due(now(), event);)
-    if (const auto& device = devices_[static_cast<std::size_t>(event.device)]) device->handle(event);
+  for (Event event; events_.take_due(now(), event);) {
+    if (event.device == Event::of_acoustics)
+      acoustics_.handle(event, now());
+    else if (const auto& device = devices_[static_cast<std::size_t>(event.device)])
+      device->handle(event);
+  }
 }
 
 const Vehicle* World::find_vehicle(const std::string& name) const {
@@ -283,6 +288,7 @@ std::uint64_t World::state_hash() const {
   for (const auto& device : devices_)
     if (device) device->hash_state(hash);
   events_.hash_state(hash);
+  acoustics_.hash_state(hash);
   if (!script_->empty()) script_->hash_state(hash);
   return hash.value();
 }

@@ -11,6 +11,7 @@
 #include <typeindex>
 #include <vector>
 
+#include "sim/acoustics/channel.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/bus/byte_port.hpp"
 #include "sim/geodesy.hpp"
@@ -89,6 +90,9 @@ class World {
   /// Water and air at the time of the world: in stages 1 to 5 that of the start of the step, then that of its end.
   const Medium& medium() const { return medium_; }
   const Hydrodynamics& hydrodynamics() const { return hydrodynamics_; }
+  /// What carries sound between transducers.
+  AcousticChannel& acoustics() { return acoustics_; }
+  const AcousticChannel& acoustics() const { return acoustics_; }
   const Geodesy& geodesy() const { return geodesy_; }
   std::span<const std::unique_ptr<Vehicle>> vehicles() const { return vehicles_; }
   const Vehicle* find_vehicle(const std::string& name) const;
@@ -193,6 +197,7 @@ class World {
   std::unique_ptr<PhysicsWorld> physics_;
   Medium medium_;
   Hydrodynamics hydrodynamics_;
+  AcousticChannel acoustics_;
   std::vector<std::unique_ptr<Vehicle>> vehicles_;
   std::map<std::string, Vehicle*, std::less<>> vehicles_by_name_;
   std::map<std::string, WorldObject, std::less<>> objects_;

@@ -159,6 +159,7 @@ void World::remove_device(MountedDevice& device) {
 void World::move_vehicle(const std::string& name, const Pose& X_WV) {
   const Vehicle& vehicle = vehicle_named(name);
   physics_->move_group(vehicle.group(), X_WV * vehicle.X_WV().inverse());
+  acoustics_.forget_places();
 }
 
 const WorldObject& World::add_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE) {

@@ -204,6 +204,7 @@ void WorldConfig::read(ParamReader& in) {
     in.error("epoch", "'epoch' must be a UTC time such as 2026-01-01T00:00:00Z, got '" + epoch + "'");
   in.read("physics", physics, "how bodies move");
   in.read("medium", medium, "water and air, see docs/medium.md");
+  in.read("acoustics", acoustics, "how the water carries sound between devices, see docs/acoustics.md");
   in.declare("material", "default");
   in.declare("category", "solid");
   in.read_list("materials", materials, "material", "materials of this world");

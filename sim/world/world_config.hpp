@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/acoustics/acoustics_config.hpp"
 #include "sim/camera/light.hpp"
 #include "sim/config/param_reader.hpp"
 #include "sim/geodesy.hpp"
@@ -144,6 +145,7 @@ struct WorldConfig {
   std::int64_t epoch_us = 0;                   ///< the same in microseconds since 1970
   PhysicsConfig physics;
   MediumConfig medium;
+  AcousticsConfig acoustics;
   std::vector<MaterialConfig> materials;
   std::vector<ContactConfig> contacts;
   std::vector<std::string> categories;
