@@ -117,8 +117,8 @@ double VehicleClock::rate_error() const {
   return state_->oscillator.drift() + (steer ? steer->rate : 0) + wander_s / to_seconds(later);
 }
 
-bool VehicleClock::feels_temperature() const {
-  return state_ && state_->config.temperature_ppm_per_C != 0;
+bool VehicleClock::wants_temperature(Time now) const {
+  return state_ && state_->config.temperature_ppm_per_C != 0 && state_->nodes.back().at <= now + look_ahead;
 }
 
 void VehicleClock::advance_to(Time now, std::optional<double> water_temperature_C) {

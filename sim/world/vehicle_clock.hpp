@@ -44,8 +44,8 @@ class VehicleClock {
 
   /// Goes on to the time of the world.
   void advance_to(Time now, std::optional<double> water_temperature_C);
-  /// Its rate depends on the temperature of the water.
-  bool feels_temperature() const;
+  /// advance_to() will look at the temperature of the water.
+  bool wants_temperature(Time now) const;
 
   /// A fix came with a pulse on the second: what the clock showed at `now` minus the time of the pulse, jitter
   /// included. What it corrects holds for readings after `now`, so that everything that is stamped in one step agrees.

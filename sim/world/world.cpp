@@ -162,7 +162,7 @@ void World::step() {
 void World::advance_clocks() {
   for (Vehicle* vehicle : clocked_) {
     std::optional<double> temperature_C;
-    if (vehicle->clock().feels_temperature()) {
+    if (vehicle->clock().wants_temperature(now())) {
       const Vector3d p_W = vehicle->X_WV().translation();
       if (medium_.in_water(p_W)) temperature_C = medium_.temperature_C(p_W);
     }

@@ -134,7 +134,8 @@ TEST(VehicleClock, FlickerNoiseHasTheFloorAskedFor) {
 
 TEST(VehicleClock, FollowsTheTemperatureOfTheWater) {
   VehicleClock clock = made({.temperature_ppm_per_C = 0.05});
-  EXPECT_TRUE(clock.feels_temperature());
+  EXPECT_FALSE(clock.wants_temperature(Time{0}));  // it is planned ahead for 3 s
+  EXPECT_TRUE(clock.wants_temperature(Time{1'000'000}));
   for (int second = 1; second <= 3600; ++second) clock.advance_to(Time{1'000'000LL * second}, 4.0);
   // 16 C below its reference: -0.8 ppm, from 3 s on (until then it was planned ahead in air).
   EXPECT_NEAR(clock.error_s(hour), -0.8e-6 * 3597, 2e-12);
