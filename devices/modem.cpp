@@ -46,6 +46,7 @@ Modem::Modem(const Params& params, const sim::DeviceContext& context)
     : params_(params),
       network_(context.world.shared<Network>()),
       vehicle_(context.vehicle.name()),
+      clock_(context.vehicle.clock()),
       full_name_(context.full_name()),
       seed_(context.world.seed()),
       device_(context.number),
@@ -103,7 +104,8 @@ void Modem::transmit(sim::Time now, const Outgoing& message) {
   const double air_time_s = 8.0 * static_cast<double>(message.data.size()) / params_.data_rate_bps;
   busy_until_ = now + std::max(sim::from_seconds(air_time_s), sim::Time{1});
   ++sent_;
-  // The frame between modems is a modem_received_t; the receiver's copy is completed when it arrives.
+  // The frame between modems is a modem_received_t; the receiver's copy is completed when it arrives.  Its utime says
+  // how far the sender's clock is off.
   shoal::modem_received_t frame;
   frame.sent_utime = now.count();
   frame.source = vehicle_;
@@ -111,7 +113,7 @@ void Modem::transmit(sim::Time now, const Outgoing& message) {
   frame.size = static_cast<std::int32_t>(message.data.size());
   frame.data.assign(reinterpret_cast<const std::uint8_t*>(message.data.data()),
                     reinterpret_cast<const std::uint8_t*>(message.data.data()) + message.data.size());
-  frame.utime = 0;
+  frame.utime = (clock_.reading(now) - now).count();
   const sim::Bytes payload = shoal::encode(frame);
   const sim::Zones& zones = network_.world().zones();
   const sim::Medium& medium = network_.world().medium();
@@ -157,7 +159,8 @@ bool Modem::hidden_from(const Modem& receiver) const {
 
 void Modem::arrive(sim::Time at, std::span<const std::byte> payload) {
   const auto frame = shoal::decode<shoal::modem_received_t>(payload, shoal::Finite::any);
-  Packet packet{frame.source, frame.destination, sim::Time{frame.sent_utime}, at, {}};
+  const sim::Time sent{frame.sent_utime};
+  Packet packet{frame.source, frame.destination, sent, at, sent + sim::Time{frame.utime}, {}};
   const auto* data = reinterpret_cast<const std::byte*>(frame.data.data());
   packet.data.assign(data, data + frame.data.size());
   if (serial_) serial_->write(packet.data);
@@ -181,7 +184,7 @@ void Modem::hash_state(sim::StateHash& hash) const {
     for (const Packet& packet : *packets) {
       hash.add(std::string_view(packet.source));
       hash.add(std::string_view(packet.destination));
-      hash.add(static_cast<std::int64_t>(packet.sent.count()));
+      hash.add(static_cast<std::int64_t>(packet.sent_reading.count()));
       hash.add(static_cast<std::int64_t>(packet.arrived.count()));
       hash.add_bytes(packet.data.data(), packet.data.size());
     }
@@ -206,7 +209,7 @@ void ModemReporter::report(sim::Time, sim::Publisher& out) const {
   for (const Modem::Packet& packet : modem_.received()) {
     shoal::modem_received_t message;
     message.utime = out.utime(packet.arrived);
-    message.sent_utime = out.utime(packet.sent);
+    message.sent_utime = out.utime_elsewhere(packet.sent, packet.sent_reading);
     message.source = packet.source;
     message.destination = packet.destination;
     message.size = static_cast<std::int32_t>(packet.data.size());

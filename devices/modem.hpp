@@ -36,6 +36,7 @@ class Modem final : public sim::Sensor, public MessageModem {
   struct Packet {
     std::string source, destination;
     sim::Time sent{0}, arrived{0};
+    sim::Time sent_reading{0};  ///< by the clock of the sender
     sim::Bytes data;
   };
 
@@ -76,6 +77,7 @@ class Modem final : public sim::Sensor, public MessageModem {
   Params params_;
   Network& network_;
   std::string vehicle_;
+  const sim::VehicleClock& clock_;
   std::string full_name_;
   std::uint64_t seed_;
   int device_;

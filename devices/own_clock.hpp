@@ -8,20 +8,12 @@
 namespace devices {
 
 /// What the clock of a vehicle shows at a true time, both since the start of the run.
-template <typename Vehicle>
-sim::Time own_time(const Vehicle& vehicle, sim::Time at) {
-  if constexpr (requires { vehicle.clock().reading(at); })
-    return vehicle.clock().reading(at);
-  else
-    return at;
+inline sim::Time own_time(const sim::Vehicle& vehicle, sim::Time at) {
+  return vehicle.clock().reading(at);
 }
 /// The true time when it shows this.
-template <typename Vehicle>
-sim::Time true_time(const Vehicle& vehicle, sim::Time reading) {
-  if constexpr (requires { vehicle.clock().true_time(reading); })
-    return vehicle.clock().true_time(reading);
-  else
-    return reading;
+inline sim::Time true_time(const sim::Vehicle& vehicle, sim::Time reading) {
+  return vehicle.clock().true_time(reading);
 }
 
 /// The first true time, not before `from`, when the vehicle's clock shows a whole multiple of `period` (in UTC: the
