@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "devices/micromodem_rates.hpp"
+#include "sim/acoustics/channel.hpp"
 #include "tests/devices/modem_fixture.hpp"
 #include "tests/fidelity/closed_forms.hpp"
 
@@ -93,6 +94,21 @@ TEST(AcousticModem, SendsAtWholeSecondsWhenItIsSynchronous) {
   EXPECT_EQ(received[0].sent_utime % 2'000'000, 0);
   EXPECT_EQ(received[1].sent_utime - received[0].sent_utime, 4'000'000);
   EXPECT_NEAR(received[1].travel_time_s, 0.2, 1e-6);
+}
+
+TEST(AcousticModem, OneWayTimesAreByTheTwoClocks) {
+  const std::string modem = "{name: modem, type: acoustic_modem, synchronous_s: 1, truth: true}";
+  test::TestWorld test(test::modem_sea({{"a", "[0, 0, -20]", modem, "clock: {offset_s: 0.25}"},
+                                        {"b", "[300, 0, -20]", modem, "clock: {offset_s: -0.01}"}}));
+  test::Listener<Received> at_b(test, "b.modem"), truth(test, "b.modem.truth");
+  test.run_for(0.5);
+  test.send("a.modem.cmd", test::bytes_to("x"));
+  test.run_for(6);
+  const Received b = at_b.last(), really = truth.last();
+  EXPECT_EQ(b.sent_utime, test.world.epoch_us() + 1'000'000);  // a whole second of its own
+  EXPECT_NEAR(b.travel_time_s, 0.2 - 0.01 - 0.25, 2e-6);
+  EXPECT_EQ(really.sent_utime, test.world.epoch_us() + 750'000);
+  EXPECT_NEAR(really.travel_time_s, 0.2, 2e-6);
 }
 
 TEST(AcousticModem, HearsNothingWhileItSends) {
@@ -209,10 +225,10 @@ TEST(AcousticModem, DeliveryFallsOverRangeAsTheFadingSays) {
   test.run_for(3);
   double last = 2;
   for (int i = 0; i < 6; ++i) {
-    const auto& channel = test.world.acoustics();
+    const auto& water = test.world.acoustics().propagation();
     const sim::Vector3d there_W = test.world.find_vehicle("r" + std::to_string(i))->X_WV().translation();
     const double snr_dB =
-        135 - channel.transmission_loss({0, 0, -20}, there_W, 25000).dB() - channel.ambient_level(25000, 4000).dB();
+        135 - water.transmission_loss({0, 0, -20}, there_W, 25000).dB() - water.ambient_level(25000, 4000).dB();
     const double expected = 0.5 * std::erfc((6 - snr_dB) / (sigma_dB * std::sqrt(2.0)));
     const auto& counts =
         test::device_of<devices::AcousticModem>(test, "r" + std::to_string(i) + "/modem").transducer().counts();
