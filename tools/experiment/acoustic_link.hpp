@@ -31,6 +31,7 @@ struct LinkEnd {
   sim::Vector3d p_W = sim::Vector3d::Zero();
   sim::Matrix3d R_WS = sim::Matrix3d::Identity();
   sim::DirectivityConfig directivity;
+  std::optional<double> detection_dB;  ///< of the transducer there, if there is one
 };
 
 struct AcousticLink {

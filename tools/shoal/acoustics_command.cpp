@@ -28,7 +28,8 @@ struct AcousticsArguments {
   std::vector<std::string> packets;
   bool micromodem = false;
   double range_m = 1000, depth_m = 10, level_dB = 185, frequency_Hz = 25000, bandwidth_Hz = 4000;
-  double detection_dB = 6, coding_gain_dB = 0;
+  double coding_gain_dB = 0;
+  std::optional<double> detection_dB;
   std::optional<double> water_depth_m;
 };
 
@@ -72,7 +73,8 @@ LinkEnd find_end(const char* option, const std::string& text, const sim::World& 
     if (transducer == nullptr) continue;
     known += (known.empty() ? "; transducers: " : ", ") + transducer->full_name();
     if (transducer->full_name() != text) continue;
-    return {transducer->p_W(world.now()), transducer->R_WS(), transducer->config().directivity};
+    return {transducer->p_W(world.now()), transducer->R_WS(), transducer->config().directivity,
+            transducer->config().detection_dB};
   }
   if (const sim::Vehicle* vehicle = world.find_vehicle(text)) {
     end.p_W = vehicle->base().X_WB().translation();
@@ -104,13 +106,14 @@ AcousticLink link_of(const AcousticsArguments& arguments, const sim::World& worl
   link.source_level = sim::Decibels(arguments.level_dB);
   link.centre_Hz = arguments.frequency_Hz;
   link.bandwidth_Hz = arguments.bandwidth_Hz;
-  link.detection = sim::Decibels(arguments.detection_dB);
+  link.detection = sim::Decibels(arguments.detection_dB.value_or(6));
   link.coding_gain = sim::Decibels(arguments.coding_gain_dB);
   if (arguments.from.empty() != arguments.to.empty())
     throw CLI::ValidationError("--from", "needs --to, and --to needs --from");
   if (!arguments.from.empty()) {
     link.from = find_end("--from", arguments.from, world);
     link.to = find_end("--to", arguments.to, world);
+    link.detection = sim::Decibels(arguments.detection_dB.value_or(link.to.detection_dB.value_or(6)));
     return link;
   }
   const double z_m = world.medium().surface_m(0, 0) - arguments.depth_m;
@@ -194,7 +197,9 @@ void add_options(CLI::App& command, AcousticsArguments& arguments) {
       ->type_size(1)
       ->allow_extra_args(false);
   command.add_flag("--micromodem", arguments.micromodem, "a frame of each rate of the WHOI Micro-Modem");
-  command.add_option("--detection", arguments.detection_dB, "signal over noise that the receiver needs, dB; 6")
+  command
+      .add_option("--detection", arguments.detection_dB,
+                  "signal over noise that the receiver needs, dB; absent: that of the transducer, else 6")
       ->check(number_from(-60, 100));
   command.add_option("--coding-gain", arguments.coding_gain_dB, "dB, added to Eb/N0; 0")->check(number_from(-60, 60));
   command
