@@ -74,10 +74,11 @@ LinkEnd find_end(const char* option, const std::string& text, const sim::World& 
     known += (known.empty() ? "; transducers: " : ", ") + transducer->full_name();
     if (transducer->full_name() != text) continue;
     return {transducer->p_W(world.now()), transducer->R_WS(), transducer->config().directivity,
-            transducer->config().detection_dB};
+            transducer->vehicle().group(), transducer->config().detection_dB};
   }
   if (const sim::Vehicle* vehicle = world.find_vehicle(text)) {
     end.p_W = vehicle->base().X_WB().translation();
+    end.group = vehicle->group();
     return end;
   }
   throw CLI::ValidationError(option,
@@ -134,6 +135,17 @@ std::optional<double> water_depth_m(const AcousticLink& link, const sim::World& 
   return surface_m - p_W.z() + bottom->range_m;
 }
 
+void warn(const AcousticLink& link, const sim::World& world) {
+  for (const LinkEnd* end : {&link.from, &link.to})
+    if (!world.medium().in_water(end->p_W)) std::cerr << "shoal: one end of the link is not under water\n";
+  sim::Random random(1, "look");
+  random.begin_step(0);
+  const int none = -2;  // a group that nothing has
+  const auto gain = world.acoustics().propagation().gain(link.from.p_W, link.from.group < 0 ? none : link.from.group,
+                                                         link.to.p_W, link.to.group, link.centre_Hz, random);
+  if (gain.blocked) std::cerr << "shoal: something stands between the ends, which the table does not count\n";
+}
+
 int show_closed_forms(const std::string& file) {
   const std::vector<ClosedFormRow> rows = acoustic_closed_forms(file);
   std::cout << closed_forms_text(rows);
@@ -159,8 +171,7 @@ int show(AcousticsArguments& arguments) {
   const sim::World world(config, bus);
   if (!world.medium().has_water()) throw CLI::ValidationError("WORLD", "has no water to carry sound");
   const AcousticLink link = link_of(arguments, world);
-  for (const LinkEnd* end : {&link.from, &link.to})
-    if (!world.medium().in_water(end->p_W)) std::cerr << "shoal: one end of the link is not under water\n";
+  warn(link, world);
   const std::optional<double> depth_m = arguments.water_depth_m ? arguments.water_depth_m : water_depth_m(link, world);
   if (ranges_m.empty()) {
     const LinkBudget budget = link_budget(link, config.acoustics, world.medium(), depth_m);
