@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "shoal/message_writer.hpp"
+#include "sim/acoustics/channel.hpp"
+#include "sim/acoustics/transducer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/world.hpp"
