@@ -61,6 +61,7 @@ class Transducer {
   void transmit(Signal signal, Time at);
   /// It sends now, or has something scheduled, until this time.
   Time busy_until() const { return busy_until_; }
+  /// It is taking a signal now.
   bool receiving() const { return receiver_.taking(); }
   /// Has power, and no fault keeps it silent.
   bool works() const;

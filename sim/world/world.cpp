@@ -86,6 +86,7 @@ Vehicle& World::build_vehicle(const VehicleInstance& instance) {
       std::make_unique<Vehicle>(instance.name, next_vehicle_number_++, group, instance.config, bus_of(instance.bus)));
   Vehicle& vehicle = *vehicles_.back();
   vehicles_by_name_.emplace(instance.name, &vehicle);
+  vehicle.start_clock(seed(), now());
   try {
     build_parts_of(vehicle, instance);
   } catch (...) {  // a mesh that is no solid, a port that is taken: nothing of it stays
@@ -132,6 +133,9 @@ void World::sort_devices() {
   listening_.clear();
   acting_.clear();
   sensing_.clear();
+  clocked_.clear();
+  for (const auto& vehicle : vehicles_)
+    if (!vehicle->clock().perfect()) clocked_.push_back(vehicle.get());
   for (const auto& device : devices_) {
     if (!device) continue;
     if (device->mailbox()) listening_.push_back({mail_flags_.of(device->number()).get(), device.get()});
@@ -152,8 +156,21 @@ void World::step() {
   physics_->step(step_number_);
   ++step_number_;
   medium_.advance_to(now());
+  advance_clocks();
   run_due_events();
   sense();
+}
+
+/// Between physics and what is due: what is stamped in this step is stamped by the clocks as they stand at its end.
+void World::advance_clocks() {
+  for (Vehicle* vehicle : clocked_) {
+    std::optional<double> temperature_C;
+    if (vehicle->clock().wants_temperature(now())) {
+      const Vector3d p_W = vehicle->X_WV().translation();
+      if (medium_.in_water(p_W)) temperature_C = medium_.temperature_C(p_W);
+    }
+    vehicle->clock().advance_to(now(), temperature_C);
+  }
 }
 
 /// Stages 6 and 7.  Sensors that cast rays take nearly all the time and touch nothing but themselves: they go first,
@@ -270,6 +287,7 @@ std::uint64_t World::state_hash() const {
   physics_->hash_state(hash);
   medium_.hash_state(hash);
   for (const auto& vehicle : vehicles_) vehicle->systems().hash_state(hash);
+  for (const Vehicle* vehicle : clocked_) vehicle->clock().hash_state(hash);
   for (const auto& device : devices_)
     if (device) device->hash_state(hash);
   events_.hash_state(hash);

@@ -176,6 +176,7 @@ class World {
   void check_new_name(const std::string& name, const SourcePlace& place, const std::string& who) const;
   void sort_devices();
   void run_due_events();
+  void advance_clocks();
   void sense();
   void cast_rays();
 
@@ -224,6 +225,7 @@ class World {
   std::vector<Listening> listening_;
   std::vector<Acting*> acting_;
   std::vector<Sensing> sensing_;
+  std::vector<Vehicle*> clocked_;  // vehicles whose clocks are not perfect
   MailFlags mail_flags_;
   /// What this step has to sense.
   struct Casting {
