@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "devices/acoustic_modem.hpp"
 #include "shoal/message_writer.hpp"
 #include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/transducer.hpp"
@@ -29,8 +30,8 @@ struct AcousticsArguments {
   std::string from, to, ranges, picture, closed_forms;
   std::vector<std::string> packets;
   bool micromodem = false;
-  double range_m = 1000, depth_m = 10, level_dB = 185, frequency_Hz = 25000, bandwidth_Hz = 4000;
-  double coding_gain_dB = 0;
+  double range_m = 1000, depth_m = 10;
+  std::optional<double> level_dB, frequency_Hz, bandwidth_Hz, coding_gain_dB;  ///< unset: of the sending modem
   std::optional<double> detection_dB;
   std::optional<double> water_depth_m;
 };
@@ -87,7 +88,8 @@ LinkEnd find_end(const char* option, const std::string& text, const sim::World& 
                              "is no place such as 4,-3,-2.5, no transducer and no vehicle: '" + text + "'" + known);
 }
 
-std::vector<AcousticPacket> packets_of(const AcousticsArguments& arguments) {
+std::vector<AcousticPacket> packets_of(const AcousticsArguments& arguments,
+                                       const devices::AcousticModem::Params* modem) {
   std::vector<AcousticPacket> packets;
   for (const std::string& text : arguments.packets) {
     const auto packet = parse_packet(text);
@@ -99,18 +101,43 @@ std::vector<AcousticPacket> packets_of(const AcousticsArguments& arguments) {
   if (arguments.micromodem)
     for (const AcousticPacket& packet : micromodem_packets()) packets.push_back(packet);
   if (!packets.empty()) return packets;
+  if (modem != nullptr)
+    return {*parse_packet(fmt::format("{}:{}:{}", sim::to_string(modem->modulation), modem->bit_rate_bps,
+                                      std::int64_t{modem->frames} * modem->frame_bytes))};
   for (const char* text : {"fsk:80:32", "psk:500:64", "psk:5300:256", "dpsk:1200:256"})
     packets.push_back(*parse_packet(text));
   return packets;
 }
 
+/// The keys of an acoustic modem, or null.
+const devices::AcousticModem::Params* modem_keys(const std::string& full_name, const sim::World& world) {
+  for (const auto& device : world.devices()) {
+    if (!device || device->full_name() != full_name) continue;
+    const auto* keys =
+        dynamic_cast<const sim::detail::ParamsOf<devices::AcousticModem::Params>*>(device->config().params.get());
+    return keys != nullptr ? &keys->params : nullptr;
+  }
+  return nullptr;
+}
+
+/// The signal of the sending modem, where there is one, with what the options say instead.
+void take_signal(AcousticLink& link, const AcousticsArguments& arguments, const devices::AcousticModem::Params* modem) {
+  if (modem != nullptr) {
+    link.source_level = sim::Decibels(modem->source_level_dB);
+    link.centre_Hz = modem->frequency_Hz;
+    link.bandwidth_Hz = modem->bandwidth_Hz;
+    link.coding_gain = sim::Decibels(modem->coding_gain_dB);
+  }
+  if (arguments.level_dB) link.source_level = sim::Decibels(*arguments.level_dB);
+  link.centre_Hz = arguments.frequency_Hz.value_or(link.centre_Hz);
+  link.bandwidth_Hz = arguments.bandwidth_Hz.value_or(link.bandwidth_Hz);
+  if (arguments.coding_gain_dB) link.coding_gain = sim::Decibels(*arguments.coding_gain_dB);
+}
+
 AcousticLink link_of(const AcousticsArguments& arguments, const sim::World& world) {
   AcousticLink link;
-  link.source_level = sim::Decibels(arguments.level_dB);
-  link.centre_Hz = arguments.frequency_Hz;
-  link.bandwidth_Hz = arguments.bandwidth_Hz;
+  take_signal(link, arguments, modem_keys(arguments.from, world));
   link.detection = sim::Decibels(arguments.detection_dB.value_or(6));
-  link.coding_gain = sim::Decibels(arguments.coding_gain_dB);
   if (arguments.from.empty() != arguments.to.empty())
     throw CLI::ValidationError("--from", "needs --to, and --to needs --from");
   if (!arguments.from.empty()) {
@@ -159,7 +186,6 @@ int show_closed_forms(const std::string& file) {
 int show(AcousticsArguments& arguments) {
   if (!arguments.closed_forms.empty()) return show_closed_forms(arguments.closed_forms);
   if (!arguments.picture.empty()) check_writable(arguments.picture);
-  const std::vector<AcousticPacket> packets = packets_of(arguments);
   const std::vector<double> ranges_m =
       arguments.ranges.empty() && arguments.picture.empty()
           ? std::vector<double>()
@@ -173,6 +199,7 @@ int show(AcousticsArguments& arguments) {
   const sim::World world(config, bus);
   if (!world.medium().has_water()) throw CLI::ValidationError("WORLD", "has no water to carry sound");
   const AcousticLink link = link_of(arguments, world);
+  const std::vector<AcousticPacket> packets = packets_of(arguments, modem_keys(arguments.from, world));
   warn(link, world);
   const std::optional<double> depth_m = arguments.water_depth_m ? arguments.water_depth_m : water_depth_m(link, world);
   if (ranges_m.empty()) {
@@ -188,8 +215,8 @@ int show(AcousticsArguments& arguments) {
     std::cout << csv_text(rows, packets);
   else
     draw_over_range(rows, packets,
-                    fmt::format("{:g} dB re 1 uPa at 1 m, {:g} Hz, {:g} Hz wide", arguments.level_dB,
-                                arguments.frequency_Hz, arguments.bandwidth_Hz),
+                    fmt::format("{:g} dB re 1 uPa at 1 m, {:g} Hz, {:g} Hz wide", link.source_level.dB(),
+                                link.centre_Hz, link.bandwidth_Hz),
                     arguments.picture);
   return exit_ok;
 }
@@ -201,11 +228,16 @@ void add_options(CLI::App& command, AcousticsArguments& arguments) {
   command.add_option("--range", arguments.range_m, "m, without --from and --to")->check(number_from(0, 1e7));
   command.add_option("--depth", arguments.depth_m, "of both ends, m, without --from and --to")
       ->check(number_from(0, 12000));
-  command.add_option("--level", arguments.level_dB, "source level, dB re 1 uPa at 1 m; 185")
+  command
+      .add_option("--level", arguments.level_dB,
+                  "source level, dB re 1 uPa at 1 m; absent: of the sending modem, else 185")
       ->check(number_from(-100, 300));
-  command.add_option("--frequency", arguments.frequency_Hz, "middle of the band, Hz; 25000")
+  command
+      .add_option("--frequency", arguments.frequency_Hz,
+                  "middle of the band, Hz; absent: of the sending modem, else 25000")
       ->check(number_from(10, 1e6));
-  command.add_option("--bandwidth", arguments.bandwidth_Hz, "Hz; 4000")->check(number_from(0.1, 1e6));
+  command.add_option("--bandwidth", arguments.bandwidth_Hz, "Hz; absent: of the sending modem, else 4000")
+      ->check(number_from(0.1, 1e6));
   command.add_option("--packet", arguments.packets, "modulation:bit/s:bytes, such as fsk:80:32; may be repeated")
       ->type_size(1)
       ->allow_extra_args(false);
@@ -214,7 +246,9 @@ void add_options(CLI::App& command, AcousticsArguments& arguments) {
       .add_option("--detection", arguments.detection_dB,
                   "signal over noise that the receiver needs, dB; absent: that of the transducer, else 6")
       ->check(number_from(-60, 100));
-  command.add_option("--coding-gain", arguments.coding_gain_dB, "dB, added to Eb/N0; 0")->check(number_from(-60, 60));
+  command
+      .add_option("--coding-gain", arguments.coding_gain_dB, "dB, added to Eb/N0; absent: of the sending modem, else 0")
+      ->check(number_from(-60, 60));
   command
       .add_option("--water-depth", arguments.water_depth_m,
                   "of a flat bottom for echoes, m; absent: that of the world below the middle of the link")
