@@ -79,6 +79,12 @@ void MarineEkf::predict(std::int64_t utime, const Vector2d& v_measured_W, double
   while (seconds(utime - marks_[1].utime) > longest_memory_s) marks_.pop_front();
 }
 
+void MarineEkf::shift_clock(std::int64_t by_us, double range_m) {
+  utime_ += by_us;
+  for (Mark& mark : marks_) mark.utime += by_us;
+  if (params_.states > 4) x_[4] += range_m;
+}
+
 std::optional<Vector2d> MarineEkf::way_since(std::int64_t utime) const {
   if (utime >= utime_) return Vector2d(-v_measured_W_ * seconds(utime - utime_));
   if (utime < marks_.front().utime) return std::nullopt;
@@ -147,6 +153,7 @@ MarineEkf::Outcome MarineEkf::update(const Eigen::Matrix<double, n, 1>& innovati
     if (!innovation.allFinite() || ++refusals_in_a_row_ < params_.most_refusals) return Outcome::refused;
     // So many outliers in a row are none: a filter that is sure and wrong would refuse for ever.
     P_.topLeftCorner<2, 2>() += innovation.squaredNorm() * Eigen::Matrix2d::Identity();
+    if (params_.states > 4 && n == 1) P_(4, 4) += innovation.squaredNorm();
     ++inflated_;
     S = H * P_ * H.transpose() + R;
     outcome = Outcome::inflated;
