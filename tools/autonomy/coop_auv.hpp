@@ -15,6 +15,7 @@
 #include "shoal/ins_t.hpp"
 #include "shoal/modem_send_t.hpp"
 #include "shoal/pressure_t.hpp"
+#include "tools/autonomy/acoustic_frame.hpp"
 #include "tools/autonomy/channel_access.hpp"
 #include "tools/autonomy/helm_behaviour.hpp"
 #include "tools/autonomy/marine_ekf.hpp"
@@ -82,7 +83,7 @@ class CoopAuv {
   void note_time(std::int64_t utime);
   void start(std::int64_t utime, const Vector2d& p_W, double std_m);
   void predict(std::int64_t utime);
-  void use_range(const shoal::acoustic_received_t& packet, const struct AcousticState& beacon);
+  void use_range(const shoal::acoustic_received_t& packet, const AcousticState& beacon);
   void update_phase();
   shoal::helm_command_t helm();
   shoal::estimate_t estimate(const MarineEkf& filter) const;
