@@ -35,7 +35,8 @@ CoopAuv::CoopAuv(const Params& params, std::unique_ptr<HelmBehaviour> behaviour)
 }
 
 void CoopAuv::note_time(std::int64_t utime) {
-  // Reports come in order but for their latencies, many each second.  A jump means that somebody set the clock.
+  // Reports come in order but for their latencies, many each second.  A jump means that somebody set the clock.  How
+  // much of it is true time is not known, so the next range has to tell the clock's error.
   constexpr double late_s = 2;
   constexpr double silence_s = 5;
   const double step_s = seconds(utime - utime_);
@@ -44,7 +45,8 @@ void CoopAuv::note_time(std::int64_t utime) {
     for (auto* time : {&attitude_utime_, &velocity_utime_, &fix_utime_, &first_fix_utime_})
       if (*time) **time += utime - utime_;
     for (auto* filter : {&cooperative_, &dead_reckoning_})
-      if (*filter) (*filter)->shift_clock(utime - utime_, params_.sound_speed_mps * step_s);
+      if (*filter)
+        (*filter)->shift_clock(utime - utime_, params_.sound_speed_mps * step_s, params_.sound_speed_mps * late_s);
     utime_ = utime;
   }
   utime_ = std::max(utime_, utime);

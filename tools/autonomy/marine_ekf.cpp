@@ -79,10 +79,14 @@ void MarineEkf::predict(std::int64_t utime, const Vector2d& v_measured_W, double
   while (seconds(utime - marks_[1].utime) > longest_memory_s) marks_.pop_front();
 }
 
-void MarineEkf::shift_clock(std::int64_t by_us, double range_m) {
+void MarineEkf::shift_clock(std::int64_t by_us, double range_m, double range_std_m) {
   utime_ += by_us;
   for (Mark& mark : marks_) mark.utime += by_us;
-  if (params_.states > 4) x_[4] += range_m;
+  if (params_.states <= 4) return;
+  x_[4] += range_m;
+  P_.row(4).setZero();
+  P_.col(4).setZero();
+  P_(4, 4) = squared(range_std_m);
 }
 
 std::optional<Vector2d> MarineEkf::way_since(std::int64_t utime) const {

@@ -71,8 +71,9 @@ class MarineEkf {
   Outcome update_position(std::int64_t utime, const Vector2d& p_W, double std_m);
   Outcome update_range(const Range& range);
 
-  /// The own clock was set: what was at `utime` is now at `utime + by_us`, and ranges are longer by `range_m`.
-  void shift_clock(std::int64_t by_us, double range_m);
+  /// The own clock was set: what was at `utime` is now at `utime + by_us`, and ranges are longer by `range_m`, which is
+  /// known to `range_std_m`.
+  void shift_clock(std::int64_t by_us, double range_m, double range_std_m);
 
   std::int64_t utime() const { return utime_; }
   Vector2d position() const { return x_.head<2>(); }
