@@ -106,6 +106,10 @@ double Medium::sound_speed_mps(const Vector3d& p_W) const {
   return depth > 0 ? column_->sound_speed_mps(depth) : sound_in_air_mps;
 }
 
+double Medium::mean_slowness_spm(double z_m, double other_z_m) const {
+  return has_water() ? column_->mean_slowness_spm(still_m_ - z_m, still_m_ - other_z_m) : 1 / sound_in_air_mps;
+}
+
 void Medium::hash_state(StateHash& hash) const {
   if (!has_water() && !wind_) return;
   hash.add(static_cast<std::int64_t>(now_.count()));

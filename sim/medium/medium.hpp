@@ -57,6 +57,8 @@ class Medium {
   bool current_known(const Vector3d& p_W) const { return !current_ || current_->known(p_W.x(), p_W.y()); }
   /// Of the wind, m/s.  Below the surface: as at the surface.
   Vector3d air_velocity_W(const Vector3d& p_W) const;
+  /// Of the wind, without gusts, at its reference height, level; 0 without wind.
+  double mean_wind_mps() const { return config_.wind ? config_.wind->mean_mps().head<2>().norm() : 0; }
   /// Of water or air, kg/m^3.
   double density_kgpm3(const Vector3d& p_W) const;
   /// Absolute, of water or air, Pa; in waves with their dynamic pressure.
@@ -66,6 +68,9 @@ class Medium {
   double salinity_psu(const Vector3d& p_W) const;
   /// In water or air, m/s.
   double sound_speed_mps(const Vector3d& p_W) const;
+  /// Mean of 1 / sound speed over the heights between two, s/m: of the water below the still surface, above it as at
+  /// the surface; of the air in a world without water.
+  double mean_slowness_spm(double z_m, double other_z_m) const;
 
   void hash_state(StateHash& hash) const;
 

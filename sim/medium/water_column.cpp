@@ -118,4 +118,29 @@ double WaterColumn::sound_speed_mps(double depth_m) const {
   }
 }
 
+double WaterColumn::mean_slowness_spm(double depth_m, double other_depth_m) const {
+  const double high_m = std::min(depth_m, other_depth_m), low_m = std::max(depth_m, other_depth_m);
+  // Over less than a millimetre the mean is the middle, to rounding.
+  if (config_.sound_speed_mps || low_m - high_m < 1e-3) return 1 / sound_speed_mps((high_m + low_m) / 2);
+  // Gauss's rule of 3 points in each piece: 5 more digits than the speed has between rows that are 20 m apart.
+  constexpr double point = 0.7745966692414834;  // sqrt(3 / 5)
+  double time_s = 0, from_m = high_m;
+  const auto add_to = [&](double to_m) {
+    const double half_m = (to_m - from_m) / 2, middle_m = from_m + half_m;
+    time_s += half_m / 9 *
+              (5 / sound_speed_mps(middle_m - point * half_m) + 8 / sound_speed_mps(middle_m) +
+               5 / sound_speed_mps(middle_m + point * half_m));
+    from_m = to_m;
+  };
+  for (auto row = std::upper_bound(rows_.begin(), rows_.end(), high_m,
+                                   [](double depth, const Row&each) { return depth < each.depth_m; });
+       row != rows_.end() && row->depth_m < low_m; ++row)
+    add_to(row->depth_m);
+  // Below the last row only the pressure changes.
+  const int pieces = std::max(1, static_cast<int>(std::ceil((low_m - from_m) / 1000)));
+  const double piece_m = (low_m - from_m) / pieces;
+  for (int i = 1; i <= pieces; ++i) add_to(i == pieces ? low_m : from_m + piece_m);
+  return time_s / (low_m - high_m);
+}
+
 }  // namespace sim

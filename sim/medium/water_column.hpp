@@ -17,6 +17,8 @@ class WaterColumn {
   double temperature_C(double depth_m) const { return row_at(depth_m).temperature_C; }
   double salinity_psu(double depth_m) const { return row_at(depth_m).salinity_psu; }
   double sound_speed_mps(double depth_m) const;
+  /// Mean of 1 / sound speed over the depths between two, s/m.  Exact to rounding: the water is smooth between rows.
+  double mean_slowness_spm(double depth_m, double other_depth_m) const;
 
  private:
   struct Row {

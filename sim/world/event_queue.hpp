@@ -9,9 +9,11 @@
 
 namespace sim {
 
-/// What happens at a simulated time to one device: a delayed report, a delayed command, an arrival.  Plain data, so
-/// that the queue can be hashed and saved.
+/// What happens at a simulated time to one device (a delayed report, a delayed command, an arrival) or to the acoustic
+/// channel.  Plain data, so that the queue can be hashed and saved.
 struct Event {
+  static constexpr int of_acoustics = -2;  ///< in place of a device
+
   Time due{0};
   std::uint64_t sequence = 0;  ///< order of scheduling; breaks ties
   int device = -1;             ///< number of the device in the world

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/acoustics/acoustics_config.hpp"
 #include "sim/camera/light.hpp"
 #include "sim/config/param_reader.hpp"
 #include "sim/geodesy.hpp"
@@ -13,6 +14,7 @@
 #include "sim/physics/physics_config.hpp"
 #include "sim/script/event_config.hpp"
 #include "sim/script/zone.hpp"
+#include "sim/world/metric_config.hpp"
 #include "sim/world/placement.hpp"
 #include "sim/world/vehicle_config.hpp"
 
@@ -105,24 +107,6 @@ struct LockstepConfig {
   void read(ParamReader& in);
 };
 
-/// A figure that scores the run: the distance between an estimate on a channel and the truth.
-struct MetricConfig {
-  std::string name;
-  std::string vehicle;  ///< whose position is estimated
-  std::string channel;  ///< of shoal.pose_t, position in the world frame
-  double from_s = 0;    ///< errors before this time do not count
-  void read(ParamReader& in);
-};
-
-/// The run passes when every rule holds.
-struct PassRule {
-  std::string metric;  ///< such as `cooperative.rms_m`
-  std::optional<double> below;
-  std::string below_metric;  ///< another metric, times `factor`
-  double factor = 1;
-  void read(ParamReader& in);
-};
-
 /// What may come while the world runs.
 struct LimitsConfig {
   int vehicles = 2000;  ///< at any one time, those of the world file included
@@ -144,6 +128,7 @@ struct WorldConfig {
   std::int64_t epoch_us = 0;                   ///< the same in microseconds since 1970
   PhysicsConfig physics;
   MediumConfig medium;
+  AcousticsConfig acoustics;
   std::vector<MaterialConfig> materials;
   std::vector<ContactConfig> contacts;
   std::vector<std::string> categories;

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/acoustics/ambient_noise.hpp"
+#include "sim/acoustics/fading.hpp"
+#include "sim/acoustics/multipath.hpp"
+#include "sim/acoustics/transmission_loss.hpp"
+#include "sim/config/param_reader.hpp"
+
+namespace sim {
+
+/// An entry of `links:`, for one way between two transducers.
+struct LinkConfig {
+  std::string from, to;  ///< a vehicle, or vehicle/device; empty: any
+  bool both_ways = true;
+  double loss_probability = 0;
+  double extra_loss_dB = 0;
+  void read(ParamReader& in);
+};
+
+/// `acoustics:` of a world: how the water carries sound between transducers.
+struct AcousticsConfig {
+  SpreadingConfig spreading;
+  AbsorptionConfig absorption;
+  NoiseConfig noise;
+  std::optional<MultipathConfig> multipath;
+  FadingConfig fading;
+  bool occlusion = true;                    ///< terrain, objects and hulls stand in the way
+  std::optional<double> occlusion_loss_dB;  ///< of what stands in the way; unset: nothing passes
+  double inaudible_dB = 10;                 ///< sounds that are this far below the noise do not count
+  std::optional<double> range_max_m;        ///< nothing is heard beyond
+  std::vector<LinkConfig> links;
+  void read(ParamReader& in);
+};
+
+}  // namespace sim

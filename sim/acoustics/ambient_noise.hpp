@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+
+#include "sim/acoustics/decibels.hpp"
+#include "sim/config/param_reader.hpp"
+
+namespace sim {
+
+/// Ambient noise of the sea: turbulence, shipping, wind and the water's own heat, the curves of Wenz (JASA 34, 1962) in
+/// the form of R. Coates (Underwater Acoustic Systems, 1990), as in M. Stojanovic (On the relationship between capacity
+/// and distance in an underwater acoustic communication channel, 2007).
+struct AmbientNoise {
+  double shipping = 0.5;  ///< 0 (none near) to 1 (heavy)
+  double wind_mps = 5;
+  Decibels offset;  ///< of all, such as for a harbour
+
+  /// Per hertz, dB re 1 uPa^2/Hz.  frequency_kHz > 0.
+  Decibels spectral_level(double frequency_kHz) const;
+  /// In the band about the centre, dB re 1 uPa: the spectrum integrated over it.  A band that would reach below 1 Hz
+  /// begins there.
+  Decibels band_level(double centre_Hz, double bandwidth_Hz) const;
+};
+
+/// `noise:` of a world's acoustics.
+struct NoiseConfig {
+  double shipping = 0.5;
+  std::optional<double> wind_mps;  ///< unset: the wind of the medium
+  double offset_dB = 0;
+  void read(ParamReader& in);
+
+  AmbientNoise with_wind(double medium_wind_mps) const {
+    return {shipping, wind_mps.value_or(medium_wind_mps), Decibels(offset_dB)};
+  }
+};
+
+}  // namespace sim

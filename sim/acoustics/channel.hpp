@@ -1,0 +1,128 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/acoustics/acoustics_config.hpp"
+#include "sim/acoustics/neighbourhood.hpp"
+#include "sim/acoustics/propagation.hpp"
+#include "sim/acoustics/signal.hpp"
+#include "sim/acoustics/transducer.hpp"
+#include "sim/medium/medium.hpp"
+#include "sim/physics/physics_world.hpp"
+#include "sim/random/random.hpp"
+#include "sim/state_hash.hpp"
+#include "sim/world/event_queue.hpp"
+
+namespace sim {
+
+/// What the channel knows of the world.
+struct AcousticSurroundings {
+  const Medium& medium;
+  const PhysicsWorld& physics;
+  EventQueue& events;
+  std::uint64_t seed;
+};
+
+/// Carries sound through the water from transducer to transducer, by events in simulated time.  A signal goes along
+/// the straight line from where the sender was to where the receiver is when it arrives, at the mean slowness of the
+/// water along it.  docs/acoustics.md has the equations and their sources.
+class AcousticChannel {
+ public:
+  AcousticChannel(const AcousticsConfig& config, const AcousticSurroundings& surroundings);
+  ~AcousticChannel();
+
+  const AcousticsConfig& config() const { return config_; }
+  bool has_water() const { return around_.medium.has_water(); }
+  /// An event of the channel is due; `now` is the end of the step that just ended.
+  void handle(const Event& event, Time now);
+  /// Somebody was put elsewhere: who is near whom is looked up again.
+  void forget_places() { neighbours_age_ = -1; }
+
+  /// In device order; null where one has left.
+  const std::vector<Transducer*>& transducers() const { return transducers_; }
+  const Propagation& propagation() const { return propagation_; }
+  /// Receptions, heard or not, since the start: what the work grows with.
+  std::int64_t flights() const { return flights_made_; }
+  void hash_state(StateHash& hash) const;
+
+ private:
+  friend class Transducer;
+  friend class ContinuousSound;
+  enum EventKind { emission_event, emission_end_event, near_event, begin_event, end_event };
+
+  /// A signal under way.
+  struct Sending {
+    Signal signal;
+    Transducer* from = nullptr;  // null: it left
+    std::string source;
+    int number = -1;
+    int group = -1;
+    std::int64_t sequence = 0;  // of the sender's signals
+    Time sent{0};
+    Vector3d p_W = Vector3d::Zero(), v_W = Vector3d::Zero();
+    Matrix3d R_WS = Matrix3d::Identity();
+    DirectivityConfig directivity;
+    std::optional<Time> cut;  // the sender left the water
+    int users = 0;            // flights and events that still need it
+  };
+  /// A signal on its way to one receiver.
+  struct Flight {
+    int sending = -1;
+    Transducer* to = nullptr;  // null: it left
+    Time begun{0}, ended{0};
+    double travel_time_s = 0;
+    Vector3d p_begun_W = Vector3d::Zero();
+    double closing_mps = 0;
+    Decibels level{0}, snr{0};
+    SignalLoss loss = SignalLoss::none;
+    bool listened = false, present = false;
+  };
+
+  int join(Transducer& transducer);
+  void leave(Transducer& transducer);
+  void join(ContinuousSound& sound) { sounds_.push_back(&sound); }
+  void leave(ContinuousSound& sound) { std::erase(sounds_, &sound); }
+  void transmit(Transducer& from, Signal signal, Time at);
+
+  void emit(int sending, Time now);
+  void end_emission(int sending, Time at);
+  void approach(int flight, Time due);
+  void begin(int flight);
+  void end(int flight);
+  /// Level, end and Doppler.  Returns the power of echoes that disturb, re 1 uPa^2.
+  PowerRatio work_out_level(Flight& flight, const Sending& sending);
+  SignalLoss obstacle(const Flight& flight) const;
+  Decibels link_loss(const Transducer& to, const Sending& sending, double& loss_probability) const;
+  /// Of the sea and of continuous sounds, in the band of a signal, as a receiver hears it.
+  PowerRatio noise_at(const Transducer& to, const Vector3d& p_W, const Signal& signal) const;
+  void take(int number, Flight& flight, const Sending& sending, PowerRatio disturbing);
+  void finish(Flight& flight, const Sending& sending, const SignalReceiver::Outcome& outcome);
+  /// Its draws when a signal begins, and when it ends.
+  Random stream(const Transducer& to, const Sending& sending, bool at_end) const;
+  void schedule(Time due, EventKind kind, int item);
+  int new_sending();
+  int new_flight();
+  void release(int sending);
+  Time step_end() const { return step_end_; }
+
+  AcousticsConfig config_;
+  AcousticSurroundings around_;
+  Propagation propagation_;
+  std::vector<Transducer*> transducers_;
+  std::vector<ContinuousSound*> sounds_;
+  std::vector<std::unique_ptr<Sending>> sendings_;
+  std::vector<int> free_sendings_;
+  std::vector<Flight> flights_;
+  std::vector<int> free_flights_;
+  std::int64_t flights_made_ = 0;
+  Time step_end_{0};
+  Neighbourhood neighbours_;
+  double neighbours_age_ = -1;  // when they were looked up, s; negative: not
+  std::vector<int> near_;
+};
+
+}  // namespace sim

@@ -1,0 +1,147 @@
+#include "sim/acoustics/multipath.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace sim {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+}  // namespace
+
+void image_paths(double source_depth_m, double receiver_depth_m, double horizontal_m, double water_depth_m,
+                 int max_bounces, std::vector<ImagePath>& out) {
+  out.clear();
+  const auto add = [&](double vertical_m, int surface, int bottom, bool upwards) {
+    out.push_back({std::hypot(horizontal_m, vertical_m), surface, bottom,
+                   std::atan2(std::abs(vertical_m), horizontal_m), upwards});
+  };
+  add(receiver_depth_m - source_depth_m, 0, 0, receiver_depth_m < source_depth_m);
+  const double D = water_depth_m, zs = source_depth_m, zr = receiver_depth_m;
+  for (int n = 1; n <= max_bounces; ++n) {
+    // Unfolded, a path that begins upwards rises by zs, then crosses the water n - 1 times, then ends at the receiver;
+    // one that begins downwards is its mirror image.
+    const int more = (n + 1) / 2, less = n / 2;
+    if (!std::isfinite(D)) {
+      add(zs + zr, 1, 0, true);
+      break;
+    }
+    if (n % 2 == 1) {
+      add((n - 1) * D + zs + zr, more, less, true);
+      add((n + 1) * D - zs - zr, less, more, false);
+    } else {
+      add(n * D + zs - zr, more, less, true);
+      add(n * D - zs + zr, less, more, false);
+    }
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const ImagePath& a, const ImagePath& b) { return a.length_m < b.length_m; });
+}
+
+void BottomConfig::read(ParamReader& in) {
+  in.read("loss_dB", loss_dB, between(0, 200), "of each bounce, at any angle; absent: by the sediment below");
+  in.read("density_ratio", density_ratio, above_to(0, 10), "of sediment over water; sand 1.9, silt 1.5, clay 1.3");
+  in.read("speed_ratio", speed_ratio, between(0.5, 5), "of sound in sediment over water; sand 1.1, clay 0.99");
+  in.read("attenuation_dB_per_wavelength", attenuation_dB_per_wavelength, between(0, 20), "in the sediment");
+  if (in.has("loss_dB"))
+    for (const char* key : {"density_ratio", "speed_ratio", "attenuation_dB_per_wavelength"})
+      if (in.has(key)) in.error(key, "'" + std::string(key) + "' and 'loss_dB' exclude each other");
+}
+
+void MultipathConfig::read(ParamReader& in) {
+  in.read("max_bounces", max_bounces, between(0, 20), "at surface and bottom together; 0: the direct path alone");
+  in.read("window_s", window_s, between(0, 10), "what comes later than this after the first sound disturbs");
+  in.read("water_depth_m", water_depth_m, above_to(0, 12000),
+          "of a flat bottom; absent: the terrain below the middle of the path; without terrain no bottom is heard");
+  in.read("surface_loss_dB", surface_loss_dB, between(0, 200), "of each bounce; absent: by the roughness");
+  in.read("surface_roughness_m", surface_roughness_m, between(0, 20),
+          "rms height of the waves; absent: of a sea that has grown under the wind");
+  in.read("bottom", bottom, "what the bottom does to sound");
+  in.read_choice("phases", phases, {{"random", Phases::random}, {"geometric", Phases::geometric}},
+                 "random: each path has a phase of its own for each packet; geometric: by the lengths");
+  if (in.has("surface_loss_dB") && in.has("surface_roughness_m"))
+    in.error("surface_roughness_m", "'surface_roughness_m' and 'surface_loss_dB' exclude each other");
+}
+
+double wind_sea_roughness_m(double wind_mps) {
+  return 0.21 * wind_mps * wind_mps / 9.81 / 4;
+}
+
+double surface_reflection(double wave_number_pm, double roughness_m, double grazing_rad) {
+  const double phase = wave_number_pm * roughness_m * std::sin(grazing_rad);
+  return -std::exp(-2 * phase * phase);
+}
+
+std::complex<double> bottom_reflection(const BottomConfig& bottom, double grazing_rad) {
+  if (bottom.loss_dB) return std::pow(10.0, -*bottom.loss_dB / 20);
+  // Loss makes the speed of sound complex: alpha dB per wavelength is a part of alpha / (40 pi log10 e) of the wave
+  // number.  The root that decays away from the boundary is the one with a positive imaginary part.
+  const double loss = bottom.attenuation_dB_per_wavelength / (40 * pi * std::numbers::log10e);
+  const std::complex<double> n = std::complex<double>(1, loss) / bottom.speed_ratio;
+  const double sine = std::sin(grazing_rad), cosine = std::cos(grazing_rad);
+  std::complex<double> below = std::sqrt(n * n - cosine * cosine);
+  if (below.imag() < 0) below = -below;
+  const double m = bottom.density_ratio;
+  if (m * sine == 0 && std::abs(below) == 0) return -1;
+  return (m * sine - below) / (m * sine + below);
+}
+
+void path_gains(const std::vector<ImagePath>& paths, const MultipathConfig& config, const MultipathMedium& medium,
+                std::vector<PathGain>& out) {
+  out.clear();
+  const double k = 2 * pi * medium.frequency_Hz / medium.sound_speed_mps;
+  const double roughness_m = config.surface_roughness_m.value_or(wind_sea_roughness_m(medium.wind_mps));
+  for (const ImagePath& path : paths) {
+    PathGain gain;
+    gain.delay_s = path.length_m / medium.sound_speed_mps;
+    gain.gain =
+        -spreading_loss(path.length_m, medium.spreading) - absorption_loss(path.length_m, medium.absorption_dBpkm);
+    gain.phase_rad = std::fmod(k * path.length_m, 2 * pi);
+    const Decibels surface = config.surface_loss_dB
+                                 ? Decibels(-*config.surface_loss_dB)
+                                 : pressure_level(surface_reflection(k, roughness_m, path.grazing_rad));
+    // Not 0 times minus infinity.
+    if (path.surface_bounces > 0) gain.gain += path.surface_bounces * surface;
+    gain.phase_rad += path.surface_bounces * pi;
+    if (path.bottom_bounces > 0) {
+      const std::complex<double> bottom = bottom_reflection(config.bottom, path.grazing_rad);
+      gain.gain += path.bottom_bounces * pressure_level(std::abs(bottom));
+      gain.phase_rad += path.bottom_bounces * std::arg(bottom);
+    }
+    out.push_back(gain);
+  }
+}
+
+void randomize_phases(std::vector<PathGain>& gains, Random& random) {
+  for (std::size_t i = 1; i < gains.size(); ++i) gains[i].phase_rad = 2 * pi * random.uniform();
+}
+
+MultipathSum combine(const std::vector<PathGain>& gains, double window_s) {
+  MultipathSum sum;
+  if (gains.empty()) return sum;
+  sum.first_s = gains[0].delay_s;
+  for (const PathGain& each : gains) sum.first_s = std::min(sum.first_s, each.delay_s);
+  std::complex<double> pressure = 0;
+  double power = 0, first_moment = 0, second_moment = 0;
+  for (const PathGain& each : gains) {
+    const double late_s = each.delay_s - sum.first_s, p = to_power(each.gain).linear();
+    if (late_s <= window_s)
+      pressure += std::polar(std::sqrt(p), each.phase_rad);
+    else
+      sum.interference += PowerRatio(p);
+    power += p;
+    first_moment += p * late_s;
+    second_moment += p * late_s * late_s;
+  }
+  sum.signal = PowerRatio(std::norm(pressure));
+  if (power > 0) {
+    const double mean_s = first_moment / power;
+    sum.spread_s = std::sqrt(std::max(0.0, second_moment / power - mean_s * mean_s));
+  }
+  return sum;
+}
+
+}  // namespace sim

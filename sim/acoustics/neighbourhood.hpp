@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/math.hpp"
+
+namespace sim {
+
+/// Finds who is near a place among many: a grid of square cells in the plane, kept as a sorted list.
+class Neighbourhood {
+ public:
+  struct Member {
+    int number;
+    Vector3d p_W;
+  };
+  /// `reach_m`: about how far queries will look.
+  void build(std::span<const Member> members, double reach_m);
+  /// Numbers of all members no farther from the place than this in the plane, in rising order; perhaps some more.
+  void near(const Vector3d& p_W, double reach_m, std::vector<int>& numbers) const;
+
+ private:
+  struct Entry {
+    std::int64_t row, column;
+    int number;
+  };
+  std::int64_t cell(double coordinate_m) const;
+
+  double cell_m_ = 1;
+  std::vector<Entry> entries_;  // by row, column, number
+};
+
+}  // namespace sim

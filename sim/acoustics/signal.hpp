@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "sim/acoustics/decibels.hpp"
+#include "sim/acoustics/modulation.hpp"
+#include "sim/bus/bus.hpp"
+#include "sim/math.hpp"
+#include "sim/time.hpp"
+
+namespace sim {
+
+/// A sound with a beginning and an end, as a transducer gives it to the water.
+struct Signal {
+  /// What it is, so that a listener knows what it listens to.
+  enum class Kind {
+    message,  ///< bits of a modem
+    ping,     ///< asks transponders
+    answer,   ///< of a transponder
+    noise,    ///< means nothing to anybody
+  };
+
+  Kind kind = Kind::message;
+  Decibels source_level{185};  ///< re 1 uPa at 1 m, on the axis of the transducer
+  double centre_Hz = 25000;
+  double bandwidth_Hz = 4000;  ///< that its power fills evenly
+  Time duration{0};            ///< of the sound as it is sent
+  Modulation modulation = Modulation::fsk;
+  double bit_rate_bps = 80;   ///< Eb/N0 is the ratio of signal and noise times bandwidth / bit rate
+  std::int64_t bits = 0;      ///< that must all come through; 0: it need only be detected
+  double coding_gain_dB = 0;  ///< added to Eb/N0
+  std::string network;        ///< listeners of another network do not understand it
+  std::string code;           ///< the listener's own: a frame type, who is asked
+  Bytes payload;              ///< the listener's own
+};
+
+/// Why a signal was not understood where it was heard.
+enum class SignalLoss {
+  none,          ///< it was understood
+  noise,         ///< too weak against the noise
+  interference,  ///< too weak against other sounds
+  half_duplex,   ///< the receiver was sending
+  busy,          ///< the receiver was taking another signal
+  captured,      ///< a stronger signal took the receiver over
+  doppler,       ///< sender and receiver close or part too fast
+  blocked,       ///< something stands between
+  out_of_water,  ///< sender or receiver left the water
+  receiver_off,  ///< without power, or silent by a fault
+  link,          ///< `links:` of the world lost it
+};
+inline constexpr int signal_losses = 11;
+/// The word of a cause, such as `half_duplex`.
+const char* signal_loss_word(SignalLoss loss);
+
+/// A signal as it came to a transducer that listens to it.
+struct Reception {
+  const Signal& signal;
+  std::string source;                     ///< vehicle and device that sent it, such as `auv1/modem`
+  int from = -1;                          ///< number of the sending transducer
+  Time sent{0};                           ///< begin of sending
+  Time begun{0}, ended{0};                ///< of the sound at the receiver
+  double travel_time_s = 0;               ///< from `sent` to `begun`, not rounded
+  Vector3d p_sent_W = Vector3d::Zero();   ///< where the sender was at `sent`
+  Vector3d p_begun_W = Vector3d::Zero();  ///< where the receiver was at `begun`
+  Decibels level{0};                      ///< re 1 uPa, at the receiver, its directivity included
+  Decibels snr{0};                        ///< in the band of the signal, against noise
+  Decibels sinr{0};                       ///< against noise and other sounds, at its worst
+  double closing_mps = 0;                 ///< Doppler: how fast sender and receiver came nearer
+  SignalLoss loss = SignalLoss::none;
+
+  bool understood() const { return loss == SignalLoss::none; }
+};
+
+}  // namespace sim

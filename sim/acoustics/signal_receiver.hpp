@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/acoustics/signal.hpp"
+#include "sim/state_hash.hpp"
+
+namespace sim {
+
+/// A sound that is at the receiver now.
+struct PresentSound {
+  std::int64_t flight = -1;  ///< its number in the channel
+  double centre_Hz = 0, bandwidth_Hz = 0;
+  PowerRatio power{0};  ///< re 1 uPa^2, in its own band
+};
+
+/// What a receiver needs to know of a signal that it tries to take.
+struct TakenSignal {
+  PresentSound sound;
+  PowerRatio noise{0};       ///< re 1 uPa^2, in the band of the signal
+  PowerRatio disturbing{0};  ///< echoes of the signal itself that come too late to help, in its band
+  Modulation modulation = Modulation::fsk;
+  double bit_rate_bps = 80;
+  std::int64_t bits = 0;
+  double coding_gain_dB = 0;
+  Time begun{0}, ended{0};
+};
+
+/// The receiver of a transducer: which of the sounds that overlap it takes, and how well it comes through.  It takes
+/// the first signal that it notices; a much stronger one takes it over.  While what else is heard stays the same the
+/// bits are equally likely to be wrong, so the probability that all are right is a product over such spans.
+class SignalReceiver {
+ public:
+  struct Rules {
+    double detection_dB = 6;  ///< signal over noise and other sounds, to notice a signal
+    double capture_dB = 6;    ///< by which a signal must be stronger than the one that is taken
+  };
+  /// What came of a signal.
+  struct Outcome {
+    double success = 0;        ///< probability that all bits came through
+    double success_alone = 0;  ///< the same if there had been no other sounds
+    PowerRatio worst_sinr{0};
+  };
+
+  /// A sound begins.  Before take() of the same one.
+  void begin(const PresentSound& sound, Time at);
+  /// Tries to take a signal that has begun.  `displaced`: the flight that lost the receiver to it, or -1.
+  SignalLoss take(const TakenSignal& signal, const Rules& rules, std::int64_t& displaced);
+  /// A sound ends.  True, with the outcome, when it is the one that was taken.
+  bool end(std::int64_t flight, Time at, Outcome& outcome);
+  /// Lets go of what is taken; its flight, or -1 when there was none.
+  std::int64_t drop();
+  bool taking() const { return taken_.sound.flight >= 0; }
+  void hash_state(StateHash& hash) const;
+
+ private:
+  /// Of all sounds but one, in a band.
+  PowerRatio others(const PresentSound& but) const;
+  /// Counts the bits of what is taken since the last change.
+  void count_bits(Time until);
+
+  std::vector<PresentSound> present_;
+  TakenSignal taken_;  // flight -1: none
+  Time counted_until_{0};
+  double log_success_ = 0, log_success_alone_ = 0;
+  PowerRatio worst_sinr_{0};
+};
+
+}  // namespace sim

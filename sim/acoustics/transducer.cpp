@@ -1,0 +1,117 @@
+#include "sim/acoustics/transducer.hpp"
+
+#include "sim/acoustics/channel.hpp"
+#include "sim/device/device_registry.hpp"
+#include "sim/world/world.hpp"
+
+namespace sim {
+
+namespace {
+
+/// The channel, where there is water to carry sound.
+AcousticChannel& channel_of(const DeviceContext& context) {
+  AcousticChannel& channel = context.world.acoustics();
+  if (!channel.has_water())
+    throw_config_error(context.config.place,
+                       "vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'",
+                       "a device of type '" + context.config.type +
+                           "' needs water to carry its sound: the world has no 'medium: {water: ...}'");
+  return channel;
+}
+
+}  // namespace
+
+void ReceiverConfig::read(ParamReader& in) {
+  in.read("detection_dB", detection_dB, between(-60, 100), "signal over noise and other sounds to notice a signal");
+  in.read("capture_dB", capture_dB, between(0, 200), "a signal this much stronger takes over from the one it takes");
+  in.read("doppler_limit_mps", doppler_limit_mps, between(0, 1000), "closing or parting speed that it follows");
+  in.read("directivity", directivity, "for sending and hearing; its axis is x of the device");
+}
+
+Transducer::Transducer(AcousticListener& listener, const ReceiverConfig& config, const DeviceContext& context)
+    : listener_(listener),
+      config_(config),
+      channel_(channel_of(context)),
+      vehicle_(context.vehicle),
+      body_(context.body),
+      X_BS_(context.config.X_BS()),
+      faults_(context.faults),
+      full_name_(context.full_name()) {
+  number_ = channel_.join(*this);
+}
+
+Transducer::~Transducer() {
+  channel_.leave(*this);
+}
+
+void Transducer::transmit(Signal signal, Time at) {
+  busy_until_ = std::max(busy_until_, at + signal.duration);
+  channel_.transmit(*this, std::move(signal), at);
+}
+
+bool Transducer::works() const {
+  return vehicle_.systems().powered && !faults_.silent();
+}
+
+bool Transducer::in_water() const {
+  return channel_.around_.medium.in_water(body_.X_WB() * X_BS_.translation());
+}
+
+Vector3d Transducer::p_W(Time at) const {
+  const BodyMotion motion = body_.motion();
+  const Vector3d p_BS_W = motion.R_WB * X_BS_.translation();
+  const Vector3d v_WS_W = motion.v_WB_W + motion.w_WB_W.cross(p_BS_W);
+  return motion.p_WB + p_BS_W + v_WS_W * to_seconds(at - channel_.step_end());
+}
+
+Vector3d Transducer::v_W() const {
+  return body_.velocity_at_W(X_BS_.translation());
+}
+
+Matrix3d Transducer::R_WS() const {
+  return body_.motion().R_WB * X_BS_.linear();
+}
+
+void Transducer::change(const ReceiverConfig& config) {
+  config_ = config;
+  index_of_Hz_ = std::numeric_limits<double>::quiet_NaN();
+}
+
+Decibels Transducer::noise_reduction(double frequency_Hz, double sound_speed_mps) const {
+  if (config_.directivity.pattern == DirectivityConfig::Pattern::omni) return {};
+  if (index_of_Hz_ != frequency_Hz) {
+    // The speed of sound changes by some percent at most, the index by hundredths of dB.
+    index_ = directivity_index(config_.directivity, frequency_Hz, sound_speed_mps);
+    index_of_Hz_ = frequency_Hz;
+  }
+  return index_;
+}
+
+void Transducer::hash_state(StateHash& hash) const {
+  hash.add(static_cast<std::int64_t>(busy_until_.count()));
+  hash.add(static_cast<std::int64_t>(sending_until_.count()));
+  hash.add(signals_);
+  receiver_.hash_state(hash);
+  for (const std::int64_t count : {counts_.sent, counts_.sent_bytes, counts_.understood, counts_.understood_bytes})
+    hash.add(count);
+  for (const std::int64_t count : counts_.lost) hash.add(count);
+}
+
+ContinuousSound::ContinuousSound(Decibels source_level, double centre_Hz, double bandwidth_Hz,
+                                 const DeviceContext& context)
+    : channel_(channel_of(context)),
+      vehicle_(context.vehicle),
+      body_(context.body),
+      p_BS_(context.config.position_m),
+      faults_(context.faults),
+      source_level_(source_level),
+      centre_Hz_(centre_Hz),
+      bandwidth_Hz_(bandwidth_Hz) {
+  channel_.join(*this);
+}
+
+ContinuousSound::~ContinuousSound() {
+  channel_.leave(*this);
+}
+
+}  // namespace sim

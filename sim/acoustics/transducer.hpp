@@ -1,0 +1,134 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string>
+
+#include "sim/acoustics/directivity.hpp"
+#include "sim/acoustics/signal.hpp"
+#include "sim/acoustics/signal_receiver.hpp"
+#include "sim/config/param_reader.hpp"
+
+namespace sim {
+
+class AcousticChannel;
+class Body;
+class DeviceFaults;
+class StateHash;
+class Vehicle;
+struct DeviceContext;
+
+/// Who hears through a transducer.
+class AcousticListener {
+ public:
+  virtual ~AcousticListener() = default;
+  /// Tries to understand it.  What it does not listen to is noise in its band.
+  virtual bool listens_to(const Signal& signal) const = 0;
+  /// A signal that it listens to has ended, understood or not (a transducer that cannot hear, under no power or out
+  /// of the water, is told nothing).  Called at a simulated time within the step that just ended, `heard.ended`; the
+  /// listener may transmit at that time or later.
+  virtual void heard(const Reception& heard) = 0;
+};
+
+/// The receiver of a transducer.
+struct ReceiverConfig {
+  double detection_dB = 6;        ///< signal over noise and other sounds that it needs to notice a signal
+  double capture_dB = 6;          ///< a signal stronger by this takes it from the one it is taking
+  double doppler_limit_mps = 5;   ///< closing or parting speed it follows
+  DirectivityConfig directivity;  ///< for sending and hearing; the axis is x of the device
+  void read(ParamReader& in);
+};
+
+/// Where sound goes into the water and comes out.  Owned by a device; in the channel while it exists.
+class Transducer {
+ public:
+  /// What it sent and what became of what it listened to.
+  struct Counts {
+    std::int64_t sent = 0, sent_bytes = 0;  ///< signals of kind message
+    std::int64_t understood = 0, understood_bytes = 0;
+    std::int64_t unsent = 0;  ///< asked for without power, silent by a fault, or out of the water
+    std::array<std::int64_t, signal_losses> lost{};  ///< by SignalLoss
+  };
+
+  /// Throws ConfigError at the device's place when the world has no water.
+  Transducer(AcousticListener& listener, const ReceiverConfig& config, const DeviceContext& context);
+  ~Transducer();
+  Transducer(const Transducer&) = delete;
+  Transducer& operator=(const Transducer&) = delete;
+
+  /// From `at` on, which is not before now (the start of the step in act(), `Reception::ended` in heard()).  The
+  /// caller lets one signal end before the next begins.
+  void transmit(Signal signal, Time at);
+  /// It sends now, or has something scheduled, until this time.
+  Time busy_until() const { return busy_until_; }
+  /// It is taking a signal now.
+  bool receiving() const { return receiver_.taking(); }
+  /// Has power, and no fault keeps it silent.
+  bool works() const;
+  bool in_water() const;
+
+  /// At a time within or near the step that just ended: by its velocity from where it is.
+  Vector3d p_W(Time at) const;
+  Vector3d v_W() const;
+  Matrix3d R_WS() const;
+  const std::string& full_name() const { return full_name_; }
+  const Vehicle& vehicle() const { return vehicle_; }
+  int number() const { return number_; }
+  const ReceiverConfig& config() const { return config_; }
+  void change(const ReceiverConfig& config);
+  /// By how much noise from all sides is less through its directivity: the directivity index.
+  Decibels noise_reduction(double frequency_Hz, double sound_speed_mps) const;
+  const Counts& counts() const { return counts_; }
+
+ private:
+  friend class AcousticChannel;
+  void hash_state(StateHash& hash) const;
+
+  AcousticListener& listener_;
+  ReceiverConfig config_;
+  AcousticChannel& channel_;
+  const Vehicle& vehicle_;
+  const Body& body_;
+  Pose X_BS_;
+  const DeviceFaults& faults_;
+  std::string full_name_;
+  int number_ = -1;
+  Time busy_until_{0};     // of all it was asked to send
+  Time sending_until_{0};  // of what it sends or sent last
+  std::int64_t signals_ = 0;
+  SignalReceiver receiver_;
+  Counts counts_;
+  // The directivity index of a frequency, worked out before; NaN: none.
+  mutable double index_of_Hz_ = std::numeric_limits<double>::quiet_NaN();
+  mutable Decibels index_;
+};
+
+/// A sound that goes on and on: an engine, a pile driver, a jammer.  Owned by a device; in the channel while it exists.
+class ContinuousSound {
+ public:
+  /// Even over its band.  Throws ConfigError at the device's place when the world has no water.
+  ContinuousSound(Decibels source_level, double centre_Hz, double bandwidth_Hz, const DeviceContext& context);
+  ~ContinuousSound();
+  ContinuousSound(const ContinuousSound&) = delete;
+  ContinuousSound& operator=(const ContinuousSound&) = delete;
+
+  /// On at first.  Silent as well without power, by a fault and out of the water.
+  void set_on(bool on) { on_ = on; }
+  bool on() const { return on_; }
+  /// Re 1 uPa at 1 m, over its band.
+  void set_level(Decibels source_level) { source_level_ = source_level; }
+
+ private:
+  friend class AcousticChannel;
+
+  AcousticChannel& channel_;
+  const Vehicle& vehicle_;
+  const Body& body_;
+  Vector3d p_BS_;
+  const DeviceFaults& faults_;
+  Decibels source_level_;
+  double centre_Hz_, bandwidth_Hz_;
+  bool on_ = true;
+};
+
+}  // namespace sim
