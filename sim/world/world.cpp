@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sim/acoustics/channel.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/script/script.hpp"
 #include "sim/world/bottom_check.hpp"
@@ -25,7 +26,9 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
                                               static_cast<std::uint64_t>(config.run.seed))),
       medium_(config.medium, config.physics.gravity_mps2, static_cast<std::uint64_t>(config.run.seed)),
       hydrodynamics_(medium_, config.physics.gravity_mps2, config.physics.step_s),
-      acoustics_(config.acoustics, {medium_, *physics_, events_, static_cast<std::uint64_t>(config.run.seed)}) {
+      acoustics_(std::make_unique<AcousticChannel>(
+          config.acoustics,
+          AcousticSurroundings{medium_, *physics_, events_, static_cast<std::uint64_t>(config.run.seed)})) {
   hydrodynamics_.set_complain([this](const std::string& who, const std::string& text) { notice(*this, who, text); });
   known_materials_.insert("default");
   for (const MaterialConfig& material : config.materials) known_materials_.insert(material.name);
@@ -209,7 +212,7 @@ void World::cast_rays() {
 void World::run_due_events() {
   for (Event event; events_.take_due(now(), event);) {
     if (event.device == Event::of_acoustics)
-      acoustics_.handle(event, now());
+      acoustics_->handle(event, now());
     else if (const auto& device = devices_[static_cast<std::size_t>(event.device)])
       device->handle(event);
   }
@@ -288,7 +291,7 @@ std::uint64_t World::state_hash() const {
   for (const auto& device : devices_)
     if (device) device->hash_state(hash);
   events_.hash_state(hash);
-  acoustics_.hash_state(hash);
+  acoustics_->hash_state(hash);
   if (!script_->empty()) script_->hash_state(hash);
   return hash.value();
 }
