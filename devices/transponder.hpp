@@ -1,21 +1,30 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "devices/acoustic_positioning.hpp"
-#include "sim/device/device_registry.hpp"
+#include "sim/acoustics/transducer.hpp"
 
 namespace devices {
 
-/// Acoustic transponder: answers the USBL devices of other vehicles in its network, after `turnaround_s`, while it is
-/// under water, has power and is not silent by a fault.
-class Transponder final : public sim::Sensor {
+/// Acoustic transponder: answers the pings of its network that come from other vehicles, on a frequency of its own.
+/// The answer begins `turnaround_s` after the ping, first sound to first sound, but not before the ping has ended.  A
+/// ping that comes while an answer is still to be sent is not answered.
+class Transponder final : public sim::Sensor, public sim::AcousticListener {
  public:
-  static constexpr const char* meaning = "Acoustic transponder: answers USBL devices of its network.";
+  static constexpr const char* meaning = "Acoustic transponder: answers USBL and LBL devices of its network.";
   static constexpr double default_rate_hz = 1;
   struct Params {
     std::string network = "usbl";
+    std::string code;
     double turnaround_s = 0.02;
+    double source_level_dB = 185;
+    double frequency_Hz = 26000;
+    std::optional<double> answer_frequency_Hz;
+    double bandwidth_Hz = 1000;
+    double ping_s = 0.01;
+    sim::ReceiverConfig receiver = receiver_of_tones();
     void read(sim::ParamReader& in);
   };
 
@@ -27,26 +36,21 @@ class Transponder final : public sim::Sensor {
   void measure(const sim::SenseContext&) override {}
   void disturb(double, sim::Random&) override {}
   void hash_state(sim::StateHash& hash) const override;
+  bool listens_to(const sim::Signal& signal) const override;
+  void heard(const sim::Reception& heard) override;
 
-  /// It can answer a vehicle now.
-  bool hears(const sim::Vehicle& vehicle, const std::string& network) const;
-  void answer(const std::string& asked_by);
-  sim::Vector3d p_WS() const { return body_.X_WB() * p_BS_; }
-  int group() const { return vehicle_.group(); }
   const Params& params() const { return params_; }
-  const std::string& full_name() const { return full_name_; }
+  double answer_Hz() const { return answer_Hz_; }
+  const sim::Vehicle& vehicle() const { return transducer_.vehicle(); }
+  const std::string& full_name() const { return transducer_.full_name(); }
   std::int64_t answers() const { return answers_; }
   const std::string& asked_by() const { return asked_by_; }
 
  private:
   Params params_;
   TransponderNetwork& network_;
-  const sim::Medium& medium_;
-  const sim::Vehicle& vehicle_;
-  const sim::Body& body_;
-  sim::Vector3d p_BS_;
-  std::string full_name_;
-  const sim::DeviceFaults& faults_;
+  double answer_Hz_;
+  sim::Transducer transducer_;
   std::int64_t answers_ = 0;
   std::string asked_by_;
 };

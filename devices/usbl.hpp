@@ -4,26 +4,23 @@
 #include <string>
 #include <vector>
 
-#include "devices/acoustic_positioning.hpp"
-#include "sim/device/device_registry.hpp"
+#include "devices/interrogator.hpp"
 #include "sim/random/noise.hpp"
 
 namespace devices {
 
-/// Ultra-short baseline: range and direction to the transponders of its network.  A ping goes out every
-/// `ping_period_s`, but not before the answers to the last one are in.  The travel time is that along straight lines,
-/// from where this device was at the ping to the transponder and back to where it is when the answer comes; the
-/// direction is to where the transponder was at the ping.  Answers are taken at the samples of the device.
+/// Ultra-short baseline: range and direction to the transponders of its network.  A ping goes out at a sample, every
+/// `ping_period_s`, but not before the answers to the last one are in.  The travel time is that of the sound from where
+/// this device was at the ping to the transponder and from there to where it is when the answer comes; the direction is
+/// to where the transponder answered.  What came is reported at the next sample.
 class Usbl final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "USBL: range and direction to acoustic transponders, by the time of sound.";
   static constexpr double default_rate_hz = 10;
   struct Params {
-    std::string network = "usbl";
+    InterrogatorParams interrogator{.network = "usbl"};
     double ping_period_s = 1;
-    double range_max_m = 1000;
     std::optional<double> assumed_sound_speed_mps;
-    bool occlusion = true;
     double answer_dropout = 0;
     sim::NoiseParams range_noise;      ///< m
     sim::NoiseParams azimuth_noise;    ///< rad
@@ -45,24 +42,10 @@ class Usbl final : public sim::Sensor {
   const std::vector<Fix>& fixes() const { return fixes_; }
 
  private:
-  /// An answer that is on its way.
-  struct Answer {
-    std::string target;
-    sim::Time due;
-    double out_s;          ///< travel time of the ping
-    double out_m;          ///< and its way
-    sim::Vector3d from_W;  ///< where the transponder was
-  };
-  void ping(const sim::SenseContext& context);
-  void hear(const sim::SenseContext& context);
-  bool hidden(const sim::SenseContext& context, const Transponder& target) const;
-
   Params params_;
-  const TransponderNetwork& network_;
-  std::string full_name_;
+  Interrogator interrogator_;
   sim::Noise range_noise_, azimuth_noise_, elevation_noise_;
   sim::Time next_ping_{0};
-  std::vector<Answer> answers_;
   std::vector<Fix> fixes_;
   double assumed_mps_ = 0;  ///< that turns the times of this sample into ranges
   double since_fix_s_ = 0;  ///< for the slow parts of the errors

@@ -298,6 +298,7 @@ std::string rover_for(const sim::DeviceType& type) {
   const std::string chassis = "- name: chassis\n";
   if (type.name == "naive_drive")
     world.replace(world.find(chassis), chassis.size(), chassis + "          kinematic: true\n");
+  if (type.name == "noise_source") world += "medium: {water: {surface_m: -10}}\n";
   return world;
 }
 

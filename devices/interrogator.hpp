@@ -1,0 +1,75 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "devices/acoustic_positioning.hpp"
+#include "sim/acoustics/transducer.hpp"
+
+namespace devices {
+
+/// Keys of a device that asks transponders.
+struct InterrogatorParams {
+  std::string network;
+  double range_max_m = 1000;
+  double source_level_dB = 185;
+  double frequency_Hz = 26000;
+  double bandwidth_Hz = 1000;
+  double ping_s = 0.01;
+  sim::ReceiverConfig receiver = receiver_of_tones();
+  void read(sim::ParamReader& in);
+};
+
+/// Pings the transponders of a network and listens for their answers, on each of their frequencies with a receiver of
+/// its own, so that several can answer at a time.
+class Interrogator {
+ public:
+  /// What came back from one transponder.
+  struct Answer {
+    std::string transponder;                       ///< vehicle/device
+    sim::Time begun{0};                            ///< when it came
+    double two_way_s = 0;                          ///< of the sound there and back, without the turnaround
+    double way_m = 0;                              ///< the mean of the ways there and back: the truth
+    sim::Vector3d p_ST_S = sim::Vector3d::Zero();  ///< where it answered, from where and how the sensor was at `begun`
+  };
+
+  Interrogator(const InterrogatorParams& params, const sim::DeviceContext& context);
+  void change(const InterrogatorParams& params);
+  /// Sends a ping at `at`, the end of a step, to all that are in the network now.  Answers to an earlier one no longer
+  /// count.
+  void ping(sim::Time at);
+  /// All that were asked have answered, or nothing in range can answer any more.
+  bool done(sim::Time now) const { return waiting_for_.empty() || now >= window_end_; }
+  /// Names of all that were asked.
+  const std::vector<std::string>& asked() const { return asked_; }
+  /// What came since the last call, in the order of its arrival.
+  std::vector<Answer> take_answers();
+  void hash_state(sim::StateHash& hash) const;
+
+ private:
+  /// Hears one frequency; the first one also pings.
+  struct Ear final : public sim::AcousticListener {
+    Ear(Interrogator& of, double hears_Hz);
+    bool listens_to(const sim::Signal& signal) const override;
+    void heard(const sim::Reception& heard) override { owner.heard(*this, heard); }
+
+    Interrogator& owner;
+    double answer_Hz;  // 0: none yet
+    sim::Transducer transducer;
+  };
+  void hear_at(double answer_Hz);
+  void heard(const Ear& ear, const sim::Reception& heard);
+  sim::Matrix3d R_WS(const Ear& ear, sim::Time at) const;
+
+  InterrogatorParams params_;
+  sim::DeviceContext context_;
+  const TransponderNetwork& network_;
+  std::vector<std::unique_ptr<Ear>> ears_;
+  std::int64_t number_ = 0;  // of the last ping
+  sim::Time pinged_{0}, window_end_{0};
+  std::vector<std::string> asked_, waiting_for_;
+  std::vector<Answer> answers_;
+};
+
+}  // namespace devices
