@@ -198,14 +198,17 @@ LoadedStudy load_study(const std::string& path) {
   in.finish();
   diagnostics.throw_if_any();
   study.config.file = path;
-  const fs::path world = fs::path(path).parent_path() / study.config.world;
-  study.config.world = world.lexically_normal().string();
+  const fs::path world_file = fs::path(path).parent_path() / study.config.world;
+  study.config.world = world_file.lexically_normal().string();
   for (const StudyCase& each : study.config.cases) {
     sim::LoadOptions options;
     options.sets = each.sets();
     options.allow_plugins = study.config.launch;
     options.encode_message = shoal::encode_own_message;
-    study.worlds.push_back(sim::load_world(study.config.world, options));
+    const sim::LoadedWorld& world = study.worlds.emplace_back(sim::load_world(study.config.world, options));
+    if (!study.config.duration_s && world.config.run.duration_s == 0)
+      sim::throw_config_error(root.place, "case '" + each.name + "'",
+                              "its world runs without end: the study needs a 'duration_s'");
   }
   NameCheck(study).check();
   return study;

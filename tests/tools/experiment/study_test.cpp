@@ -157,6 +157,8 @@ TEST(StudyConfig, TellsWhatIsWrong) {
   EXPECT_THAT(error("cases: [{name: a, set: 3}]\n"), HasSubstr("'set' must be a map of paths and values, got '3'"));
   EXPECT_THAT(error("cases: [{name: a, set: {vehicles.r9.name: x}}]\n"), HasSubstr("r9"));
   EXPECT_THAT(error("cases: [{name: a, set: {physics.step_s: -1}}]\n"), HasSubstr("'step_s' must be"));
+  EXPECT_THAT(error("cases: [{name: a, set: {run.duration_s: 0}}]\n"),
+              HasSubstr("case 'a': its world runs without end"));
   EXPECT_THAT(error("figures: [e.rms]\n"), HasSubstr("study.yaml:5:10: 'figures' names nothing of this world: 'e.rms'; "
                                                      "known: e.final_m, e.max_m, e.per_distance_percent, e.rms_m"));
   EXPECT_THAT(error("plots: [{name: p}]\n"), HasSubstr("plot 'p': needs either 'figure' or 'metrics'"));
