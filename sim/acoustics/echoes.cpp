@@ -4,7 +4,8 @@
 
 namespace sim {
 
-Echoes echoes(const MultipathConfig& config, const MultipathMedium& medium, const LinkDepths& depths, Random* random) {
+Echoes echoes(const MultipathConfig& config, const MultipathMedium& medium, const LinkDepths& depths, Random* random,
+              bool direct_blocked) {
   const double water_m = std::max(0.0, depths.water_m);
   std::vector<ImagePath> paths;
   image_paths(std::clamp(depths.source_m, 0.0, water_m), std::clamp(depths.receiver_m, 0.0, water_m),
@@ -14,6 +15,7 @@ Echoes echoes(const MultipathConfig& config, const MultipathMedium& medium, cons
   // Over the direct path from here on: at ranges where nothing is left of it, too.
   const Decibels direct = gains[0].gain;
   for (PathGain& gain : gains) gain.gain -= direct;
+  if (direct_blocked) gains.erase(gains.begin());
   Echoes result;
   const bool drawn = config.phases == MultipathConfig::Phases::random;
   if (drawn && random != nullptr) randomize_phases(gains, *random);
