@@ -219,7 +219,7 @@ void Autopilot::drive(const sim::SenseContext& context, const Demand& demand) {
 
 void Autopilot::drive_helm(const Demand& demand, sim::Time now) {
   shoal::helm_command_t message;
-  message.utime = world_.epoch_us() + now.count();
+  message.utime = world_.epoch_us() + vehicle_.clock().reading(now).count();
   message.speed_mps = demand.speed_mps;
   message.heading_rad = demand.heading_rad;
   message.depth_m = surface_m_ - wanted_.height_m;

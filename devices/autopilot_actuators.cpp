@@ -157,7 +157,7 @@ Limited AutopilotActuators::share(const Wrench& wrench, const sim::Vector3d& v_B
 
 void AutopilotActuators::publish(const Driven& device, sim::Time now) {
   shoal::actuator_command_t message;
-  message.utime = epoch_us_ + now.count();
+  message.utime = epoch_us_ + vehicle_.clock().reading(now).count();
   message.value = device.command;
   shoal::encode_into(message, payload_);
   vehicle_.bus().publish(vehicle_.find_device(device.name)->command_channel(), payload_, now);

@@ -1,5 +1,6 @@
 #include "devices/gps.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -8,6 +9,22 @@
 #include "sim/world/world.hpp"
 
 namespace devices {
+
+namespace {
+
+/// Two receivers that steer one clock would fight.
+void refuse_two_masters(const sim::DeviceContext& context) {
+  for (const sim::DeviceConfig& device : context.vehicle.config().devices) {
+    if (device.type != "gps" || device.name == context.config.name) continue;
+    const auto& other = static_cast<const sim::detail::ParamsOf<Gps::Params>&>(*device.params).params;
+    if (other.disciplines_clock)
+      sim::throw_config_error(
+          context.config.place, "device '" + context.full_name() + "'",
+          "'disciplines_clock': '" + device.name + "' disciplines the clock of this vehicle already");
+  }
+}
+
+}  // namespace
 
 void Gps::Params::read(sim::ParamReader& in) {
   in.read("horizontal_noise", horizontal_noise, "error of east and of north, m");
@@ -18,14 +35,26 @@ void Gps::Params::read(sim::ParamReader& in) {
   in.read("min_height_m", min_height_m, sim::any_number(), "below this height the antenna has no fix");
   in.read("reacquisition_s", reacquisition_s, sim::between(0, 1e6),
           "no fix for so long after a zone that denies it, or after water over the antenna");
+  in.read("disciplines_clock", disciplines_clock, "steers the clock of its vehicle at every fix");
+  in.read("discipline_time_constant_s", discipline.time_constant_s, sim::between(0.1, 1e5),
+          "in which the critically damped loop takes out an error of the clock");
+  in.read("step_above_s", discipline.step_above_s, sim::between(0, 1),
+          "a larger error of the clock is taken out at once");
+  in.read("pps_std_s", discipline.pps_std_s, sim::between(0, 1), "jitter of the pulse that the clock is compared with");
 }
 
 Gps::Gps(const Params& params, const sim::DeviceContext& context)
     : params_(params),
       geodesy_(context.world.geodesy()),
+      clock_(context.vehicle.clock()),
+      faults_(context.faults),
+      config_(context.config),
+      step_s_(sim::to_seconds(context.world.step_time())),
       horizontal_noise_(context.noise(params.horizontal_noise, 2, "horizontal_noise")),
       vertical_noise_(context.noise(params.vertical_noise, 1, "vertical_noise")),
-      velocity_noise_(context.noise(params.velocity_noise, 3, "velocity_noise")) {}
+      velocity_noise_(context.noise(params.velocity_noise, 3, "velocity_noise")) {
+  if (params.disciplines_clock) refuse_two_masters(context);
+}
 
 void Gps::change(const Params& params) {
   params_ = params;
@@ -35,6 +64,7 @@ void Gps::change(const Params& params) {
 }
 
 void Gps::measure(const sim::SenseContext& context) {
+  sampled_at_ = context.now;
   reading_.p_W = context.X_WS.translation();
   reading_.v_W = context.v_WS_W;
   reading_.fix_quality = params_.min_height_m && reading_.p_W.z() < *params_.min_height_m ? 0 : params_.fix_quality;
@@ -49,6 +79,15 @@ void Gps::disturb(double dt_s, sim::Random& random) {
   vertical_noise_.apply(reading_.p_W.z(), dt_s, random);
   velocity_noise_.apply(std::span<double>(reading_.v_W.data(), 3), dt_s, random);
   reading_.position = geodesy_.to_geodetic(reading_.p_W);
+  if (params_.disciplines_clock) discipline(random);  // after all other draws: they are the same without it
+}
+
+void Gps::discipline(sim::Random& random) {
+  if (reading_.fix_quality == 0 || faults_.silent() || clock_.perfect()) return;
+  sim::DisciplineParams loop = params_.discipline;
+  loop.interval_s = config_.rate_hz > 0 ? std::max(1 / config_.rate_hz, step_s_) : step_s_;
+  const double jitter_s = loop.pps_std_s * random.gaussian();
+  clock_.discipline(sampled_at_, clock_.error_s(sampled_at_) + jitter_s, loop);
 }
 
 void Gps::hash_state(sim::StateHash& hash) const {
@@ -82,7 +121,8 @@ void GpsReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   message.speed = fix ? std::hypot(reading.v_W.x(), reading.v_W.y()) : nothing;
   message.heading = fix ? std::atan2(reading.v_W.x(), reading.v_W.y()) : nothing;
   for (int i = 0; i < 3; ++i) message.xyz_pos[i] = fix ? reading.p_W[i] : nothing;
-  message.gps_time = static_cast<double>(message.utime) * 1e-6;
+  // Satellites tell the true time, whatever the vehicle's clock shows.
+  message.gps_time = static_cast<double>(fix ? out.true_utime(sampled_at) : message.utime) * 1e-6;
   shoal::encode_into(message, out.buffer());
   out.publish(out.buffer());
 }

@@ -5,11 +5,13 @@
 #include "sim/device/device_registry.hpp"
 #include "sim/geodesy.hpp"
 #include "sim/random/noise.hpp"
+#include "sim/world/vehicle_clock.hpp"
 
 namespace devices {
 
 /// Satellite receiver: position on the WGS84 ellipsoid by the world's origin, and velocity over ground.  No fix while
-/// its antenna, the origin of its frame, is under the momentary surface of the water.
+/// its antenna, the origin of its frame, is under the momentary surface of the water.  It may steer the clock of its
+/// vehicle (docs/clocks.md): a fix tells the clock's error but for the jitter of its pulse.
 class Gps final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Satellite positioning: WGS84 position, velocity over ground, fix quality.";
@@ -22,6 +24,8 @@ class Gps final : public sim::Sensor {
     int satellites = 9;
     std::optional<double> min_height_m;  ///< below this height of the antenna there is no fix
     double reacquisition_s = 0;  ///< after a zone that denies it or water over the antenna, until there is a fix again
+    bool disciplines_clock = false;
+    sim::DisciplineParams discipline;  ///< its interval is not used: it is the period of the samples
     void read(sim::ParamReader& in);
   };
   struct Reading {
@@ -42,10 +46,17 @@ class Gps final : public sim::Sensor {
   static double accuracy_m(const sim::NoiseParams& noise);
 
  private:
+  void discipline(sim::Random& random);
+
   Params params_;
   const sim::Geodesy& geodesy_;
+  sim::VehicleClock& clock_;
+  const sim::DeviceFaults& faults_;
+  const sim::DeviceConfig& config_;
+  double step_s_;
   sim::Noise horizontal_noise_, vertical_noise_, velocity_noise_;
   Reading reading_;
+  sim::Time sampled_at_{0};
   std::optional<sim::Time> denied_at_;  ///< when it was last under water or in a zone that denies it
 };
 

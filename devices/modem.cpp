@@ -27,13 +27,6 @@ class Modem::Network {
   sim::World* world_ = nullptr;
 };
 
-void Modem::SerialParams::read(sim::ParamReader& in) {
-  in.read_choice("kind", kind, {"pty", "fifo"}, "pseudo-terminal, or a pair of FIFOs PATH.in and PATH.out");
-  in.require("path");
-  in.read("path", path, "where programs find it; {vehicle} is replaced");
-  in.read_choice("framing", framing, {"line", "raw"}, "line: a message is a line; raw: what came within a step");
-}
-
 void Modem::Params::read(sim::ParamReader& in) {
   in.read("network", network, "modems hear each other only in the same network, such as a radio channel");
   read_through(in, through);
@@ -42,6 +35,8 @@ void Modem::Params::read(sim::ParamReader& in) {
   in.read("propagation_mps", propagation_mps, sim::between(1, 1e12),
           "speed of the signal; unset: 299792458, for an acoustic one that of sound at the sender");
   in.read("loss_probability", loss_probability, sim::between(0, 1), "of each message at each receiver");
+  in.read("line_of_sight", line_of_sight,
+          "what stands between the antennas stops the signal; the two vehicles themselves do not");
   in.read("queue_messages", queue_messages, sim::at_least(1), "messages waiting to be sent; the oldest is dropped");
   in.read("max_message_bytes", max_message_bytes, sim::between(1, 1 << 20), "longer messages are refused");
   in.read("serial", serial, "a pseudo-terminal or FIFO that any program can open");
@@ -51,16 +46,21 @@ Modem::Modem(const Params& params, const sim::DeviceContext& context)
     : params_(params),
       network_(context.world.shared<Network>()),
       vehicle_(context.vehicle.name()),
+      clock_(context.vehicle.clock()),
       full_name_(context.full_name()),
       seed_(context.world.seed()),
       device_(context.number),
+      group_(context.vehicle.group()),
       body_(context.body),
       p_BS_(context.config.position_m) {
+  if (params.serial) serial_ = std::make_unique<SerialMessages>(*params.serial, longest_message_bytes(), context);
+  // Last: a port that cannot be opened throws.
   network_.join(*this, context.world);
-  if (params.serial) open_serial(context);
+  context.world.shared<MessageModems>().join(full_name_, *this);
 }
 
 Modem::~Modem() {
+  network_.world().shared<MessageModems>().leave(full_name_);
   network_.leave(*this);
 }
 
@@ -104,7 +104,8 @@ void Modem::transmit(sim::Time now, const Outgoing& message) {
   const double air_time_s = 8.0 * static_cast<double>(message.data.size()) / params_.data_rate_bps;
   busy_until_ = now + std::max(sim::from_seconds(air_time_s), sim::Time{1});
   ++sent_;
-  // The frame between modems is a modem_received_t; the receiver's copy is completed when it arrives.
+  // The frame between modems is a modem_received_t; the receiver's copy is completed when it arrives.  Its utime says
+  // how far the sender's clock is off.
   shoal::modem_received_t frame;
   frame.sent_utime = now.count();
   frame.source = vehicle_;
@@ -112,7 +113,7 @@ void Modem::transmit(sim::Time now, const Outgoing& message) {
   frame.size = static_cast<std::int32_t>(message.data.size());
   frame.data.assign(reinterpret_cast<const std::uint8_t*>(message.data.data()),
                     reinterpret_cast<const std::uint8_t*>(message.data.data()) + message.data.size());
-  frame.utime = 0;
+  frame.utime = (clock_.reading(now) - now).count();
   const sim::Bytes payload = shoal::encode(frame);
   const sim::Zones& zones = network_.world().zones();
   const sim::Medium& medium = network_.world().medium();
@@ -125,6 +126,7 @@ void Modem::transmit(sim::Time now, const Outgoing& message) {
     if (zones.denied(sim::ZoneFlag::radio_denied, receiver->p_WS())) continue;
     if (!carries(medium, params_.through, receiver->p_WS())) continue;
     if (distance_m > params_.range_m || lost_on_the_way_to(*receiver)) continue;
+    if (params_.line_of_sight && hidden_from(*receiver)) continue;
     const sim::Time due = now + sim::from_seconds(air_time_s + distance_m / propagation_mps());
     network_.world().schedule_arrival(receiver->device_, due, payload);
   }
@@ -144,12 +146,25 @@ bool Modem::lost_on_the_way_to(const Modem& receiver) {
   return link.uniform() < params_.loss_probability;
 }
 
+bool Modem::hidden_from(const Modem& receiver) const {
+  sim::RayFilter filter;
+  filter.exclude_group = group_;
+  const sim::Vector3d way_W = receiver.p_WS() - p_WS();
+  const double length_m = way_W.norm();
+  if (length_m < 1e-3) return false;
+  const sim::PhysicsWorld& physics = network_.world().physics();
+  const auto hit = physics.scene().cast(p_WS(), way_W / length_m, length_m - 1e-3, filter);
+  return hit && physics.parts()[static_cast<std::size_t>(hit->part)].group != receiver.group_;
+}
+
 void Modem::arrive(sim::Time at, std::span<const std::byte> payload) {
   const auto frame = shoal::decode<shoal::modem_received_t>(payload, shoal::Finite::any);
-  Packet packet{frame.source, frame.destination, sim::Time{frame.sent_utime}, at, {}};
+  const sim::Time sent{frame.sent_utime};
+  Packet packet{frame.source, frame.destination, sent, at, sent + sim::Time{frame.utime}, {}};
   const auto* data = reinterpret_cast<const std::byte*>(frame.data.data());
   packet.data.assign(data, data + frame.data.size());
-  if (serial_) write_serial(packet);
+  if (serial_) serial_->write(packet.data);
+  tell_tap(at, packet.source, packet.data);
   arrived_.push_back(std::move(packet));
 }
 
@@ -169,61 +184,32 @@ void Modem::hash_state(sim::StateHash& hash) const {
     for (const Packet& packet : *packets) {
       hash.add(std::string_view(packet.source));
       hash.add(std::string_view(packet.destination));
-      hash.add(static_cast<std::int64_t>(packet.sent.count()));
+      hash.add(static_cast<std::int64_t>(packet.sent_reading.count()));
       hash.add(static_cast<std::int64_t>(packet.arrived.count()));
       hash.add_bytes(packet.data.data(), packet.data.size());
     }
   }
-  hash.add_bytes(line_.data(), line_.size());
+  if (serial_)
+    serial_->hash_state(hash);
+  else
+    hash.add(std::uint64_t{0});  // as of an empty line
   hash.add(static_cast<std::int64_t>(busy_until_.count()));
   hash.add(sent_);
 }
 
-void Modem::open_serial(const sim::DeviceContext& context) {
-  if (!context.world.open_port()) return;  // the program that builds this world offers no ports
-  try {
-    serial_ = context.world.open_port()(params_.serial->kind,
-                                        sim::channel_name(params_.serial->path, vehicle_, context.config.name));
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error("vehicle '" + vehicle_ + "': device '" + context.config.name + "': " + error.what());
-  }
-}
-
 void Modem::read_serial(sim::Time now) {
-  const sim::Bytes bytes = serial_->read();
-  if (bytes.empty()) return;
-  const auto send_quietly = [&](sim::Bytes data) {
-    if (data.size() > static_cast<std::size_t>(params_.max_message_bytes)) {
+  for (sim::Bytes& data : serial_->take())
+    if (data.size() > longest_message_bytes())
       ++dropped_;
-      return;
-    }
-    if (!data.empty()) send(now, "", std::move(data));
-  };
-  if (params_.serial->framing == "raw") {
-    send_quietly(bytes);
-    return;
-  }
-  for (const std::byte b : bytes) {
-    if (b == std::byte{'\n'}) {
-      send_quietly(std::move(line_));
-      line_.clear();
-    } else if (b != std::byte{'\r'} && line_.size() <= static_cast<std::size_t>(params_.max_message_bytes)) {
-      line_.push_back(b);  // one byte more than allowed is kept, so that the line is seen to be too long
-    }
-  }
-}
-
-void Modem::write_serial(const Packet& packet) {
-  sim::Bytes bytes = packet.data;
-  if (params_.serial->framing == "line") bytes.push_back(std::byte{'\n'});
-  serial_->write(bytes);
+    else
+      send(now, "", std::move(data));
 }
 
 void ModemReporter::report(sim::Time, sim::Publisher& out) const {
   for (const Modem::Packet& packet : modem_.received()) {
     shoal::modem_received_t message;
     message.utime = out.utime(packet.arrived);
-    message.sent_utime = out.utime(packet.sent);
+    message.sent_utime = out.utime_elsewhere(packet.sent, packet.sent_reading);
     message.source = packet.source;
     message.destination = packet.destination;
     message.size = static_cast<std::int32_t>(packet.data.size());

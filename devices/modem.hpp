@@ -6,25 +6,20 @@
 #include <string>
 #include <vector>
 
+#include "devices/message_modem.hpp"
+#include "devices/serial_port.hpp"
 #include "devices/signal_carrier.hpp"
-#include "sim/bus/byte_port.hpp"
 #include "sim/device/device_registry.hpp"
 
 namespace devices {
 
-/// Radio or acoustic modem: carries messages of bytes between vehicles.  It sends one message at a time, which takes
-/// size / data rate; the message arrives distance / speed of propagation later at every modem of the same network
-/// that was in range when the sending began, with both ends in what carries the signal.
-class Modem final : public sim::Sensor {
+/// Radio modem: carries messages of bytes between vehicles.  It sends one message at a time, which takes size / data
+/// rate; the message arrives distance / speed of propagation later at every modem of the same network that was in range
+/// when the sending began, with both ends in what carries the signal.  (With `through: acoustic` it is a simple
+/// stand-in for an acoustic one, without noise, collisions and Doppler; see acoustic_modem.)
+class Modem final : public sim::Sensor, public MessageModem {
  public:
   static constexpr const char* meaning = "Radio or acoustic modem: messages of bytes between vehicles.";
-  /// A way for other programs to send and receive, beside the bus.
-  struct SerialParams {
-    std::string kind = "pty";
-    std::string path;
-    std::string framing = "line";
-    void read(sim::ParamReader& in);
-  };
   struct Params {
     std::string network = "radio";
     SignalCarrier through = SignalCarrier::radio;
@@ -32,14 +27,16 @@ class Modem final : public sim::Sensor {
     double data_rate_bps = 9600;
     std::optional<double> propagation_mps;  ///< unset: of light, or of sound where the sender is
     double loss_probability = 0;
+    bool line_of_sight = false;
     int queue_messages = 16;
     int max_message_bytes = 1024;
-    std::optional<SerialParams> serial;
+    std::optional<SerialMessageParams> serial;
     void read(sim::ParamReader& in);
   };
   struct Packet {
     std::string source, destination;
     sim::Time sent{0}, arrived{0};
+    sim::Time sent_reading{0};  ///< by the clock of the sender
     sim::Bytes data;
   };
 
@@ -48,7 +45,8 @@ class Modem final : public sim::Sensor {
 
   /// Queues a message; when the queue is full the oldest is dropped and counted.  Empty destination: everybody.
   /// Throws std::runtime_error when the message is empty or too long, or the destination has no modem here.
-  void send(sim::Time now, std::string destination, sim::Bytes data);
+  void send(sim::Time now, std::string destination, sim::Bytes data) override;
+  std::size_t longest_message_bytes() const override { return static_cast<std::size_t>(params_.max_message_bytes); }
   /// Begins the next transmission when the last one has ended.
   void act(const sim::ActContext& context);
 
@@ -71,17 +69,19 @@ class Modem final : public sim::Sensor {
   void transmit(sim::Time now, const Outgoing& message);
   double propagation_mps() const;
   bool lost_on_the_way_to(const Modem& receiver);
+  /// Something stands between the two antennas; not the hulls that carry them.
+  bool hidden_from(const Modem& receiver) const;
   sim::Vector3d p_WS() const;
-  void open_serial(const sim::DeviceContext& context);
   void read_serial(sim::Time now);
-  void write_serial(const Packet& packet);
 
   Params params_;
   Network& network_;
   std::string vehicle_;
+  const sim::VehicleClock& clock_;
   std::string full_name_;
   std::uint64_t seed_;
   int device_;
+  int group_;
   const sim::Body& body_;
   sim::Vector3d p_BS_;
   std::deque<Outgoing> queue_;
@@ -89,8 +89,7 @@ class Modem final : public sim::Sensor {
   std::int64_t sent_ = 0;
   std::uint64_t dropped_ = 0;
   std::vector<Packet> arrived_, received_;
-  std::unique_ptr<sim::BytePort> serial_;
-  sim::Bytes line_;  ///< of the serial line, not yet ended
+  std::unique_ptr<SerialMessages> serial_;
 };
 
 /// Publishes one shoal.modem_received_t for each message that arrived.

@@ -5,7 +5,6 @@
 
 #include "sim/acoustics/sound_path.hpp"
 #include "sim/device/fault.hpp"
-#include "sim/medium/absorption.hpp"
 #include "sim/world/vehicle.hpp"
 
 namespace sim {
@@ -18,6 +17,8 @@ constexpr double early = 0.02;
 /// Who is near whom holds so long; and nobody goes farther meanwhile, nor while a sound is under way.
 constexpr double neighbours_hold_s = 1;
 constexpr double stray_m = 150;
+/// A gain below this is none.
+constexpr double lowest_dB = -1000;
 
 }  // namespace
 
@@ -29,7 +30,7 @@ const char* signal_loss_word(SignalLoss loss) {
 }
 
 AcousticChannel::AcousticChannel(const AcousticsConfig& config, const AcousticSurroundings& surroundings)
-    : config_(config), around_(surroundings) {}
+    : config_(config), around_(surroundings), propagation_(config_, surroundings.medium, surroundings.physics) {}
 
 AcousticChannel::~AcousticChannel() = default;
 
@@ -141,6 +142,7 @@ void AcousticChannel::emit(int number, Time now) {
   sending.p_W = from->p_W(sending.sent);
   sending.v_W = from->v_W();
   sending.R_WS = from->R_WS();
+  sending.directivity = from->config().directivity;
   from->sending_until_ = std::max(from->sending_until_, sending.sent + sending.signal.duration);
   if (sending.signal.kind == Signal::Kind::message) {
     ++from->counts_.sent;
@@ -149,7 +151,7 @@ void AcousticChannel::emit(int number, Time now) {
   for (std::int64_t flight = from->receiver_.drop(); flight >= 0; flight = from->receiver_.drop())
     flights_[static_cast<std::size_t>(flight)].loss = SignalLoss::half_duplex;
 
-  const double reach_m = audible_range_m(sending.signal);
+  const double reach_m = propagation_.audible_range_m(sending.signal);
   if (neighbours_age_ < 0 || to_seconds(now) - neighbours_age_ > neighbours_hold_s) {
     std::vector<Neighbourhood::Member> members;
     for (const Transducer* each : transducers_)
@@ -198,36 +200,9 @@ void AcousticChannel::approach(int number, Time due) {
   schedule(std::max(flight.begun, due), begin_event, number);
 }
 
-Decibels AcousticChannel::transmission_loss(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const {
-  const double range_m = (to_W - from_W).norm();
-  const double dBpkm = absorption_dBpkm(config_.absorption, frequency_Hz, around_.medium, from_W, to_W);
-  return spreading_loss(range_m, config_.spreading) + absorption_loss(range_m, dBpkm);
-}
-
-Decibels AcousticChannel::ambient_level(double centre_Hz, double bandwidth_Hz) const {
-  return config_.noise.with_wind(around_.medium.mean_wind_mps()).band_level(centre_Hz, bandwidth_Hz);
-}
-
-double AcousticChannel::audible_range_m(const Signal& signal) const {
-  const double floor_dB = (ambient_level(signal.centre_Hz, signal.bandwidth_Hz) - Decibels{config_.inaudible_dB}).dB();
-  const double most_m = config_.range_max_m.value_or(1e6);
-  // By what all paths have in common: the least absorption and no fading up would make it longer, hence the margin.
-  const AbsorptionConfig& absorption = config_.absorption;
-  const double dBpkm = absorption.model == AbsorptionConfig::Model::constant
-                           ? absorption.dBpkm
-                           : 0.5 * thorp_dBpkm(signal.centre_Hz * 1e-3);
-  const auto heard = [&](double range_m) {
-    return (signal.source_level - spreading_loss(range_m, config_.spreading) - absorption_loss(range_m, dBpkm)).dB() >
-           floor_dB;
-  };
-  if (heard(most_m)) return most_m;
-  double near_m = 1, far_m = most_m;
-  for (int i = 0; i < 40; ++i) (heard((near_m + far_m) / 2) ? near_m : far_m) = (near_m + far_m) / 2;
-  return far_m;
-}
-
-PowerRatio AcousticChannel::noise_at(const Vector3d& p_W, const Signal& signal) const {
-  PowerRatio noise = to_power(ambient_level(signal.centre_Hz, signal.bandwidth_Hz));
+PowerRatio AcousticChannel::noise_at(const Transducer& to, const Vector3d& p_W, const Signal& signal) const {
+  const Decibels quieter = to.noise_reduction(signal.centre_Hz, around_.medium.sound_speed_mps(p_W));
+  PowerRatio noise = to_power(propagation_.ambient_level(signal.centre_Hz, signal.bandwidth_Hz) - quieter);
   for (const ContinuousSound* sound : sounds_) {
     if (!sound->on_ || !sound->vehicle_.systems().powered || sound->faults_.silent()) continue;
     const Vector3d from_W = sound->body_.X_WB() * sound->p_BS_;
@@ -237,22 +212,10 @@ PowerRatio AcousticChannel::noise_at(const Vector3d& p_W, const Signal& signal) 
     const double high_Hz =
         std::min(sound->centre_Hz_ + sound->bandwidth_Hz_ / 2, signal.centre_Hz + signal.bandwidth_Hz / 2);
     if (high_Hz <= low_Hz) continue;
-    const Decibels level = sound->source_level_ - transmission_loss(from_W, p_W, sound->centre_Hz_);
+    const Decibels level = sound->source_level_ - propagation_.transmission_loss(from_W, p_W, sound->centre_Hz_);
     noise += (high_Hz - low_Hz) / sound->bandwidth_Hz_ * to_power(level);
   }
   return noise;
-}
-
-bool AcousticChannel::blocked(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group) const {
-  const Vector3d way_W = from_W - to_W;
-  const double length_m = way_W.norm();
-  if (length_m < 1e-3) return false;
-  RayFilter filter;
-  filter.kind = RayKind::sound;
-  filter.exclude_group = to_group;
-  // From the receiver to where the sender was; the sender's own hull, which has gone on, hides nothing.
-  const auto hit = around_.physics.scene().cast(to_W, way_W / length_m, length_m - 1e-3, filter);
-  return hit && around_.physics.parts()[static_cast<std::size_t>(hit->part)].group != from_group;
 }
 
 Decibels AcousticChannel::link_loss(const Transducer& to, const Sending& sending, double& loss_probability) const {
@@ -272,15 +235,16 @@ Decibels AcousticChannel::link_loss(const Transducer& to, const Sending& sending
   return loss;
 }
 
-Random AcousticChannel::stream(const Transducer& to, const Sending& sending) const {
+Random AcousticChannel::stream(const Transducer& to, const Sending& sending, bool at_end) const {
   // One for each pair, so that another modem in the world changes no other link.
   Random random(around_.seed, sending.source + ">" + to.full_name() + "#sound");
-  random.begin_step(sending.sequence);
+  random.begin_step(2 * sending.sequence + at_end);
   return random;
 }
 
-void AcousticChannel::work_out_level(Flight& flight, const Sending& sending) {
+PowerRatio AcousticChannel::work_out_level(Flight& flight, const Sending& sending) {
   const Transducer& to = *flight.to;
+  const Signal& signal = sending.signal;
   const Vector3d way_W = flight.p_begun_W - sending.p_W;
   const double range_m = way_W.norm();
   const Vector3d direction_W = range_m > 0 ? Vector3d(way_W / range_m) : Vector3d(Vector3d::UnitX());
@@ -288,13 +252,18 @@ void AcousticChannel::work_out_level(Flight& flight, const Sending& sending) {
   flight.closing_mps = closing_speed_mps(direction_W, sending.v_W, v_to_W);
   const double c = around_.medium.sound_speed_mps(flight.p_begun_W);
   const double squeezed = doppler_factor(direction_W, sending.v_W, v_to_W, c);
-  flight.ended = flight.begun + from_seconds(to_seconds(sending.signal.duration) / squeezed);
-  const double f = sending.signal.centre_Hz;
-  flight.level = sending.signal.source_level - transmission_loss(sending.p_W, flight.p_begun_W, f);
-  if (sending.from != nullptr)
-    flight.level = flight.level +
-                   directivity_gain(sending.from->config().directivity, sending.R_WS.transpose() * direction_W, f, c);
-  flight.level = flight.level + directivity_gain(to.config().directivity, -(to.R_WS().transpose() * direction_W), f, c);
+  flight.ended = flight.begun + from_seconds(to_seconds(signal.duration) / squeezed);
+
+  Random random = stream(to, sending, false);
+  const Propagation::Gain gain =
+      propagation_.gain(sending.p_W, sending.group, flight.p_begun_W, to.vehicle().group(), signal.centre_Hz, random);
+  double loss_probability = 0;
+  Decibels level = signal.source_level - link_loss(to, sending, loss_probability);
+  level += directivity_gain(sending.directivity, sending.R_WS.transpose() * direction_W, signal.centre_Hz, c);
+  level += directivity_gain(to.config().directivity, -(to.R_WS().transpose() * direction_W), signal.centre_Hz, c);
+  flight.level = level + gain.signal;
+  if (gain.blocked && gain.signal.dB() < lowest_dB) flight.loss = SignalLoss::blocked;
+  return to_power(level) * gain.disturbing;
 }
 
 SignalLoss AcousticChannel::obstacle(const Flight& flight) const {
@@ -315,27 +284,14 @@ void AcousticChannel::begin(int number) {
   }
   Transducer& to = *flight.to;
   flight.p_begun_W = to.p_W(flight.begun);
-  work_out_level(flight, sending);
-  double loss_probability = 0;
-  if (!config_.links.empty()) flight.level = flight.level - link_loss(to, sending, loss_probability);
-  if (config_.occlusion && blocked(sending.p_W, sending.group, flight.p_begun_W, to.vehicle().group())) {
-    if (config_.occlusion_loss_dB)
-      flight.level = flight.level - Decibels{*config_.occlusion_loss_dB};
-    else
-      flight.loss = SignalLoss::blocked;
-  }
-  if (config_.fading.type != FadingConfig::Type::none) {
-    Random random = stream(to, sending);
-    flight.level += fade(config_.fading, random);
-  }
-  const bool silent = flight.loss == SignalLoss::blocked || !around_.medium.in_water(flight.p_begun_W);
+  const PowerRatio disturbing = work_out_level(flight, sending);
   flight.listened = to.listener_.listens_to(sending.signal);
-  const PresentSound sound{number, sending.signal.centre_Hz, sending.signal.bandwidth_Hz, to_power(flight.level)};
-  if (!silent) {
-    to.receiver_.begin(sound, flight.begun);
-    flight.present = true;
+  flight.present = flight.loss == SignalLoss::none && around_.medium.in_water(flight.p_begun_W);
+  if (flight.present) {
+    const PowerRatio power = to_power(flight.level) + disturbing;
+    to.receiver_.begin({number, sending.signal.centre_Hz, sending.signal.bandwidth_Hz, power}, flight.begun);
   }
-  if (flight.listened) take(number, flight, sending, PowerRatio{0});
+  if (flight.listened) take(number, flight, sending, disturbing);
   schedule(flight.ended, end_event, number);
 }
 
@@ -344,7 +300,7 @@ void AcousticChannel::take(int number, Flight& flight, const Sending& sending, P
   Transducer& to = *flight.to;
   TakenSignal taken;
   taken.sound = {number, signal.centre_Hz, signal.bandwidth_Hz, to_power(flight.level)};
-  taken.noise = noise_at(flight.p_begun_W, signal);
+  taken.noise = noise_at(to, flight.p_begun_W, signal);
   taken.disturbing = disturbing;
   taken.modulation = signal.modulation;
   taken.bit_rate_bps = signal.bit_rate_bps;
@@ -361,13 +317,12 @@ void AcousticChannel::take(int number, Flight& flight, const Sending& sending, P
 }
 
 void AcousticChannel::finish(Flight& flight, const Sending& sending, const SignalReceiver::Outcome& outcome) {
-  Random random = stream(*flight.to, sending);
-  for (int i = 0; i < 2; ++i) random.uniform();  // those of fading
+  Random random = stream(*flight.to, sending, true);
   const double luck = random.uniform();
   const double link_luck = random.uniform();
   if (luck > outcome.success) flight.loss = luck > outcome.success_alone ? SignalLoss::noise : SignalLoss::interference;
   double loss_probability = 0;
-  if (!config_.links.empty()) link_loss(*flight.to, sending, loss_probability);
+  link_loss(*flight.to, sending, loss_probability);
   if (flight.loss == SignalLoss::none && link_luck < loss_probability) flight.loss = SignalLoss::link;
 }
 

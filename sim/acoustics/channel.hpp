@@ -8,6 +8,7 @@
 
 #include "sim/acoustics/acoustics_config.hpp"
 #include "sim/acoustics/neighbourhood.hpp"
+#include "sim/acoustics/propagation.hpp"
 #include "sim/acoustics/signal.hpp"
 #include "sim/acoustics/transducer.hpp"
 #include "sim/medium/medium.hpp"
@@ -43,12 +44,7 @@ class AcousticChannel {
 
   /// In device order; null where one has left.
   const std::vector<Transducer*>& transducers() const { return transducers_; }
-  /// Ambient noise of a band where a receiver is, without continuous sounds: re 1 uPa.
-  Decibels ambient_level(double centre_Hz, double bandwidth_Hz) const;
-  /// Loss from spreading and absorption between two places.
-  Decibels transmission_loss(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const;
-  /// How far a signal can be heard at all.
-  double audible_range_m(const Signal& signal) const;
+  const Propagation& propagation() const { return propagation_; }
   /// Receptions, heard or not, since the start: what the work grows with.
   std::int64_t flights() const { return flights_made_; }
   void hash_state(StateHash& hash) const;
@@ -69,6 +65,7 @@ class AcousticChannel {
     Time sent{0};
     Vector3d p_W = Vector3d::Zero(), v_W = Vector3d::Zero();
     Matrix3d R_WS = Matrix3d::Identity();
+    DirectivityConfig directivity;
     std::optional<Time> cut;  // the sender left the water
     int users = 0;            // flights and events that still need it
   };
@@ -96,14 +93,16 @@ class AcousticChannel {
   void approach(int flight, Time due);
   void begin(int flight);
   void end(int flight);
-  void work_out_level(Flight& flight, const Sending& sending);
+  /// Level, end and Doppler.  Returns the power of echoes that disturb, re 1 uPa^2.
+  PowerRatio work_out_level(Flight& flight, const Sending& sending);
   SignalLoss obstacle(const Flight& flight) const;
-  bool blocked(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group) const;
   Decibels link_loss(const Transducer& to, const Sending& sending, double& loss_probability) const;
-  PowerRatio noise_at(const Vector3d& p_W, const Signal& signal) const;
+  /// Of the sea and of continuous sounds, in the band of a signal, as a receiver hears it.
+  PowerRatio noise_at(const Transducer& to, const Vector3d& p_W, const Signal& signal) const;
   void take(int number, Flight& flight, const Sending& sending, PowerRatio disturbing);
   void finish(Flight& flight, const Sending& sending, const SignalReceiver::Outcome& outcome);
-  Random stream(const Transducer& to, const Sending& sending) const;
+  /// Its draws when a signal begins, and when it ends.
+  Random stream(const Transducer& to, const Sending& sending, bool at_end) const;
   void schedule(Time due, EventKind kind, int item);
   int new_sending();
   int new_flight();
@@ -112,6 +111,7 @@ class AcousticChannel {
 
   AcousticsConfig config_;
   AcousticSurroundings around_;
+  Propagation propagation_;
   std::vector<Transducer*> transducers_;
   std::vector<ContinuousSound*> sounds_;
   std::vector<std::unique_ptr<Sending>> sendings_;

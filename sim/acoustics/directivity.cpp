@@ -69,11 +69,14 @@ Decibels directivity_gain(const DirectivityConfig& config, const Vector3d& direc
 Decibels directivity_index(const DirectivityConfig& config, double frequency_Hz, double sound_speed_mps) {
   if (config.pattern == Pattern::omni) return {};
   const double k = 2 * std::numbers::pi * frequency_Hz / sound_speed_mps;
-  // The mean over the sphere is that over the cosine.  The midpoints of so many pieces see every lobe.
-  const int pieces = 2000;
+  // The midpoints of so many rings see every lobe.
+  const int rings = 4000;
   PowerRatio sum;
-  for (int i = 0; i < pieces; ++i) sum += to_power(gain_at(config, -1 + (2 * i + 1.0) / pieces, k));
-  return -to_decibels(1.0 / pieces * sum);
+  for (int i = 0; i < rings; ++i) {
+    const double angle_rad = (i + 0.5) * std::numbers::pi / rings;
+    sum += std::sin(angle_rad) * to_power(gain_at(config, std::cos(angle_rad), k));
+  }
+  return -to_decibels(std::numbers::pi / rings / 2 * sum);
 }
 
 }  // namespace sim

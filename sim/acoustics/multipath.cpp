@@ -25,6 +25,10 @@ void image_paths(double source_depth_m, double receiver_depth_m, double horizont
     // Unfolded, a path that begins upwards rises by zs, then crosses the water n - 1 times, then ends at the receiver;
     // one that begins downwards is its mirror image.
     const int more = (n + 1) / 2, less = n / 2;
+    if (!std::isfinite(D)) {
+      add(zs + zr, 1, 0, true);
+      break;
+    }
     if (n % 2 == 1) {
       add((n - 1) * D + zs + zr, more, less, true);
       add((n + 1) * D - zs - zr, less, more, false);

@@ -21,7 +21,8 @@ struct ImagePath {
 };
 
 /// All paths of up to `max_bounces` between two points in water of one depth, by length; the direct one is the first.
-/// Depths below the surface, source and receiver between surface and bottom.  Replaces what is in `out`.
+/// Depths below the surface, source and receiver between surface and bottom; an infinite water depth has no bottom.
+/// Replaces what is in `out`.
 void image_paths(double source_depth_m, double receiver_depth_m, double horizontal_m, double water_depth_m,
                  int max_bounces, std::vector<ImagePath>& out);
 

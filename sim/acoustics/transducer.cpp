@@ -72,6 +72,21 @@ Matrix3d Transducer::R_WS() const {
   return body_.motion().R_WB * X_BS_.linear();
 }
 
+void Transducer::change(const ReceiverConfig& config) {
+  config_ = config;
+  index_of_Hz_ = std::numeric_limits<double>::quiet_NaN();
+}
+
+Decibels Transducer::noise_reduction(double frequency_Hz, double sound_speed_mps) const {
+  if (config_.directivity.pattern == DirectivityConfig::Pattern::omni) return {};
+  if (index_of_Hz_ != frequency_Hz) {
+    // The speed of sound changes by some percent at most, the index by hundredths of dB.
+    index_ = directivity_index(config_.directivity, frequency_Hz, sound_speed_mps);
+    index_of_Hz_ = frequency_Hz;
+  }
+  return index_;
+}
+
 void Transducer::hash_state(StateHash& hash) const {
   hash.add(static_cast<std::int64_t>(busy_until_.count()));
   hash.add(static_cast<std::int64_t>(sending_until_.count()));

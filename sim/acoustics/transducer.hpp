@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string>
 
 #include "sim/acoustics/directivity.hpp"
@@ -60,6 +61,8 @@ class Transducer {
   void transmit(Signal signal, Time at);
   /// It sends now, or has something scheduled, until this time.
   Time busy_until() const { return busy_until_; }
+  /// It is taking a signal now.
+  bool receiving() const { return receiver_.taking(); }
   /// Has power, and no fault keeps it silent.
   bool works() const;
   bool in_water() const;
@@ -72,7 +75,9 @@ class Transducer {
   const Vehicle& vehicle() const { return vehicle_; }
   int number() const { return number_; }
   const ReceiverConfig& config() const { return config_; }
-  void change(const ReceiverConfig& config) { config_ = config; }
+  void change(const ReceiverConfig& config);
+  /// By how much noise from all sides is less through its directivity: the directivity index.
+  Decibels noise_reduction(double frequency_Hz, double sound_speed_mps) const;
   const Counts& counts() const { return counts_; }
 
  private:
@@ -93,6 +98,9 @@ class Transducer {
   std::int64_t signals_ = 0;
   SignalReceiver receiver_;
   Counts counts_;
+  // The directivity index of a frequency, worked out before; NaN: none.
+  mutable double index_of_Hz_ = std::numeric_limits<double>::quiet_NaN();
+  mutable Decibels index_;
 };
 
 /// A sound that goes on and on: an engine, a pile driver, a jammer.  Owned by a device; in the channel while it exists.

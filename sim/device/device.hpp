@@ -15,6 +15,7 @@ namespace sim {
 
 class Body;
 class Vehicle;
+class VehicleClock;
 class World;
 
 /// Where and when a sensor samples.
@@ -68,16 +69,28 @@ class Publisher {
  public:
   virtual ~Publisher() = default;
   virtual void publish(std::span<const std::byte> payload) = 0;
-  /// The time stamp of messages: the run's epoch plus simulated time, in microseconds.
-  std::int64_t utime(Time at) const { return epoch_us_ + at.count(); }
+  /// The time stamp of messages: the run's epoch plus the time by the clock of the vehicle, in microseconds; true time
+  /// on a truth channel.
+  std::int64_t utime(Time at) const;
+  /// Of what another clock stamped, such as a message by its sender: that clock's `reading`; true time on a truth
+  /// channel.
+  std::int64_t utime_elsewhere(Time at, Time reading) const {
+    return epoch_us_ + (clock_ ? reading.count() : at.count());
+  }
+  /// By true time, as satellites tell it.
+  std::int64_t true_utime(Time at) const { return epoch_us_ + at.count(); }
+  /// It is the truth that is being reported.
+  bool is_truth() const { return clock_ == nullptr; }
   /// Space to encode into, reused from message to message.
   Bytes& buffer() { return buffer_; }
 
  protected:
-  explicit Publisher(std::int64_t epoch_us) : epoch_us_(epoch_us) {}
+  /// `clock` must outlive the publisher; null: for truth.
+  explicit Publisher(std::int64_t epoch_us, const VehicleClock* clock) : epoch_us_(epoch_us), clock_(clock) {}
 
  private:
   std::int64_t epoch_us_;
+  const VehicleClock* clock_;
   Bytes buffer_;
 };
 

@@ -193,6 +193,7 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   for (const VehicleEntry& entry : loaded.config.vehicle_entries)
     for (VehicleInstance& instance : vehicles.load(entry)) loaded.config.vehicles.push_back(std::move(instance));
   check_channels(loaded.config, diagnostics);
+  check_metrics(loaded.config, diagnostics);
   diagnostics.throw_if_any();
   gather_from_vehicles(loaded.config);
   check_script(loaded.config, diagnostics);

@@ -12,8 +12,8 @@ namespace sim {
 /// Keeps what a sensor reports until the world publishes it: at once, or at a later simulated time by way of an event.
 class MountedDevice::Outlet final : public Publisher {
  public:
-  Outlet(MountedDevice& device, const std::string& channel)
-      : Publisher(device.host_.epoch_us), device_(device), channel_(channel) {}
+  Outlet(MountedDevice& device, const std::string& channel, const VehicleClock* clock)
+      : Publisher(device.host_.epoch_us, clock), device_(device), channel_(channel) {}
 
   void set(Time now, Time latency) {
     now_ = now;
@@ -57,6 +57,10 @@ class MountedDevice::Outlet final : public Publisher {
   std::vector<Bytes>* copies_ = nullptr;
 };
 
+std::int64_t Publisher::utime(Time at) const {
+  return epoch_us_ + (clock_ ? clock_->reading(at) : at).count();
+}
+
 Pose SweepContext::X_WS_at(Time at) const {
   if (at >= now || now == from) return X_WS;
   const double share = to_seconds(at - from) / to_seconds(now - from);
@@ -92,8 +96,8 @@ MountedDevice::MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig&
   acting_->safe_state = config_.safe;
   acting_->is_actuator = type_.is_actuator();
   acting_->always_on = type_.always_on;
-  report_outlet_ = std::make_unique<Outlet>(*this, report_channel_);
-  truth_outlet_ = std::make_unique<Outlet>(*this, truth_channel_);
+  report_outlet_ = std::make_unique<Outlet>(*this, report_channel_, &vehicle.clock());
+  truth_outlet_ = std::make_unique<Outlet>(*this, truth_channel_, nullptr);
   plan_schedule();
 }
 
@@ -228,14 +232,14 @@ void MountedDevice::report(Time now) {
   }
   if (!frozen_) {  // the first report after the fault is the one that is repeated
     frozen_.emplace();
-    frozen_utime_ = host_.epoch_us + now.count();
+    frozen_utime_ = report_outlet_->utime(now);
     report_outlet_->copy_to(&*frozen_);
     built_.reporter->report(now, *report_outlet_);
     report_outlet_->copy_to(nullptr);
     return;
   }
   // Only the time stamp goes on.
-  const std::int64_t utime = host_.epoch_us + now.count();
+  const std::int64_t utime = report_outlet_->utime(now);
   for (Bytes& payload : *frozen_) {
     if (utime_of(payload) == frozen_utime_) set_utime(payload, utime);
     report_outlet_->publish(payload);

@@ -9,6 +9,7 @@
 #include "sim/physics/body.hpp"
 #include "sim/physics/joint.hpp"
 #include "sim/state_hash.hpp"
+#include "sim/world/vehicle_clock.hpp"
 #include "sim/world/vehicle_config.hpp"
 
 namespace sim {
@@ -57,6 +58,12 @@ class Vehicle {
   VehicleSystems& systems() { return systems_; }
   const VehicleSystems& systems() const { return systems_; }
 
+  /// By which its devices stamp what they report.
+  VehicleClock& clock() { return clock_; }
+  const VehicleClock& clock() const { return clock_; }
+  /// Before its devices are added: they hold on to it.
+  void start_clock(std::uint64_t seed, Time now) { clock_ = VehicleClock(config_->clock, seed, name_, now); }
+
   void add_body(const std::string& name, Body& body) { bodies_.emplace_back(name, &body); }
   void add_joint(const std::string& name, Joint& joint) { joints_.emplace_back(name, &joint); }
   void add_device(MountedDevice& device) { devices_.push_back(&device); }
@@ -72,6 +79,7 @@ class Vehicle {
   std::vector<std::pair<std::string, Joint*>> joints_;
   std::vector<MountedDevice*> devices_;
   VehicleSystems systems_;
+  VehicleClock clock_;
 };
 
 }  // namespace sim

@@ -16,6 +16,7 @@ void VehicleConfig::read(ParamReader& in) {
   in.read("self_collision", self_collision, "parts of this vehicle collide with each other");
   in.read("actuator_latency_s", actuator_latency_s, between(0, 1e6),
           "from command to effect, added to the latency of each actuator");
+  in.read("clock", clock, "by which its devices stamp their reports; without it: true time");
   in.require("bodies");
   in.read_list("bodies", bodies, "body", "parts that move as one; the first carries the vehicle frame");
   if (in.has("bodies") && bodies.empty()) in.error("bodies", "'bodies' must have at least one body");

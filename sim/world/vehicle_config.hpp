@@ -5,6 +5,7 @@
 
 #include "sim/device/device_config.hpp"
 #include "sim/physics/physics_config.hpp"
+#include "sim/world/oscillator.hpp"
 
 namespace sim {
 
@@ -18,7 +19,8 @@ struct VehicleConfig {
   std::vector<ContactConfig> contacts;
   std::vector<std::string> categories;
   bool self_collision = false;
-  double actuator_latency_s = 0;   ///< from command to effect, added to each actuator's own
+  double actuator_latency_s = 0;  ///< from command to effect, added to each actuator's own
+  ClockConfig clock;
   std::vector<BodyConfig> bodies;  ///< the first one carries the vehicle frame
   std::vector<JointConfig> joints;
   std::vector<DeviceConfig> devices;

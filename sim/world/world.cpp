@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sim/acoustics/channel.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/script/script.hpp"
 #include "sim/world/bottom_check.hpp"
@@ -25,7 +26,9 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
                                               static_cast<std::uint64_t>(config.run.seed))),
       medium_(config.medium, config.physics.gravity_mps2, static_cast<std::uint64_t>(config.run.seed)),
       hydrodynamics_(medium_, config.physics.gravity_mps2, config.physics.step_s),
-      acoustics_(config.acoustics, {medium_, *physics_, events_, static_cast<std::uint64_t>(config.run.seed)}) {
+      acoustics_(std::make_unique<AcousticChannel>(
+          config.acoustics,
+          AcousticSurroundings{medium_, *physics_, events_, static_cast<std::uint64_t>(config.run.seed)})) {
   hydrodynamics_.set_complain([this](const std::string& who, const std::string& text) { notice(*this, who, text); });
   known_materials_.insert("default");
   for (const MaterialConfig& material : config.materials) known_materials_.insert(material.name);
@@ -83,6 +86,7 @@ Vehicle& World::build_vehicle(const VehicleInstance& instance) {
       std::make_unique<Vehicle>(instance.name, next_vehicle_number_++, group, instance.config, bus_of(instance.bus)));
   Vehicle& vehicle = *vehicles_.back();
   vehicles_by_name_.emplace(instance.name, &vehicle);
+  vehicle.start_clock(seed(), now());
   try {
     build_parts_of(vehicle, instance);
   } catch (...) {  // a mesh that is no solid, a port that is taken: nothing of it stays
@@ -129,6 +133,9 @@ void World::sort_devices() {
   listening_.clear();
   acting_.clear();
   sensing_.clear();
+  clocked_.clear();
+  for (const auto& vehicle : vehicles_)
+    if (!vehicle->clock().perfect()) clocked_.push_back(vehicle.get());
   for (const auto& device : devices_) {
     if (!device) continue;
     if (device->mailbox()) listening_.push_back({mail_flags_.of(device->number()).get(), device.get()});
@@ -149,8 +156,21 @@ void World::step() {
   physics_->step(step_number_);
   ++step_number_;
   medium_.advance_to(now());
+  advance_clocks();
   run_due_events();
   sense();
+}
+
+/// Between physics and what is due: what is stamped in this step is stamped by the clocks as they stand at its end.
+void World::advance_clocks() {
+  for (Vehicle* vehicle : clocked_) {
+    std::optional<double> temperature_C;
+    if (vehicle->clock().wants_temperature(now())) {
+      const Vector3d p_W = vehicle->X_WV().translation();
+      if (medium_.in_water(p_W)) temperature_C = medium_.temperature_C(p_W);
+    }
+    vehicle->clock().advance_to(now(), temperature_C);
+  }
 }
 
 /// Stages 6 and 7.  Sensors that cast rays take nearly all the time and touch nothing but themselves: they go first,
@@ -192,7 +212,7 @@ void World::cast_rays() {
 void World::run_due_events() {
   for (Event event; events_.take_due(now(), event);) {
     if (event.device == Event::of_acoustics)
-      acoustics_.handle(event, now());
+      acoustics_->handle(event, now());
     else if (const auto& device = devices_[static_cast<std::size_t>(event.device)])
       device->handle(event);
   }
@@ -267,10 +287,11 @@ std::uint64_t World::state_hash() const {
   physics_->hash_state(hash);
   medium_.hash_state(hash);
   for (const auto& vehicle : vehicles_) vehicle->systems().hash_state(hash);
+  for (const Vehicle* vehicle : clocked_) vehicle->clock().hash_state(hash);
   for (const auto& device : devices_)
     if (device) device->hash_state(hash);
   events_.hash_state(hash);
-  acoustics_.hash_state(hash);
+  acoustics_->hash_state(hash);
   if (!script_->empty()) script_->hash_state(hash);
   return hash.value();
 }

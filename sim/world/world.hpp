@@ -11,7 +11,6 @@
 #include <typeindex>
 #include <vector>
 
-#include "sim/acoustics/channel.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/bus/byte_port.hpp"
 #include "sim/geodesy.hpp"
@@ -36,6 +35,7 @@ struct WorldCounts {
   std::int64_t bad_messages = 0;
 };
 
+class AcousticChannel;
 class Script;
 struct ZoneRecord;
 
@@ -91,8 +91,8 @@ class World {
   const Medium& medium() const { return medium_; }
   const Hydrodynamics& hydrodynamics() const { return hydrodynamics_; }
   /// What carries sound between transducers.
-  AcousticChannel& acoustics() { return acoustics_; }
-  const AcousticChannel& acoustics() const { return acoustics_; }
+  AcousticChannel& acoustics() { return *acoustics_; }
+  const AcousticChannel& acoustics() const { return *acoustics_; }
   const Geodesy& geodesy() const { return geodesy_; }
   std::span<const std::unique_ptr<Vehicle>> vehicles() const { return vehicles_; }
   const Vehicle* find_vehicle(const std::string& name) const;
@@ -176,6 +176,7 @@ class World {
   void check_new_name(const std::string& name, const SourcePlace& place, const std::string& who) const;
   void sort_devices();
   void run_due_events();
+  void advance_clocks();
   void sense();
   void cast_rays();
 
@@ -196,7 +197,7 @@ class World {
   std::unique_ptr<PhysicsWorld> physics_;
   Medium medium_;
   Hydrodynamics hydrodynamics_;
-  AcousticChannel acoustics_;
+  std::unique_ptr<AcousticChannel> acoustics_;
   std::vector<std::unique_ptr<Vehicle>> vehicles_;
   std::map<std::string, Vehicle*, std::less<>> vehicles_by_name_;
   std::map<std::string, WorldObject, std::less<>> objects_;
@@ -224,6 +225,7 @@ class World {
   std::vector<Listening> listening_;
   std::vector<Acting*> acting_;
   std::vector<Sensing> sensing_;
+  std::vector<Vehicle*> clocked_;  // vehicles whose clocks are not perfect
   MailFlags mail_flags_;
   /// What this step has to sense.
   struct Casting {

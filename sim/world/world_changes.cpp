@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/acoustics/channel.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world/bottom_check.hpp"
@@ -159,7 +160,7 @@ void World::remove_device(MountedDevice& device) {
 void World::move_vehicle(const std::string& name, const Pose& X_WV) {
   const Vehicle& vehicle = vehicle_named(name);
   physics_->move_group(vehicle.group(), X_WV * vehicle.X_WV().inverse());
-  acoustics_.forget_places();
+  acoustics_->forget_places();
 }
 
 const WorldObject& World::add_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE) {

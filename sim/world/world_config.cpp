@@ -111,29 +111,6 @@ void LimitsConfig::read(ParamReader& in) {
   in.read("parts", parts, between(1, 100000), "of one vehicle or object that comes while the world runs");
 }
 
-void MetricConfig::read(ParamReader& in) {
-  in.require("name");
-  in.read_name("name", name, "name of the metric; gives NAME.rms_m, NAME.final_m, NAME.max_m, NAME.samples");
-  in.require("vehicle");
-  in.read_reference("vehicle", vehicle, "vehicle", "whose true position counts");
-  in.require("channel");
-  in.read("channel", channel, "of the estimate, shoal.pose_t");
-  if (in.has("channel") && (channel.empty() || channel.size() > 63))
-    in.error("channel", "'channel' must have 1 to 63 characters, got " + std::to_string(channel.size()));
-  in.read("from_s", from_s, at_least(0), "errors before this simulated time do not count");
-}
-
-void PassRule::read(ParamReader& in) {
-  in.require("metric");
-  in.read_reference("metric", metric, "figure", "such as NAME.rms_m");
-  in.read("below", below, any_number(), "the metric must be below this");
-  in.read_reference("below_metric", below_metric, "figure", "the metric must be below this other metric times factor");
-  in.read("factor", factor, above(0), "see below_metric");
-  if (!in.describing() && in.has("below") == in.has("below_metric"))
-    in.error(in.has("below") ? "needs either 'below' or 'below_metric', not both"
-                             : "needs either 'below' or 'below_metric'");
-}
-
 namespace {
 
 /// Microseconds since 1970 of `2026-01-01T00:00:00Z`; false when the text is not of that form.
@@ -151,15 +128,6 @@ bool parse_utc(const std::string& text, std::int64_t& utime) {
   if (tm.tm_mday != wanted.tm_mday || tm.tm_mon != wanted.tm_mon || tm.tm_hour != wanted.tm_hour) return false;
   utime = static_cast<std::int64_t>(seconds) * 1000000;
   return true;
-}
-
-/// What pass rules may name.
-void declare_figures(ParamReader& in, const std::vector<MetricConfig>& metrics) {
-  std::set<std::string> names;  // a metric that is there twice has been reported
-  for (const MetricConfig& metric : metrics)
-    if (names.insert(metric.name).second)
-      for (const char* figure : {".rms_m", ".final_m", ".max_m", ".samples"})
-        in.declare("figure", metric.name + figure);
 }
 
 /// What events may name.  Before they are read, for they name each other.
@@ -237,6 +205,7 @@ void WorldConfig::read(ParamReader& in) {
   for (const ProcessConfig& process : processes) in.declare("process", process.name);
   in.read("lockstep", lockstep, "waiting for clients");
   in.read("limits", limits, "what may come while the world runs");
+  declare_position_errors(in);
   in.read_list("metrics", metrics, "metric", "figures that score the run");
   for (const MetricConfig& metric : metrics) in.declare("metric", metric.name);
   declare_figures(in, metrics);

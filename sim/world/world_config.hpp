@@ -14,6 +14,7 @@
 #include "sim/physics/physics_config.hpp"
 #include "sim/script/event_config.hpp"
 #include "sim/script/zone.hpp"
+#include "sim/world/metric_config.hpp"
 #include "sim/world/placement.hpp"
 #include "sim/world/vehicle_config.hpp"
 
@@ -103,24 +104,6 @@ struct ProcessConfig {
 struct LockstepConfig {
   double timeout_s = 10;       ///< wall time to wait for an acknowledgement
   double join_timeout_s = 30;  ///< wall time to wait for the launched clients to join
-  void read(ParamReader& in);
-};
-
-/// A figure that scores the run: the distance between an estimate on a channel and the truth.
-struct MetricConfig {
-  std::string name;
-  std::string vehicle;  ///< whose position is estimated
-  std::string channel;  ///< of shoal.pose_t, position in the world frame
-  double from_s = 0;    ///< errors before this time do not count
-  void read(ParamReader& in);
-};
-
-/// The run passes when every rule holds.
-struct PassRule {
-  std::string metric;  ///< such as `cooperative.rms_m`
-  std::optional<double> below;
-  std::string below_metric;  ///< another metric, times `factor`
-  double factor = 1;
   void read(ParamReader& in);
 };
 

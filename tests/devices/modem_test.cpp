@@ -106,6 +106,23 @@ TEST(Modem, IsNotHeardBeyondItsRangeOrInAnotherNetwork) {
   EXPECT_EQ(on_other.take_all().size(), 0u);
 }
 
+TEST(Modem, AWallHidesWhereALineOfSightIsNeeded) {
+  const auto heard = [](const std::string& keys) {
+    std::string yaml = modem_world("range_m: 1000" + keys);
+    // Between b and c, 5 m high; the boxes themselves hide nothing.
+    yaml.insert(yaml.find("vehicles:"),
+                "  - {name: wall, fixed: true, position_m: [200, 0, 0], parts: [{shape: box, "
+                "size_m: [1, 50, 10]}]}\n");
+    test::TestWorld test(yaml);
+    test::Listener<shoal::modem_received_t> b(test, "b.modem"), c(test, "c.modem");
+    test.send("a.modem.cmd", message("x"));
+    test.run_for(0.5);
+    return std::pair{b.take_all().size(), c.take_all().size()};
+  };
+  EXPECT_EQ(heard(""), (std::pair<std::size_t, std::size_t>{1, 1}));
+  EXPECT_EQ(heard(", line_of_sight: true"), (std::pair<std::size_t, std::size_t>{1, 0}));
+}
+
 TEST(Modem, SendsToOneVehicleWhenADestinationIsGiven) {
   test::TestWorld test(modem_world("range_m: 1000"));
   test::Listener<shoal::modem_received_t> b(test, "b.modem"), c(test, "c.modem");

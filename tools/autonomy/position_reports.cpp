@@ -31,7 +31,8 @@ void PositionReports::receive(const shoal::modem_received_t& packet) {
   if (!(report.position_std_m > 0)) throw shoal::MessageError("a position report must have position_std_m > 0");
   if (std::hypot(report.velocity_mps[0], report.velocity_mps[1]) > max_speed_mps)
     throw shoal::MessageError("a position report says its rover is faster than any rover");
-  if (report.utime > packet.utime) throw shoal::MessageError("a position report is from the future");
+  // Both by the clock of the sender.
+  if (report.utime > packet.sent_utime) throw shoal::MessageError("a position report is from the future");
   unused_[report.vehicle] = std::move(report);
 }
 

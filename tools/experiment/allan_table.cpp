@@ -23,7 +23,7 @@ struct Record {
   std::vector<std::vector<double>> values;  ///< by field
 };
 
-/// Adds one message: its elements of double arrays, in the order of the first message.
+/// Adds one message: its elements of double arrays, and the rate error of a clock, in the order of the first message.
 void add(Record& record, const shoal::MessageSchema& schema, const bridges::LogEvent& event) {
   std::int64_t utime_us = event.utime;
   const bool first = record.utime_us.empty();
@@ -32,7 +32,7 @@ void add(Record& record, const shoal::MessageSchema& schema, const bridges::LogE
       shoal::visit_fields(schema, event.payload, [&](std::string_view name, const shoal::FieldValue& value) {
         if (const auto* integer = std::get_if<std::int64_t>(&value); integer && name == "utime") utime_us = *integer;
         const double* number = std::get_if<double>(&value);
-        if (number == nullptr || !name.ends_with(']')) return;
+        if (number == nullptr || !(name.ends_with(']') || name == "rate_error")) return;
         if (first) {
           record.fields.emplace_back(name);
           record.values.emplace_back();
@@ -125,7 +125,8 @@ AllanTable allan_table(const std::string& log, const std::string& channel, const
   AllanTable table{channel, interval_s(record, channel), {}};
   for (std::size_t i = 0; i < record.fields.size(); ++i)
     table.curves.push_back({record.fields[i], sim::allan_deviation(record.values[i], table.dt_s)});
-  if (table.curves.empty()) throw std::runtime_error(channel + ": " + schema->name + " has no array of doubles");
+  if (table.curves.empty())
+    throw std::runtime_error(channel + ": " + schema->name + " has no array of doubles and no rate_error");
   return table;
 }
 

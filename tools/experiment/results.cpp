@@ -14,13 +14,11 @@
 #include <utility>
 
 #include "tools/experiment/gnuplot.hpp"
+#include "tools/experiment/run_pictures.hpp"
 
 namespace tools {
 
 namespace {
-
-/// More vehicles than this are drawn as dots in one colour.
-constexpr std::size_t most_named_tracks = 12;
 
 /// Corners of a box, or a circle, as a closed line on the ground.
 std::string outline_of(const sim::PartConfig& part, const sim::Pose& X_WB) {
@@ -89,6 +87,7 @@ std::string Summary::to_json() const {
   json["ended"] = ended;
   json["error"] = error;
   json["exit_code"] = exit_code;
+  json["shoal"] = version;
   return json.dump(2) + "\n";
 }
 
@@ -125,14 +124,15 @@ void write_summary(const std::string& directory, const Summary& summary) {
   if (error) throw cannot_write(path, error.message());
 }
 
-Results::Results(const std::string& directory, const sim::World& world) : directory_(directory), world_(world) {
+Results::Results(const std::string& directory, const sim::World& world, bool pictures)
+    : directory_(directory), world_(world), pictures_(pictures) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   const std::string path = directory + "/tracks.csv";
   tracks_ = error ? nullptr : std::fopen(path.c_str(), "w");
   if (tracks_ == nullptr) throw cannot_write(path, error ? error.message() : std::strerror(errno));
   // Pictures of an earlier run would be taken for this one's.
-  for (const char* picture : {"/tracks.png", "/errors.png"}) std::filesystem::remove(directory + picture, error);
+  for (const char* picture : run_pictures) std::filesystem::remove(directory + "/" + picture, error);
   std::fprintf(tracks_, "time_s,vehicle,x_m,y_m,z_m,yaw_rad\n");
   const double step_s = sim::to_seconds(world.step_time());
   every_steps_ = std::max<std::int64_t>(1, std::llround(1.0 / (world.config().run.track_rate_hz * step_s)));
@@ -169,12 +169,15 @@ void Results::write_outlines() const {
 }
 
 void Results::write_errors(const Scoring& scoring) const {
-  std::string text = "time_s,metric,error_m,estimate_x_m,estimate_y_m,truth_x_m,truth_y_m\n";
+  std::string text =
+      "time_s,metric,error_m,estimate_x_m,estimate_y_m,truth_x_m,truth_y_m,estimate_z_m,truth_z_m,travelled_m,sigma_m,"
+      "nees\n";
   for (const Scoring::Track& track : scoring.tracks())
-    for (const Scoring::Sample& sample : track.samples)
-      text +=
-          fmt::format("{:.6f},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}\n", sample.time_s, track.metric, sample.error_m(),
-                      sample.estimate_m.x(), sample.estimate_m.y(), sample.truth_m.x(), sample.truth_m.y());
+    for (const ErrorSample& sample : *track.samples)
+      text += fmt::format("{:.6f},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.3f},{:.6f},{:.6f}\n",
+                          sample.time_s, track.metric, sample.error_m, sample.estimate_m.x(), sample.estimate_m.y(),
+                          sample.truth_m.x(), sample.truth_m.y(), sample.estimate_m.z(), sample.truth_m.z(),
+                          sample.travelled_m, sample.sigma_m, sample.nees);
   write("errors.csv", text);
 }
 
@@ -211,48 +214,10 @@ void Results::finish(const Summary& summary, const Scoring& scoring, const sim::
   if (first_error) throw std::runtime_error(*first_error);
 }
 
-std::string Results::plot_script(const Scoring& scoring) const {
-  auto tracks = scoring.tracks();
-  // gnuplot fails on a plot without a point.
-  std::erase_if(tracks, [](const Scoring::Track& track) { return track.samples.empty(); });
-  std::string script =
-      // The vehicles' rows alternate: without `missing` each row of another one would break the line.
-      "set datafile separator ','\nset datafile missing NaN\n"
-      "set terminal pngcairo size 1000,1080\nset output 'tracks.png'\n"
-      "set size ratio -1\nset xlabel 'east (m)'\nset ylabel 'north (m)'\nset grid\nset key below\n"
-      "set title " +
-      gnuplot_text(world_.config().name) +
-      " noenhanced\n"
-      "plot 'outlines.dat' using (real(word(strcol(1),1))):(real(word(strcol(1),2))) with lines lc 'gray40' notitle";
-  if (world_.vehicles().size() > most_named_tracks) {
-    script += ", 'tracks.csv' every ::1 using 3:4 with dots lc 'blue' title 'vehicles'";
-  } else {
-    for (const auto& vehicle : world_.vehicles())
-      script += fmt::format(
-          ", 'tracks.csv' every ::1 using (strcol(2) eq {0} ? $3 : NaN):4 with lines lw 2 "
-          "title {0} noenhanced",
-          gnuplot_text(vehicle->name()));
-  }
-  for (const Scoring::Track& track : tracks)
-    script += fmt::format(
-        ", 'errors.csv' every ::1 using (strcol(2) eq {} ? $4 : NaN):5 with lines dt 2 title "
-        "{} noenhanced",
-        gnuplot_text(track.metric), gnuplot_text(track.metric + " estimate of " + track.vehicle));
-  script += "\n";
-  if (tracks.empty()) return script;
-  script += "set output 'errors.png'\nset size noratio\nset xlabel 'time (s)'\nset ylabel 'position error (m)'\nplot ";
-  for (std::size_t i = 0; i < tracks.size(); ++i)
-    script += fmt::format(
-        "{0}'errors.csv' every ::1 using (strcol(2) eq {1} ? $1 : NaN):3 with lines lw 2 title "
-        "{1} noenhanced",
-        i > 0 ? ", " : "", gnuplot_text(tracks[i].metric));
-  return script + "\n";
-}
-
 void Results::plot(const Summary& summary, const Scoring& scoring, const std::function<bool()>& give_up) const {
-  if (summary.steps == 0 || error_) return;
+  if (summary.steps == 0 || error_ || !pictures_) return;
   // The script names its files without a directory, so that the folder can be moved and plotted again.
-  write("plot.gp", plot_script(scoring));
+  write("plot.gp", run_pictures_script(world_, scoring));
   const bool plotted = run_gnuplot(directory_, "plot.gp", std::chrono::seconds(30), give_up);
   if (!plotted && !give_up() && summary.ended != "signal")
     spdlog::warn("no pictures: gnuplot failed, see {}/plot.log", directory_);

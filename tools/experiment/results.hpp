@@ -43,6 +43,7 @@ struct Summary {
       "duration";     ///< duration, event, quit, signal, fault, bus, timeout, process, configuration, error
   std::string error;  ///< why it ended early, empty when it did not
   int exit_code = 0;
+  std::string version;  ///< of shoal
 
   double real_time_factor() const { return wall_s > 0 ? sim_time_s / wall_s : 0; }
   bool passed() const;
@@ -59,14 +60,14 @@ void write_summary(const std::string& directory, const Summary& summary);
 class Results {
  public:
   /// Makes the directory.  Throws std::runtime_error with path and reason.
-  Results(const std::string& directory, const sim::World& world);
+  Results(const std::string& directory, const sim::World& world, bool pictures = true);
   ~Results();
   const std::string& directory() const { return directory_; }
   /// Adds a sample of every vehicle's true pose when one is due.
   void after_step();
   /// Why tracks cannot be written; looked at once a simulated second.
   std::optional<std::string> error() const { return error_; }
-  /// summary.json, metrics.csv, errors.csv, world.yaml, tracks.png, errors.png.  Plotting ends once `give_up` says so.
+  /// summary.json, metrics.csv, errors.csv, world.yaml and the pictures.  Plotting ends once `give_up` says so.
   /// What cannot be written does not keep the rest from being written.  Throws std::runtime_error about the first.
   void finish(const Summary& summary, const Scoring& scoring, const sim::ConfigNode& resolved,
               const std::function<bool()>& give_up);
@@ -76,12 +77,12 @@ class Results {
   void write_errors(const Scoring& scoring) const;
   void write_metrics(const Summary& summary) const;
   void close_tracks();
-  std::string plot_script(const Scoring& scoring) const;
   void plot(const Summary& summary, const Scoring& scoring, const std::function<bool()>& give_up) const;
   void write(const std::string& file, const std::string& text) const;
 
   std::string directory_;
   const sim::World& world_;
+  bool pictures_;
   std::FILE* tracks_ = nullptr;
   std::int64_t every_steps_ = 1;
   std::int64_t steps_per_second_ = 1;

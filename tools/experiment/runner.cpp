@@ -94,7 +94,7 @@ class Run {
     for (sim::Bus* bus : buses_.other_networks()) service_.serve_vehicles(*bus);
     control_.speed = options.speed.value_or(loaded.config.run.speed);
     control_.paused = options.paused;
-    if (!options.results.empty()) results_ = std::make_unique<Results>(options.results, world_);
+    if (!options.results.empty()) results_ = std::make_unique<Results>(options.results, world_, options.pictures);
   }
 
   Summary go() {
@@ -279,6 +279,7 @@ class Run {
     const sim::BusCounts counts = buses_.counts();
     summary.world = loaded_.config.name;
     summary.seed = loaded_.config.run.seed;
+    summary.version = short_version();
     summary.steps = world_.step_number();
     summary.sim_time_s = sim::to_seconds(world_.now());
     summary.state_hash = world_.state_hash();
@@ -341,6 +342,7 @@ Summary run_world(const sim::LoadedWorld& loaded, const RunOptions& options) {
   Summary summary;
   summary.world = loaded.config.name;
   summary.seed = loaded.config.run.seed;
+  summary.version = short_version();
   const auto fail = [&](int exit_code, const std::string& ended, const char* error) {
     summary.exit_code = exit_code;
     summary.ended = ended;

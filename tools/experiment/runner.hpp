@@ -18,6 +18,7 @@ struct RunOptions {
   std::string record;                ///< file for the LCM event log; empty: none
   bool overwrite = false;            ///< of the record
   std::string results;               ///< directory; empty: none
+  bool pictures = true;              ///< in the results
   bool paused = false;
   bool launch = false;
   std::vector<std::string> await;  ///< lockstep clients, started by hand, to wait for
@@ -38,5 +39,7 @@ int caught_signal();
 
 /// Versions of shoal and of the libraries it runs with.
 std::string version_text();
+/// Of shoal alone: `0.5.0 (a1b2c3d)`.
+std::string short_version();
 
 }  // namespace tools

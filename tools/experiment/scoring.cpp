@@ -1,103 +1,93 @@
 #include "tools/experiment/scoring.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
-
-#include "shoal/message_codec.hpp"
-#include "shoal/pose_t.hpp"
 
 namespace tools {
 
 namespace {
 
-/// Estimates may be this old when they come.
-constexpr double truth_memory_s = 10;
+Scoring::Verdict judge(const sim::PassRule& rule, const Figures& figures) {
+  const double value = figures.at(rule.metric);
+  const auto text = [&](const char* sign, const std::string& right) {
+    return fmt::format("{} ({:.3f}) {} {}", rule.metric, value, sign, right);
+  };
+  if (rule.below) return {text("<", fmt::format("{}", *rule.below)), value < *rule.below};
+  if (rule.above) return {text(">", fmt::format("{}", *rule.above)), value > *rule.above};
+  if (rule.equals) return {text("==", fmt::format("{}", *rule.equals)), value == *rule.equals};
+  const bool below = !rule.below_metric.empty();
+  const std::string& other = below ? rule.below_metric : rule.above_metric;
+  const double limit = rule.factor * figures.at(other);
+  const std::string right = fmt::format("{} * {} ({:.3f})", rule.factor, other, limit);
+  return {text(below ? "<" : ">", right), below ? value < limit : value > limit};
+}
 
 }  // namespace
 
-Scoring::Scoring(const sim::World& world) : world_(world) {
-  const auto steps = static_cast<std::size_t>(truth_memory_s / sim::to_seconds(world.step_time())) + 1;
-  for (const sim::MetricConfig& config : world.config().metrics) {
-    const sim::Vehicle* vehicle = world.find_vehicle(config.vehicle);
-    metrics_.push_back({&config,
-                        vehicle,
-                        vehicle->bus().open_mailbox(config.channel),
-                        std::vector<sim::Vector3d>(steps, vehicle->X_WV().translation()),
-                        {}});
+Scoring::Scoring(sim::World& world) : world_(world) {
+  for (const sim::MetricConfig& config : world.config().metrics) metrics_.push_back(make(config));
+}
+
+Scoring::~Scoring() = default;
+
+const TruthHistory& Scoring::truth_of(const std::string& vehicle) {
+  std::unique_ptr<TruthHistory>& truth = truths_[vehicle];
+  if (!truth) truth = std::make_unique<TruthHistory>(world_, *world_.find_vehicle(vehicle));
+  return *truth;
+}
+
+std::unique_ptr<Metric> Scoring::make(const sim::MetricConfig& config) {
+  switch (config.type) {
+    case sim::MetricType::position_error:
+    case sim::MetricType::consistency:
+      return make_estimate_metric(config, world_, truth_of(config.vehicle));
+    case sim::MetricType::distance:
+      return make_distance_metric(config, world_, truth_of(config.vehicle));
+    case sim::MetricType::delivery:
+    case sim::MetricType::bytes_per_metre:
+      return make_link_metric(config, world_);
+    case sim::MetricType::mission_time:
+    case sim::MetricType::messages:
+      return make_event_metric(config, world_);
+    case sim::MetricType::collisions:
+      break;
   }
+  return make_collision_metric(config, world_);
 }
 
 void Scoring::after_step() {
-  for (Metric& metric : metrics_) {
-    const auto slot = static_cast<std::size_t>(world_.step_number()) % metric.recent_truth.size();
-    metric.recent_truth[slot] = metric.vehicle->X_WV().translation();
-    while (const auto message = metric.mailbox->take()) take(metric, *message);
-  }
+  for (const auto& [vehicle, truth] : truths_) truth->after_step();
+  for (const auto& metric : metrics_) metric->after_step();
 }
 
-void Scoring::take(Metric& metric, const sim::Message& message) {
-  try {
-    const auto pose = shoal::decode<shoal::pose_t>(message.payload, shoal::Finite::required);
-    const std::int64_t step_us = world_.step_time().count();
-    const auto memory = static_cast<std::int64_t>(metric.recent_truth.size());
-    // Compared before it is subtracted: any 64 bits may come.
-    const bool in_run =
-        pose.utime >= world_.epoch_us() && pose.utime < world_.epoch_us() + world_.now().count() + (step_us + 1) / 2;
-    const std::int64_t t_us = in_run ? pose.utime - world_.epoch_us() : 0;
-    const std::int64_t step = (t_us + step_us / 2) / step_us;
-    if (!in_run || step <= world_.step_number() - memory)
-      throw std::runtime_error(fmt::format("'utime' is not within the last {} s of simulated time", truth_memory_s));
-    if (static_cast<double>(t_us) * 1e-6 < metric.config->from_s) return;
-    metric.samples.push_back({static_cast<double>(t_us) * 1e-6,
-                              metric.recent_truth[static_cast<std::size_t>(step % memory)],
-                              {pose.pos[0], pose.pos[1], pose.pos[2]}});
-  } catch (const std::runtime_error& error) {
-    if (++bad_messages_ <= 100) spdlog::warn("{}: {} (ignored)", message.channel, error.what());
-  }
-}
-
-std::map<std::string, double> Scoring::figures() const {
-  std::map<std::string, double> figures;
-  const double nothing = std::numeric_limits<double>::quiet_NaN();
-  for (const Metric& metric : metrics_) {
-    double squares = 0;
-    double largest = 0;
-    for (const Sample& sample : metric.samples) {
-      squares += sample.error_m() * sample.error_m();
-      largest = std::max(largest, sample.error_m());
-    }
-    const auto count = static_cast<double>(metric.samples.size());
-    const std::string& name = metric.config->name;
-    figures[name + ".rms_m"] = count > 0 ? std::sqrt(squares / count) : nothing;
-    figures[name + ".final_m"] = count > 0 ? metric.samples.back().error_m() : nothing;
-    figures[name + ".max_m"] = count > 0 ? largest : nothing;
-    figures[name + ".samples"] = count;
-  }
+Figures Scoring::figures() const {
+  Figures figures;
+  for (const bool needs_others : {false, true})
+    for (const auto& metric : metrics_)
+      if (metric->needs_others() == needs_others) metric->add_figures(figures);
   return figures;
 }
 
 std::vector<Scoring::Verdict> Scoring::verdicts() const {
-  const std::map<std::string, double> all = figures();
+  const Figures all = figures();
   std::vector<Verdict> verdicts;
-  for (const sim::PassRule& rule : world_.config().pass) {
-    const double value = all.at(rule.metric);
-    const double limit = rule.below ? *rule.below : rule.factor * all.at(rule.below_metric);
-    const std::string right = rule.below ? fmt::format("{}", *rule.below)
-                                         : fmt::format("{} * {} ({:.3f})", rule.factor, rule.below_metric, limit);
-    // NaN (no estimate came) fails.
-    verdicts.push_back({fmt::format("{} ({:.3f}) < {}", rule.metric, value, right), value < limit});
-  }
+  for (const sim::PassRule& rule : world_.config().pass) verdicts.push_back(judge(rule, all));
   return verdicts;
 }
 
 std::vector<Scoring::Track> Scoring::tracks() const {
   std::vector<Track> tracks;
-  for (const Metric& metric : metrics_) tracks.push_back({metric.config->name, metric.config->vehicle, metric.samples});
+  for (const auto& metric : metrics_)
+    if (const std::vector<ErrorSample>* samples = metric->samples())
+      tracks.push_back({metric->config().name, metric->config().vehicle, metric->config().dimensions, samples});
   return tracks;
+}
+
+std::int64_t Scoring::bad_messages() const {
+  std::int64_t sum = 0;
+  for (const auto& metric : metrics_) sum += metric->bad_messages();
+  return sum;
 }
 
 }  // namespace tools

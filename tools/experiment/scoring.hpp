@@ -5,55 +5,49 @@
 #include <string>
 #include <vector>
 
-#include "sim/bus/bus.hpp"
 #include "sim/world/world.hpp"
+#include "tools/experiment/metric.hpp"
+#include "tools/experiment/truth_history.hpp"
 
 namespace tools {
 
-/// Scores a run by the `metrics:` of its world: compares estimates, on the bus of the vehicle, with the truth.
+/// Scores a run by the `metrics:` of its world: looks at the truth, at estimates on the bus of their vehicle, at
+/// contacts and packets.  Scoring does not change the run.
 class Scoring {
  public:
-  /// One estimate beside the truth at the estimate's own time.
-  struct Sample {
-    double time_s;
-    sim::Vector3d truth_m, estimate_m;
-    double error_m() const { return (estimate_m - truth_m).head<2>().norm(); }
-  };
+  /// What a metric compared.
   struct Track {
     std::string metric;
     std::string vehicle;
-    std::vector<Sample> samples;
+    int dimensions;
+    const std::vector<ErrorSample>* samples;
   };
   struct Verdict {
     std::string rule;
     bool passed;
   };
 
-  explicit Scoring(const sim::World& world);
-  /// Takes the estimates that have come.  Call after every step.
+  /// `world` must outlive this.
+  explicit Scoring(sim::World& world);
+  ~Scoring();
+  /// Call after every step.
   void after_step();
 
-  /// `NAME.rms_m`, `NAME.final_m`, `NAME.max_m` and `NAME.samples` of every metric, by name.  NaN without samples.
-  /// The error is horizontal.
-  std::map<std::string, double> figures() const;
-  /// The pass rules of the world, each with its outcome.
+  /// The figures of every metric, by name.
+  Figures figures() const;
+  /// The pass rules of the world, each with its outcome.  A figure that is NaN fails.
   std::vector<Verdict> verdicts() const;
+  /// Of the metrics that compare estimates with the truth.
   std::vector<Track> tracks() const;
-  std::int64_t bad_messages() const { return bad_messages_; }
+  std::int64_t bad_messages() const;
 
  private:
-  struct Metric {
-    const sim::MetricConfig* config;
-    const sim::Vehicle* vehicle;
-    std::unique_ptr<sim::Mailbox> mailbox;
-    std::vector<sim::Vector3d> recent_truth;  ///< ring by step number: estimates come late
-    std::vector<Sample> samples;
-  };
-  void take(Metric& metric, const sim::Message& message);
+  const TruthHistory& truth_of(const std::string& vehicle);
+  std::unique_ptr<Metric> make(const sim::MetricConfig& config);
 
-  const sim::World& world_;
-  std::vector<Metric> metrics_;
-  std::int64_t bad_messages_ = 0;
+  sim::World& world_;
+  std::map<std::string, std::unique_ptr<TruthHistory>> truths_;  ///< by vehicle
+  std::vector<std::unique_ptr<Metric>> metrics_;
 };
 
 }  // namespace tools

@@ -6,13 +6,17 @@
 
 namespace tools {
 
+std::string short_version() {
+  return fmt::format("{} ({})", SHOAL_VERSION, SHOAL_GIT_HASH);
+}
+
 std::string version_text() {
   return fmt::format(
-      "shoal {} ({})\n"
+      "shoal {}\n"
       "ODE: {}\n"
       "LCM {}, Eigen {}.{}.{}, fmt {}\n"
       "compiler: {}\n",
-      SHOAL_VERSION, SHOAL_GIT_HASH, dGetConfiguration(), bridges::lcm_version(), EIGEN_WORLD_VERSION,
+      short_version(), dGetConfiguration(), bridges::lcm_version(), EIGEN_WORLD_VERSION,
       EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, FMT_VERSION, __VERSION__);
 }
 

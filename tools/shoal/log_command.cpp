@@ -177,7 +177,7 @@ void add_log_command(CLI::App& app, int& exit_code) {
   CLI::App* info_command = command->add_subcommand("info", "Channels, rates, types, and the run that made it");
   CLI::App* csv_command = command->add_subcommand("csv", "The messages of one channel as CSV on stdout");
   CLI::App* allan_command = command->add_subcommand(
-      "allan", "Allan deviation of each double array of one channel, from an instrument at rest");
+      "allan", "Allan deviation of each double array of one channel, from an instrument at rest, or of a clock");
   CLI::App* picture_command =
       command->add_subcommand("picture", "What a range sensor recorded on one channel, as a picture");
   for (CLI::App* each : {info_command, csv_command, allan_command, picture_command}) {

@@ -77,6 +77,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--record", arguments->run.record, "write an LCM event log, stamped with simulated time");
   command->add_flag("--overwrite", arguments->run.overwrite, "the record may replace a file");
   command->add_option("--results", arguments->run.results, "directory for summary.json, CSV files and plots");
+  command->add_flag("!--no-pictures", arguments->run.pictures, "results without plots");
   command->add_flag("--paused", arguments->run.paused, "wait for a resume on sim.control");
   command->add_flag("--launch", arguments->run.launch, "start the programs that the world names");
   command->add_option("--threads", arguments->run.threads, "threads that follow rays; 0: one for each processor")

@@ -84,7 +84,7 @@ TEST(PositionReports, RefuseWhatCannotBeBelieved) {
   EXPECT_THROW(reports.receive(with([](auto& r) { r.velocity_mps[0] = 1000; })), shoal::MessageError);
   EXPECT_THROW(reports.receive(with([](auto& r) { r.position_m[0] = std::nan(""); })), shoal::MessageError);
   shoal::modem_received_t early = over_the_modem(report_at(second));
-  early.utime = second - 1;
+  early.sent_utime = second - 1;
   EXPECT_THROW(reports.receive(early), shoal::MessageError);
   EXPECT_FALSE(reports.take("rover1", second));
 }

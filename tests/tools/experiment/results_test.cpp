@@ -76,7 +76,8 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   for (const auto& [key, value] : json.items()) keys.push_back(key);
   EXPECT_THAT(keys, testing::ElementsAre("world", "seed", "steps", "sim_time_s", "wall_s", "real_time_factor",
                                          "state_hash", "messages", "dropped_messages", "bad_messages", "quick_steps",
-                                         "metrics", "rules", "processes", "passed", "ended", "error", "exit_code"));
+                                         "metrics", "rules", "processes", "passed", "ended", "error", "exit_code",
+                                         "shoal"));
   EXPECT_EQ(json["world"], "harbor");
   EXPECT_EQ(json["seed"], 3);
   EXPECT_EQ(json["steps"], 1000);

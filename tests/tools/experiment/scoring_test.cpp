@@ -101,7 +101,7 @@ TEST(Scoring, CountsAndIgnoresBadEstimates) {
   ScoredWorld world;
   world.run_for(11);
   world.estimate("good", std::numeric_limits<double>::quiet_NaN(), 0);
-  world.estimate("good", 1, 2, -1);    // from the future
+  world.estimate("good", 1, 2, -1.5);  // from the future: a clock may be 1 s ahead
   world.estimate("good", 1, 2, 10.5);  // too late: the truth is kept for 10 s
   world.estimate("good", 1, 2, 12);    // before the run
   world.test.bus.publish("good", sim::Bytes(30), world.test.world.now());
@@ -131,26 +131,36 @@ TEST(Scoring, JudgesByTheRulesOfTheWorld) {
       "  - {metric: good.max_m, below: 2}\n"
       "  - {metric: good.max_m, below: 0.5}\n"
       "  - {metric: good.max_m, below_metric: late.max_m, factor: 0.5}\n"
-      "  - {metric: good.max_m, below_metric: late.max_m, factor: 0.2}\n");
+      "  - {metric: good.max_m, below_metric: late.max_m, factor: 0.2}\n"
+      "  - {metric: good.max_m, above: 0.9}\n"
+      "  - {metric: late.max_m, above_metric: good.max_m, factor: 5}\n"
+      "  - {metric: good.samples, equals: 1}\n"
+      "  - {metric: good.samples, equals: 2}\n");
   world.run_for(1);
   world.estimate("good", 2, 2);  // 1 m off
   world.estimate("late", 5, 2);  // 4 m off
   world.run_for(0.01);
   const auto verdicts = world.scoring.verdicts();
-  ASSERT_EQ(verdicts.size(), 4u);
+  ASSERT_EQ(verdicts.size(), 8u);
   EXPECT_TRUE(verdicts[0].passed);
   EXPECT_FALSE(verdicts[1].passed);
   EXPECT_TRUE(verdicts[2].passed) << verdicts[2].rule;
   EXPECT_FALSE(verdicts[3].passed) << verdicts[3].rule;
+  EXPECT_TRUE(verdicts[4].passed) << verdicts[4].rule;
+  EXPECT_FALSE(verdicts[5].passed) << verdicts[5].rule;
+  EXPECT_TRUE(verdicts[6].passed) << verdicts[6].rule;
+  EXPECT_FALSE(verdicts[7].passed) << verdicts[7].rule;
+  EXPECT_EQ(verdicts[7].rule, "good.samples (1.000) == 2");
   EXPECT_EQ(verdicts[1].rule, "good.max_m (1.000) < 0.5");
   EXPECT_EQ(verdicts[3].rule, "good.max_m (1.000) < 0.2 * late.max_m (0.800)");
 }
 
 TEST(Scoring, FailsARuleWhenNoEstimateCame) {
-  ScoredWorld world("pass:\n  - {metric: good.rms_m, below: 1000}\n");
+  ScoredWorld world(
+      "pass: [{metric: good.rms_m, below: 1000}, {metric: good.rms_m, above: -1000}, {metric: good.rms_m, equals: 0}]\n");
   world.run_for(0.1);
   EXPECT_TRUE(std::isnan(world.scoring.figures().at("good.rms_m")));
-  EXPECT_FALSE(world.scoring.verdicts().at(0).passed);
+  for (const auto& verdict : world.scoring.verdicts()) EXPECT_FALSE(verdict.passed) << verdict.rule;
 }
 
 }  // namespace

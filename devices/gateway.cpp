@@ -1,0 +1,154 @@
+#include "devices/gateway.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "shoal/gateway_state_t.hpp"
+#include "shoal/message_codec.hpp"
+#include "sim/config/diagnostics.hpp"
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+namespace {
+
+bool is_modem(const std::string& type) {
+  return type == "modem" || type == "acoustic_modem";
+}
+
+}  // namespace
+
+void Gateway::Params::read(sim::ParamReader& in) {
+  in.require("between");
+  in.read("between", between, "two devices of the vehicle of type modem or acoustic_modem");
+  in.read("destinations", destinations,
+          "vehicles that the first and the second modem send to what is passed to them; empty text: everybody");
+  in.read("delay_s", delay_s, sim::between(0, 3600), "between arrival at one and sending by the other");
+  in.read("repeat_s", repeat_s, sim::between(0, 86400), "the same bytes do not pass again so long; 0: they do");
+  in.read("name_source", name_source, "puts the name of the sending vehicle and a colon before the bytes");
+  in.read("only_prefix", only_prefix, "passes only messages that begin with this text; empty: all");
+  in.read("queue_messages", queue_messages, sim::at_least(1), "messages waiting for their delay; more are refused");
+  if (in.describing()) return;
+  if (between.size() != 2 || between[0] == between[1])
+    in.error("between", "'between' must name two different devices, got " + std::to_string(between.size()) + " names");
+  if (destinations.size() != 2)
+    in.error("destinations", "'destinations' must have 2 names, got " + std::to_string(destinations.size()));
+}
+
+Gateway::Gateway(const Params& params, const sim::DeviceContext& context)
+    : params_(params),
+      vehicle_(context.vehicle),
+      faults_(context.faults),
+      all_modems_(context.world.shared<MessageModems>()) {
+  for (const std::string& name : params.between) {
+    const auto& all = context.vehicle.config().devices;
+    if (std::any_of(all.begin(), all.end(), [&](const auto& one) { return one.name == name && is_modem(one.type); }))
+      continue;
+    sim::throw_config_error(context.config.place,
+                            "vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'",
+                            "'between' names no modem or acoustic_modem '" + name + "'");
+  }
+  for (const sim::DeviceConfig& other : context.vehicle.config().devices) {
+    if (other.type != "gateway" || other.name == context.config.name) continue;
+    const auto& names = static_cast<const sim::detail::ParamsOf<Params>&>(*other.params).params.between;
+    for (const std::string& name : params.between)
+      if (std::find(names.begin(), names.end(), name) != names.end())
+        sim::throw_config_error(context.config.place,
+                                "vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'",
+                                "'" + name + "' belongs to gateway '" + other.name + "' already");
+  }
+}
+
+void Gateway::find_modems() {
+  for (std::size_t i = 0; i < 2; ++i) {
+    modems_[i] = all_modems_.find(vehicle_.name() + "/" + params_.between[i]);
+    modems_[i]->set_tap(
+        [this, i](sim::Time at, const std::string& source, const sim::Bytes& data) { arrived(i, at, source, data); });
+  }
+}
+
+bool Gateway::seen_before(sim::Time at, const sim::Bytes& data) {
+  if (params_.repeat_s <= 0) return false;
+  const sim::Time oldest = at - sim::from_seconds(params_.repeat_s);
+  while (!seen_.empty() && (seen_.front().at < oldest || seen_.size() > 1000)) seen_.pop_front();
+  const auto same = std::find_if(seen_.begin(), seen_.end(), [&](const Seen& seen) { return seen.data == data; });
+  if (same != seen_.end()) return true;
+  seen_.push_back({at, data});
+  return false;
+}
+
+void Gateway::arrived(std::size_t from, sim::Time at, const std::string& source, const sim::Bytes& data) {
+  Counts& counts = counting_[from];
+  if (!vehicle_.systems().powered || faults_.silent()) return;
+  const std::string& prefix = params_.only_prefix;
+  const auto* text = reinterpret_cast<const char*>(data.data());
+  if (!std::string_view(text, data.size()).starts_with(prefix)) {
+    ++counts.refused;
+    return;
+  }
+  if (seen_before(at, data)) {
+    ++counts.repeated;
+    return;
+  }
+  Message message{at + sim::from_seconds(params_.delay_s), from, {}};
+  if (params_.name_source) {
+    const std::string name = source + ":";
+    const auto* bytes = reinterpret_cast<const std::byte*>(name.data());
+    message.data.assign(bytes, bytes + name.size());
+  }
+  message.data.insert(message.data.end(), data.begin(), data.end());
+  if (message.data.size() > modems_[1 - from]->longest_message_bytes()) {
+    ++counts.too_long;
+    return;
+  }
+  if (waiting_.size() >= static_cast<std::size_t>(params_.queue_messages)) {
+    ++counts.refused;
+    return;
+  }
+  // What goes out is known, too, in case it comes back through another gateway.
+  if (params_.name_source) seen_before(at, message.data);
+  waiting_.push_back(std::move(message));
+}
+
+void Gateway::act(const sim::ActContext& context) {
+  if (modems_[0] == nullptr) find_modems();
+  while (!waiting_.empty() && waiting_.front().due <= context.now) {
+    Message message = std::move(waiting_.front());
+    waiting_.pop_front();
+    const std::size_t to = 1 - message.from;
+    try {
+      modems_[to]->send(context.now, params_.destinations[to], std::move(message.data));
+      ++counting_[message.from].passed;
+    } catch (const std::runtime_error&) {
+      ++counting_[message.from].refused;  // the vehicle it was for has left
+    }
+  }
+}
+
+void Gateway::hash_state(sim::StateHash& hash) const {
+  for (const Message& message : waiting_) {
+    hash.add(static_cast<std::int64_t>(message.due.count()));
+    hash.add_bytes(message.data.data(), message.data.size());
+  }
+  hash.add(static_cast<std::uint64_t>(seen_.size()));
+  for (const Counts& counts : counting_)
+    for (const std::int64_t count : {counts.passed, counts.too_long, counts.repeated, counts.refused}) hash.add(count);
+}
+
+void GatewayReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
+  shoal::gateway_state_t message;
+  message.utime = out.utime(sampled_at);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Gateway::Counts& counts = gateway_.counts()[i];
+    message.passed[i] = counts.passed;
+    message.too_long[i] = counts.too_long;
+    message.repeated[i] = counts.repeated;
+    message.refused[i] = counts.refused;
+  }
+  shoal::encode_into(message, out.buffer());
+  out.publish(out.buffer());
+}
+
+SHOAL_SENSOR("gateway", Gateway, GatewayReporter);
+
+}  // namespace devices

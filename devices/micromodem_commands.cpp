@@ -1,0 +1,215 @@
+// What the host of a Micro-Modem may ask for.
+#include <chrono>
+#include <cmath>
+#include <map>
+
+#include "devices/micromodem_protocol.hpp"
+
+namespace devices {
+
+namespace {
+
+// Numbers of $CAERR; the words are ours.
+constexpr int unknown_sentence = 1, bad_field = 3, is_busy = 4, too_long_data = 5, no_request = 6;
+
+std::string joined(const NmeaSentence& in, const std::string& name) {
+  std::string text = name;
+  for (std::size_t i = 1; i < in.fields.size(); ++i) text += "," + in.fields[i];
+  return text;
+}
+
+}  // namespace
+
+MicromodemProtocol::Command MicromodemProtocol::command_of(const std::string& name) {
+  static const std::map<std::string, Command> commands{
+      {"CCCFG", &MicromodemProtocol::configure},   {"CCCFQ", &MicromodemProtocol::query},
+      {"CCCLK", &MicromodemProtocol::set_clock},   {"CCMSC", &MicromodemProtocol::sleep_or_reset},
+      {"CCCYC", &MicromodemProtocol::begin_cycle}, {"CCTXD", &MicromodemProtocol::take_data},
+      {"CCMPC", &MicromodemProtocol::send_ping},   {"CCMUC", &MicromodemProtocol::send_mini},
+      {"CCPDT", &MicromodemProtocol::ask_beacons}, {"CCPNT", &MicromodemProtocol::ask_beacons},
+  };
+  const auto found = commands.find(name);
+  return found == commands.end() ? nullptr : found->second;
+}
+
+void MicromodemProtocol::take_line(const NmeaLines::Line& line, sim::Time now) {
+  NmeaSentence in;
+  if (line.too_long) {
+    error("NMEA", unknown_sentence, "line too long", now);
+    return;
+  }
+  switch (parse_nmea(line.text, in)) {
+    case NmeaError::no_sentence:
+      return;  // noise
+    case NmeaError::bad_checksum:
+      error("NMEA", 2, "bad checksum", now);
+      return;
+    case NmeaError::none:
+      break;
+  }
+  if (const Command command = command_of(in.name()))
+    (this->*command)(in, now);
+  else
+    error("NMEA", unknown_sentence, "unknown sentence " + in.name().substr(0, 16), now);
+}
+
+std::optional<std::pair<int, int>> MicromodemProtocol::addresses(const NmeaSentence& in, std::size_t first,
+                                                                 sim::Time now) {
+  const auto source = in.number(first, 0, micromodem_broadcast - 1);
+  const auto destination = in.number(first + 1, 0, micromodem_broadcast);
+  if (source && destination) return std::pair{*source, *destination};
+  error("NMEA", bad_field, "address must be 0 to 127", now);
+  return {};
+}
+
+void MicromodemProtocol::configure(const NmeaSentence& in, sim::Time now) {
+  const auto value = in.number(2, -1000000, 1000000);
+  if (!value || in.count() != 2) return error("NMEA", bad_field, "CFG needs a name and a number", now);
+  switch (settings_.set(in.at(1), *value)) {
+    case MicromodemSettings::Outcome::unknown:
+      return error("NMEA", bad_field, "unknown setting " + in.at(1).substr(0, 16), now);
+    case MicromodemSettings::Outcome::out_of_range:
+      return error("NMEA", bad_field, "value of " + in.at(1) + " out of range", now);
+    case MicromodemSettings::Outcome::done:
+      side_.say("CACFG," + in.at(1) + "," + std::to_string(*value));
+  }
+}
+
+void MicromodemProtocol::query(const NmeaSentence& in, sim::Time now) {
+  if (in.at(1) == "ALL") {
+    for (const auto& [name, value] : settings_.all()) side_.say("CACFG," + name + "," + std::to_string(value));
+    return;
+  }
+  const auto value = settings_.find(in.at(1));
+  if (!value) return error("NMEA", bad_field, "unknown setting " + in.at(1).substr(0, 16), now);
+  side_.say("CACFG," + in.at(1) + "," + std::to_string(*value));
+}
+
+void MicromodemProtocol::set_clock(const NmeaSentence& in, sim::Time now) {
+  using namespace std::chrono;
+  const auto year_ = in.number(1, 1970, 2200), month_ = in.number(2, 1, 12), day_ = in.number(3, 1, 31);
+  const auto hour = in.number(4, 0, 23), minute = in.number(5, 0, 59), second = in.number(6, 0, 60);
+  if (!year_ || !month_ || !day_ || !hour || !minute || !second)
+    return error("NMEA", bad_field, "CLK needs yyyy mm dd hh mm ss", now);
+  const year_month_day date{year{*year_}, month{static_cast<unsigned>(*month_)}, day{static_cast<unsigned>(*day_)}};
+  if (!date.ok()) return error("NMEA", bad_field, "no such day", now);
+  const std::int64_t set_us = microseconds(sys_days(date).time_since_epoch()).count() +
+                              1'000'000LL * (3600LL * *hour + 60LL * *minute + *second);
+  clock_offset_us_ = set_us - side_.utc_us(now);
+  // With a pulse every second it only learns which second it is.
+  if (settings_.on("SNV")) clock_offset_us_ = std::llround(static_cast<double>(clock_offset_us_) * 1e-6) * 1'000'000LL;
+  clock_set_ = true;
+  side_.say(joined(in, "CACLK"));
+}
+
+void MicromodemProtocol::sleep_or_reset(const NmeaSentence& in, sim::Time now) {
+  const auto who = addresses(in, 1, now);
+  if (!who) return;
+  side_.say(joined(in, "CAMSC"));
+  if (who->second != address()) return;
+  cycle_.reset(), expected_.reset(), ping_.reset(), beacon_ping_.reset();
+  if (!config_.synchronous) clock_offset_us_ = 0, clock_set_ = false;
+  const sim::Time up = now + sim::from_seconds(1);
+  say_later(up, "CAREV," + time_of_day(up) + ",INIT," + config_.revision);
+  next_revision_ = up;
+}
+
+void MicromodemProtocol::begin_cycle(const NmeaSentence& in, sim::Time now) {
+  const auto who = addresses(in, 2, now);
+  if (!who) return;
+  const int highest_rate = config_.psk ? static_cast<int>(micromodem_rates().size()) - 1 : 0;
+  const auto rate = in.number(4, 0, highest_rate);
+  if (!rate) return error("CYC", bad_field, "rate must be 0 to " + std::to_string(highest_rate), now);
+  const int most = micromodem_rates()[static_cast<std::size_t>(*rate)].frames;
+  const auto ack = in.number(5, 0, 1), frames = in.number(6, 1, most);
+  if (!ack || !frames) return error("CYC", bad_field, "frames must be 1 to " + std::to_string(most), now);
+  if (busy("CYC", now)) return;
+  side_.say(joined(in, "CACYC"));
+  Cycle cycle{who->first, who->second, *rate, *frames, *ack != 0, false, {}, sim::Time{0}};
+  if (cycle.source == address()) return gather(std::move(cycle), now);
+  // It asks another to send.
+  MicromodemPacket packet;
+  packet.kind = MicromodemPacket::Kind::cycle_init;
+  packet.source = cycle.source, packet.destination = cycle.destination, packet.rate = cycle.rate;
+  packet.ack = cycle.ack, packet.frame_count = cycle.frames;
+  const auto sound = send(packet, now, settings_.on("SNV"));
+  expected_ = Expected{cycle.source, cycle.destination, cycle.rate, cycle.frames,
+                       sound.end + sim::from_seconds(settings_.get("CTO"))};
+}
+
+void MicromodemProtocol::take_data(const NmeaSentence& in, sim::Time now) {
+  const auto who = addresses(in, 1, now);
+  if (!who) return;
+  if (!cycle_ || who->first != address()) return error("TXD", no_request, "no data was asked for", now);
+  const auto data = from_hex(in.at(4));
+  const auto ack = in.number(3, 0, 1);
+  if (!data || !ack) return error("TXD", bad_field, "data must be bytes in hexadecimal", now);
+  const int room = micromodem_rates()[static_cast<std::size_t>(cycle_->rate)].frame_bytes;
+  if (data->size() > static_cast<std::size_t>(room))
+    return error("TXD", too_long_data,
+                 "data too long: " + std::to_string(data->size()) + " bytes and room for " + std::to_string(room), now);
+  side_.say("CATXD," + in.at(1) + "," + in.at(2) + "," + in.at(3) + "," + std::to_string(data->size()));
+  const bool last = data->empty();
+  if (!last || cycle_->gathered.empty()) cycle_->gathered.push_back({*ack != 0, *data});
+  if (last || static_cast<int>(cycle_->gathered.size()) == cycle_->frames)
+    send_cycle(now);
+  else
+    ask_for_frame(now);
+}
+
+void MicromodemProtocol::send_ping(const NmeaSentence& in, sim::Time now) {
+  const auto who = addresses(in, 1, now);
+  if (!who) return;
+  if (who->first != address() || who->second == address() || who->second == micromodem_broadcast)
+    return error("MPC", bad_field, "a ping goes from this modem to another one", now);
+  if (busy("MPC", now)) return;
+  side_.say(joined(in, "CAMPC"));
+  MicromodemPacket packet;
+  packet.kind = MicromodemPacket::Kind::ping;
+  packet.source = who->first, packet.destination = who->second;
+  const auto sound = send(packet, now, false);
+  ping_ = Ping{who->second, sound.begin, sound.begin + sim::from_seconds(micromodem_turnaround_s + 6)};
+}
+
+void MicromodemProtocol::send_mini(const NmeaSentence& in, sim::Time now) {
+  const auto who = addresses(in, 1, now);
+  if (!who) return;
+  const std::string& hex = in.at(3);
+  const bool good = !hex.empty() && hex.size() <= 4 &&
+                    hex.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos &&
+                    std::stoi(hex, nullptr, 16) <= 0x1fff;
+  if (!good) return error("MUC", bad_field, "data must be 0000 to 1fff", now);
+  if (who->first != address()) return error("MUC", bad_field, "the source is not this modem", now);
+  if (busy("MUC", now)) return;
+  side_.say(joined(in, "CAMUC"));
+  MicromodemPacket packet;
+  packet.kind = MicromodemPacket::Kind::mini;
+  packet.source = who->first, packet.destination = who->second, packet.value = std::stoi(hex, nullptr, 16);
+  send(packet, now, settings_.on("SNV"));
+}
+
+void MicromodemProtocol::ask_beacons(const NmeaSentence& in, sim::Time now) {
+  // PDT: group, channel, sync, sync timeout, timeout, four flags.  PNT: frequency, two lengths, timeout, four
+  // frequencies, sync.  The frequencies are those of the transponders here.
+  const bool remus = in.name() == "CCPDT";
+  const auto timeout_ms = in.number(remus ? 5 : 4, 1, 60000);
+  const auto on_the_second = in.number(remus ? 3 : 9, 0, 1);
+  BeaconPing ping;
+  bool good = timeout_ms && on_the_second;
+  for (std::size_t i = 0; i < micromodem_beacons; ++i) {
+    const auto wanted = in.number((remus ? 6 : 5) + i, 0, 1000000);
+    good = good && wanted;
+    ping.wanted[i] = wanted.value_or(0) != 0;
+  }
+  if (!good) return error("NMEA", bad_field, in.name().substr(2) + " has a field out of range", now);
+  if (busy("LBL", now)) return;
+  side_.say(joined(in, "CA" + in.name().substr(2)));
+  const auto sound = side_.ask_beacons(now, *on_the_second != 0);
+  sending_until_ = std::max(sending_until_, sound.end);
+  ping.sent = sound.begin;
+  ping.deadline = sound.begin + sim::from_seconds(*timeout_ms * 1e-3);
+  ping.turnaround_s = settings_.get("TAT") * 1e-3;
+  beacon_ping_ = ping;
+}
+
+}  // namespace devices

@@ -1,0 +1,163 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "devices/micromodem_packet.hpp"
+#include "devices/micromodem_rates.hpp"
+#include "devices/micromodem_settings.hpp"
+#include "devices/nmea.hpp"
+#include "sim/time.hpp"
+
+namespace devices {
+
+inline constexpr int micromodem_broadcast = 127;
+inline constexpr int micromodem_beacons = 4;
+/// From the first sound of a ping to that of its answer, s; the one that asks takes it off.
+inline constexpr double micromodem_turnaround_s = 1;
+
+/// What the protocol of a Micro-Modem needs of the modem around it.
+class MicromodemSide {
+ public:
+  struct Sound {
+    sim::Time begin{0}, end{0};
+  };
+  virtual ~MicromodemSide() = default;
+  /// To the host.  `body`: a sentence without `$` and checksum.
+  virtual void say(const std::string& body) = 0;
+  /// Sends at `at`, or as soon after it as what it sends already has ended; at a whole second of the clock if asked to.
+  virtual Sound transmit(const MicromodemPacket& packet, sim::Time at, bool on_the_second) = 0;
+  /// Asks the transponders.
+  virtual Sound ask_beacons(sim::Time at, bool on_the_second) = 0;
+  /// By the clock of the vehicle: microseconds since 1970 in UTC.
+  virtual std::int64_t utc_us(sim::Time at) const = 0;
+};
+
+/// How a packet came.
+struct MicromodemArrival {
+  sim::Time begun{0}, ended{0};
+  double level_dB = 0, snr_dB = 0, closing_mps = 0;
+  double noise_dB = 0;
+  bool good = true;  ///< false: it was noticed, but not understood
+};
+
+/// What a Micro-Modem says and sends: sentences and packets in, sentences and packets out, no physics.
+class MicromodemProtocol {
+ public:
+  struct Config {
+    int address = 0;
+    bool psk = true;           ///< has the co-processor for rates 1 to 6
+    bool synchronous = false;  ///< SNV is on at the start, and the clock is good
+    std::string revision = "0.93.0.48";
+    double frequency_Hz = 25000;
+    double beacon_turnaround_s = 0.02;
+  };
+
+  MicromodemProtocol(const Config& config, MicromodemSide& side);
+
+  /// A line from the host, whatever it holds.
+  void take_line(const NmeaLines::Line& line, sim::Time now);
+  void tick(sim::Time now);
+  void heard(const MicromodemPacket& packet, const MicromodemArrival& arrival);
+  /// A transponder (0: the first) answered.
+  void beacon_answered(int beacon, sim::Time begun);
+
+  int address() const { return settings_.get("SRC"); }
+  const MicromodemSettings& settings() const { return settings_; }
+  /// Sentences that were answered by an error.
+  std::int64_t errors() const { return errors_; }
+  void hash_state(sim::StateHash& hash) const;
+
+ private:
+  using Command = void (MicromodemProtocol::*)(const NmeaSentence&, sim::Time);
+  /// A cycle whose data it gathers from the host.
+  struct Cycle {
+    int source = 0, destination = 0, rate = 0, frames = 0;
+    bool ack = false;
+    bool announced = false;  ///< its cycle init was sent by another
+    std::vector<MicromodemPacket::Frame> gathered;
+    sim::Time deadline{0};
+  };
+  /// A cycle whose data it expects.
+  struct Expected {
+    int source = 0, destination = 0, rate = 0, frames = 0;
+    sim::Time deadline{0};
+  };
+  /// A ping whose answer it expects.
+  struct Ping {
+    int destination = 0;
+    sim::Time sent{0}, deadline{0};
+  };
+  struct BeaconPing {
+    sim::Time sent{0}, deadline{0};
+    double turnaround_s = 0;
+    std::array<bool, micromodem_beacons> wanted{};
+    std::array<std::optional<sim::Time>, micromodem_beacons> answered{};
+  };
+  struct Due {
+    sim::Time at;
+    std::string body;
+  };
+
+  // micromodem_commands.cpp
+  void configure(const NmeaSentence& in, sim::Time now);
+  void query(const NmeaSentence& in, sim::Time now);
+  void set_clock(const NmeaSentence& in, sim::Time now);
+  void sleep_or_reset(const NmeaSentence& in, sim::Time now);
+  void begin_cycle(const NmeaSentence& in, sim::Time now);
+  void take_data(const NmeaSentence& in, sim::Time now);
+  void send_ping(const NmeaSentence& in, sim::Time now);
+  void send_mini(const NmeaSentence& in, sim::Time now);
+  void ask_beacons(const NmeaSentence& in, sim::Time now);
+  static Command command_of(const std::string& name);
+
+  void say_later(sim::Time at, std::string body);
+  void error(const std::string& module, int number, const std::string& text, sim::Time now);
+  /// Says so when it is.
+  bool busy(const char* module, sim::Time now);
+  /// Says so when they are wrong.
+  std::optional<std::pair<int, int>> addresses(const NmeaSentence& in, std::size_t first, sim::Time now);
+
+  void gather(Cycle cycle, sim::Time now);
+  void ask_for_frame(sim::Time now);
+  void send_cycle(sim::Time now);
+  /// Sends, and tells the host of its begin and end.
+  MicromodemSide::Sound send(const MicromodemPacket& packet, sim::Time at, bool on_the_second);
+  void report_beacons(sim::Time now);
+
+  void heard_cycle(const MicromodemPacket& packet, const MicromodemArrival& arrival);
+  void heard_data(const MicromodemPacket& packet, const MicromodemArrival& arrival);
+  void heard_ping(const MicromodemPacket& packet, const MicromodemArrival& arrival);
+  void heard_reply(const MicromodemPacket& packet, const MicromodemArrival& arrival);
+  void say_statistics(const MicromodemPacket& packet, const MicromodemArrival& arrival, int bad_frames);
+
+  /// The modem's own clock, which the host may have set.
+  std::int64_t utc_us(sim::Time at) const { return side_.utc_us(at) + clock_offset_us_; }
+  std::string time_of_day(sim::Time at, int digits = 0) const;
+  /// 0 to 3: bit 1, it keeps the second of the vehicle's clock; bit 0, the time was set.
+  int clock_mode() const { return (settings_.on("SNV") ? 2 : 0) + (clock_set_ ? 1 : 0); }
+
+  Config config_;
+  MicromodemSide& side_;
+  MicromodemSettings settings_;
+  std::int64_t clock_offset_us_ = 0;
+  bool clock_set_ = false;
+  std::vector<Due> due_;
+  sim::Time sending_until_{0};
+  sim::Time next_revision_{0};
+  std::optional<Cycle> cycle_;
+  std::optional<Expected> expected_;
+  std::optional<Ping> ping_;
+  std::optional<BeaconPing> beacon_ping_;
+  std::int64_t errors_ = 0;
+};
+
+/// Time of day of UTC: hhmmss, and with digits of the second a point and those, cut off.
+std::string nmea_time_of_day(std::int64_t utc_us, int digits);
+/// yyyymmdd.
+std::string nmea_date(std::int64_t utc_us);
+
+}  // namespace devices

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "sim/state_hash.hpp"
+
+namespace devices {
+
+/// The settings of a Micro-Modem ($CCCFG, $CCCFQ): numbers with names of three letters.  It knows the names of the real
+/// one; those without an effect here are kept and told all the same, so that a driver finds what it wrote.
+class MicromodemSettings {
+ public:
+  MicromodemSettings();
+
+  /// Nothing when there is no such setting.
+  std::optional<int> find(const std::string& name) const;
+  /// Of one that exists.
+  int get(const char* name) const { return values_.at(name); }
+  bool on(const char* name) const { return get(name) != 0; }
+  enum class Outcome { done, unknown, out_of_range };
+  Outcome set(const std::string& name, int value);
+  const std::map<std::string, int>& all() const { return values_; }
+  void hash_state(sim::StateHash& hash) const;
+
+ private:
+  std::map<std::string, int> values_;
+};
+
+}  // namespace devices

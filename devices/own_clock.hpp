@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+
+#include "sim/time.hpp"
+#include "sim/world/vehicle.hpp"
+
+namespace devices {
+
+/// What the clock of a vehicle shows at a true time, both since the start of the run.
+inline sim::Time own_time(const sim::Vehicle& vehicle, sim::Time at) {
+  return vehicle.clock().reading(at);
+}
+/// The true time when it shows this.
+inline sim::Time true_time(const sim::Vehicle& vehicle, sim::Time reading) {
+  return vehicle.clock().true_time(reading);
+}
+
+/// The first true time, not before `from`, when the vehicle's clock shows a whole multiple of `period` (in UTC: the
+/// run's epoch counts).
+inline sim::Time next_whole(const sim::Vehicle& vehicle, std::int64_t epoch_us, sim::Time from, sim::Time period) {
+  const std::int64_t utc_us = epoch_us + own_time(vehicle, from).count();
+  std::int64_t over_us = utc_us % period.count();
+  if (over_us < 0) over_us += period.count();
+  if (over_us == 0) return from;
+  const sim::Time at = true_time(vehicle, sim::Time{utc_us + period.count() - over_us - epoch_us});
+  return at < from ? from : at;
+}
+
+}  // namespace devices

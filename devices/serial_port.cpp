@@ -1,0 +1,76 @@
+#include "devices/serial_port.hpp"
+
+#include <stdexcept>
+
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+void SerialParams::read(sim::ParamReader& in) {
+  in.read_choice("kind", kind, {"pty", "fifo"}, "pseudo-terminal, or a pair of FIFOs PATH.in and PATH.out");
+  in.require("path");
+  in.read("path", path, "where programs find it; {vehicle} is replaced");
+}
+
+void SerialMessageParams::read(sim::ParamReader& in) {
+  SerialParams::read(in);
+  in.read_choice("framing", framing, {"line", "raw"}, "line: a message is a line; raw: what came within a step");
+}
+
+SerialPort::SerialPort(const SerialParams& params, const sim::DeviceContext& context)
+    : world_(context.world),
+      who_("vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'"),
+      path_(sim::channel_name(params.path, context.vehicle.name(), context.config.name)) {
+  if (!context.world.open_port()) return;
+  try {
+    port_ = context.world.open_port()(params.kind, path_);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(who_ + ": " + error.what());
+  }
+}
+
+sim::Bytes SerialPort::read() {
+  return port_ ? port_->read() : sim::Bytes{};
+}
+
+void SerialPort::write(std::span<const std::byte> bytes) {
+  if (!port_) return;
+  port_->write(bytes);
+  if (told_ || port_->dropped_bytes() == 0) return;
+  told_ = true;
+  world_.complain(who_, "nobody reads '" + path_ + "': what waits longest is dropped");
+}
+
+void SerialPort::write(const std::string& text) {
+  write(std::as_bytes(std::span(text.data(), text.size())));
+}
+
+SerialMessages::SerialMessages(const SerialMessageParams& params, std::size_t max_bytes,
+                               const sim::DeviceContext& context)
+    : port_(params, context), lines_(params.framing == "line"), max_bytes_(max_bytes) {}
+
+std::vector<sim::Bytes> SerialMessages::take() {
+  sim::Bytes bytes = port_.read();
+  std::vector<sim::Bytes> messages;
+  if (!lines_) {
+    if (bytes.size() > max_bytes_) bytes.resize(max_bytes_ + 1);
+    if (!bytes.empty()) messages.push_back(std::move(bytes));
+    return messages;
+  }
+  for (const std::byte b : bytes) {
+    if (b == std::byte{'\n'}) {
+      if (!line_.empty()) messages.push_back(std::move(line_));
+      line_.clear();
+    } else if (b != std::byte{'\r'} && line_.size() <= max_bytes_) {
+      line_.push_back(b);  // one byte more than allowed is kept, so that the line is seen to be too long
+    }
+  }
+  return messages;
+}
+
+void SerialMessages::write(sim::Bytes data) {
+  if (lines_) data.push_back(std::byte{'\n'});
+  port_.write(data);
+}
+
+}  // namespace devices

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/bus/byte_port.hpp"
+#include "sim/config/param_reader.hpp"
+#include "sim/device/device_registry.hpp"
+#include "sim/state_hash.hpp"
+
+namespace devices {
+
+/// A way for other programs to talk to a modem, beside the bus.
+struct SerialParams {
+  std::string kind = "pty";
+  std::string path;
+  void read(sim::ParamReader& in);
+};
+
+/// The same for bytes that are messages.
+struct SerialMessageParams : SerialParams {
+  std::string framing = "line";
+  void read(sim::ParamReader& in);
+};
+
+/// The port of a device; without one where the program that builds the world offers none.
+class SerialPort {
+ public:
+  /// Throws std::runtime_error that names device and path.
+  SerialPort(const SerialParams& params, const sim::DeviceContext& context);
+
+  sim::Bytes read();
+  /// Never waits: what nobody reads is dropped in the end, oldest first.  The world is told of it once.
+  void write(std::span<const std::byte> bytes);
+  void write(const std::string& text);
+
+ private:
+  sim::World& world_;
+  std::string who_, path_;
+  std::unique_ptr<sim::BytePort> port_;
+  bool told_ = false;
+};
+
+/// Messages through a serial port: lines, or what came within a step.
+class SerialMessages {
+ public:
+  SerialMessages(const SerialMessageParams& params, std::size_t max_bytes, const sim::DeviceContext& context);
+
+  /// What has come since the last call.  A message that is too long has max_bytes + 1 bytes.
+  std::vector<sim::Bytes> take();
+  void write(sim::Bytes data);
+  void hash_state(sim::StateHash& hash) const { hash.add_bytes(line_.data(), line_.size()); }
+
+ private:
+  SerialPort port_;
+  bool lines_;
+  std::size_t max_bytes_;
+  sim::Bytes line_;  // not yet ended
+};
+
+}  // namespace devices

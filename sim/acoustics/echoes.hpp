@@ -1,0 +1,25 @@
+#pragma once
+
+#include "sim/acoustics/multipath.hpp"
+
+namespace sim {
+
+/// Where the ends of a link are in water of one depth.
+struct LinkDepths {
+  double source_m = 0, receiver_m = 0;  ///< below the surface
+  double horizontal_m = 0;
+  double water_m = 0;  ///< infinite: no bottom
+};
+
+/// What the echoes make of the direct path: powers over that of the direct path.
+struct Echoes {
+  PowerRatio signal{1};  ///< all inside the window, the direct path with them
+  PowerRatio late{0};    ///< what comes later and disturbs
+  double spread_s = 0;   ///< rms of the delays
+};
+
+/// Depths out of the water count as at surface and bottom.  `random`: draws the phases for `phases: random`; null:
+/// powers add up, which is their mean over all phases.
+Echoes echoes(const MultipathConfig& config, const MultipathMedium& medium, const LinkDepths& depths, Random* random);
+
+}  // namespace sim

@@ -1,0 +1,120 @@
+#include "sim/acoustics/propagation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim/medium/absorption.hpp"
+
+namespace sim {
+
+namespace {
+
+constexpr double deepest_m = 12000;  // deeper than any sea
+
+}  // namespace
+
+Decibels Propagation::transmission_loss(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const {
+  const double range_m = (to_W - from_W).norm();
+  const double dBpkm = absorption_dBpkm(config_.absorption, frequency_Hz, medium_, from_W, to_W);
+  return spreading_loss(range_m, config_.spreading) + absorption_loss(range_m, dBpkm);
+}
+
+Decibels Propagation::ambient_level(double centre_Hz, double bandwidth_Hz) const {
+  for (const BandLevel& known : band_levels_)
+    if (known.centre_Hz == centre_Hz && known.bandwidth_Hz == bandwidth_Hz) return known.level;
+  const Decibels level = config_.noise.with_wind(medium_.mean_wind_mps()).band_level(centre_Hz, bandwidth_Hz);
+  constexpr std::size_t most_bands = 32;
+  if (band_levels_.size() < most_bands) band_levels_.push_back({centre_Hz, bandwidth_Hz, level});
+  return level;
+}
+
+double Propagation::audible_range_m(const Signal& signal) const {
+  const Decibels floor = ambient_level(signal.centre_Hz, signal.bandwidth_Hz) - Decibels{config_.inaudible_dB};
+  const double most_m = config_.range_max_m.value_or(1e6);
+  // Francois and Garrison's absorption is nowhere in the sea less than half of Thorp's.
+  const bool constant = config_.absorption.model == AbsorptionConfig::Model::constant;
+  const double dBpkm = constant ? config_.absorption.dBpkm : 0.5 * thorp_dBpkm(signal.centre_Hz * 1e-3);
+  const auto heard = [&](double range_m) {
+    return signal.source_level - spreading_loss(range_m, config_.spreading) - absorption_loss(range_m, dBpkm) > floor;
+  };
+  if (heard(most_m)) return most_m;
+  double near_m = 1, far_m = most_m;
+  for (int i = 0; i < 30; ++i) {
+    const double middle_m = std::sqrt(near_m * far_m);
+    (heard(middle_m) ? near_m : far_m) = middle_m;
+  }
+  return far_m;
+}
+
+bool Propagation::blocked(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group) const {
+  const Vector3d way_W = from_W - to_W;
+  const double length_m = way_W.norm();
+  if (length_m < 1e-3) return false;
+  RayFilter filter;
+  filter.kind = RayKind::sound;
+  filter.exclude_group = to_group;
+  // From the receiver to where the sender was; the sender's own hull, which has gone on, hides nothing.
+  const auto hit = physics_.scene().cast(to_W, way_W / length_m, length_m - 1e-3, filter);
+  return hit && physics_.parts()[static_cast<std::size_t>(hit->part)].group != from_group;
+}
+
+std::optional<double> Propagation::water_depth_m(const Vector3d& p_W) const {
+  if (config_.multipath->water_depth_m) return config_.multipath->water_depth_m;
+  RayFilter filter;
+  filter.kind = RayKind::sound;
+  const auto hit = physics_.scene().cast(p_W, -Vector3d::UnitZ(), deepest_m, filter);
+  if (!hit) return std::nullopt;
+  return std::max(0.0, medium_.depth_m(p_W)) + hit->range_m;
+}
+
+MultipathSum Propagation::echoes(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, bool direct,
+                                 Random& random) const {
+  const MultipathConfig& config = *config_.multipath;
+  const Vector3d middle_W = (from_W + to_W) / 2;
+  const double from_m = std::max(0.0, medium_.depth_m(from_W)), to_m = std::max(0.0, medium_.depth_m(to_W));
+  const double horizontal_m = (to_W - from_W).head<2>().norm();
+  // Without a bottom all that comes back from there is out of reach.
+  const std::optional<double> depth_m = water_depth_m(middle_W);
+  std::vector<ImagePath> paths;
+  image_paths(from_m, to_m, horizontal_m, std::max({depth_m.value_or(deepest_m), from_m, to_m}), config.max_bounces,
+              paths);
+  std::erase_if(paths, [&](const ImagePath& path) {
+    const bool is_direct = path.surface_bounces == 0 && path.bottom_bounces == 0;
+    return (is_direct && !direct) || (!depth_m && path.bottom_bounces > 0);
+  });
+  MultipathMedium water;
+  water.frequency_Hz = frequency_Hz;
+  water.sound_speed_mps = 1 / medium_.mean_slowness_spm(from_W.z(), to_W.z());
+  water.absorption_dBpkm = absorption_dBpkm(config_.absorption, frequency_Hz, medium_, from_W, to_W);
+  water.wind_mps = config_.noise.wind_mps.value_or(medium_.mean_wind_mps());
+  water.spreading = config_.spreading;
+  std::vector<PathGain> gains;
+  path_gains(paths, config, water, gains);
+  if (config.phases == MultipathConfig::Phases::random) randomize_phases(gains, random);
+  return combine(gains, config.window_s);
+}
+
+Propagation::Gain Propagation::gain(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group,
+                                    double frequency_Hz, Random& random) const {
+  Gain gain;
+  gain.blocked = config_.occlusion && blocked(from_W, from_group, to_W, to_group);
+  const bool nothing_passes = gain.blocked && !config_.occlusion_loss_dB;
+  if (config_.multipath) {
+    const MultipathSum sum = echoes(from_W, to_W, frequency_Hz, !nothing_passes, random);
+    gain.signal = to_decibels(sum.signal);
+    gain.disturbing = sum.interference;
+  } else {
+    gain.signal = nothing_passes ? Decibels{-std::numeric_limits<double>::infinity()}
+                                 : -transmission_loss(from_W, to_W, frequency_Hz);
+  }
+  if (gain.blocked && !nothing_passes) gain.signal -= Decibels{*config_.occlusion_loss_dB};
+  if (config_.fading.type != FadingConfig::Type::none) {
+    const Decibels faded = fade(config_.fading, random);
+    gain.signal += faded;
+    gain.disturbing = to_power(faded) * gain.disturbing;
+  }
+  return gain;
+}
+
+}  // namespace sim

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/acoustics/acoustics_config.hpp"
+#include "sim/acoustics/signal.hpp"
+#include "sim/medium/medium.hpp"
+#include "sim/physics/physics_world.hpp"
+#include "sim/random/random.hpp"
+
+namespace sim {
+
+/// What becomes of a sound on its way through the water of a world, by `acoustics:`.
+class Propagation {
+ public:
+  /// All must outlive it.
+  Propagation(const AcousticsConfig& config, const Medium& medium, const PhysicsWorld& physics)
+      : config_(config), medium_(medium), physics_(physics) {}
+
+  /// Of a signal over the level at 1 m on the axis.
+  struct Gain {
+    Decibels signal;        ///< minus infinity: nothing comes through
+    PowerRatio disturbing;  ///< echoes that come too late to help
+    bool blocked = false;   ///< the direct path is
+  };
+  /// The random draws: phases of the echoes, then fading.  The groups are those of the vehicles at both ends, whose
+  /// hulls do not stand in the way.
+  Gain gain(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group, double frequency_Hz,
+            Random& random) const;
+  /// Spreading and absorption along the straight line.
+  Decibels transmission_loss(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const;
+  /// Ambient noise of a band: re 1 uPa.
+  Decibels ambient_level(double centre_Hz, double bandwidth_Hz) const;
+  /// Beyond this a signal is `inaudible_dB` below the noise on any path, fading apart.
+  double audible_range_m(const Signal& signal) const;
+
+ private:
+  bool blocked(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group) const;
+  MultipathSum echoes(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, bool direct,
+                      Random& random) const;
+  /// Below the surface; nothing when there is no bottom.
+  std::optional<double> water_depth_m(const Vector3d& p_W) const;
+
+  struct BandLevel {
+    double centre_Hz, bandwidth_Hz;
+    Decibels level;
+  };
+
+  const AcousticsConfig& config_;
+  const Medium& medium_;
+  const PhysicsWorld& physics_;
+  mutable std::vector<BandLevel> band_levels_;  // worked out before; the mean wind stays
+};
+
+}  // namespace sim

@@ -1,0 +1,79 @@
+// Fleets that talk under water beside kinematic vehicles: each sends 32 bytes every 10 s, one after the other, so that
+// what is sent overlaps at many receivers.  Work grows with who hears, which `hearers` counts for each message.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <string>
+
+#include "shoal/message_codec.hpp"
+#include "shoal/modem_send_t.hpp"
+#include "sim/bus/in_process_bus.hpp"
+#include "sim/world/load_world.hpp"
+#include "sim/world/world.hpp"
+
+namespace {
+
+constexpr double step_s = 0.02;
+constexpr double period_s = 10;
+
+std::string world_text(std::int64_t vehicles, double spacing_m, const std::string& acoustics) {
+  return "shoal: 1\nphysics: {step_s: " + std::to_string(step_s) +
+         "}\nmedium: {water: {}, current: [{velocity_mps: [0.2, 0.1, 0]}], wind: {velocity_mps: [5, 0, 0]}}\n"
+         "acoustics: " +
+         acoustics + "\nobjects: [{name: bottom, fixed: true, position_m: [0, 0, -60], parts: [{shape: plane}]}]\n" +
+         "vehicles:\n  - name: auv\n    count: " + std::to_string(vehicles) +
+         "\n    position_m: [0, 0, -20]\n    placement: {pattern: grid, spacing_m: " + std::to_string(spacing_m) +
+         "}\n    file: naive_auv.yaml\n    overrides: {devices.modem: {type: acoustic_modem, preset: "
+         "micromodem_rate0}}\n";
+}
+
+void talk(benchmark::State& state, double spacing_m, const std::string& acoustics) {
+  const std::int64_t vehicles = state.range(0);
+  const sim::LoadedWorld loaded =
+      sim::load_world_text(world_text(vehicles, spacing_m, acoustics), SHOAL_SOURCE_DIR "/worlds/bench.yaml");
+  sim::InProcessBus bus;
+  sim::World world(loaded.config, bus);
+  shoal::modem_send_t message{};
+  message.data.assign(32, 1);
+  message.size = 32;
+  const sim::Bytes payload = shoal::encode(message);
+  std::int64_t next = 0;
+  const auto step = [&] {
+    // Vehicle k asks at k / N of the period.
+    while (static_cast<double>(next) * period_s / static_cast<double>(vehicles) <= sim::to_seconds(world.now()))
+      bus.publish("auv" + std::to_string(next++ % vehicles + 1) + ".modem.cmd", payload, world.now());
+    world.step();
+  };
+  while (sim::to_seconds(world.now()) < 2 * period_s) step();
+  const std::int64_t flights = world.acoustics().flights(), sent = next;
+  for (auto _ : state) step();
+  state.counters["times_real"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * step_s, benchmark::Counter::kIsRate);
+  state.counters["hearers"] = static_cast<double>(world.acoustics().flights() - flights) /
+                              static_cast<double>(std::max<std::int64_t>(1, next - sent));
+  state.counters["us_per_hearer"] =
+      benchmark::Counter(static_cast<double>(world.acoustics().flights() - flights) * 1e-6,
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+/// All within 5 km, so that everybody hears everybody.
+void EverybodyHears(benchmark::State& state) {
+  talk(state, 3000.0 / std::sqrt(static_cast<double>(state.range(0))), "{}");
+}
+BENCHMARK(EverybodyHears)->Arg(1)->Arg(10)->Arg(100)->Arg(1000)->MinTime(2);
+
+/// The same with echoes of surface and bottom.
+void EverybodyHearsEchoes(benchmark::State& state) {
+  talk(state, 3000.0 / std::sqrt(static_cast<double>(state.range(0))), "{multipath: {}}");
+}
+BENCHMARK(EverybodyHearsEchoes)->Arg(100)->Arg(1000)->MinTime(2);
+
+/// One every 2 km: how many hear does not grow with the fleet.
+void NeighboursHear(benchmark::State& state) {
+  talk(state, 2000, "{}");
+}
+BENCHMARK(NeighboursHear)->Arg(100)->Arg(1000)->Arg(10000)->MinTime(2);
+
+}  // namespace
+
+BENCHMARK_MAIN();

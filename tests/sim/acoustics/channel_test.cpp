@@ -1,0 +1,308 @@
+#include "sim/acoustics/channel.hpp"
+
+#include "tests/sim/acoustics/hydrophone.hpp"
+
+namespace {
+
+using namespace std::chrono_literals;
+using sim::Decibels;
+using sim::Signal;
+using sim::SignalLoss;
+using test::Heard;
+using test::Hydrophone;
+using test::phone;
+using test::TestWorld;
+
+SHOAL_SENSOR("test_hydrophone", Hydrophone, void);
+
+/// A vehicle that goes ahead at a speed.
+std::string vehicle(const std::string& name, const std::string& position_m, const std::string& keys = "",
+                    double speed_mps = 0, double yaw_deg = 0) {
+  const std::string drive = "        - {name: drive, type: naive_drive, start_speed_mps: " + std::to_string(speed_mps) +
+                            ", max_speed_mps: 30}\n";
+  return "  - name: " + name + "\n    position_m: " + position_m + "\n    rpy_deg: [0, 0, " + std::to_string(yaw_deg) +
+         "]\n    model:\n"
+         "      shoal: 1\n      vehicle: float\n      bodies:\n"
+         "        - {name: hull, kinematic: true, parts: [{shape: sphere, radius_m: 0.2}]}\n      devices:\n"
+         "        - {name: phone, type: test_hydrophone" +
+         keys + "}\n" + (speed_mps > 0 ? drive : "");
+}
+
+std::string sea(const std::string& acoustics, const std::string& vehicles, const std::string& objects = "") {
+  return "shoal: 1\nname: sea\nphysics: {step_s: 0.01}\n"
+         "medium: {water: {sound_speed_mps: 1500}}\n"
+         "acoustics: " +
+         acoustics + "\n" + objects + "vehicles:\n" + vehicles;
+}
+
+/// 32 bytes by FH-FSK.
+Signal message(double source_level_dB = 185) {
+  Signal signal;
+  signal.source_level = Decibels{source_level_dB};
+  signal.duration = 3200ms;
+  signal.bit_rate_bps = 80;
+  signal.bits = 256;
+  return signal;
+}
+
+TEST(AcousticChannel, ASignalArrivesAfterDistanceBySpeedAndLastsItsDuration) {
+  TestWorld test(sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[750, 0, -10]")));
+  phone(test, "a").transducer().transmit(message(), 5ms);
+  test.run_for(4);
+  ASSERT_EQ(phone(test, "b").all().size(), 1u);
+  const Heard& heard = phone(test, "b").all()[0];
+  EXPECT_TRUE(heard.understood());
+  EXPECT_EQ(heard.source, "a/phone");
+  EXPECT_EQ(heard.sent, 5ms);
+  EXPECT_EQ(heard.begun, 505ms);  // 750 m / 1500 m/s, inside of a step
+  EXPECT_EQ(heard.ended, 505ms + 3200ms);
+  EXPECT_NEAR(heard.travel_time_s, 0.5, 1e-9);
+  EXPECT_EQ(heard.closing_mps, 0);
+}
+
+TEST(AcousticChannel, LevelAndSnrAreThoseOfTheLinkBudget) {
+  // The row acoustic_link of tests/fidelity/reference/closed_forms.csv.
+  TestWorld test(sea("{spreading: {factor: 1.5}, absorption: {model: thorp}, noise: {shipping: 0.5, wind_mps: 5}}",
+                     vehicle("a", "[0, 0, -10]") + vehicle("b", "[1500, 0, -10]")));
+  phone(test, "a").transducer().transmit(message(), 0ms);
+  test.run_for(5);
+  ASSERT_EQ(phone(test, "b").all().size(), 1u);
+  EXPECT_NEAR(phone(test, "b").all()[0].level.dB(), 185 - 56.79857654, 0.05);
+  EXPECT_NEAR(phone(test, "b").all()[0].snr.dB(), 53.63274597, 0.1);
+}
+
+TEST(AcousticChannel, BothEndsMoveWhileASignalIsUnderWay) {
+  // The receiver goes away with 3 m/s, the sender crosses with 2 m/s: |(600 + 3 s, 0)| = 1500 s after sending.
+  TestWorld test(sea("{}", vehicle("a", "[0, 0, -10]", "", 2, 90) + vehicle("b", "[600, 0, -10]", "", 3, 0)));
+  test.run_for(10);
+  const double d_m = 600 + 3 * 10.0;
+  const double y_m = -2 * 10.0;  // of b as a sees it when it sends
+  phone(test, "a").transducer().transmit(message(), 10s);
+  test.run_for(6);
+  ASSERT_EQ(phone(test, "b").all().size(), 1u);
+  const Heard& heard = phone(test, "b").all()[0];
+  // (d + 3 s)^2 + y^2 = (1500 s)^2
+  const double a = 1500.0 * 1500.0 - 9, b = 3 * d_m, c = d_m * d_m + y_m * y_m;
+  const double s = (b + std::sqrt(b * b + a * c)) / a;
+  EXPECT_NEAR(heard.travel_time_s, s, 2e-9);
+  const double length_m = 1500 * s;
+  const double closing_mps = (-3 * (d_m + 3 * s) + 2 * y_m) / length_m;
+  EXPECT_NEAR(heard.closing_mps, closing_mps, 1e-9);
+  EXPECT_NEAR(sim::to_seconds(heard.ended - heard.begun),
+              3.2 * (1500 - 2 * y_m / length_m) / (1500 - 3 * (d_m + 3 * s) / length_m), 2e-6);
+}
+
+TEST(AcousticChannel, WhoClosesInTooFastIsNotUnderstood) {
+  for (const double limit_mps : {2.9, 3.1}) {
+    const std::string keys = ", receiver: {doppler_limit_mps: " + std::to_string(limit_mps) + "}";
+    TestWorld test(sea("{}", vehicle("a", "[0, 0, -10]", "", 3) + vehicle("b", "[600, 0, -10]", keys)));
+    phone(test, "a").transducer().transmit(message(), 0ms);
+    test.run_for(6);
+    ASSERT_EQ(phone(test, "b").all().size(), 1u);
+    EXPECT_EQ(phone(test, "b").all()[0].loss, limit_mps > 3 ? SignalLoss::none : SignalLoss::doppler);
+    EXPECT_NEAR(phone(test, "b").all()[0].closing_mps, 3, 1e-9);
+  }
+}
+
+TEST(AcousticChannel, OnlyWhoIsNearEnoughIsGivenASignal) {
+  std::string vehicles = vehicle("a", "[0, 0, -10]");
+  for (int i = 1; i <= 30; ++i)
+    vehicles += vehicle("b" + std::to_string(i), "[" + std::to_string(1000 * i) + ", 0, -10]");
+  TestWorld test(sea("{range_max_m: 5100}", vehicles));
+  phone(test, "a").transducer().transmit(message(), 0ms);
+  test.run_for(10);
+  EXPECT_EQ(test.world.acoustics().flights(), 5);
+  for (int i = 1; i <= 30; ++i) EXPECT_EQ(phone(test, "b" + std::to_string(i)).all().size(), i <= 5 ? 1u : 0u);
+}
+
+TEST(AcousticChannel, BeyondItsAudibleRangeASignalIsBelowTheNoise) {
+  TestWorld test(sea("{absorption: {model: thorp}}", vehicle("a", "[0, 0, -10]")));
+  const sim::Propagation& propagation = test.world.acoustics().propagation();
+  const double range_m = propagation.audible_range_m(message());
+  const Decibels level = message().source_level - propagation.transmission_loss({0, 0, -10}, {range_m, 0, -10}, 25000);
+  EXPECT_LE(level.dB(), (propagation.ambient_level(25000, 4000) - Decibels{10}).dB());
+  EXPECT_LT(range_m, 20000);
+}
+
+TEST(AcousticChannel, AnAnswerBeginsWhenTheListenerSaysSo) {
+  TestWorld test(sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[750, 0, -10]")));
+  phone(test, "b").answer = [&](const sim::Reception& r) {
+    Signal answer = r.signal;
+    answer.kind = Signal::Kind::answer;
+    phone(test, "b").transducer().transmit(answer, r.ended + 20ms);
+  };
+  Signal ping;
+  ping.kind = Signal::Kind::ping;
+  ping.duration = 10ms;
+  phone(test, "a").transducer().transmit(ping, 3ms);
+  test.run_for(2);
+  ASSERT_EQ(phone(test, "a").all().size(), 1u);
+  EXPECT_EQ(phone(test, "a").all()[0].begun, 3ms + 500ms + 10ms + 20ms + 500ms);
+}
+
+TEST(AcousticChannel, WhoIsRemovedNeitherHearsNorIsMissed) {
+  TestWorld test(
+      sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[750, 0, -10]") + vehicle("c", "[0, 750, -10]")));
+  phone(test, "a").transducer().transmit(message(), 0ms);
+  phone(test, "b").transducer().transmit(message(), 100ms);  // not yet in the water when b goes
+  test.run_for(0.05);
+  test.world.remove_vehicle("b");
+  test.run_for(0.1);
+  test.world.remove_vehicle("a");
+  test.run_for(6);
+  // What a began is heard; its end is missing.
+  ASSERT_EQ(test.world.acoustics().flights(), 2);
+  EXPECT_TRUE(phone(test, "c").all().empty());
+  EXPECT_EQ(phone(test, "c").transducer().counts().lost[static_cast<std::size_t>(SignalLoss::out_of_water)], 1);
+}
+
+TEST(AcousticChannel, EchoesCarryASignalAroundAWall) {
+  const std::string wall =
+      "objects:\n  - {name: wall, fixed: true, position_m: [75, 0, -10], parts: [{shape: box, size_m: [1, 20, 8]}]}\n"
+      "  - {name: bottom, fixed: true, position_m: [0, 0, -20], parts: [{shape: plane}]}\n";
+  TestWorld test(sea("{multipath: {bottom: {loss_dB: 3}, surface_loss_dB: 1}}",
+                     vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]"), wall));
+  phone(test, "a").transducer().transmit(message(), 0ms);
+  test.run_for(5);
+  ASSERT_EQ(phone(test, "b").all().size(), 1u);
+  EXPECT_TRUE(phone(test, "b").all()[0].understood());
+}
+
+TEST(AcousticChannel, FadingDiffersFromSignalToSignalAndFromRunToRunOnlyBySeed) {
+  const auto levels = [](int seed) {
+    TestWorld test(
+        sea("{fading: {type: log_normal, std_dB: 6}}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]")) +
+        "run: {seed: " + std::to_string(seed) + "}\n");
+    for (int i = 0; i < 40; ++i) {
+      phone(test, "a").transducer().transmit(message(), test.world.now());
+      test.run_for(4);
+    }
+    std::vector<double> dB;
+    for (const Heard& heard : phone(test, "b").all()) dB.push_back(heard.level.dB());
+    return dB;
+  };
+  const std::vector<double> one = levels(1);
+  ASSERT_EQ(one.size(), 40u);
+  EXPECT_EQ(one, levels(1));
+  EXPECT_NE(one, levels(2));
+  double mean = 0, square = 0;
+  for (const double dB : one) mean += dB / 40;
+  for (const double dB : one) square += (dB - mean) * (dB - mean) / 39;
+  EXPECT_NEAR(std::sqrt(square), 6, 2.1);  // 3 sigma of the standard deviation of 40
+}
+
+TEST(AcousticChannel, AModemThatSendsHearsNothing) {
+  TestWorld test(sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]")));
+  // a's message is at b from 0.1 to 3.3 s; b sends from 3 s on.
+  phone(test, "a").transducer().transmit(message(), 0ms);
+  phone(test, "b").transducer().transmit(message(), 3s);
+  test.run_for(8);
+  ASSERT_EQ(phone(test, "b").all().size(), 1u);
+  EXPECT_EQ(phone(test, "b").all()[0].loss, SignalLoss::half_duplex);
+  ASSERT_EQ(phone(test, "a").all().size(), 1u);  // a had ended when b's came
+  EXPECT_TRUE(phone(test, "a").all()[0].understood());
+}
+
+TEST(AcousticChannel, ASignalThatComesWhileTheReceiverSendsIsLost) {
+  TestWorld test(sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]")));
+  phone(test, "b").transducer().transmit(message(), 0ms);
+  phone(test, "a").transducer().transmit(message(), 3050ms);  // at b from 3.15 s; b ends at 3.2 s
+  test.run_for(8);
+  ASSERT_EQ(phone(test, "b").all().size(), 1u);
+  EXPECT_EQ(phone(test, "b").all()[0].loss, SignalLoss::half_duplex);
+}
+
+TEST(AcousticChannel, TwoSignalsOfOneStrengthDestroyEachOther) {
+  TestWorld test(
+      sea("{}", vehicle("a", "[-750, 0, -10]") + vehicle("b", "[0, 0, -10]") + vehicle("c", "[750, 0, -10]")));
+  phone(test, "a").transducer().transmit(message(), 0ms);
+  phone(test, "c").transducer().transmit(message(), 100ms);
+  test.run_for(8);
+  ASSERT_EQ(phone(test, "b").all().size(), 2u);
+  // At 0 dB in the band Eb/N0 is 17 dB, which 256 bits of FSK pass; so spread spectrum wins.  The second finds the
+  // receiver busy.
+  EXPECT_EQ(phone(test, "b").all()[1].loss, SignalLoss::busy);
+  EXPECT_NEAR(phone(test, "b").all()[0].sinr.dB(), 0, 0.01);
+  Signal fast = message();
+  fast.bit_rate_bps = 4000;
+  phone(test, "a").transducer().transmit(fast, 8s);
+  phone(test, "c").transducer().transmit(fast, 8100ms);
+  test.run_for(8);
+  ASSERT_EQ(phone(test, "b").all().size(), 4u);
+  EXPECT_EQ(phone(test, "b").all()[2].loss, SignalLoss::interference);
+  EXPECT_EQ(phone(test, "b").all()[3].loss, SignalLoss::busy);
+}
+
+TEST(AcousticChannel, AMuchStrongerSignalTakesTheReceiverOver) {
+  TestWorld test(
+      sea("{}", vehicle("a", "[-1500, 0, -10]") + vehicle("b", "[0, 0, -10]") + vehicle("c", "[150, 0, -10]")));
+  phone(test, "a").transducer().transmit(message(), 0ms);     // at b from 1 s
+  phone(test, "c").transducer().transmit(message(), 1200ms);  // at b from 1.3 s, 15 dB and absorption stronger
+  test.run_for(8);
+  ASSERT_EQ(phone(test, "b").all().size(), 2u);
+  EXPECT_EQ(phone(test, "b").all()[0].source, "a/phone");
+  EXPECT_EQ(phone(test, "b").all()[0].loss, SignalLoss::captured);
+  EXPECT_TRUE(phone(test, "b").all()[1].understood());
+}
+
+TEST(AcousticChannel, WhatStandsBetweenBlocksASignal) {
+  const std::string wall =
+      "objects:\n  - {name: wall, fixed: true, position_m: [75, 0, -10], parts: [{shape: box, size_m: [1, 20, 20]}]}\n";
+  const std::string both = vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]");
+  TestWorld blocked(sea("{}", both, wall));
+  phone(blocked, "a").transducer().transmit(message(), 0ms);
+  blocked.run_for(5);
+  EXPECT_TRUE(phone(blocked, "b").all().empty());
+  EXPECT_EQ(phone(blocked, "b").transducer().counts().lost[static_cast<std::size_t>(SignalLoss::blocked)], 1);
+
+  TestWorld dimmed(sea("{occlusion_loss_dB: 20}", both, wall)), open(sea("{}", both));
+  for (TestWorld* test : {&dimmed, &open}) {
+    phone(*test, "a").transducer().transmit(message(), 0ms);
+    test->run_for(5);
+    ASSERT_EQ(phone(*test, "b").all().size(), 1u);
+  }
+  EXPECT_NEAR((phone(open, "b").all()[0].level - phone(dimmed, "b").all()[0].level).dB(), 20, 1e-9);
+}
+
+TEST(AcousticChannel, ALinkCanBeMadeWorse) {
+  TestWorld test(sea("{links: [{from: a, to: b, loss_probability: 1, both_ways: false}, {from: c, extra_loss_dB: 7}]}",
+                     vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]") + vehicle("c", "[0, 150, -10]")));
+  phone(test, "a").transducer().transmit(message(), 0ms);
+  phone(test, "b").transducer().transmit(message(), 5s);
+  test.run_for(10);
+  ASSERT_EQ(phone(test, "b").all().size(), 1u);
+  EXPECT_EQ(phone(test, "b").all()[0].loss, SignalLoss::link);
+  ASSERT_EQ(phone(test, "a").all().size(), 1u);
+  EXPECT_TRUE(phone(test, "a").all()[0].understood());
+  ASSERT_EQ(phone(test, "c").all().size(), 2u);
+  EXPECT_TRUE(phone(test, "c").all()[0].understood());
+  EXPECT_NEAR((phone(test, "a").all()[0].level - phone(test, "c").all()[1].level).dB(),
+              7 + 10 * 1.5 * std::log10(std::sqrt(2.0)), 0.5);
+}
+
+TEST(AcousticChannel, NobodyHearsWhoSendsOutOfTheWater) {
+  TestWorld test(sea("{}", vehicle("a", "[0, 0, 1]") + vehicle("b", "[150, 0, -10]")));
+  phone(test, "a").transducer().transmit(message(), 0ms);
+  test.run_for(5);
+  EXPECT_TRUE(phone(test, "b").all().empty());
+  EXPECT_EQ(phone(test, "a").transducer().counts().unsent, 1);
+  EXPECT_EQ(phone(test, "a").transducer().counts().sent, 0);
+}
+
+TEST(AcousticChannel, WhoLeavesTheWaterWhileSendingIsNotUnderstood) {
+  TestWorld test(sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]")));
+  phone(test, "a").transducer().transmit(message(), 0ms);
+  test.run_for(1);
+  test.world.move_vehicle("a", sim::make_pose({0, 0, 5}, {0, 0, 0}));
+  test.run_for(5);
+  EXPECT_EQ(phone(test, "b").transducer().counts().understood, 0);
+  EXPECT_EQ(phone(test, "b").transducer().counts().lost[static_cast<std::size_t>(SignalLoss::out_of_water)], 1);
+}
+
+TEST(AcousticChannel, AWorldWithoutWaterCannotCarrySound) {
+  EXPECT_EQ(test::error_of_world("shoal: 1\nname: dry\nvehicles:\n" + vehicle("a", "[0, 0, 0]")),
+            "worlds/test.yaml:11:11: vehicle 'a': device 'phone': a device of type 'test_hydrophone' needs water to "
+            "carry its sound: the world has no 'medium: {water: ...}'");
+}
+
+}  // namespace

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/acoustics/channel.hpp"
+#include "sim/device/device_registry.hpp"
+#include "tests/devices/world_fixture.hpp"
+
+namespace test {
+
+/// What a Hydrophone heard, with a copy of the signal.
+struct Heard {
+  sim::Signal signal;
+  std::string source;
+  sim::Time sent, begun, ended;
+  double travel_time_s, closing_mps;
+  sim::Decibels level, snr, sinr;
+  sim::SignalLoss loss;
+  bool understood() const { return loss == sim::SignalLoss::none; }
+};
+
+/// A device of type `test_hydrophone`: sends what a test tells it to, keeps what it hears.
+class Hydrophone final : public sim::Sensor, public sim::AcousticListener {
+ public:
+  static constexpr const char* meaning = "For tests of the acoustic channel.";
+  struct Params {
+    sim::ReceiverConfig receiver;
+    void read(sim::ParamReader& in) { in.read("receiver", receiver, "of the transducer"); }
+  };
+  Hydrophone(const Params& params, const sim::DeviceContext& context) : transducer_(*this, params.receiver, context) {}
+
+  void measure(const sim::SenseContext&) override {}
+  void disturb(double, sim::Random&) override {}
+  void hash_state(sim::StateHash& hash) const override { hash.add(static_cast<std::uint64_t>(heard_.size())); }
+  bool listens_to(const sim::Signal& signal) const override { return signal.kind != sim::Signal::Kind::noise; }
+  void heard(const sim::Reception& r) override {
+    heard_.push_back(
+        {r.signal, r.source, r.sent, r.begun, r.ended, r.travel_time_s, r.closing_mps, r.level, r.snr, r.sinr, r.loss});
+    if (answer) answer(r);
+  }
+  sim::Transducer& transducer() { return transducer_; }
+  const std::vector<Heard>& all() const { return heard_; }
+  std::function<void(const sim::Reception&)> answer;
+
+ private:
+  sim::Transducer transducer_;
+  std::vector<Heard> heard_;
+};
+
+/// The hydrophone `phone` of a vehicle.
+inline Hydrophone& phone(LoadedTestWorld& test, const std::string& vehicle) {
+  return const_cast<Hydrophone&>(
+      dynamic_cast<const Hydrophone&>(*test.world.find_device(vehicle + "/phone")->sensor()));
+}
+
+}  // namespace test

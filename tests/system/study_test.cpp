@@ -1,0 +1,141 @@
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tests/system/shoal_program.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+using namespace system_test;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A study of a rover that stands; `more`: keys of the study, `world`: keys of the world.
+struct StudyFolder {
+  explicit StudyFolder(const std::string& more, const std::string& world = "") {
+    write_file(folder.file("world.yaml"),
+               "shoal: 1\nrun: {duration_s: 1}\n"
+               "objects: [{name: ground, fixed: true, parts: [{shape: plane}]}]\n"
+               "vehicles: [{name: rover1, file: " +
+                   source("vehicles/rover.yaml") +
+                   "}]\n"
+                   "metrics: [{name: way, type: distance, vehicle: rover1}]\n" +
+                   world);
+    write_study(more);
+  }
+  void write_study(const std::string& more) const {
+    write_file(folder.file("study.yaml"), "shoal: 1\nstudy: tiny\nworld: world.yaml\n" + more);
+  }
+  Ended run(std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments{"study", folder.file("study.yaml"), "--output", folder.file("out")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_shoal(arguments);
+  }
+  std::string text(const std::string& file) const { return text_of_file(folder.file("out/" + file)); }
+
+  ScratchFolder folder;
+};
+
+const std::string two_cases = "seeds: [1, 2]\ncases: [{name: a}, {name: b, set: {run.duration_s: 2}}]\n";
+
+TEST(Study, RunsAWorldForEverySeedAndCase) {
+  const StudyFolder study(two_cases + "plots: [{name: ways, figure: way.travelled_m}]\n"
+                                      "pass: [{case: a, figure: way.travelled_m, below: 1}]\n");
+  const Ended ended = study.run({"--jobs", "2"});
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr("study tiny: 4 runs"));
+  EXPECT_THAT(ended.output, HasSubstr("passed: a: mean of way.travelled_m"));
+  EXPECT_THAT(ended.errors, HasSubstr("[4/4] "));
+  EXPECT_THAT(study.text("study.csv"), HasSubstr("\na,1,0,1,duration,1,"));
+  EXPECT_THAT(study.text("study.csv"), HasSubstr("\nb,2,0,1,duration,2,"));
+  EXPECT_THAT(study.text("study.json"), HasSubstr("\"passed\": true"));
+  EXPECT_THAT(study.text("ways.png"), testing::StartsWith("\x89PNG"));
+  EXPECT_FALSE(fs::exists(study.folder.file("out/runs/a/seed_1/tracks.png")));
+
+  const Ended report = run_shoal({"report", study.folder.file("out")});
+  EXPECT_EQ(report.exit_code, 0) << report.errors;
+  EXPECT_THAT(study.text("report.html"), HasSubstr("<td>way.travelled_m</td><td>b</td><td>2</td>"));
+  EXPECT_THAT(study.text("report.html"), HasSubstr("data:image/png;base64,"));
+}
+
+TEST(Study, KeepsRunsThatAreDoneUntilSomethingChanges) {
+  const StudyFolder study(two_cases);
+  ASSERT_EQ(study.run().exit_code, 0);
+  const auto runs = [](const Ended& ended) { return std::count(ended.errors.begin(), ended.errors.end(), '['); };
+  EXPECT_EQ(runs(study.run()), 0);
+  EXPECT_THAT(study.run().errors, HasSubstr("4 of 4 runs were done already"));
+  fs::remove(study.folder.file("out/runs/b/seed_2/summary.json"));
+  EXPECT_EQ(runs(study.run()), 1);
+  study.write_study("seeds: [1, 2, 3]\ncases: [{name: a}, {name: b, set: {run.duration_s: 3}}]\n");
+  EXPECT_EQ(runs(study.run()), 1 + 3);
+  EXPECT_EQ(runs(study.run({"--fresh"})), 6);
+}
+
+TEST(Study, ExitCodeIs1WhenARuleFails) {
+  const StudyFolder study("seeds: [1]\npass: [{case: world, figure: way.travelled_m, above: 1000}]\n");
+  const Ended ended = study.run();
+  EXPECT_EQ(ended.exit_code, 1);
+  EXPECT_THAT(ended.output, HasSubstr("FAILED: world: mean of way.travelled_m"));
+}
+
+TEST(Study, ARunWhoseOwnRulesFailIsAResult) {
+  const StudyFolder study("seeds: [1]\npass: [{case: world, figure: passed, equals: 0}]\n",
+                          "pass: [{metric: way.travelled_m, above: 1000}]\n");
+  const Ended ended = study.run();
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_THAT(ended.errors, HasSubstr("done, its rules failed"));
+}
+
+TEST(Study, ExitCodeIs4WhenARunHasNoResult) {
+  const StudyFolder study("seeds: [1]\nlaunch: true\n", "processes: [{name: ghost, command: [no-such-program]}]\n");
+  const Ended ended = study.run();
+  EXPECT_EQ(ended.exit_code, 4);
+  EXPECT_THAT(ended.errors, HasSubstr("cannot start 'no-such-program'"));
+  EXPECT_THAT(ended.output, HasSubstr("1 runs have no result"));
+  EXPECT_THAT(study.text("study.json"), HasSubstr("no-such-program"));
+}
+
+TEST(Study, ExitCodeIs2ForAMistake) {
+  const StudyFolder study("seeds: [1]\nfigures: [way.rms_m]\n");
+  const Ended ended = study.run();
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_THAT(ended.errors, HasSubstr("study.yaml:5:10: 'figures' names nothing of this world: 'way.rms_m'"));
+  EXPECT_FALSE(fs::exists(study.folder.file("out")));
+  EXPECT_EQ(run_shoal({"study", study.folder.file("none.yaml")}).exit_code, 2);
+}
+
+TEST(Study, EndsItsRunsOnASignal) {
+  const StudyFolder study("seeds: [1, 2]\nduration_s: 1e9\n");
+  Program program({built("shoal"), "study", study.folder.file("study.yaml"), "--output", study.folder.file("out"),
+                   "--jobs", "2"});
+  ASSERT_TRUE(await([&] { return program.children().size() == 2; }, patience));
+  const auto children = program.children();
+  program.send_signal(SIGINT);
+  EXPECT_EQ(program.wait(), 130) << program.errors();
+  for (const pid_t child : children) EXPECT_FALSE(is_running(child));
+  EXPECT_THAT(program.errors(), HasSubstr("goes on with the runs that are missing"));
+}
+
+TEST(Report, ExitCodesTellWhatIsWrong) {
+  const ScratchFolder folder;
+  EXPECT_EQ(run_shoal({"report"}).exit_code, 2);
+  EXPECT_EQ(run_shoal({"report", folder.file("a"), folder.file("b")}).exit_code, 2);  // where shall it go?
+  const Ended none = run_shoal({"report", folder.file("a")});
+  EXPECT_EQ(none.exit_code, 4);
+  EXPECT_THAT(none.errors, HasSubstr("is no folder"));
+  ASSERT_EQ(run_shoal({"run", source("worlds/minimal.yaml"), "--bus", "none", "--duration", "1", "--results",
+                       folder.file("run")})
+                .exit_code,
+            0);
+  EXPECT_EQ(run_shoal({"report", folder.file("run"), "--output", folder.file("no/page.html")}).exit_code, 4);
+  const Ended made = run_shoal({"report", folder.file("run"), "--output", folder.file("page.html")});
+  EXPECT_EQ(made.exit_code, 0) << made.errors;
+  EXPECT_EQ(made.output, folder.file("page.html") + "\n");
+  EXPECT_THAT(text_of_file(folder.file("page.html")), testing::EndsWith("</html>\n"));
+}
+
+}  // namespace

@@ -1,0 +1,322 @@
+#include "tools/experiment/metric.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "shoal/estimate_t.hpp"
+#include "shoal/pose_t.hpp"
+#include "shoal/twist_command_t.hpp"
+#include "tests/devices/world_fixture.hpp"
+#include "tools/experiment/link_counts.hpp"
+#include "tools/experiment/scoring.hpp"
+
+namespace {
+
+/// A rover that stands at (1, 2), 3 m west of a crate; `metrics`: the list.
+std::string metric_world(const std::string& metrics) {
+  return test::rover_world(
+      "        - {name: drive, type: differential_drive, left_joint: left, right_joint: right, "
+      "wheel_radius_m: 0.1, track_m: 0.5}\n",
+      "  - {name: crate, fixed: true, position_m: [4.5, 2, 0.5], parts: [{shape: box, size_m: [1, 1, 1]}]}\n",
+      "    position_m: [1, 2, 0]\n",
+      "zones: [{name: goal, shape: box, position_m: [3, 2, 0], size_m: [1, 4, 4]}]\n"
+      "metrics:\n" +
+          metrics);
+}
+
+struct MetricWorld {
+  explicit MetricWorld(const std::string& metrics) : test(metric_world(metrics)), scoring(test.world) {}
+
+  void run_for(double time_s) {
+    const sim::Time end = test.world.now() + sim::from_seconds(time_s);
+    while (test.world.now() < end) {
+      test.world.step();
+      scoring.after_step();
+    }
+  }
+  void drive(double forward_mps) {
+    shoal::twist_command_t command{};
+    command.forward_mps = forward_mps;
+    test.send("r1.drive.cmd", command);
+  }
+  sim::Vector3d position_m() const { return test.world.find_vehicle("r1")->X_WV().translation(); }
+  double figure(const std::string& name) const { return scoring.figures().at(name); }
+
+  /// An estimate that is off by `error_m`, for now plus `ahead_s`.
+  void estimate(const sim::Vector3d& error_m, const Eigen::Matrix3d& covariance_m2, double ahead_s = 0) {
+    shoal::estimate_t message{};
+    message.utime = test.world.epoch_us() + (test.world.now() + sim::from_seconds(ahead_s)).count();
+    const sim::Vector3d p = position_m() + error_m;
+    for (int i = 0; i < 3; ++i) message.position_m[i] = p[i];
+    for (int i = 0; i < 9; ++i) message.covariance_m2[i] = covariance_m2(i / 3, i % 3);
+    message.clock_error_s = std::nan("");
+    test.send("est", message);
+  }
+
+  test::TestWorld test;
+  tools::Scoring scoring;
+};
+
+Eigen::Matrix3d some_covariance() {
+  Eigen::Matrix3d P;
+  P << 4, 1.5, 0.2, 1.5, 1, 0.1, 0.2, 0.1, 9;
+  return P;
+}
+
+constexpr const char* consistency = "  - {name: c, type: consistency, vehicle: r1, channel: est}\n";
+
+// A rover that stands still may creep by some 0.01 mm.
+constexpr double creep_m = 1e-4;
+
+TEST(Consistency, OfOneErrorIsItsSquareByTheInverseOfTheCovariance) {
+  MetricWorld world(consistency);
+  world.run_for(0.1);
+  // P = [4 1.5; 1.5 1], det 1.75, inverse [1 -1.5; -1.5 4] / 1.75: e = (2, 1) gives (4 - 6 + 4) / 1.75.
+  world.estimate({2, 1, 50}, some_covariance());
+  world.run_for(0.01);
+  EXPECT_NEAR(world.figure("c.nees_mean"), 2 / 1.75, 1e-3);
+  EXPECT_EQ(world.figure("c.inside_95_share"), 1);
+  EXPECT_EQ(world.figure("c.samples"), 1);
+}
+
+TEST(Consistency, OfAConsistentEstimateIsTheNumberOfItsDimensions) {
+  for (const int dimensions : {2, 3}) {
+    MetricWorld world("  - {name: c, type: consistency, vehicle: r1, channel: est, dimensions: " +
+                      std::to_string(dimensions) + "}\n");
+    const Eigen::Matrix3d P = some_covariance();
+    const Eigen::Matrix3d L = P.llt().matrixL();
+    std::mt19937 random(1);
+    std::normal_distribution<double> normal;
+    constexpr int count = 2000;
+    for (int i = 0; i < count; ++i) {
+      world.estimate(L * sim::Vector3d(normal(random), normal(random), normal(random)), P);
+      if (i % 100 == 0) world.run_for(0.001);
+    }
+    world.run_for(0.001);
+    ASSERT_EQ(world.figure("c.samples"), count);
+    // A chi-square value of n dimensions has the mean n and the variance 2 n; four standard errors.
+    EXPECT_NEAR(world.figure("c.nees_mean"), dimensions, 4 * std::sqrt(2.0 * dimensions / count));
+    EXPECT_NEAR(world.figure("c.inside_95_share"), 0.95, 4 * std::sqrt(0.95 * 0.05 / count));
+  }
+}
+
+TEST(Consistency, ShowsAnEstimateThatIsTooSure) {
+  MetricWorld world(consistency);
+  world.run_for(0.1);
+  for (int i = 0; i < 10; ++i) world.estimate({2, 1, 0}, some_covariance() / 100);  // sigma a tenth of what it is
+  world.run_for(0.01);
+  EXPECT_NEAR(world.figure("c.nees_mean"), 100 * 2 / 1.75, 0.1);
+  EXPECT_EQ(world.figure("c.inside_95_share"), 0);
+}
+
+TEST(Consistency, CountsAndIgnoresWhatIsNoCovariance) {
+  MetricWorld world(consistency);
+  world.run_for(0.1);
+  Eigen::Matrix3d askew = some_covariance();
+  askew(0, 1) = -1.5;
+  world.estimate({1, 0, 0}, askew);
+  world.estimate({1, 0, 0}, Eigen::Matrix3d::Zero());
+  world.estimate({1, 0, 0}, -some_covariance());
+  world.estimate({1, 0, 0}, Eigen::Matrix3d::Constant(std::nan("")));
+  world.estimate({std::nan(""), 0, 0}, some_covariance());
+  world.test.send("est", shoal::pose_t{});
+  world.test.send("est", shoal::twist_command_t{});
+  world.run_for(0.01);
+  EXPECT_EQ(world.scoring.bad_messages(), 7);
+  EXPECT_TRUE(std::isnan(world.figure("c.nees_mean")));
+  EXPECT_TRUE(std::isnan(world.figure("c.inside_95_share")));
+}
+
+TEST(PositionError, IsHorizontalUnlessThreeDimensionsAreAskedFor) {
+  MetricWorld world(
+      "  - {name: flat, vehicle: r1, channel: est}\n"
+      "  - {name: full, vehicle: r1, channel: est, dimensions: 3}\n");
+  world.run_for(0.1);
+  world.estimate({3, 4, 12}, some_covariance());
+  world.run_for(0.01);
+  EXPECT_NEAR(world.figure("flat.final_m"), 5, creep_m);
+  EXPECT_NEAR(world.figure("full.final_m"), 13, creep_m);  // 3, 4, 12, 13
+  // What the estimate says of its errors: the root of the sum of the variances.
+  const auto tracks = world.scoring.tracks();
+  EXPECT_NEAR(tracks.at(0).samples->at(0).sigma_m, std::sqrt(4.0 + 1.0), 1e-12);
+  EXPECT_NEAR(tracks.at(1).samples->at(0).sigma_m, std::sqrt(4.0 + 1.0 + 9.0), 1e-12);
+}
+
+TEST(PositionError, TakesAnEstimateWithoutAUsableCovariance) {
+  MetricWorld world("  - {name: flat, vehicle: r1, channel: est}\n");
+  world.run_for(0.1);
+  world.estimate({3, 4, 0}, Eigen::Matrix3d::Zero());
+  world.run_for(0.01);
+  EXPECT_NEAR(world.figure("flat.final_m"), 5, creep_m);
+  EXPECT_EQ(world.scoring.bad_messages(), 0);
+}
+
+TEST(PositionError, PerDistanceIsOfTheWayThatWasTravelled) {
+  MetricWorld world("  - {name: e, vehicle: r1, channel: est}\n");
+  world.drive(0.5);
+  world.run_for(3);
+  world.estimate({0, 0.1, 0}, some_covariance());
+  const double way_m = world.position_m().x() - 1;  // it goes straight
+  world.run_for(0.001);
+  EXPECT_GT(way_m, 1);
+  EXPECT_NEAR(world.figure("e.per_distance_percent"), 100 * 0.1 / way_m, 0.01);
+}
+
+TEST(PositionError, OfAClockThatIsAheadWaitsForItsTime) {
+  MetricWorld world("  - {name: e, vehicle: r1, channel: est}\n");
+  world.drive(0.5);
+  world.run_for(2);
+  const double here_m = world.position_m().x();
+  world.estimate({0, 0, 0}, some_covariance(), 0.4);
+  world.run_for(0.3);
+  EXPECT_EQ(world.figure("e.samples"), 0);
+  EXPECT_EQ(world.scoring.bad_messages(), 0);
+  world.run_for(0.1);
+  ASSERT_EQ(world.figure("e.samples"), 1);
+  // It is compared with where the rover was 0.4 s later.
+  EXPECT_NEAR(world.figure("e.final_m"), world.position_m().x() - here_m, 1e-3);
+  EXPECT_GT(world.figure("e.final_m"), 0.15);
+}
+
+TEST(Distance, IsTheLengthOfTheWay) {
+  MetricWorld world(
+      "  - {name: all, type: distance, vehicle: r1}\n"
+      "  - {name: late, type: distance, vehicle: r1, from_s: 2}\n");
+  world.drive(0.5);
+  world.run_for(2);
+  const double half_m = world.position_m().x() - 1;
+  world.drive(-0.5);
+  world.run_for(2);
+  const double back_m = world.position_m().x() - 1;
+  world.run_for(0.001);
+  // Forth and back; while it brakes it still goes forth, so the way is longer than the two differences.
+  EXPECT_GT(half_m, 0.8);
+  EXPECT_GE(world.figure("all.travelled_m"), half_m + (half_m - back_m));
+  EXPECT_LT(world.figure("all.travelled_m"), half_m + (half_m - back_m) + 0.3);
+  EXPECT_NEAR(world.figure("late.travelled_m"), world.figure("all.travelled_m") - half_m, 0.01);
+}
+
+TEST(MissionTime, IsTheFirstTimeInsideAZoneOrNearAPlace) {
+  MetricWorld world(
+      "  - {name: zone, type: mission_time, when: r1 inside goal}\n"
+      "  - {name: place, type: mission_time, vehicle: r1, position_m: [2, 2, 0], radius_m: 0.25}\n"
+      "  - {name: never, type: mission_time, vehicle: r1, position_m: [9, 9, 0], radius_m: 1}\n"
+      "  - {name: talk, type: mission_time, when: message on hello}\n");
+  world.drive(0.5);
+  double zone_s = -1, place_s = -1;
+  for (int i = 0; i < 500; ++i) {
+    world.run_for(0.01);
+    const double x_m = world.position_m().x();
+    const double now_s = sim::to_seconds(world.test.world.now());
+    if (zone_s < 0 && x_m >= 2.5) zone_s = now_s;
+    if (place_s < 0 && x_m >= 1.75) place_s = now_s;
+  }
+  world.test.send("hello", shoal::twist_command_t{});
+  world.run_for(0.001);
+  EXPECT_NEAR(world.figure("zone.time_s"), zone_s, 0.01);  // of the look every 0.01 s
+  EXPECT_NEAR(world.figure("place.time_s"), place_s, 0.01);
+  EXPECT_TRUE(std::isnan(world.figure("never.time_s")));
+  EXPECT_DOUBLE_EQ(world.figure("talk.time_s"), 5.001);
+}
+
+TEST(Collisions, CountContactsThatBeginButNotWithTheGround) {
+  MetricWorld world(
+      "  - {name: all, type: collisions}\n"
+      "  - {name: crate, type: collisions, vehicle: r1, with: crate}\n"
+      "  - {name: ground, type: collisions, vehicle: r1, with: ground}\n"
+      "  - {name: late, type: collisions, vehicle: r1, from_s: 1000}\n");
+  world.run_for(1);
+  EXPECT_EQ(world.figure("all.count"), 0);
+  EXPECT_TRUE(std::isnan(world.figure("all.first_s")));
+  EXPECT_EQ(world.figure("ground.count"), 1);  // named, planes count as well
+  world.drive(1);
+  world.run_for(5);  // 2.8 m to the crate
+  EXPECT_EQ(world.figure("all.count"), 1);
+  EXPECT_EQ(world.figure("crate.count"), 1);
+  EXPECT_GT(world.figure("crate.first_s"), 1 + 2.8 / 1.0);
+  world.drive(-1);
+  world.run_for(2);
+  world.drive(1);
+  world.run_for(5);
+  EXPECT_EQ(world.figure("crate.count"), 2);
+  EXPECT_EQ(world.figure("late.count"), 0);
+}
+
+TEST(Collisions, DoNotChangeTheRun) {
+  MetricWorld with("  - {name: all, type: collisions}\n");
+  MetricWorld without("  - {name: way, type: distance, vehicle: r1}\n");
+  for (MetricWorld* world : {&with, &without}) {
+    world->drive(1);
+    world->run_for(4);
+  }
+  EXPECT_EQ(with.figure("all.count"), 1);
+  EXPECT_EQ(with.test.world.state_hash(), without.test.world.state_hash());
+}
+
+TEST(Messages, AreCountedWithTheirBytes) {
+  MetricWorld world("  - {name: m, type: messages, channel: hello, from_s: 0.2}\n");
+  world.run_for(0.1);
+  world.test.send("hello", shoal::twist_command_t{});
+  world.run_for(0.2);
+  world.test.send("hello", shoal::twist_command_t{});
+  world.test.bus.publish("hello", sim::Bytes(5), world.test.world.now());
+  world.run_for(0.01);
+  EXPECT_EQ(world.figure("m.count"), 2);
+  EXPECT_EQ(world.figure("m.bytes"), 5 + static_cast<double>(shoal::encode(shoal::twist_command_t{}).size()));
+  EXPECT_NEAR(world.figure("m.first_s"), 0.301, 1e-9);
+}
+
+TEST(Delivery, OfAWorldWithoutModemsHasNoRatio) {
+  MetricWorld world("  - {name: d, type: delivery}\n");
+  world.run_for(0.01);
+  EXPECT_EQ(world.figure("d.sent"), 0);
+  EXPECT_EQ(world.figure("d.received"), 0);
+  EXPECT_TRUE(std::isnan(world.figure("d.ratio")));
+  for (const std::string& cause : sim::loss_causes()) EXPECT_EQ(world.figure("d.lost_" + cause), 0);
+}
+
+TEST(BytesPerMetre, NeedsAnErrorThatBecameSmaller) {
+  const std::string metrics =
+      "  - {name: with, vehicle: r1, channel: est}\n"
+      "  - {name: without, vehicle: r1, channel: est2}\n"
+      "  - {name: cost, type: bytes_per_metre, metric: with, against: without}\n";
+  MetricWorld world(metrics);
+  world.run_for(0.1);
+  world.estimate({3, 0, 0}, some_covariance());
+  shoal::pose_t pose{};
+  pose.utime = world.test.world.epoch_us() + world.test.world.now().count();
+  pose.pos[0] = 1 + 8;
+  pose.pos[1] = 2;
+  world.test.send("est2", pose);
+  world.run_for(0.01);
+  EXPECT_NEAR(world.figure("cost.reduction_m"), 5, creep_m);
+  EXPECT_EQ(world.figure("cost.bytes_per_metre"), 0);  // nobody sent anything
+  for (int i = 0; i < 9; ++i) world.estimate({30, 0, 0}, some_covariance());
+  world.run_for(0.01);
+  EXPECT_LT(world.figure("cost.reduction_m"), 0);
+  EXPECT_TRUE(std::isnan(world.figure("cost.bytes_per_metre")));
+}
+
+TEST(Figures, OfAMetricAreThoseThatItsTypeNames) {
+  MetricWorld world(
+      "  - {name: a, vehicle: r1, channel: est}\n"
+      "  - {name: b, vehicle: r1, channel: est2}\n"
+      "  - {name: c, type: consistency, vehicle: r1, channel: est}\n"
+      "  - {name: d, type: distance, vehicle: r1}\n"
+      "  - {name: e, type: delivery, vehicle: r1}\n"
+      "  - {name: f, type: bytes_per_metre, metric: a, against: b}\n"
+      "  - {name: g, type: mission_time, when: any faster than 1}\n"
+      "  - {name: h, type: collisions}\n"
+      "  - {name: i, type: messages, channel: hello}\n");
+  std::vector<std::string> named, given;
+  for (const sim::MetricConfig& metric : world.test.world.config().metrics)
+    for (const std::string& figure : metric.figures()) named.push_back(figure);
+  for (const auto& [figure, value] : world.scoring.figures()) given.push_back(figure);
+  std::sort(named.begin(), named.end());
+  EXPECT_EQ(named, given);
+}
+
+}  // namespace

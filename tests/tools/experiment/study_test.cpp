@@ -1,0 +1,208 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/devices/world_fixture.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tools/experiment/study_curves.hpp"
+#include "tools/experiment/study_report.hpp"
+#include "tools/experiment/study_results.hpp"
+
+namespace {
+
+using test_support::ScratchFolder;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+void write(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+/// A folder with a world of one metric `e`, and a study of it.
+struct StudyFolder {
+  explicit StudyFolder(const std::string& more, const std::string& seeds = "[1, 2]") {
+    write(folder.file("small.yaml"), test::rover_world("        - {name: lidar, type: lidar}\n", "", "",
+                                                       "metrics: [{name: e, vehicle: r1, channel: est}]\n"));
+    write(path(), "shoal: 1\nstudy: tiny\nworld: small.yaml\nseeds: " + seeds + "\n" + more);
+  }
+  std::string path() const { return folder.file("study.yaml"); }
+  std::string error() const {
+    try {
+      tools::load_study(path());
+      return {};
+    } catch (const sim::ConfigError& error) {
+      return error.what();
+    }
+  }
+
+  ScratchFolder folder;
+};
+
+const std::string two_cases =
+    "cases:\n"
+    "  - {name: plain}\n"
+    "  - {name: quick, set: {physics.step_s: 0.002, name: fast}}\n";
+
+/// Runs as if they had been done: `rms` by case, one for each seed; NaN: the figure is null.
+std::vector<tools::StudyRun> made_up_runs(const tools::LoadedStudy& study,
+                                          const std::vector<std::vector<double>>& rms) {
+  std::vector<tools::StudyRun> runs = tools::plan_study(study, "out");
+  for (tools::StudyRun& run : runs) {
+    const double value = rms[run.in_case][static_cast<std::size_t>(run.seed - study.config.seeds[0])];
+    run.record.emplace();
+    run.record->metrics["e.rms_m"] = std::isnan(value) ? std::nullopt : std::optional<double>(value);
+    run.record->passed = value < 3;
+    run.record->ended = "duration";
+  }
+  return runs;
+}
+
+TEST(Statistics, AreThoseOfTheSample) {
+  const tools::Statistics s = tools::statistics_of({4, 1, 3, std::nan(""), 8});
+  EXPECT_EQ(s.count, 4);
+  EXPECT_DOUBLE_EQ(s.mean, 4);
+  EXPECT_DOUBLE_EQ(s.std, std::sqrt((0.0 + 9 + 1 + 16) / 3));
+  EXPECT_DOUBLE_EQ(s.min, 1);
+  EXPECT_DOUBLE_EQ(s.max, 8);
+  EXPECT_DOUBLE_EQ(s.median, 3.5);
+  EXPECT_TRUE(std::isnan(tools::statistics_of({5}).std));
+  EXPECT_DOUBLE_EQ(tools::statistics_of({5}).mean, 5);
+  EXPECT_TRUE(std::isnan(tools::statistics_of({}).mean));
+}
+
+TEST(Statistics, QuantilesLieBetweenNeighbours) {
+  const std::vector<double> sorted{0, 10, 20, 30, 40};
+  EXPECT_DOUBLE_EQ(tools::quantile(sorted, 0), 0);
+  EXPECT_DOUBLE_EQ(tools::quantile(sorted, 0.05), 2);
+  EXPECT_DOUBLE_EQ(tools::quantile(sorted, 0.5), 20);
+  EXPECT_DOUBLE_EQ(tools::quantile(sorted, 0.95), 38);
+  EXPECT_DOUBLE_EQ(tools::quantile(sorted, 1), 40);
+}
+
+TEST(Curves, AreReadFromTheErrorsOfARun) {
+  const ScratchFolder folder;
+  write(folder.file("errors.csv"),
+        "time_s,metric,error_m,travelled_m\n1,a,0.5,10\n2,b,9,11\n3,a,1.5,20\nrubbish\n4,a,x,30\n5,a,nan,30\n");
+  const tools::Curve by_way = tools::read_error_curve(folder.file("errors.csv"), "a", "travelled_m");
+  ASSERT_EQ(by_way.size(), 2u);
+  EXPECT_EQ(by_way[1].x, 20);
+  EXPECT_EQ(by_way[1].error_m, 1.5);
+  EXPECT_EQ(tools::read_error_curve(folder.file("errors.csv"), "a", "time_s")[1].x, 3);
+  EXPECT_TRUE(tools::read_error_curve(folder.file("errors.csv"), "a", "depth_m").empty());
+  EXPECT_TRUE(tools::read_error_curve(folder.file("none.csv"), "a", "time_s").empty());
+}
+
+TEST(Curves, BandsLieWhereHalfOfTheRunsAre) {
+  // Errors 1, 2 and 3 times x; the third run ends at 5.
+  std::vector<tools::Curve> curves;
+  for (const double slope : {1.0, 2.0, 3.0}) curves.push_back({{0, 0}, {slope < 3 ? 10.0 : 5.0, slope < 3 ? 10 * slope : 15}});
+  const auto bands = tools::bands_of(curves, 11);
+  ASSERT_EQ(bands.size(), 11u);
+  EXPECT_DOUBLE_EQ(bands[4].x, 4);
+  EXPECT_DOUBLE_EQ(bands[4].median, 8);
+  EXPECT_DOUBLE_EQ(bands[4].low, 4 + 0.1 * 4);  // 0.05 * (3 - 1) of the way from the first to the second
+  EXPECT_DOUBLE_EQ(bands[4].high, 12 - 0.1 * 4);
+  EXPECT_EQ(bands[4].runs, 3u);
+  EXPECT_EQ(bands[8].runs, 2u);
+  EXPECT_DOUBLE_EQ(bands[8].median, 12);
+  curves.pop_back();
+  curves[1].resize(1);  // one of two runs goes on: half
+  EXPECT_EQ(tools::bands_of(curves, 11).size(), 11u);
+  curves.push_back(curves[1]);
+  EXPECT_EQ(tools::bands_of(curves, 11).size(), 1u);
+  EXPECT_TRUE(tools::bands_of({}).empty());
+}
+
+TEST(StudyConfig, ReadsSeedsAsAListOrARange) {
+  EXPECT_THAT(tools::load_study(StudyFolder("").path()).config.seeds, ElementsAre(1, 2));
+  EXPECT_THAT(tools::load_study(StudyFolder("", "{first: 5, count: 3}").path()).config.seeds, ElementsAre(5, 6, 7));
+}
+
+TEST(StudyConfig, CasesChangeTheWorld) {
+  const StudyFolder folder(two_cases);
+  const tools::LoadedStudy study = tools::load_study(folder.path());
+  EXPECT_THAT(study.config.cases[1].sets(), ElementsAre("physics.step_s=0.002", "name=fast"));
+  EXPECT_EQ(study.worlds[0].config.physics.step_s, 0.001);
+  EXPECT_EQ(study.worlds[1].config.physics.step_s, 0.002);
+  EXPECT_EQ(study.worlds[1].config.name, "fast");
+}
+
+TEST(StudyConfig, TellsWhatIsWrong) {
+  const auto error = [](const std::string& more, const std::string& seeds = "[1]") {
+    return StudyFolder(more, seeds).error();
+  };
+  EXPECT_EQ(error(two_cases), "");
+  EXPECT_THAT(error("", "[]"), HasSubstr("study.yaml:4:8: 'seeds' must have at least one seed"));
+  EXPECT_THAT(error("", "[1, 1]"), HasSubstr("'seeds' must differ from each other"));
+  EXPECT_THAT(error("", "[1.5]"), HasSubstr("'seeds' must be whole numbers, got 1.5"));
+  EXPECT_THAT(error("", "[-1]"), HasSubstr("must be >= 0"));
+  EXPECT_THAT(error("", "{first: 3}"), HasSubstr("missing key 'count'"));
+  EXPECT_THAT(error("", "{count: 0}"), HasSubstr("'count' must be >= 1"));
+  EXPECT_THAT(error("sedes: 3\n"), HasSubstr("unknown key 'sedes'"));
+  EXPECT_THAT(error("cases: [{name: a}, {name: a}]\n"), HasSubstr("duplicate case 'a'"));
+  EXPECT_THAT(error("cases: [{name: ../a}]\n"), HasSubstr("a name must be made of"));
+  EXPECT_THAT(error("cases: [{name: a, set: 3}]\n"), HasSubstr("'set' must be a map of paths and values, got 3"));
+  EXPECT_THAT(error("cases: [{name: a, set: {vehicles.r9.name: x}}]\n"), HasSubstr("r9"));
+  EXPECT_THAT(error("cases: [{name: a, set: {physics.step_s: -1}}]\n"), HasSubstr("'step_s' must be"));
+  EXPECT_THAT(error("figures: [e.rms]\n"), HasSubstr("study.yaml:5:10: 'figures' names nothing of this world: 'e.rms'; "
+                                                     "known: e.final_m, e.max_m, e.per_distance_percent, e.rms_m"));
+  EXPECT_THAT(error("plots: [{name: p}]\n"), HasSubstr("plot 'p': needs either 'figure' or 'metrics'"));
+  EXPECT_THAT(error("plots: [{name: p, metrics: [e]}]\n"), HasSubstr("'metrics' are drawn over 'distance' or 'time'"));
+  EXPECT_THAT(error("plots: [{name: p, metrics: [f], over: time}]\n"), HasSubstr("names nothing of this world: 'f'"));
+  EXPECT_THAT(error("plots: [{name: p, figure: passed, cases: [b]}]\n"), HasSubstr("names no case 'b'"));
+  EXPECT_THAT(error("pass: [{case: world, figure: e.rms_m}]\n"), HasSubstr("rule 1: needs one of 'above'"));
+  EXPECT_THAT(error("pass: [{case: world, figure: e.rms_m, below: 1, above: 0}]\n"), HasSubstr("not several"));
+  EXPECT_THAT(error("pass: [{case: world, figure: e.rms_m, statistic: average, below: 1}]\n"),
+              HasSubstr("'statistic' must be one of: mean, std, min, max, median"));
+  EXPECT_THAT(error("pass: [{case: world, figure: x.rms_m, below: 1}]\n"), HasSubstr("names nothing of this world"));
+}
+
+TEST(StudyResults, JudgeStatisticsOfCases) {
+  const StudyFolder folder(two_cases +
+                           "pass:\n"
+                           "  - {case: plain, figure: e.rms_m, below: 2.5}\n"                         // mean 2
+                           "  - {case: plain, figure: e.rms_m, statistic: max, below: 2.5}\n"         // max 3
+                           "  - {case: plain, figure: e.rms_m, below_case: quick, factor: 0.5}\n"     // 2 < 0.5 * 6
+                           "  - {case: plain, figure: e.rms_m, below_figure: e.rms_m}\n"              // 2 < 2
+                           "  - {case: plain, figure: passed, equals: 0.5}\n"                         // 1 < 3, not 3 < 3
+                           "  - {case: quick, figure: e.rms_m, statistic: std, above: 0}\n"           // one value: no std
+                           "  - {case: quick, figure: e.final_m, above: -1}\n");                      // nobody has it
+  const tools::LoadedStudy study = tools::load_study(folder.path());
+  const auto runs = made_up_runs(study, {{1, 3}, {6, std::nan("")}});
+  const tools::StudyResults results(study, runs);
+  std::vector<bool> passed;
+  for (const auto& verdict : results.verdicts()) passed.push_back(verdict.passed);
+  EXPECT_THAT(passed, ElementsAre(true, false, true, false, true, false, false));
+  EXPECT_FALSE(results.passed());
+  EXPECT_EQ(results.verdicts()[2].rule, "plain: mean of e.rms_m (2) < 0.5 * that of quick (3)");
+  EXPECT_THAT(results.to_text(), HasSubstr("FAILED: plain: max of e.rms_m (3) < 2.5"));
+  const auto json = nlohmann::json::parse(results.to_json(1));
+  EXPECT_EQ(json["cases"][0]["figures"]["e.rms_m"]["mean"], 2);
+  EXPECT_EQ(json["cases"][1]["figures"]["e.rms_m"]["count"], 1);
+  EXPECT_TRUE(json["cases"][1]["figures"]["e.rms_m"]["std"].is_null());
+  EXPECT_EQ(json["passed"], false);
+  EXPECT_THAT(results.to_csv(), HasSubstr("case,seed,exit_code,passed,ended,sim_time_s,wall_s,e.rms_m\n"
+                                          "plain,1,0,1,duration,0,0.000,1\n"));
+  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,0,0,duration,0,0.000,\n"));
+}
+
+TEST(StudyResults, CountRunsWithoutAResult) {
+  const StudyFolder folder(two_cases);
+  const tools::LoadedStudy study = tools::load_study(folder.path());
+  auto runs = made_up_runs(study, {{1, 3}, {6, 7}});
+  runs[3].record.reset();
+  runs[3].failure = "<b>exit code 4</b>";
+  const tools::StudyResults results(study, runs);
+  EXPECT_EQ(results.failed_runs(), 1u);
+  EXPECT_FALSE(results.passed());
+  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,,,failed,,,\n"));
+  const ScratchFolder out;
+  tools::write_study(out.file("study"), study, runs, results, 4);
+  const std::string page = tools::study_report(out.file("study"));
+  EXPECT_THAT(page, HasSubstr("quick, seed 2: &lt;b&gt;exit code 4&lt;/b&gt;"));
+  EXPECT_THAT(page, HasSubstr("<td>e.rms_m</td><td>plain</td><td>2</td><td>2</td>"));
+}
+
+}  // namespace

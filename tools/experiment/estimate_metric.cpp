@@ -1,0 +1,198 @@
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "shoal/estimate_t.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/pose_t.hpp"
+#include "tools/experiment/metric.hpp"
+
+namespace tools {
+
+namespace {
+
+/// How far ahead of the truth an estimate may be: the clock of a vehicle is not perfect.
+constexpr sim::Time most_ahead{1'000'000};
+
+struct Estimate {
+  std::int64_t utime = 0;
+  sim::Vector3d position_m = sim::Vector3d::Zero();
+  std::optional<Eigen::Matrix3d> covariance_m2;
+};
+
+Estimate decode_estimate(const sim::Bytes& payload) {
+  if (shoal::fingerprint(payload) != shoal::fingerprint_of<shoal::estimate_t>()) {
+    const auto pose = shoal::decode<shoal::pose_t>(payload, shoal::Finite::required);
+    return {pose.utime, {pose.pos[0], pose.pos[1], pose.pos[2]}, std::nullopt};
+  }
+  const auto message = shoal::decode<shoal::estimate_t>(payload, shoal::Finite::any);
+  Estimate estimate{message.utime, sim::Vector3d(message.position_m), Eigen::Matrix3d()};
+  if (!estimate.position_m.allFinite()) throw std::runtime_error("'position_m' must be finite");
+  *estimate.covariance_m2 = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(message.covariance_m2);
+  return estimate;
+}
+
+/// position_error and consistency: estimates of a vehicle's position against the truth.
+class EstimateMetric final : public Metric {
+ public:
+  EstimateMetric(const sim::MetricConfig& config, const sim::World& world, const TruthHistory& truth)
+      : Metric(config),
+        world_(world),
+        truth_(truth),
+        vehicle_(*world.find_vehicle(config.vehicle)),
+        mailbox_(vehicle_.bus().open_mailbox(config.channel)) {}
+
+  void after_step() override {
+    std::erase_if(early_, [this](const Early& early) { return compare(early.time, early.estimate); });
+    while (const auto message = mailbox_->take()) {
+      try {
+        take(decode_estimate(message->payload));
+      } catch (const std::runtime_error& error) {
+        if (++bad_messages_ <= 100) spdlog::warn("{}: {} (ignored)", message->channel, error.what());
+      }
+    }
+  }
+
+  void add_figures(Figures& figures) const override {
+    if (config().type == sim::MetricType::consistency)
+      add_consistency(figures);
+    else
+      add_errors(figures);
+    add(figures, "samples", static_cast<double>(samples_.size()));
+  }
+
+  const std::vector<ErrorSample>* samples() const override { return &samples_; }
+  std::int64_t bad_messages() const override { return bad_messages_; }
+
+ private:
+  /// An estimate whose time has not come yet.
+  struct Early {
+    sim::Time time;
+    Estimate estimate;
+  };
+
+  void take(const Estimate& estimate) {
+    check_covariance(estimate);
+    const sim::Time time = true_time_of(world_, vehicle_, estimate.utime);
+    const bool forgotten = time.count() < 0 || time < world_.now() - sim::from_seconds(TruthHistory::memory_s);
+    if (forgotten || time > world_.now() + most_ahead)
+      throw std::runtime_error(
+          fmt::format("'utime' is not within the last {} s of simulated time", TruthHistory::memory_s));
+    if (sim::to_seconds(time) < config().from_s) return;
+    if (!compare(time, estimate)) early_.push_back({time, estimate});
+  }
+
+  void check_covariance(const Estimate& estimate) const {
+    if (config().type != sim::MetricType::consistency) return;
+    if (!estimate.covariance_m2) throw std::runtime_error("it has no covariance: a shoal.estimate_t is needed");
+    if (!std::isfinite(nees(estimate, sim::Vector3d::Zero())))
+      throw std::runtime_error("'covariance_m2' must be symmetric and positive definite");
+  }
+
+  /// False when the truth at that time is not known yet.
+  bool compare(sim::Time time, const Estimate& estimate) {
+    const auto truth = truth_.at(time);
+    if (!truth) return false;
+    const sim::Vector3d error = estimate.position_m - truth->position_m;
+    ErrorSample sample;
+    sample.time_s = sim::to_seconds(time);
+    sample.error_m = error.head(config().dimensions).norm();
+    sample.truth_m = truth->position_m;
+    sample.estimate_m = estimate.position_m;
+    sample.travelled_m = truth->travelled_m;
+    sample.nees = nees(estimate, error);
+    if (std::isfinite(sample.nees))
+      sample.sigma_m = std::sqrt(estimate.covariance_m2->diagonal().head(config().dimensions).sum());
+    samples_.push_back(sample);
+    return true;
+  }
+
+  /// error^T P^-1 error in the dimensions that count; NaN when there is no P that a covariance can be.
+  double nees(const Estimate& estimate, const sim::Vector3d& error) const {
+    if (!estimate.covariance_m2 || !estimate.covariance_m2->allFinite()) return no_figure;
+    const int size = config().dimensions;
+    const Eigen::MatrixXd P = estimate.covariance_m2->topLeftCorner(size, size);
+    if ((P - P.transpose()).cwiseAbs().maxCoeff() > 1e-6 * P.cwiseAbs().maxCoeff()) return no_figure;
+    const Eigen::LLT<Eigen::MatrixXd> factor(P);
+    const Eigen::VectorXd e = error.head(size);
+    return factor.info() == Eigen::Success ? e.dot(factor.solve(e)) : no_figure;
+  }
+
+  void add_errors(Figures& figures) const {
+    double squares = 0;
+    double largest = 0;
+    for (const ErrorSample& sample : samples_) {
+      squares += sample.error_m * sample.error_m;
+      largest = std::max(largest, sample.error_m);
+    }
+    const bool any = !samples_.empty();
+    const auto count = static_cast<double>(samples_.size());
+    const double way_m = any ? samples_.back().travelled_m : 0;
+    add(figures, "rms_m", any ? std::sqrt(squares / count) : no_figure);
+    add(figures, "final_m", any ? samples_.back().error_m : no_figure);
+    add(figures, "max_m", any ? largest : no_figure);
+    add(figures, "per_distance_percent", way_m > 0 ? 100 * samples_.back().error_m / way_m : no_figure);
+  }
+
+  void add_consistency(Figures& figures) const {
+    const double bound = chi_square_95(config().dimensions);
+    double sum = 0;
+    double inside = 0;
+    for (const ErrorSample& sample : samples_) {
+      sum += sample.nees;
+      inside += sample.nees <= bound ? 1 : 0;
+    }
+    const auto count = static_cast<double>(samples_.size());
+    add(figures, "nees_mean", count > 0 ? sum / count : no_figure);
+    add(figures, "inside_95_share", count > 0 ? inside / count : no_figure);
+  }
+
+  const sim::World& world_;
+  const TruthHistory& truth_;
+  const sim::Vehicle& vehicle_;
+  std::unique_ptr<sim::Mailbox> mailbox_;
+  std::vector<Early> early_;
+  std::vector<ErrorSample> samples_;
+  std::int64_t bad_messages_ = 0;
+};
+
+class DistanceMetric final : public Metric {
+ public:
+  DistanceMetric(const sim::MetricConfig& config, const sim::World& world, const TruthHistory& truth)
+      : Metric(config), world_(world), truth_(truth) {}
+
+  void after_step() override {
+    if (sim::to_seconds(world_.now()) <= config().from_s) before_m_ = truth_.now().travelled_m;
+  }
+  void add_figures(Figures& figures) const override {
+    add(figures, "travelled_m", truth_.now().travelled_m - before_m_);
+  }
+
+ private:
+  const sim::World& world_;
+  const TruthHistory& truth_;
+  double before_m_ = 0;  ///< travelled before it counts
+};
+
+}  // namespace
+
+double chi_square_95(int dimensions) {
+  // Quantile tables of the chi-square distribution; with 2 degrees of freedom it is -2 ln 0.05.
+  return dimensions == 2 ? -2 * std::log(0.05) : 7.814727903251179;
+}
+
+std::unique_ptr<Metric> make_estimate_metric(const sim::MetricConfig& config, const sim::World& world,
+                                             const TruthHistory& truth) {
+  return std::make_unique<EstimateMetric>(config, world, truth);
+}
+
+std::unique_ptr<Metric> make_distance_metric(const sim::MetricConfig& config, const sim::World& world,
+                                             const TruthHistory& truth) {
+  return std::make_unique<DistanceMetric>(config, world, truth);
+}
+
+}  // namespace tools

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "sim/world/world.hpp"
+
+namespace tools {
+
+/// What modems sent on the acoustic channel, and what came of the signals they listened to.
+struct LinkCounts {
+  std::int64_t sent = 0;                     ///< packets
+  std::int64_t bytes_sent = 0;               ///< in them
+  std::int64_t received = 0;                 ///< of others' packets, as often as one of the modems understood one
+  std::map<std::string, std::int64_t> lost;  ///< heard but not understood, by cause: one of sim::loss_causes()
+};
+
+/// Of a vehicle (empty: of all) and one of its devices (empty: of all).
+LinkCounts link_counts(const sim::World& world, const std::string& vehicle, const std::string& device);
+
+}  // namespace tools

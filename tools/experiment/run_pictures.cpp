@@ -1,0 +1,116 @@
+#include "tools/experiment/run_pictures.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tools/experiment/gnuplot.hpp"
+
+namespace tools {
+
+namespace {
+
+/// More vehicles than this are drawn as dots in one colour.
+constexpr std::size_t most_named_tracks = 12;
+
+using Tracks = std::vector<Scoring::Track>;
+
+bool has_covariance(const Scoring::Track& track) {
+  return std::any_of(track.samples->begin(), track.samples->end(),
+                     [](const ErrorSample& sample) { return std::isfinite(sample.nees); });
+}
+
+/// `'errors.csv' using X:Y` of one metric; x and y are columns of errors.csv.
+std::string curve(const std::string& metric, int x, const std::string& y, const std::string& look) {
+  return fmt::format("'errors.csv' every ::1 using (strcol(2) eq {} ? ${} : NaN):{} with lines {}",
+                     gnuplot_text(metric), x, y, look);
+}
+
+std::string joined(const std::vector<std::string>& curves) {
+  std::string text = "plot ";
+  for (std::size_t i = 0; i < curves.size(); ++i) text += (i > 0 ? ", " : "") + curves[i];
+  return text + "\n";
+}
+
+std::string tracks_script(const sim::World& world, const Tracks& tracks) {
+  std::vector<std::string> curves{
+      "'outlines.dat' using (real(word(strcol(1),1))):(real(word(strcol(1),2))) with lines lc 'gray40' notitle"};
+  if (world.vehicles().size() > most_named_tracks) {
+    curves.emplace_back("'tracks.csv' every ::1 using 3:4 with dots lc 'blue' title 'vehicles'");
+  } else {
+    for (const auto& vehicle : world.vehicles())
+      curves.push_back(
+          fmt::format("'tracks.csv' every ::1 using (strcol(2) eq {0} ? $3 : NaN):4 with lines lw 2 title {0} "
+                      "noenhanced",
+                      gnuplot_text(vehicle->name())));
+  }
+  std::set<std::string> drawn;
+  for (const Scoring::Track& track : tracks)
+    if (drawn.insert(track.metric).second)
+      curves.push_back(curve(track.metric, 4, "5",
+                             "dt 2 title " + gnuplot_text(track.metric + " estimate of " + track.vehicle) +
+                                 " noenhanced"));
+  return "set output 'tracks.png'\nset size ratio -1\nset xlabel 'east (m)'\nset ylabel 'north (m)'\n" +
+         joined(curves);
+}
+
+/// Errors over a column, with three times the sigma that the estimate tells.
+std::string errors_script(const Tracks& tracks, const char* file, const char* x_label, int x) {
+  std::vector<std::string> curves;
+  int color = 1;
+  for (const Scoring::Track& track : tracks) {
+    curves.push_back(
+        curve(track.metric, x, "3", fmt::format("lw 2 lc {} title {} noenhanced", color, gnuplot_text(track.metric))));
+    if (has_covariance(track))
+      curves.push_back(curve(track.metric, x, "(3*$11)",
+                             fmt::format("lw 1 dt 2 lc {} title {} noenhanced", color,
+                                         gnuplot_text(track.metric + ": 3 sigma as estimated"))));
+    ++color;
+  }
+  return fmt::format("set output '{}'\nset size noratio\nset xlabel '{}'\nset ylabel 'position error (m)'\n", file,
+                     x_label) +
+         joined(curves);
+}
+
+/// Consistency over time, with the value it has on average and the bound of 95 of 100 samples.
+std::string nees_script(const Tracks& tracks) {
+  std::vector<std::string> curves;
+  std::set<int> dimensions;
+  for (const Scoring::Track& track : tracks) {
+    if (!has_covariance(track)) continue;
+    dimensions.insert(track.dimensions);
+    curves.push_back(curve(track.metric, 1, "12", fmt::format("title {} noenhanced", gnuplot_text(track.metric))));
+  }
+  if (curves.empty()) return {};
+  for (const int size : dimensions) {
+    curves.push_back(fmt::format("{} dt 2 lc 'gray40' title 'mean of a consistent estimate ({}D)'", size, size));
+    curves.push_back(fmt::format("{:.4f} dt 3 lc 'black' title '95 % bound ({}D)'", chi_square_95(size), size));
+  }
+  return "set output 'nees.png'\nset size noratio\nset xlabel 'time (s)'\n"
+         "set ylabel 'normalised estimation error squared'\nset logscale y\nset yrange [1e-3:*]\n" +
+         joined(curves) + "unset logscale y\nset autoscale y\n";
+}
+
+}  // namespace
+
+std::string run_pictures_script(const sim::World& world, const Scoring& scoring) {
+  auto tracks = scoring.tracks();
+  // gnuplot fails on a plot without a point.
+  std::erase_if(tracks, [](const Scoring::Track& track) { return track.samples->empty(); });
+  std::string script =
+      // The vehicles' rows alternate: without `missing` each row of another one would break the line.
+      "set datafile separator ','\nset datafile missing NaN\n"
+      "set terminal pngcairo size 1000,1080\nset grid\nset key below\nset title " +
+      gnuplot_text(world.config().name) + " noenhanced\n" + tracks_script(world, tracks);
+  if (tracks.empty()) return script;
+  script += "set terminal pngcairo size 1000,700\n";
+  script += errors_script(tracks, "errors.png", "time (s)", 1);
+  const auto went = [](const Scoring::Track& track) { return track.samples->back().travelled_m > 0; };
+  if (std::any_of(tracks.begin(), tracks.end(), went))
+    script += errors_script(tracks, "errors_by_distance.png", "distance travelled (m)", 10);
+  return script + nees_script(tracks);
+}
+
+}  // namespace tools

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tools {
+
+/// What a results directory tells of its run, read again.
+struct RunRecord {
+  struct Rule {
+    std::string rule;
+    bool passed = false;
+  };
+  struct Process {
+    std::string name, how;
+    double sim_time_s = 0;
+  };
+
+  std::string directory;
+  std::string world;
+  std::int64_t seed = 0;
+  std::int64_t steps = 0;
+  double sim_time_s = 0;
+  double wall_s = 0;
+  std::string state_hash;
+  std::int64_t messages = 0, dropped_messages = 0, bad_messages = 0, quick_steps = 0;
+  std::map<std::string, std::optional<double>> metrics;  ///< unset: there was nothing to make the figure of
+  std::vector<Rule> rules;
+  std::vector<Process> processes;
+  std::optional<Rule> event;  ///< what the event said that ended the run
+  bool passed = false;
+  std::string ended, error;
+  int exit_code = 0;
+  std::string version;  ///< of shoal; empty: an older one that did not tell
+};
+
+/// Reads DIRECTORY/summary.json.  Throws std::runtime_error with file and reason: it is not there, no JSON, or a value
+/// is of a wrong type.
+RunRecord read_run(const std::string& directory);
+
+/// A file of at most 64 MB.  Throws std::runtime_error.
+std::string read_whole_file(const std::string& path);
+
+}  // namespace tools

@@ -1,0 +1,213 @@
+#include "tools/experiment/study_config.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "shoal/message_writer.hpp"
+#include "sim/config/message_text.hpp"
+#include "sim/config/yaml_writer.hpp"
+
+namespace tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_seeds = 100000;
+constexpr double largest_seed = 9007199254740992.0;  // 2^53
+
+/// A list of seeds, or the first and how many.
+struct SeedRange {
+  std::int64_t first = 1;
+  std::int64_t count = 0;
+  void read(sim::ParamReader& in) {
+    in.read("first", first, sim::between(0, largest_seed), "the first seed");
+    in.require("count");
+    in.read("count", count, sim::between(1, static_cast<double>(most_seeds)), "how many");
+  }
+};
+
+std::vector<std::int64_t> read_seeds(sim::ParamReader& in) {
+  in.require("seeds");
+  const sim::ConfigNode* node = in.child("seeds");
+  std::vector<std::int64_t> seeds;
+  if (node != nullptr && node->kind == sim::ConfigNode::Kind::map) {
+    SeedRange range;
+    in.read("seeds", range, "seeds of the runs");
+    for (std::int64_t i = 0; i < range.count; ++i) seeds.push_back(range.first + i);
+    return seeds;
+  }
+  std::vector<double> numbers;
+  in.read("seeds", numbers, sim::between(0, largest_seed), "seeds of the runs");
+  for (const double number : numbers) {
+    if (number != std::trunc(number)) in.error("seeds", "'seeds' must be whole numbers, got " + sim::number_text(number));
+    seeds.push_back(static_cast<std::int64_t>(number));
+  }
+  if (node != nullptr && numbers.empty() && node->kind == sim::ConfigNode::Kind::list && node->items.empty())
+    in.error("seeds", "'seeds' must have at least one seed");
+  if (std::set<std::int64_t>(seeds.begin(), seeds.end()).size() != seeds.size())
+    in.error("seeds", "'seeds' must differ from each other");
+  return seeds;
+}
+
+/// All figures of all cases, sorted.
+std::vector<std::string> figures_of(const LoadedStudy& study) {
+  std::set<std::string> names{"passed"};
+  for (const sim::LoadedWorld& world : study.worlds)
+    for (const sim::MetricConfig& metric : world.config.metrics)
+      for (const std::string& figure : metric.figures()) names.insert(figure);
+  return {names.begin(), names.end()};
+}
+
+std::vector<std::string> error_metrics_of(const LoadedStudy& study) {
+  std::set<std::string> names;
+  for (const sim::LoadedWorld& world : study.worlds)
+    for (const sim::MetricConfig& metric : world.config.metrics)
+      if (metric.type == sim::MetricType::position_error || metric.type == sim::MetricType::consistency)
+        names.insert(metric.name);
+  return {names.begin(), names.end()};
+}
+
+/// Figures and metrics are known only with the worlds.
+class NameCheck {
+ public:
+  explicit NameCheck(const LoadedStudy& study)
+      : study_(study), figures_(figures_of(study)), metrics_(error_metrics_of(study)) {}
+
+  void check() {
+    const StudyConfig& config = study_.config;
+    for (const std::string& figure : config.figures) require("figures", figure, figures_, config.figures_place, "");
+    for (const StudyPlot& plot : config.plots) {
+      const std::string who = "plot '" + plot.name + "'";
+      if (!plot.figure.empty()) require("figure", plot.figure, figures_, plot.place, who);
+      for (const std::string& metric : plot.metrics) require("metrics", metric, metrics_, plot.place, who);
+    }
+    for (std::size_t i = 0; i < config.pass.size(); ++i) {
+      const StudyRule& rule = config.pass[i];
+      const std::string who = "rule " + std::to_string(i + 1);
+      require("figure", rule.figure, figures_, rule.place, who);
+      if (!rule.below_figure.empty()) require("below_figure", rule.below_figure, figures_, rule.place, who);
+    }
+    diagnostics_.throw_if_any();
+  }
+
+ private:
+  void require(const char* key, const std::string& name, const std::vector<std::string>& known,
+               const sim::SourcePlace& place, const std::string& who) {
+    if (!std::binary_search(known.begin(), known.end(), name))
+      diagnostics_.error(place, who,
+                         "'" + std::string(key) + "' names nothing of this world: '" +
+                             sim::shortened(sim::printable(name)) + "'; known: " + sim::list_text(known));
+  }
+
+  const LoadedStudy& study_;
+  std::vector<std::string> figures_, metrics_;
+  sim::Diagnostics diagnostics_;
+};
+
+}  // namespace
+
+void StudyCase::read(sim::ParamReader& in) {
+  in.require("name");
+  in.read_name("name", name, "name of the case");
+  in.read_raw("set", changes, "dotted path: value, as with --set");
+  if (in.has("set") && changes.kind != sim::ConfigNode::Kind::map && changes.kind != sim::ConfigNode::Kind::null)
+    in.error("set", "'set' must be a map of paths and values, got " + sim::shown(changes));
+}
+
+std::vector<std::string> StudyCase::sets() const {
+  std::vector<std::string> texts;
+  for (const auto& entry : changes.entries) texts.push_back(entry.key + "=" + sim::to_flow_yaml(entry.value));
+  return texts;
+}
+
+void StudyPlot::read(sim::ParamReader& in) {
+  if (in.node() != nullptr) place = in.node()->place;
+  in.require("name");
+  in.read_name("name", name, "name of the picture, NAME.png");
+  in.read("figure", figure, "figure that is drawn for each case");
+  in.read("metrics", metrics, "metrics whose errors are drawn, instead of `figure`");
+  in.read_references("cases", cases, "case", "those that are drawn; unset: all");
+  in.read_choice("over", over, {{"cases", Over::cases}, {"distance", Over::distance}, {"time", Over::time}},
+                 "what errors are drawn over: distance travelled or time");
+  if (in.describing()) return;
+  if (in.has("figure") == in.has("metrics"))
+    in.error(in.has("figure") ? "needs either 'figure' or 'metrics', not both" : "needs either 'figure' or 'metrics'");
+  else if (in.has("metrics") == (over == Over::cases))
+    in.error("over", in.has("metrics") ? "'metrics' are drawn over 'distance' or 'time'"
+                                       : "a 'figure' is drawn over 'cases'");
+}
+
+const std::vector<std::string>& statistic_words() {
+  static const std::vector<std::string> words{"mean", "std", "min", "max", "median"};
+  return words;
+}
+
+void StudyRule::read(sim::ParamReader& in) {
+  if (in.node() != nullptr) place = in.node()->place;
+  in.require("case");
+  in.read_reference("case", in_case, "case", "whose runs are judged");
+  in.require("figure");
+  in.read("figure", figure, "which figure of them; `passed`: 1 when the run passed the rules of its world");
+  in.read_choice("statistic", statistic, statistic_words(), "over the seeds");
+  in.read("below", below, sim::any_number(), "it must be below this");
+  in.read("above", above, sim::any_number(), "it must be above this");
+  in.read("equals", equals, sim::any_number(), "it must be this");
+  in.read_reference("below_case", below_case, "case", "it must be below the same of this case times factor");
+  in.read("below_figure", below_figure, "it must be below the same of this figure times factor");
+  in.read("factor", factor, sim::above(0), "see below_case and below_figure");
+  int forms = 0;
+  for (const char* key : {"below", "above", "equals", "below_case", "below_figure"}) forms += in.has(key);
+  if (!in.describing() && forms != 1)
+    in.error("needs one of 'above', 'below', 'below_case', 'below_figure' and 'equals'" +
+             std::string(forms > 1 ? ", not several" : ""));
+}
+
+void StudyConfig::read(sim::ParamReader& in) {
+  int version = 1;
+  in.require("shoal");
+  in.read("shoal", version, sim::between(1, 1), "version of the file format");
+  in.require("study");
+  in.read_name("study", name, "name of the study");
+  in.read("description", description, "one sentence for people");
+  in.require("world");
+  in.read("world", world, "world file, from the folder of this file");
+  in.read("launch", launch, "start the programs that the world names");
+  in.read("duration_s", duration_s, sim::above_to(0, 1e9), "simulated time of each run; unset: as the world says");
+  seeds = read_seeds(in);
+  in.read_list("cases", cases, "case", "ways of running the world; unset: as it is");
+  if (cases.empty()) cases.emplace_back().name = "world";
+  for (const StudyCase& each : cases) in.declare("case", each.name);
+  in.read("figures", figures, "figures of the table; unset: all");
+  if (in.has("figures")) figures_place = in.child("figures")->place;
+  in.read_list("plots", plots, "plot", "pictures");
+  for (const StudyPlot& plot : plots) in.declare("plot", plot.name);
+  in.read_list("pass", pass, "rule", "the study passes when every rule holds; else exit code 1");
+}
+
+LoadedStudy load_study(const std::string& path) {
+  LoadedStudy study;
+  sim::Diagnostics diagnostics;
+  const sim::ConfigNode root = sim::load_config_file(path, diagnostics);
+  diagnostics.throw_if_any();
+  sim::ParamReader in(root, "", diagnostics);
+  study.config.read(in);
+  in.finish();
+  diagnostics.throw_if_any();
+  study.config.file = path;
+  const fs::path world = fs::path(path).parent_path() / study.config.world;
+  study.config.world = world.lexically_normal().string();
+  for (const StudyCase& each : study.config.cases) {
+    sim::LoadOptions options;
+    options.sets = each.sets();
+    options.allow_plugins = study.config.launch;
+    options.encode_message = shoal::encode_own_message;
+    study.worlds.push_back(sim::load_world(study.config.world, options));
+  }
+  NameCheck(study).check();
+  return study;
+}
+
+}  // namespace tools

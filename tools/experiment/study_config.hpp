@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/config/param_reader.hpp"
+#include "sim/world/load_world.hpp"
+
+namespace tools {
+
+/// One way of running the world.
+struct StudyCase {
+  std::string name;
+  sim::ConfigNode changes;  ///< dotted path: value, as with --set
+  void read(sim::ParamReader& in);
+  /// `path=value` of each change.
+  std::vector<std::string> sets() const;
+};
+
+/// A picture of a study: one figure by case, or errors along the way.
+struct StudyPlot {
+  enum class Over { cases, distance, time };
+  std::string name;
+  std::string figure;                ///< by case
+  std::vector<std::string> metrics;  ///< whose errors are drawn, with median and the band of 5 to 95 %
+  std::vector<std::string> cases;    ///< empty: all
+  Over over = Over::cases;
+  sim::SourcePlace place;
+  void read(sim::ParamReader& in);
+};
+
+/// The study passes when every rule holds.
+struct StudyRule {
+  std::string in_case, figure;
+  std::string statistic = "mean";
+  std::optional<double> below, above, equals;
+  std::string below_case, below_figure;  ///< the same of another case, or of another figure of this case
+  double factor = 1;
+  sim::SourcePlace place;
+  void read(sim::ParamReader& in);
+};
+
+/// A study file: one world, run with many seeds in several cases.
+struct StudyConfig {
+  std::string file, name, description;
+  std::string world;  ///< path from here
+  bool launch = false;
+  std::optional<double> duration_s;
+  std::vector<std::int64_t> seeds;
+  std::vector<StudyCase> cases;
+  std::vector<std::string> figures;  ///< of the table; empty: all
+  std::vector<StudyPlot> plots;
+  std::vector<StudyRule> pass;
+  sim::SourcePlace figures_place;
+
+  void read(sim::ParamReader& in);
+};
+
+/// The words of StudyRule::statistic.
+const std::vector<std::string>& statistic_words();
+
+struct LoadedStudy {
+  StudyConfig config;
+  std::vector<sim::LoadedWorld> worlds;  ///< by case
+};
+
+/// Reads and checks a study and its world in every case.  Throws sim::ConfigError.
+LoadedStudy load_study(const std::string& path);
+
+}  // namespace tools

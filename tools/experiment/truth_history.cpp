@@ -1,0 +1,41 @@
+#include "tools/experiment/truth_history.hpp"
+
+#include <cstdlib>
+
+namespace tools {
+
+sim::Time true_time_of(const sim::World& world, const sim::Vehicle& vehicle, std::int64_t utime) {
+  std::int64_t time_us = 0;
+  if (__builtin_sub_overflow(utime, world.epoch_us(), &time_us)) return utime < 0 ? sim::Time::min() : sim::Time::max();
+  // What is far off is no time of this run; clocks are asked about times near now only.
+  const bool near_now = std::abs(time_us / 2 - world.now().count() / 2) < sim::VehicleClock::memory.count() / 2;
+  return near_now ? vehicle.clock().true_time(sim::Time{time_us}) : sim::Time{time_us};
+}
+
+TruthHistory::TruthHistory(const sim::World& world, const sim::Vehicle& vehicle)
+    : world_(world),
+      vehicle_(vehicle),
+      recent_(static_cast<std::size_t>(memory_s / sim::to_seconds(world.step_time())) + 1,
+              Truth{vehicle.X_WV().translation(), 0}) {}
+
+void TruthHistory::after_step() {
+  const Truth& before = recent_[slot_of(world_.step_number() - 1)];
+  const sim::Vector3d position_m = vehicle_.X_WV().translation();
+  recent_[slot_of(world_.step_number())] = {position_m,
+                                            before.travelled_m + (position_m - before.position_m).norm()};
+}
+
+const TruthHistory::Truth& TruthHistory::now() const {
+  return recent_[slot_of(world_.step_number())];
+}
+
+std::optional<TruthHistory::Truth> TruthHistory::at(sim::Time time) const {
+  const std::int64_t step_us = world_.step_time().count();
+  if (time.count() < 0 || time > world_.now() + world_.step_time()) return std::nullopt;
+  const std::int64_t step = (time.count() + step_us / 2) / step_us;
+  const bool forgotten = step <= world_.step_number() - static_cast<std::int64_t>(recent_.size());
+  if (forgotten || step > world_.step_number()) return std::nullopt;
+  return recent_[slot_of(step)];
+}
+
+}  // namespace tools

@@ -1,0 +1,230 @@
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "shoal/message_writer.hpp"
+#include "sim/bus/in_process_bus.hpp"
+#include "sim/world/load_world.hpp"
+#include "sim/world/world.hpp"
+#include "tools/experiment/acoustic_closed_forms.hpp"
+#include "tools/experiment/acoustic_link.hpp"
+#include "tools/shoal/commands.hpp"
+#include "tools/shoal/output_file.hpp"
+
+namespace tools {
+
+namespace {
+
+/// Without a world file: water, and a wind by which the sea is heard.
+constexpr const char* plain_world = "shoal: 1\nmedium: {water: {}, wind: {velocity_mps: [5, 0, 0]}}\n";
+
+struct AcousticsArguments {
+  std::string world;
+  sim::LoadOptions load;
+  std::string from, to, ranges, picture, closed_forms;
+  std::vector<std::string> packets;
+  bool micromodem = false;
+  double range_m = 1000, depth_m = 10, level_dB = 185, frequency_Hz = 25000, bandwidth_Hz = 4000;
+  double detection_dB = 6, coding_gain_dB = 0;
+  std::optional<double> water_depth_m;
+};
+
+/// Up to three numbers with `separator` between them; nothing when it is something else.
+std::optional<sim::Vector3d> parse_three(const std::string& text, char separator) {
+  sim::Vector3d numbers;
+  const char* at = text.data();
+  const char* end = at + text.size();
+  for (int i = 0; i < 3; ++i) {
+    const auto [next, error] = std::from_chars(at, end, numbers[i]);
+    if (error != std::errc{} || !(std::abs(numbers[i]) <= 1e7)) return std::nullopt;
+    if (i == 2 ? next != end : next == end || *next != separator) return std::nullopt;
+    at = next + 1;
+  }
+  return numbers;
+}
+
+std::vector<double> parse_ranges(const std::string& text) {
+  const auto numbers = parse_three(text, ':');
+  if (!numbers || !((*numbers)[0] > 0) || (*numbers)[1] < (*numbers)[0] || !((*numbers)[2] > 0) ||
+      ((*numbers)[1] - (*numbers)[0]) / (*numbers)[2] > 10000)
+    throw CLI::ValidationError("--ranges",
+                               "must be from:to:step in metres, 10000 steps at most, such as 100:5000:100, "
+                               "got '" +
+                                   text + "'");
+  std::vector<double> ranges_m;
+  for (int i = 0; (*numbers)[0] + i * (*numbers)[2] <= (*numbers)[1] * (1 + 1e-12); ++i)
+    ranges_m.push_back((*numbers)[0] + i * (*numbers)[2]);
+  return ranges_m;
+}
+
+/// A place `x,y,z`, a transducer `vehicle/device`, or a vehicle.
+LinkEnd find_end(const char* option, const std::string& text, const sim::World& world) {
+  LinkEnd end;
+  if (const auto p_W = parse_three(text, ',')) {
+    end.p_W = *p_W;
+    return end;
+  }
+  std::string known;
+  for (const sim::Transducer* transducer : world.acoustics().transducers()) {
+    if (transducer == nullptr) continue;
+    known += (known.empty() ? "; transducers: " : ", ") + transducer->full_name();
+    if (transducer->full_name() != text) continue;
+    return {transducer->p_W(world.now()), transducer->R_WS(), transducer->config().directivity};
+  }
+  if (const sim::Vehicle* vehicle = world.find_vehicle(text)) {
+    end.p_W = vehicle->base().X_WB().translation();
+    return end;
+  }
+  throw CLI::ValidationError(option,
+                             "is no place such as 4,-3,-2.5, no transducer and no vehicle: '" + text + "'" + known);
+}
+
+std::vector<AcousticPacket> packets_of(const AcousticsArguments& arguments) {
+  std::vector<AcousticPacket> packets;
+  for (const std::string& text : arguments.packets) {
+    const auto packet = parse_packet(text);
+    if (!packet)
+      throw CLI::ValidationError(
+          "--packet", "must be modulation:bit/s:bytes such as fsk:80:32 (fsk, psk, dpsk), got '" + text + "'");
+    packets.push_back(*packet);
+  }
+  if (arguments.micromodem)
+    for (const AcousticPacket& packet : micromodem_packets()) packets.push_back(packet);
+  if (!packets.empty()) return packets;
+  for (const char* text : {"fsk:80:32", "psk:500:64", "psk:5300:256", "dpsk:1200:256"})
+    packets.push_back(*parse_packet(text));
+  return packets;
+}
+
+AcousticLink link_of(const AcousticsArguments& arguments, const sim::World& world) {
+  AcousticLink link;
+  link.source_level = sim::Decibels(arguments.level_dB);
+  link.centre_Hz = arguments.frequency_Hz;
+  link.bandwidth_Hz = arguments.bandwidth_Hz;
+  link.detection = sim::Decibels(arguments.detection_dB);
+  link.coding_gain = sim::Decibels(arguments.coding_gain_dB);
+  if (arguments.from.empty() != arguments.to.empty())
+    throw CLI::ValidationError("--from", "needs --to, and --to needs --from");
+  if (!arguments.from.empty()) {
+    link.from = find_end("--from", arguments.from, world);
+    link.to = find_end("--to", arguments.to, world);
+    return link;
+  }
+  const double z_m = world.medium().surface_m(0, 0) - arguments.depth_m;
+  link.from.p_W = sim::Vector3d(0, 0, z_m);
+  link.to.p_W = sim::Vector3d(arguments.range_m, 0, z_m);
+  return link;
+}
+
+/// Of what is below the middle of the link, for echoes; nothing where nothing is.
+std::optional<double> water_depth_m(const AcousticLink& link, const sim::World& world) {
+  sim::Vector3d p_W = (link.from.p_W + link.to.p_W) / 2;
+  const double surface_m = world.medium().surface_m(p_W.x(), p_W.y());
+  p_W.z() = std::min(link.from.p_W.z(), link.to.p_W.z());
+  sim::RayFilter filter;
+  filter.kind = sim::RayKind::sound;
+  const auto bottom = world.physics().scene().cast(p_W, -sim::Vector3d::UnitZ(), 12000, filter);
+  if (!bottom) return std::nullopt;
+  return surface_m - p_W.z() + bottom->range_m;
+}
+
+int show_closed_forms(const std::string& file) {
+  const std::vector<ClosedFormRow> rows = acoustic_closed_forms(file);
+  std::cout << closed_forms_text(rows);
+  for (const ClosedFormRow& row : rows)
+    if (!row.within()) return exit_failed;
+  return exit_ok;
+}
+
+int show(AcousticsArguments& arguments) {
+  if (!arguments.closed_forms.empty()) return show_closed_forms(arguments.closed_forms);
+  if (!arguments.picture.empty()) check_writable(arguments.picture);
+  const std::vector<AcousticPacket> packets = packets_of(arguments);
+  const std::vector<double> ranges_m =
+      arguments.ranges.empty() && arguments.picture.empty()
+          ? std::vector<double>()
+          : parse_ranges(arguments.ranges.empty() ? "100:10000:100" : arguments.ranges);
+  arguments.load.encode_message = shoal::encode_own_message;
+  const sim::WorldConfig config =
+      (arguments.world.empty() ? sim::load_world_text(plain_world, "plain sea", arguments.load)
+                               : sim::load_world(arguments.world, arguments.load))
+          .config;
+  sim::InProcessBus bus;
+  const sim::World world(config, bus);
+  if (!world.medium().has_water()) throw CLI::ValidationError("WORLD", "has no water to carry sound");
+  const AcousticLink link = link_of(arguments, world);
+  for (const LinkEnd* end : {&link.from, &link.to})
+    if (!world.medium().in_water(end->p_W)) std::cerr << "shoal: one end of the link is not under water\n";
+  const std::optional<double> depth_m = arguments.water_depth_m ? arguments.water_depth_m : water_depth_m(link, world);
+  if (ranges_m.empty()) {
+    const LinkBudget budget = link_budget(link, config.acoustics, world.medium(), depth_m);
+    std::vector<double> delivered;
+    for (const AcousticPacket& packet : packets)
+      delivered.push_back(delivery_probability(link, packet, config.acoustics, world.medium(), depth_m));
+    std::cout << budget_text(link, budget, config.acoustics) << '\n' << packets_text(link, budget, packets, delivered);
+    return exit_ok;
+  }
+  const std::vector<RangeRow> rows = over_range(link, packets, ranges_m, config.acoustics, world.medium(), depth_m);
+  if (arguments.picture.empty())
+    std::cout << csv_text(rows, packets);
+  else
+    draw_over_range(rows, packets,
+                    fmt::format("{:g} dB re 1 uPa at 1 m, {:g} Hz, {:g} Hz wide", arguments.level_dB,
+                                arguments.frequency_Hz, arguments.bandwidth_Hz),
+                    arguments.picture);
+  return exit_ok;
+}
+
+void add_options(CLI::App& command, AcousticsArguments& arguments) {
+  command.add_option("WORLD", arguments.world, "world file; without: a sea of its own, with 5 m/s of wind");
+  command.add_option("--from", arguments.from, "sender: vehicle/device, a vehicle, or a place x,y,z in metres");
+  command.add_option("--to", arguments.to, "receiver: the same");
+  command.add_option("--range", arguments.range_m, "m, without --from and --to")->check(number_from(0, 1e7));
+  command.add_option("--depth", arguments.depth_m, "of both ends, m, without --from and --to")
+      ->check(number_from(0, 12000));
+  command.add_option("--level", arguments.level_dB, "source level, dB re 1 uPa at 1 m; 185")
+      ->check(number_from(-100, 300));
+  command.add_option("--frequency", arguments.frequency_Hz, "middle of the band, Hz; 25000")
+      ->check(number_from(10, 1e6));
+  command.add_option("--bandwidth", arguments.bandwidth_Hz, "Hz; 4000")->check(number_from(0.1, 1e6));
+  command.add_option("--packet", arguments.packets, "modulation:bit/s:bytes, such as fsk:80:32; may be repeated")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command.add_flag("--micromodem", arguments.micromodem, "a frame of each rate of the WHOI Micro-Modem");
+  command.add_option("--detection", arguments.detection_dB, "signal over noise that the receiver needs, dB; 6")
+      ->check(number_from(-60, 100));
+  command.add_option("--coding-gain", arguments.coding_gain_dB, "dB, added to Eb/N0; 0")->check(number_from(-60, 60));
+  command
+      .add_option("--water-depth", arguments.water_depth_m,
+                  "of a flat bottom for echoes, m; absent: that of the world below the middle of the link")
+      ->check(number_from(0.1, 12000));
+  command.add_option("--ranges", arguments.ranges, "from:to:step, m: a table over range, as CSV");
+  command.add_option("--picture", arguments.picture, "PNG file: signal over noise and delivery over range");
+  command.add_option("--set", arguments.load.sets, "path=value: change a value of the world file")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command.add_option("--closed-forms", arguments.closed_forms,
+                     "CSV file of closed forms: what they give here; exit code 1 when one is off");
+  add_plugin_option(command);
+}
+
+}  // namespace
+
+void add_acoustics_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("acoustics", "Show what becomes of a sound between two places under water");
+  const auto arguments = std::make_shared<AcousticsArguments>();
+  add_options(*command, *arguments);
+  command->footer(
+      "Examples:\n"
+      "  shoal acoustics --range 1500 --set acoustics.absorption.model=thorp\n"
+      "  shoal acoustics --micromodem --set acoustics.fading.type=rayleigh --ranges 500:10000:500\n"
+      "  shoal acoustics worlds/proving_sea.yaml --from 0,0,-5 --to 900,0,-40 --packet psk:500:64\n"
+      "  shoal acoustics --closed-forms tests/fidelity/reference/closed_forms.csv\n"
+      "docs/acoustics.md has the equations.");
+  command->callback([arguments, &exit_code] { exit_code = show(*arguments); });
+}
+
+}  // namespace tools

@@ -1,0 +1,52 @@
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+
+#include "tools/experiment/report_page.hpp"
+#include "tools/shoal/commands.hpp"
+#include "tools/shoal/output_file.hpp"
+
+namespace tools {
+
+namespace {
+
+int report(const std::vector<std::string>& directories, std::string output) {
+  if (output.empty() && directories.size() > 1) throw CLI::ValidationError("--output", "is needed for several folders");
+  if (output.empty()) output = directories.front() + "/report.html";
+  try {
+    const std::string page = report_page(directories);
+    check_writable(output);
+    std::ofstream out(output, std::ios::binary);
+    out << page << std::flush;
+    if (!out) throw std::runtime_error(output + ": cannot be written: " + std::strerror(errno));
+  } catch (const std::runtime_error& error) {
+    std::cerr << "shoal: " << error.what() << '\n';
+    return exit_bus;
+  }
+  std::cout << output << '\n';
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("report", "Make one HTML page of the results of a run or a study");
+  struct Arguments {
+    std::vector<std::string> directories;
+    std::string output;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("DIR", arguments->directories, "results folders; several of runs are compared")->required();
+  command->add_option("--output", arguments->output, "the page; unset: DIR/report.html");
+  command->footer(
+      "Examples:\n  shoal report results/coop_land\n"
+      "  shoal report results/seed1 results/seed2 --output comparison.html\n"
+      "The page holds its pictures and needs no network.  docs/scores.md tells more.");
+  command->callback(
+      [arguments, &exit_code] { exit_code = report(arguments->directories, arguments->output); });
+}
+
+}  // namespace tools
