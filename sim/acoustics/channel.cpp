@@ -148,7 +148,7 @@ void AcousticChannel::emit(int number, Time now) {
     ++from->counts_.sent;
     from->counts_.sent_bytes += static_cast<std::int64_t>(sending.signal.payload.size());
   }
-  if (const std::int64_t flight = from->receiver_.drop(); flight >= 0)
+  for (std::int64_t flight = from->receiver_.drop(); flight >= 0; flight = from->receiver_.drop())
     flights_[static_cast<std::size_t>(flight)].loss = SignalLoss::half_duplex;
 
   const double reach_m = propagation_.audible_range_m(sending.signal);

@@ -88,7 +88,8 @@ void MetricConfig::read(ParamReader& in) {
   if (!in.describing())
     for (const char* key : kind_of(type).required) in.require(key);
   in.read_reference("vehicle", vehicle, "vehicle", "whose truth counts; where it is not needed: unset: all");
-  in.read("channel", channel, "of the estimate, shoal.pose_t or shoal.estimate_t; messages: whose messages are counted");
+  in.read("channel", channel,
+          "of the estimate, shoal.pose_t or shoal.estimate_t; messages: whose messages are counted");
   if (in.has("channel") && (channel.empty() || channel.size() > Bus::max_channel_length))
     in.error("channel", "'channel' must have 1 to 63 characters, got " + std::to_string(channel.size()));
   in.read("from_s", from_s, at_least(0), "what comes before this simulated time does not count");
@@ -112,8 +113,8 @@ void MetricConfig::check_keys(ParamReader& in) const {
   for (const char* key : {"vehicle", "channel", "from_s", "dimensions", "device", "metric", "against", "when",
                           "position_m", "radius_m", "with"})
     if (in.has(key) && !contains(kind.required, key) && !contains(kind.optional, key))
-      in.error(key, "'" + std::string(key) + "' does not belong to type '" + kind.word +
-                        "'; its keys: " + list_text(keys));
+      in.error(key,
+               "'" + std::string(key) + "' does not belong to type '" + kind.word + "'; its keys: " + list_text(keys));
   if (contains(kind.optional, "device") && in.has("device") && vehicle.empty())
     in.error("device", "'device' needs 'vehicle'");
   if (type == MetricType::bytes_per_metre && !metric.empty() && metric == against)

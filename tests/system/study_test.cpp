@@ -43,8 +43,9 @@ struct StudyFolder {
 const std::string two_cases = "seeds: [1, 2]\ncases: [{name: a}, {name: b, set: {run.duration_s: 2}}]\n";
 
 TEST(Study, RunsAWorldForEverySeedAndCase) {
-  const StudyFolder study(two_cases + "plots: [{name: ways, figure: way.travelled_m}]\n"
-                                      "pass: [{case: a, figure: way.travelled_m, below: 1}]\n");
+  const StudyFolder study(two_cases +
+                          "plots: [{name: ways, figure: way.travelled_m}]\n"
+                          "pass: [{case: a, figure: way.travelled_m, below: 1}]\n");
   const Ended ended = study.run({"--jobs", "2"});
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_THAT(ended.output, HasSubstr("study tiny: 4 runs"));
@@ -110,8 +111,8 @@ TEST(Study, ExitCodeIs2ForAMistake) {
 
 TEST(Study, EndsItsRunsOnASignal) {
   const StudyFolder study("seeds: [1, 2]\nduration_s: 1e9\n");
-  Program program({built("shoal"), "study", study.folder.file("study.yaml"), "--output", study.folder.file("out"),
-                   "--jobs", "2"});
+  Program program(
+      {built("shoal"), "study", study.folder.file("study.yaml"), "--output", study.folder.file("out"), "--jobs", "2"});
   ASSERT_TRUE(await([&] { return program.children().size() == 2; }, patience));
   const auto children = program.children();
   program.send_signal(SIGINT);

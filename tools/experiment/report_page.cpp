@@ -50,7 +50,8 @@ std::string why_not_passed(const RunRecord& run) {
 
 std::string verdicts_html(const RunRecord& run) {
   std::string html = paragraph(verdict_html(run.passed) + (run.passed ? "" : ": " + html_text(why_not_passed(run))));
-  if (run.event) html += paragraph(verdict_html(run.event->passed) + ": ended by an event: " + html_text(run.event->rule));
+  if (run.event)
+    html += paragraph(verdict_html(run.event->passed) + ": ended by an event: " + html_text(run.event->rule));
   if (run.rules.empty()) return html + paragraph("No rules were judged.", "soft");
   return html + rules_html(run.rules);
 }
@@ -73,8 +74,8 @@ std::string tail_of(const std::string& text) {
 std::string processes_html(const RunRecord& run) {
   std::string html;
   for (const RunRecord::Process& process : run.processes)
-    html += "<li>" + html_text(fmt::format("{} {} at {:.2f} s", process.name, process.how, process.sim_time_s)) +
-            "</li>\n";
+    html +=
+        "<li>" + html_text(fmt::format("{} {} at {:.2f} s", process.name, process.how, process.sim_time_s)) + "</li>\n";
   if (!html.empty()) html = "<p>Ended before the run did:</p>\n<ul>\n" + html + "</ul>\n";
   std::set<fs::path> logs;
   std::error_code error;
@@ -161,8 +162,8 @@ std::string pictures_html(const std::string& directory, const std::vector<std::s
       html += paragraph(html_text(file + " is no PNG picture."), "soft");
       continue;
     }
-    html += "<figure><img alt=\"" + html_text(file) + "\" src=\"data:image/png;base64," + base64(bytes) +
-            "\"></figure>\n";
+    html +=
+        "<figure><img alt=\"" + html_text(file) + "\" src=\"data:image/png;base64," + base64(bytes) + "\"></figure>\n";
   }
   return html.empty() ? "" : heading("Pictures") + html;
 }
@@ -196,8 +197,7 @@ std::string comparison_report(const std::vector<RunRecord>& runs) {
   std::string body = "<h1>" + html_text(fmt::format("{} runs", runs.size())) + "</h1>\n" + html_table(head, rows);
   for (const RunRecord& run : runs)
     body += "<h2>" + html_text(run.directory) + "</h2>\n" + verdicts_html(run) +
-            "<details><summary>Pictures</summary>\n" + pictures_html(run.directory, pictures_of(run)) +
-            "</details>\n";
+            "<details><summary>Pictures</summary>\n" + pictures_html(run.directory, pictures_of(run)) + "</details>\n";
   return html_page(fmt::format("{} runs", runs.size()), body + made_by());
 }
 

@@ -49,11 +49,10 @@ std::string tracks_script(const sim::World& world, const Tracks& tracks) {
   std::set<std::string> drawn;
   for (const Scoring::Track& track : tracks)
     if (drawn.insert(track.metric).second)
-      curves.push_back(curve(track.metric, 4, "5",
-                             "dt 2 title " + gnuplot_text(track.metric + " estimate of " + track.vehicle) +
-                                 " noenhanced"));
-  return "set output 'tracks.png'\nset size ratio -1\nset xlabel 'east (m)'\nset ylabel 'north (m)'\n" +
-         joined(curves);
+      curves.push_back(
+          curve(track.metric, 4, "5",
+                "dt 2 title " + gnuplot_text(track.metric + " estimate of " + track.vehicle) + " noenhanced"));
+  return "set output 'tracks.png'\nset size ratio -1\nset xlabel 'east (m)'\nset ylabel 'north (m)'\n" + joined(curves);
 }
 
 /// Errors over a column, with three times the sigma that the estimate tells.

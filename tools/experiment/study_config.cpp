@@ -42,7 +42,8 @@ std::vector<std::int64_t> read_seeds(sim::ParamReader& in) {
   std::vector<double> numbers;
   in.read("seeds", numbers, sim::between(0, largest_seed), "seeds of the runs");
   for (const double number : numbers) {
-    if (number != std::trunc(number)) in.error("seeds", "'seeds' must be whole numbers, got " + sim::number_text(number));
+    if (number != std::trunc(number))
+      in.error("seeds", "'seeds' must be whole numbers, got " + sim::number_text(number));
     seeds.push_back(static_cast<std::int64_t>(number));
   }
   if (node != nullptr && numbers.empty() && node->kind == sim::ConfigNode::Kind::list && node->items.empty())
@@ -136,8 +137,8 @@ void StudyPlot::read(sim::ParamReader& in) {
   if (in.has("figure") == in.has("metrics"))
     in.error(in.has("figure") ? "needs either 'figure' or 'metrics', not both" : "needs either 'figure' or 'metrics'");
   else if (in.has("metrics") == (over == Over::cases))
-    in.error("over", in.has("metrics") ? "'metrics' are drawn over 'distance' or 'time'"
-                                       : "a 'figure' is drawn over 'cases'");
+    in.error("over",
+             in.has("metrics") ? "'metrics' are drawn over 'distance' or 'time'" : "a 'figure' is drawn over 'cases'");
 }
 
 const std::vector<std::string>& statistic_words() {
@@ -197,14 +198,17 @@ LoadedStudy load_study(const std::string& path) {
   in.finish();
   diagnostics.throw_if_any();
   study.config.file = path;
-  const fs::path world = fs::path(path).parent_path() / study.config.world;
-  study.config.world = world.lexically_normal().string();
+  const fs::path world_file = fs::path(path).parent_path() / study.config.world;
+  study.config.world = world_file.lexically_normal().string();
   for (const StudyCase& each : study.config.cases) {
     sim::LoadOptions options;
     options.sets = each.sets();
     options.allow_plugins = study.config.launch;
     options.encode_message = shoal::encode_own_message;
-    study.worlds.push_back(sim::load_world(study.config.world, options));
+    const sim::LoadedWorld& world = study.worlds.emplace_back(sim::load_world(study.config.world, options));
+    if (!study.config.duration_s && world.config.run.duration_s == 0)
+      sim::throw_config_error(root.place, "case '" + each.name + "'",
+                              "its world runs without end: the study needs a 'duration_s'");
   }
   NameCheck(study).check();
   return study;

@@ -89,7 +89,8 @@ class StudyPainter {
         for (const Band& band : bands)
           data += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g} {}\n", band.x, band.low, band.median, band.high, band.runs);
         data += "\n\n";
-        const std::string title = cases.size() > 1 ? name + ": " + metric : metric;
+        std::string title = metric;
+        if (cases.size() > 1) title = plot.metrics.size() > 1 ? name + ": " + metric : name;
         plots += fmt::format(
             "{0}{1} index {2} using 1:2:4 with filledcurves lc {3} fs transparent solid 0.2 notitle, "
             "{1} index {2} using 1:3 with lines lw 2 lc {3} title {4} noenhanced",

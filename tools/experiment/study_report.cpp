@@ -89,8 +89,8 @@ std::string study_report(const std::string& directory) {
           html_text(fmt::format("{} runs of the world {}. {}. Shoal {}.", in.whole("runs"), in.text("world"),
                                 seeds_text(in), in.text("shoal"))) +
           "</p>\n";
-  return html_page(in.text("study"), body + table_html(in) + pictures_html(directory, texts_of(in, "pictures")) +
-                                         cases_html(in));
+  return html_page(in.text("study"),
+                   body + table_html(in) + pictures_html(directory, texts_of(in, "pictures")) + cases_html(in));
 }
 
 }  // namespace tools

@@ -111,8 +111,8 @@ Scoring::Verdict StudyResults::judge(const StudyRule& rule) const {
   if (rule.above) return {text(">", fmt::format("{}", *rule.above)), value > *rule.above};
   if (rule.equals) return {text("==", fmt::format("{}", *rule.equals)), value == *rule.equals};
   const bool other_case = !rule.below_case.empty();
-  const double limit = rule.factor * (other_case ? statistic(rule.below_case, rule.figure)
-                                                 : statistic(rule.in_case, rule.below_figure));
+  const double limit =
+      rule.factor * (other_case ? statistic(rule.below_case, rule.figure) : statistic(rule.in_case, rule.below_figure));
   const std::string other = other_case ? "that of " + rule.below_case : rule.below_figure;
   return {text("<", fmt::format("{} * {} ({:.4g})", rule.factor, other, limit)), value < limit};
 }

@@ -133,10 +133,10 @@ class StudyChildren {
 
   std::vector<std::string> arguments_of(const StudyRun& run, int slot, int attempt) const {
     const StudyConfig& config = study_.config;
-    std::vector<std::string> arguments{"shoal",       "run",       config.world,    "--seed",
-                                       std::to_string(run.seed),   "--results",     run.directory,
-                                       "--quiet",     "--no-pictures", "--threads", "1",
-                                       "--log-level", "warn",      "--speed",       "max"};
+    std::vector<std::string> arguments{
+        "shoal",     "run",         config.world, "--seed",        std::to_string(run.seed),
+        "--results", run.directory, "--quiet",    "--no-pictures", "--threads",
+        "1",         "--log-level", "warn",       "--speed",       "max"};
     const auto add = [&](const std::string& option, const std::string& value) {
       arguments.push_back(option);
       arguments.push_back(value);
@@ -166,8 +166,8 @@ class StudyChildren {
     fs::remove(stamp_file(run), error);
     fs::remove(run.directory + "/summary.json", error);
     const int slot = free_slot();
-    running_.push_back({spawn(arguments_of(run, slot, what.attempt), run.directory + "/run.log"), what, slot,
-                        Clock::now()});
+    running_.push_back(
+        {spawn(arguments_of(run, slot, what.attempt), run.directory + "/run.log"), what, slot, Clock::now()});
   }
 
   static pid_t spawn(std::vector<std::string> arguments, const std::string& log) {
@@ -230,8 +230,8 @@ class StudyChildren {
       outcome = run.record->passed ? "passed" : "done, its rules failed";
     }
     const double wall_s = std::chrono::duration<double>(Clock::now() - ended.begun).count();
-    say(fmt::format("[{}/{}] {}, seed {}: {} ({:.1f} s)", done_, runs_.size(),
-                    study_.config.cases[run.in_case].name, run.seed, outcome, wall_s));
+    say(fmt::format("[{}/{}] {}, seed {}: {} ({:.1f} s)", done_, runs_.size(), study_.config.cases[run.in_case].name,
+                    run.seed, outcome, wall_s));
   }
 
   void stop() {

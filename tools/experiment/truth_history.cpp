@@ -21,8 +21,7 @@ TruthHistory::TruthHistory(const sim::World& world, const sim::Vehicle& vehicle)
 void TruthHistory::after_step() {
   const Truth& before = recent_[slot_of(world_.step_number() - 1)];
   const sim::Vector3d position_m = vehicle_.X_WV().translation();
-  recent_[slot_of(world_.step_number())] = {position_m,
-                                            before.travelled_m + (position_m - before.position_m).norm()};
+  recent_[slot_of(world_.step_number())] = {position_m, before.travelled_m + (position_m - before.position_m).norm()};
 }
 
 const TruthHistory::Truth& TruthHistory::now() const {

@@ -45,8 +45,7 @@ void add_report_command(CLI::App& app, int& exit_code) {
       "Examples:\n  shoal report results/coop_land\n"
       "  shoal report results/seed1 results/seed2 --output comparison.html\n"
       "The page holds its pictures and needs no network.  docs/scores.md tells more.");
-  command->callback(
-      [arguments, &exit_code] { exit_code = report(arguments->directories, arguments->output); });
+  command->callback([arguments, &exit_code] { exit_code = report(arguments->directories, arguments->output); });
 }
 
 }  // namespace tools

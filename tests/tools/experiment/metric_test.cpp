@@ -9,6 +9,7 @@
 #include "shoal/estimate_t.hpp"
 #include "shoal/pose_t.hpp"
 #include "shoal/twist_command_t.hpp"
+#include "tests/devices/modem_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tools/experiment/link_counts.hpp"
 #include "tools/experiment/scoring.hpp"
@@ -276,6 +277,42 @@ TEST(Delivery, OfAWorldWithoutModemsHasNoRatio) {
   EXPECT_EQ(world.figure("d.received"), 0);
   EXPECT_TRUE(std::isnan(world.figure("d.ratio")));
   for (const std::string& cause : sim::loss_causes()) EXPECT_EQ(world.figure("d.lost_" + cause), 0);
+}
+
+TEST(Delivery, CountsWhatModemsSentAndWhatTheOthersHeard) {
+  const std::string modem = "{name: modem, type: acoustic_modem}";
+  test::TestWorld test(
+      test::modem_sea({{"a", "[0, 0, -20]", modem}, {"b", "[300, 0, -20]", modem}, {"c", "[600, 0, -20]", modem}},
+                      "metrics:\n"
+                      "  - {name: all, type: delivery}\n"
+                      "  - {name: a, type: delivery, vehicle: a}\n"
+                      "  - {name: c, type: delivery, vehicle: c, device: modem}\n"));
+  tools::Scoring scoring(test.world);
+  test.send("a.modem.cmd", test::bytes_to("hello"));
+  test.run_for(5);
+  auto figures = scoring.figures();
+  EXPECT_EQ(figures.at("all.sent"), 1);
+  EXPECT_EQ(figures.at("all.bytes_sent"), 5);
+  EXPECT_EQ(figures.at("all.received"), 2);  // b and c
+  EXPECT_EQ(figures.at("all.ratio"), 1);
+  EXPECT_EQ(figures.at("a.sent"), 1);
+  EXPECT_TRUE(std::isnan(figures.at("a.ratio")));
+  EXPECT_EQ(figures.at("c.sent"), 0);
+  EXPECT_EQ(figures.at("c.received"), 1);
+
+  // Each is sending when the other's sound comes, 0.2 s later.
+  test.send("a.modem.cmd", test::bytes_to("hello"));
+  test.send("b.modem.cmd", test::bytes_to("hello"));
+  test.run_for(5);
+  figures = scoring.figures();
+  EXPECT_EQ(figures.at("all.sent"), 3);
+  EXPECT_EQ(figures.at("all.lost_half_duplex"), 2);
+  EXPECT_EQ(figures.at("a.lost_half_duplex"), 1);
+  EXPECT_EQ(figures.at("a.ratio"), 0);
+  double lost = 0;
+  for (const std::string& cause : sim::loss_causes()) lost += figures.at("all.lost_" + cause);
+  EXPECT_EQ(figures.at("all.lost"), lost);
+  EXPECT_EQ(figures.at("all.ratio"), figures.at("all.received") / (figures.at("all.received") + lost));
 }
 
 TEST(BytesPerMetre, NeedsAnErrorThatBecameSmaller) {

@@ -30,9 +30,9 @@ std::string text_of_file(const std::string& path) {
 
 /// A run of a small world, whose results are left in a folder.
 tools::Summary run_into(const std::string& directory, const std::string& more, const std::string& name = "small") {
-  auto loaded = sim::load_world_text(test::rover_world("        - {name: lidar, type: lidar}\n", "", "",
-                                                       "run: {duration_s: 0.2, seed: 7}\n" + more),
-                                     "small.yaml");
+  auto loaded = sim::load_world_text(
+      test::rover_world("        - {name: lidar, type: lidar}\n", "", "", "run: {duration_s: 0.2, seed: 7}\n" + more),
+      "small.yaml");
   loaded.config.name = name;
   tools::RunOptions options;
   options.bus = "none";
@@ -79,7 +79,8 @@ checker.problems += ["never closed: " + tag for tag in checker.open]
 if "://" in text or "url(" in text: checker.problems.append("refers to another place")
 print("; ".join(checker.problems), end="")
 )");
-  const std::string command = "/usr/bin/python3 -B " + folder.file("check.py") + " " + folder.file("page.html") + " 2>&1";
+  const std::string command =
+      "/usr/bin/python3 -B " + folder.file("check.py") + " " + folder.file("page.html") + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   std::string said;
   char block[4096];
@@ -90,7 +91,8 @@ print("; ".join(checker.problems), end="")
 
 TEST(Html, TextStaysText) {
   EXPECT_EQ(tools::html_text("a < b & c > \"d\" 'e'"), "a &lt; b &amp; c &gt; &quot;d&quot; &#39;e&#39;");
-  EXPECT_EQ(tools::html_text("na\xc3\xafve \xe2\x82\xac \xf0\x9f\x90\x9f"), "na\xc3\xafve \xe2\x82\xac \xf0\x9f\x90\x9f");
+  EXPECT_EQ(tools::html_text("na\xc3\xafve \xe2\x82\xac \xf0\x9f\x90\x9f"),
+            "na\xc3\xafve \xe2\x82\xac \xf0\x9f\x90\x9f");
   // Not UTF-8: a lone byte, an overlong slash, a surrogate, a cut character, a control character.
   EXPECT_EQ(tools::html_text("\xff"), "\xef\xbf\xbd");
   EXPECT_EQ(tools::html_text("\xc0\xaf"), "\xef\xbf\xbd\xef\xbf\xbd");
@@ -194,10 +196,12 @@ TEST(Report, TellsWhatIsWrongWithASummary) {
   EXPECT_THAT(error_with(""), HasSubstr("summary.json: is no JSON"));
   EXPECT_THAT(error_with("[1, 2]"), HasSubstr("must be an object, got array"));
   EXPECT_THAT(error_with("{}"), HasSubstr("has no 'world'"));
-  EXPECT_THAT(error_with(changed("\"seed\": 7", "\"seed\": \"x\"")), HasSubstr("'seed' must be a whole number, got string"));
+  EXPECT_THAT(error_with(changed("\"seed\": 7", "\"seed\": \"x\"")),
+              HasSubstr("'seed' must be a whole number, got string"));
   EXPECT_THAT(error_with(changed("\"rules\": []", "\"rules\": 3")), HasSubstr("'rules' must be a list, got number"));
-  EXPECT_THAT(error_with(changed("\"rules\": []", "\"rules\": [{\"rule\": 1}]")), HasSubstr("rules: 'rule' must be text"));
-  EXPECT_THAT(error_with(changed("\"way.travelled_m\": 0", "\"way.travelled_m\": \"far\", \"x\": 0")),
+  EXPECT_THAT(error_with(changed("\"rules\": []", "\"rules\": [{\"rule\": 1}]")),
+              HasSubstr("rules: 'rule' must be text"));
+  EXPECT_THAT(error_with(changed("\"way.travelled_m\": ", "\"way.travelled_m\": \"far\", \"x\": ")),
               HasSubstr("'way.travelled_m' must be a number or null, got string"));
   write(directory + "/summary.json", good);
   EXPECT_EQ(error_of_report({directory}), "");

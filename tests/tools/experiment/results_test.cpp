@@ -9,6 +9,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "shoal/message_writer.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tools/experiment/runner.hpp"
@@ -74,10 +75,10 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   const auto json = nlohmann::ordered_json::parse(summary.to_json());
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(keys, testing::ElementsAre("world", "seed", "steps", "sim_time_s", "wall_s", "real_time_factor",
-                                         "state_hash", "messages", "dropped_messages", "bad_messages", "quick_steps",
-                                         "metrics", "rules", "processes", "passed", "ended", "error", "exit_code",
-                                         "shoal"));
+  EXPECT_THAT(keys,
+              testing::ElementsAre("world", "seed", "steps", "sim_time_s", "wall_s", "real_time_factor", "state_hash",
+                                   "messages", "dropped_messages", "bad_messages", "quick_steps", "metrics", "rules",
+                                   "processes", "passed", "ended", "error", "exit_code", "shoal"));
   EXPECT_EQ(json["world"], "harbor");
   EXPECT_EQ(json["seed"], 3);
   EXPECT_EQ(json["steps"], 1000);
@@ -132,6 +133,39 @@ TEST(Results, AreLeftByARun) {
   EXPECT_EQ(lines_in(text("tracks.csv")), 6u);  // a header and 5 rows: 10 Hz over 0.5 s
   EXPECT_THAT(text("tracks.png"), testing::StartsWith("\x89PNG"));
   EXPECT_NO_THROW(sim::load_world(options.results + "/world.yaml"));
+}
+
+TEST(Results, ShowErrorsWithWhatTheEstimateSaysOfThem) {
+  const ScratchFolder folder;
+  sim::LoadOptions load;
+  load.encode_message = shoal::encode_own_message;
+  // Always 3 m east and 4 m north of a rover that stands: with P = diag(9, 16) the NEES is 1 + 1.
+  const auto loaded = sim::load_world_text(
+      test::rover_world("        - {name: lidar, type: lidar}\n", "", "",
+                        "run: {duration_s: 1}\n"
+                        "events:\n"
+                        "  - {name: think, every: 0.1, do: [{publish: est, type: shoal.estimate_t, value: "
+                        "{position_m: [3, 4, 0], covariance_m2: [9, 0, 0, 0, 16, 0, 0, 0, 1]}}]}\n"
+                        "metrics:\n"
+                        "  - {name: e, vehicle: r1, channel: est}\n"
+                        "  - {name: c, type: consistency, vehicle: r1, channel: est}\n"),
+      "small.yaml", load);
+  auto options = quiet_run();
+  options.results = folder.file("results");
+  const tools::Summary summary = tools::run_world(loaded, options);
+  EXPECT_EQ(summary.exit_code, 0) << summary.error;
+  EXPECT_NEAR(summary.metrics.at("e.rms_m"), 5, 1e-3);  // a rover that stands may creep
+  EXPECT_NEAR(summary.metrics.at("c.nees_mean"), 2, 1e-3);
+  const std::string errors = text_of_file(options.results + "/errors.csv");
+  EXPECT_THAT(errors, testing::StartsWith("time_s,metric,error_m,estimate_x_m,estimate_y_m,truth_x_m,truth_y_m,"
+                                          "estimate_z_m,truth_z_m,travelled_m,sigma_m,nees\n"));
+  EXPECT_THAT(errors, testing::HasSubstr(",5.000000,"));  // sigma: the root of 9 + 16
+  EXPECT_THAT(errors, testing::HasSubstr(",2.000"));
+  for (const char* picture : {"tracks.png", "errors.png", "errors_by_distance.png", "nees.png"})
+    EXPECT_THAT(text_of_file(options.results + "/" + picture), testing::StartsWith("\x89PNG")) << picture;
+  options.pictures = false;
+  EXPECT_EQ(tools::run_world(loaded, options).exit_code, 0);
+  EXPECT_FALSE(fs::exists(options.results + "/nees.png"));
 }
 
 TEST(Results, AreLeftByARunThatFailed) {

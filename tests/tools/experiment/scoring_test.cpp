@@ -157,7 +157,8 @@ TEST(Scoring, JudgesByTheRulesOfTheWorld) {
 
 TEST(Scoring, FailsARuleWhenNoEstimateCame) {
   ScoredWorld world(
-      "pass: [{metric: good.rms_m, below: 1000}, {metric: good.rms_m, above: -1000}, {metric: good.rms_m, equals: 0}]\n");
+      "pass: [{metric: good.rms_m, below: 1000}, {metric: good.rms_m, above: -1000}, {metric: good.rms_m, equals: "
+      "0}]\n");
   world.run_for(0.1);
   EXPECT_TRUE(std::isnan(world.scoring.figures().at("good.rms_m")));
   for (const auto& verdict : world.scoring.verdicts()) EXPECT_FALSE(verdict.passed) << verdict.rule;

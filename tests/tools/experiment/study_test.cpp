@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -97,7 +98,8 @@ TEST(Curves, AreReadFromTheErrorsOfARun) {
 TEST(Curves, BandsLieWhereHalfOfTheRunsAre) {
   // Errors 1, 2 and 3 times x; the third run ends at 5.
   std::vector<tools::Curve> curves;
-  for (const double slope : {1.0, 2.0, 3.0}) curves.push_back({{0, 0}, {slope < 3 ? 10.0 : 5.0, slope < 3 ? 10 * slope : 15}});
+  for (const double slope : {1.0, 2.0, 3.0})
+    curves.push_back({{0, 0}, {slope < 3 ? 10.0 : 5.0, slope < 3 ? 10 * slope : 15}});
   const auto bands = tools::bands_of(curves, 11);
   ASSERT_EQ(bands.size(), 11u);
   EXPECT_DOUBLE_EQ(bands[4].x, 4);
@@ -129,6 +131,15 @@ TEST(StudyConfig, CasesChangeTheWorld) {
   EXPECT_EQ(study.worlds[1].config.name, "fast");
 }
 
+TEST(StudyConfig, ThoseThatAreShippedCanBeRead) {
+  int read = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(SHOAL_SOURCE_DIR "/worlds/studies")) {
+    EXPECT_NO_THROW(tools::load_study(entry.path().string())) << entry.path();
+    ++read;
+  }
+  EXPECT_GT(read, 0);
+}
+
 TEST(StudyConfig, TellsWhatIsWrong) {
   const auto error = [](const std::string& more, const std::string& seeds = "[1]") {
     return StudyFolder(more, seeds).error();
@@ -143,9 +154,11 @@ TEST(StudyConfig, TellsWhatIsWrong) {
   EXPECT_THAT(error("sedes: 3\n"), HasSubstr("unknown key 'sedes'"));
   EXPECT_THAT(error("cases: [{name: a}, {name: a}]\n"), HasSubstr("duplicate case 'a'"));
   EXPECT_THAT(error("cases: [{name: ../a}]\n"), HasSubstr("a name must be made of"));
-  EXPECT_THAT(error("cases: [{name: a, set: 3}]\n"), HasSubstr("'set' must be a map of paths and values, got 3"));
+  EXPECT_THAT(error("cases: [{name: a, set: 3}]\n"), HasSubstr("'set' must be a map of paths and values, got '3'"));
   EXPECT_THAT(error("cases: [{name: a, set: {vehicles.r9.name: x}}]\n"), HasSubstr("r9"));
   EXPECT_THAT(error("cases: [{name: a, set: {physics.step_s: -1}}]\n"), HasSubstr("'step_s' must be"));
+  EXPECT_THAT(error("cases: [{name: a, set: {run.duration_s: 0}}]\n"),
+              HasSubstr("case 'a': its world runs without end"));
   EXPECT_THAT(error("figures: [e.rms]\n"), HasSubstr("study.yaml:5:10: 'figures' names nothing of this world: 'e.rms'; "
                                                      "known: e.final_m, e.max_m, e.per_distance_percent, e.rms_m"));
   EXPECT_THAT(error("plots: [{name: p}]\n"), HasSubstr("plot 'p': needs either 'figure' or 'metrics'"));
@@ -162,13 +175,13 @@ TEST(StudyConfig, TellsWhatIsWrong) {
 TEST(StudyResults, JudgeStatisticsOfCases) {
   const StudyFolder folder(two_cases +
                            "pass:\n"
-                           "  - {case: plain, figure: e.rms_m, below: 2.5}\n"                         // mean 2
-                           "  - {case: plain, figure: e.rms_m, statistic: max, below: 2.5}\n"         // max 3
-                           "  - {case: plain, figure: e.rms_m, below_case: quick, factor: 0.5}\n"     // 2 < 0.5 * 6
-                           "  - {case: plain, figure: e.rms_m, below_figure: e.rms_m}\n"              // 2 < 2
-                           "  - {case: plain, figure: passed, equals: 0.5}\n"                         // 1 < 3, not 3 < 3
-                           "  - {case: quick, figure: e.rms_m, statistic: std, above: 0}\n"           // one value: no std
-                           "  - {case: quick, figure: e.final_m, above: -1}\n");                      // nobody has it
+                           "  - {case: plain, figure: e.rms_m, below: 2.5}\n"                      // mean 2
+                           "  - {case: plain, figure: e.rms_m, statistic: max, below: 2.5}\n"      // max 3
+                           "  - {case: plain, figure: e.rms_m, below_case: quick, factor: 0.5}\n"  // 2 < 0.5 * 6
+                           "  - {case: plain, figure: e.rms_m, below_figure: e.rms_m}\n"           // 2 < 2
+                           "  - {case: plain, figure: passed, equals: 0.5}\n"                      // 1 < 3, not 3 < 3
+                           "  - {case: quick, figure: e.rms_m, statistic: std, above: 0}\n"        // one value: no std
+                           "  - {case: quick, figure: e.final_m, above: -1}\n");                   // nobody has it
   const tools::LoadedStudy study = tools::load_study(folder.path());
   const auto runs = made_up_runs(study, {{1, 3}, {6, std::nan("")}});
   const tools::StudyResults results(study, runs);

@@ -36,6 +36,7 @@ SKIPPED = {
     "derivative_that_drives": "the names of derivatives are a grammar of their own",
     "dvl_layer_that_ends_before_it_begins": "one number depends on another",
     "sonar_picture_too_large": "the product of two numbers is limited",
+    "metric_without_its_channel": "one key needs another",
 }
 
 
