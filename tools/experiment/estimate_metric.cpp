@@ -135,7 +135,7 @@ class EstimateMetric final : public Metric {
     add(figures, "rms_m", any ? std::sqrt(squares / count) : no_figure);
     add(figures, "final_m", any ? samples_.back().error_m : no_figure);
     add(figures, "max_m", any ? largest : no_figure);
-    add(figures, "per_distance_percent", way_m > 0 ? 100 * samples_.back().error_m / way_m : no_figure);
+    add(figures, "per_distance_percent", way_m >= shortest_way_m ? 100 * samples_.back().error_m / way_m : no_figure);
   }
 
   void add_consistency(Figures& figures) const {
