@@ -1,10 +1,12 @@
-# cmake --install build/release --prefix P: the programs, what a plugin is built against, worlds and vehicles.
+# cmake --install build/release --prefix P: the programs, what plugins and clients are built against, worlds and vehicles.
 include(CMakePackageConfigHelpers)
 set(package_dir lib/cmake/Shoal)
 set(types_dir ${PROJECT_SOURCE_DIR}/bridges/lcm/types)
 
-install(TARGETS shoal shoal-coop-rover RUNTIME DESTINATION bin)
+install(TARGETS shoal shoal-coop-rover shoal-coop-craft shoal-coop-auv RUNTIME DESTINATION bin)
 install(TARGETS generate_type_tables RUNTIME DESTINATION lib/shoal)
+install(TARGETS shoal_client ARCHIVE DESTINATION lib)
+install(FILES bridges/client/shoal/client.hpp DESTINATION include/shoal/shoal)
 
 install(DIRECTORY sim DESTINATION include/shoal FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY ${PROJECT_BINARY_DIR}/sim/generated/sim DESTINATION include/shoal)

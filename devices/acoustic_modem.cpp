@@ -103,7 +103,8 @@ void AcousticModem::Params::read(sim::ParamReader& in) {
   in.read("receiver", receiver, "how it hears");
   in.read("serial", serial, "a pseudo-terminal or FIFO that any program can open");
   if (in.describing()) return;
-  if (bandwidth_Hz >= 2 * frequency_Hz) in.error("bandwidth_Hz", "'bandwidth_Hz' must be < 2 x frequency_Hz");
+  if (bandwidth_Hz >= 2 * frequency_Hz)
+    in.error("bandwidth_Hz", "'bandwidth_Hz' must be < 2 x frequency_Hz, got " + sim::number_text(bandwidth_Hz));
   if (max_message_bytes > frames * frame_bytes)
     in.error("max_message_bytes", "'max_message_bytes' must be <= frames x frame_bytes, that is " +
                                       std::to_string(frames * frame_bytes) + ", got " +
@@ -143,10 +144,6 @@ std::int64_t AcousticModem::bits(std::size_t bytes) const {
 
 double AcousticModem::duration_s(std::size_t bytes) const {
   return params_.preamble_s + sim::packet_duration_s(bits(bytes), params_.bit_rate_bps);
-}
-
-std::int64_t AcousticModem::epoch_us() const {
-  return world_.epoch_us();
 }
 
 void AcousticModem::send(sim::Time, std::string destination, sim::Bytes data) {
@@ -208,9 +205,10 @@ bool AcousticModem::listens_to(const sim::Signal& signal) const {
 void AcousticModem::heard(const sim::Reception& heard) {
   if (!heard.understood()) return;
   Packet packet;
-  if (!read_code(heard.signal.code, packet.sent, packet.destination)) return;
+  if (!read_code(heard.signal.code, packet.sent_reading, packet.destination)) return;
   packet.source = heard.source.substr(0, heard.source.find('/'));
   if (!packet.destination.empty() && packet.destination != vehicle_.name() && !params_.promiscuous) return;
+  packet.sent = heard.sent;
   packet.arrived = heard.begun;
   packet.snr_dB = heard.sinr.dB();
   packet.level_dB = heard.level.dB();
@@ -237,7 +235,7 @@ void AcousticModem::hash_state(sim::StateHash& hash) const {
     for (const Packet& packet : *packets) {
       hash.add(std::string_view(packet.source));
       hash.add(std::string_view(packet.destination));
-      hash.add(static_cast<std::int64_t>(packet.sent.count()));
+      hash.add(static_cast<std::int64_t>(packet.sent_reading.count()));
       hash.add(static_cast<std::int64_t>(packet.arrived.count()));
       hash.add(packet.snr_dB);
       hash.add_bytes(packet.data.data(), packet.data.size());
@@ -258,7 +256,7 @@ void AcousticModemReporter::report(sim::Time, sim::Publisher& out) const {
   for (const AcousticModem::Packet& packet : modem_.received()) {
     shoal::acoustic_received_t message;
     message.utime = out.utime(packet.arrived);
-    message.sent_utime = modem_.epoch_us() + packet.sent.count();
+    message.sent_utime = out.utime_elsewhere(packet.sent, packet.sent_reading);
     message.travel_time_s = static_cast<double>(message.utime - message.sent_utime) * 1e-6;
     message.source = packet.source;
     message.destination = packet.destination;

@@ -46,8 +46,8 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
   };
   struct Packet {
     std::string source, destination;
-    sim::Time sent{0};     ///< by the sender's clock, since the start of the run
-    sim::Time arrived{0};  ///< the first sound, true time
+    sim::Time sent{0}, arrived{0};  ///< begin of sending, and of the sound here; true times
+    sim::Time sent_reading{0};      ///< by the clock of the sender
     double snr_dB = 0, level_dB = 0, closing_mps = 0;
     sim::Bytes data;
   };
@@ -72,7 +72,6 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
   double duration_s(std::size_t bytes) const;
   /// What arrived since the last sample.
   const std::vector<Packet>& received() const { return received_; }
-  std::int64_t epoch_us() const;
   const sim::Transducer& transducer() const { return transducer_; }
   std::uint64_t dropped_from_queue() const { return dropped_; }
 

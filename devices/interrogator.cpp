@@ -22,33 +22,22 @@ void InterrogatorParams::read(sim::ParamReader& in) {
   in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "of the ping");
   in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e5), "of the ping");
   in.read("ping_s", ping_s, sim::between(1e-4, 1), "length of the ping");
-  in.read("receiver", receiver, "what it hears, on each frequency of an answer");
-}
-
-Interrogator::Ear::Ear(Interrogator& of, double hears_Hz)
-    : owner(of), answer_Hz(hears_Hz), transducer(*this, of.params_.receiver, of.context_) {}
-
-bool Interrogator::Ear::listens_to(const sim::Signal& signal) const {
-  return signal.kind == sim::Signal::Kind::answer && signal.network == owner.params_.network &&
-         signal.centre_Hz == answer_Hz;
+  in.read("receiver", receiver, "what it hears");
 }
 
 Interrogator::Interrogator(const InterrogatorParams& params, const sim::DeviceContext& context)
-    : params_(params), context_(context), network_(context.world.shared<TransponderNetwork>()) {
-  ears_.push_back(std::make_unique<Ear>(*this, 0.0));
-}
+    : params_(params),
+      context_(context),
+      network_(context.world.shared<TransponderNetwork>()),
+      transducer_(*this, params.receiver, context) {}
 
 void Interrogator::change(const InterrogatorParams& params) {
   params_ = params;
-  for (const auto& ear : ears_) ear->transducer.change(params.receiver);
+  transducer_.change(params.receiver);
 }
 
-void Interrogator::hear_at(double answer_Hz) {
-  for (const auto& ear : ears_) {
-    if (ear->answer_Hz == 0) ear->answer_Hz = answer_Hz;
-    if (ear->answer_Hz == answer_Hz) return;
-  }
-  ears_.push_back(std::make_unique<Ear>(*this, answer_Hz));
+bool Interrogator::listens_to(const sim::Signal& signal) const {
+  return signal.kind == sim::Signal::Kind::answer && signal.network == params_.network;
 }
 
 void Interrogator::ping(sim::Time at) {
@@ -58,7 +47,6 @@ void Interrogator::ping(sim::Time at) {
   for (const Transponder* transponder : network_.members()) {
     if (transponder->params().network != params_.network || &transponder->vehicle() == &context_.vehicle) continue;
     asked_.push_back(transponder->full_name());
-    hear_at(transponder->answer_Hz());
     slowest_turnaround_s = std::max(slowest_turnaround_s, transponder->params().turnaround_s);
     longest_answer_s = std::max(longest_answer_s, transponder->params().ping_s);
   }
@@ -73,31 +61,28 @@ void Interrogator::ping(sim::Time at) {
   signal.duration = sim::from_seconds(params_.ping_s);
   signal.network = params_.network;
   signal.payload = encode_ping(++number_);
-  ears_.front()->transducer.transmit(std::move(signal), at);
+  transducer_.transmit(std::move(signal), at);
 }
 
-void Interrogator::heard(const Ear& ear, const sim::Reception& heard) {
+void Interrogator::heard(const sim::Reception& heard) {
   if (!heard.understood() || heard.signal.code != context_.full_name()) return;
   const auto answer = decode_answer(heard.signal.payload);
   if (!answer || answer->ping != number_) return;
-  // No receiver of this device hears while it sends.
-  const sim::Time ping{sim::from_seconds(params_.ping_s)};
-  if (heard.begun < pinged_ + ping) return;
   const double turnaround_s = std::max(answer->turnaround_s, params_.ping_s);
   const sim::Vector3d p_ST_W = heard.p_sent_W - heard.p_begun_W;
   const double way_m = (answer->out_m + p_ST_W.norm()) / 2;
   std::erase(waiting_for_, heard.source);
   if (way_m > params_.range_max_m) return;
   answers_.push_back({heard.source, heard.begun, sim::to_seconds(heard.begun - pinged_) - turnaround_s, way_m,
-                      R_WS(ear, heard.begun).transpose() * p_ST_W});
+                      R_WS(heard.begun).transpose() * p_ST_W});
 }
 
-sim::Matrix3d Interrogator::R_WS(const Ear& ear, sim::Time at) const {
+sim::Matrix3d Interrogator::R_WS(sim::Time at) const {
   // The body stands as at the end of the step; the sound came a little before.
   const sim::Vector3d turn_rad = context_.body.motion().w_WB_W * sim::to_seconds(at - context_.world.now());
   const double angle_rad = turn_rad.norm();
-  if (angle_rad == 0) return ear.transducer.R_WS();
-  return Eigen::AngleAxisd(angle_rad, turn_rad / angle_rad).toRotationMatrix() * ear.transducer.R_WS();
+  if (angle_rad == 0) return transducer_.R_WS();
+  return Eigen::AngleAxisd(angle_rad, turn_rad / angle_rad).toRotationMatrix() * transducer_.R_WS();
 }
 
 std::vector<Interrogator::Answer> Interrogator::take_answers() {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -21,9 +20,8 @@ struct InterrogatorParams {
   void read(sim::ParamReader& in);
 };
 
-/// Pings the transponders of a network and listens for their answers, on each of their frequencies with a receiver of
-/// its own, so that several can answer at a time.
-class Interrogator {
+/// Pings the transponders of a network and listens for their answers, which may come side by side on their frequencies.
+class Interrogator final : public sim::AcousticListener {
  public:
   /// What came back from one transponder.
   struct Answer {
@@ -47,25 +45,16 @@ class Interrogator {
   std::vector<Answer> take_answers();
   void hash_state(sim::StateHash& hash) const;
 
- private:
-  /// Hears one frequency; the first one also pings.
-  struct Ear final : public sim::AcousticListener {
-    Ear(Interrogator& of, double hears_Hz);
-    bool listens_to(const sim::Signal& signal) const override;
-    void heard(const sim::Reception& heard) override { owner.heard(*this, heard); }
+  bool listens_to(const sim::Signal& signal) const override;
+  void heard(const sim::Reception& heard) override;
 
-    Interrogator& owner;
-    double answer_Hz;  // 0: none yet
-    sim::Transducer transducer;
-  };
-  void hear_at(double answer_Hz);
-  void heard(const Ear& ear, const sim::Reception& heard);
-  sim::Matrix3d R_WS(const Ear& ear, sim::Time at) const;
+ private:
+  sim::Matrix3d R_WS(sim::Time at) const;
 
   InterrogatorParams params_;
   sim::DeviceContext context_;
   const TransponderNetwork& network_;
-  std::vector<std::unique_ptr<Ear>> ears_;
+  sim::Transducer transducer_;
   std::int64_t number_ = 0;  // of the last ping
   sim::Time pinged_{0}, window_end_{0};
   std::vector<std::string> asked_, waiting_for_;

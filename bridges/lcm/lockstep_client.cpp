@@ -91,22 +91,28 @@ std::optional<Received> LockstepClient::wait(steady_clock::time_point deadline) 
   return std::nullopt;
 }
 
+std::optional<Received> LockstepClient::next_handled() {
+  std::optional<Received> message;
+  if (!early_.empty() && !stop_) {
+    message = std::move(early_.front());
+    early_.pop_front();
+  } else {
+    const bool forever = silence_limit_.count() == 0;
+    message = wait(forever ? steady_clock::time_point::max() : steady_clock::now() + silence_limit_);
+  }
+  if (!message) {
+    end_ = stop_ ? End::stopped : End::silence;
+    return std::nullopt;
+  }
+  if (const auto found = handlers_.find(message->channel); found != handlers_.end())
+    for (const Handler& handler : found->second) handler(message->payload);
+  return message;
+}
+
 bool LockstepClient::next_tick(shoal::sim_tick_t& tick) {
   while (true) {
-    std::optional<Received> message;
-    if (!early_.empty() && !stop_) {
-      message = std::move(early_.front());
-      early_.pop_front();
-    } else {
-      const bool forever = silence_limit_.count() == 0;
-      message = wait(forever ? steady_clock::time_point::max() : steady_clock::now() + silence_limit_);
-    }
-    if (!message) {
-      end_ = stop_ ? End::stopped : End::silence;
-      return false;
-    }
-    if (const auto found = handlers_.find(message->channel); found != handlers_.end())
-      for (const Handler& handler : found->second) handler(message->payload);
+    const std::optional<Received> message = next_handled();
+    if (!message) return false;
     if (message->channel != tick_channel) continue;
     auto received = as_new_tick(*message);
     if (!received) continue;
@@ -138,6 +144,10 @@ void LockstepClient::acknowledge(const shoal::sim_tick_t& tick) {
   ack.client = name_;
   publish(ack_channel, shoal::encode(ack));
   acknowledged_utime_ = tick.utime;
+}
+
+void LockstepClient::leave() {
+  request("leave", ++request_id_, 0);
 }
 
 }  // namespace bridges

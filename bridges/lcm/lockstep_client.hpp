@@ -48,9 +48,14 @@ class LockstepClient {
   /// message.
   bool next_tick(shoal::sim_tick_t& tick);
   void acknowledge(const shoal::sim_tick_t& tick);
+  /// Tells the simulator not to wait for this client any more; does not wait for the answer.
+  void leave();
+  /// Calls the handlers of the next message, whatever it is: for who does not take part in the lockstep.  False when
+  /// stop() was called, or after `silence_limit`.
+  bool handle_message() { return next_handled().has_value(); }
   /// From a signal handler or another thread.
   void stop() { stop_ = true; }
-  /// Why next_tick() returned false.
+  /// Why next_tick() or handle_message() returned false.
   End end() const { return end_; }
   /// Zero: wait for ever.
   void set_silence_limit(std::chrono::milliseconds limit) { silence_limit_ = limit; }
@@ -58,6 +63,8 @@ class LockstepClient {
  private:
   /// Waits in slices, so that stop() is seen.
   std::optional<Received> wait(std::chrono::steady_clock::time_point deadline);
+  /// The next message, after its handlers were called.
+  std::optional<Received> next_handled();
   /// A tick for us that is new.
   std::optional<shoal::sim_tick_t> as_new_tick(const Received& message);
   void request(const std::string& command, std::int32_t id, double value);

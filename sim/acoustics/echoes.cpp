@@ -4,26 +4,30 @@
 
 namespace sim {
 
-Echoes echoes(const MultipathConfig& config, const MultipathMedium& medium, const LinkDepths& depths, Random* random) {
+Echoes echoes(const MultipathConfig& config, const MultipathMedium& medium, const LinkDepths& depths, Random* random,
+              bool direct_blocked) {
   const double water_m = std::max(0.0, depths.water_m);
   std::vector<ImagePath> paths;
   image_paths(std::clamp(depths.source_m, 0.0, water_m), std::clamp(depths.receiver_m, 0.0, water_m),
               depths.horizontal_m, water_m, config.max_bounces, paths);
   std::vector<PathGain> gains;
   path_gains(paths, config, medium, gains);
-  const PowerRatio direct = to_power(gains[0].gain);
+  // Over the direct path from here on: at ranges where nothing is left of it, too.
+  const Decibels direct = gains[0].gain;
+  for (PathGain& gain : gains) gain.gain -= direct;
+  if (direct_blocked) gains.erase(gains.begin());
   Echoes result;
   const bool drawn = config.phases == MultipathConfig::Phases::random;
   if (drawn && random != nullptr) randomize_phases(gains, *random);
   const MultipathSum sum = combine(gains, config.window_s);
-  result.signal = sum.signal / direct;
-  result.late = sum.interference / direct;
+  result.signal = sum.signal;
+  result.late = sum.interference;
   result.spread_s = sum.spread_s;
   if (drawn && random == nullptr) {
     PowerRatio inside;
     for (const PathGain& gain : gains)
       if (gain.delay_s - sum.first_s <= config.window_s) inside += to_power(gain.gain);
-    result.signal = inside / direct;
+    result.signal = inside;
   }
   return result;
 }

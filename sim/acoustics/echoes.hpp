@@ -19,7 +19,9 @@ struct Echoes {
 };
 
 /// Depths out of the water count as at surface and bottom.  `random`: draws the phases for `phases: random`; null:
-/// powers add up, which is their mean over all phases.
-Echoes echoes(const MultipathConfig& config, const MultipathMedium& medium, const LinkDepths& depths, Random* random);
+/// powers add up, which is their mean over all phases.  `direct_blocked`: the direct path gives nothing, but the powers
+/// are over what it would be.
+Echoes echoes(const MultipathConfig& config, const MultipathMedium& medium, const LinkDepths& depths, Random* random,
+              bool direct_blocked = false);
 
 }  // namespace sim

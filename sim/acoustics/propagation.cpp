@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/acoustics/echoes.hpp"
 #include "sim/medium/absorption.hpp"
 
 namespace sim {
@@ -59,40 +60,28 @@ bool Propagation::blocked(const Vector3d& from_W, int from_group, const Vector3d
   return hit && physics_.parts()[static_cast<std::size_t>(hit->part)].group != from_group;
 }
 
-std::optional<double> Propagation::water_depth_m(const Vector3d& p_W) const {
-  if (config_.multipath->water_depth_m) return config_.multipath->water_depth_m;
+double Propagation::water_depth_m(const Vector3d& p_W) const {
+  if (config_.multipath->water_depth_m) return *config_.multipath->water_depth_m;
   RayFilter filter;
   filter.kind = RayKind::sound;
   const auto hit = physics_.scene().cast(p_W, -Vector3d::UnitZ(), deepest_m, filter);
-  if (!hit) return std::nullopt;
-  return std::max(0.0, medium_.depth_m(p_W)) + hit->range_m;
+  return hit ? std::max(0.0, medium_.depth_m(p_W)) + hit->range_m : std::numeric_limits<double>::infinity();
 }
 
-MultipathSum Propagation::echoes(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, bool direct,
-                                 Random& random) const {
-  const MultipathConfig& config = *config_.multipath;
-  const Vector3d middle_W = (from_W + to_W) / 2;
-  const double from_m = std::max(0.0, medium_.depth_m(from_W)), to_m = std::max(0.0, medium_.depth_m(to_W));
-  const double horizontal_m = (to_W - from_W).head<2>().norm();
-  // Without a bottom all that comes back from there is out of reach.
-  const std::optional<double> depth_m = water_depth_m(middle_W);
-  std::vector<ImagePath> paths;
-  image_paths(from_m, to_m, horizontal_m, std::max({depth_m.value_or(deepest_m), from_m, to_m}), config.max_bounces,
-              paths);
-  std::erase_if(paths, [&](const ImagePath& path) {
-    const bool is_direct = path.surface_bounces == 0 && path.bottom_bounces == 0;
-    return (is_direct && !direct) || (!depth_m && path.bottom_bounces > 0);
-  });
+Echoes Propagation::echoes_of(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, bool direct_blocked,
+                              Random& random) const {
+  LinkDepths depths;
+  depths.source_m = medium_.depth_m(from_W);
+  depths.receiver_m = medium_.depth_m(to_W);
+  depths.horizontal_m = (to_W - from_W).head<2>().norm();
+  depths.water_m = water_depth_m((from_W + to_W) / 2);
   MultipathMedium water;
   water.frequency_Hz = frequency_Hz;
   water.sound_speed_mps = 1 / medium_.mean_slowness_spm(from_W.z(), to_W.z());
   water.absorption_dBpkm = absorption_dBpkm(config_.absorption, frequency_Hz, medium_, from_W, to_W);
   water.wind_mps = config_.noise.wind_mps.value_or(medium_.mean_wind_mps());
   water.spreading = config_.spreading;
-  std::vector<PathGain> gains;
-  path_gains(paths, config, water, gains);
-  if (config.phases == MultipathConfig::Phases::random) randomize_phases(gains, random);
-  return combine(gains, config.window_s);
+  return echoes(*config_.multipath, water, depths, &random, direct_blocked);
 }
 
 Propagation::Gain Propagation::gain(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group,
@@ -100,20 +89,18 @@ Propagation::Gain Propagation::gain(const Vector3d& from_W, int from_group, cons
   Gain gain;
   gain.blocked = config_.occlusion && blocked(from_W, from_group, to_W, to_group);
   const bool nothing_passes = gain.blocked && !config_.occlusion_loss_dB;
+  gain.signal = -transmission_loss(from_W, to_W, frequency_Hz);
   if (config_.multipath) {
-    const MultipathSum sum = echoes(from_W, to_W, frequency_Hz, !nothing_passes, random);
-    gain.signal = to_decibels(sum.signal);
-    gain.disturbing = sum.interference;
-  } else {
-    gain.signal = nothing_passes ? Decibels{-std::numeric_limits<double>::infinity()}
-                                 : -transmission_loss(from_W, to_W, frequency_Hz);
+    const Echoes echoes = echoes_of(from_W, to_W, frequency_Hz, nothing_passes, random);
+    gain.disturbing = to_power(gain.signal) * echoes.late;
+    gain.signal += to_decibels(echoes.signal);
+  } else if (nothing_passes) {
+    gain.signal = Decibels{-std::numeric_limits<double>::infinity()};
   }
   if (gain.blocked && !nothing_passes) gain.signal -= Decibels{*config_.occlusion_loss_dB};
-  if (config_.fading.type != FadingConfig::Type::none) {
-    const Decibels faded = fade(config_.fading, random);
-    gain.signal += faded;
-    gain.disturbing = to_power(faded) * gain.disturbing;
-  }
+  const Decibels faded = fade(config_.fading, random);
+  gain.signal += faded;
+  gain.disturbing = to_power(faded) * gain.disturbing;
   return gain;
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "sim/acoustics/acoustics_config.hpp"
+#include "sim/acoustics/echoes.hpp"
 #include "sim/acoustics/signal.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/physics/physics_world.hpp"
@@ -36,10 +37,10 @@ class Propagation {
 
  private:
   bool blocked(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group) const;
-  MultipathSum echoes(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, bool direct,
-                      Random& random) const;
-  /// Below the surface; nothing when there is no bottom.
-  std::optional<double> water_depth_m(const Vector3d& p_W) const;
+  Echoes echoes_of(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, bool direct_blocked,
+                   Random& random) const;
+  /// Below the surface; infinite when there is no bottom.
+  double water_depth_m(const Vector3d& p_W) const;
 
   struct BandLevel {
     double centre_Hz, bandwidth_Hz;

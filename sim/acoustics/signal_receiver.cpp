@@ -24,23 +24,27 @@ PowerRatio SignalReceiver::others(const PresentSound& but) const {
 }
 
 void SignalReceiver::count_bits(Time until) {
-  if (!taking() || until <= counted_until_) return;
-  const TakenSignal& taken = taken_;
-  const double span = to_seconds(std::min(until, taken.ended) - counted_until_);
-  const double whole = to_seconds(taken.ended - taken.begun);
-  counted_until_ = until;
-  const PowerRatio alone = taken.sound.power / (taken.noise + taken.disturbing);
-  const PowerRatio sinr = taken.sound.power / (taken.noise + taken.disturbing + others(taken.sound));
-  if (sinr < worst_sinr_) worst_sinr_ = sinr;
-  if (taken.bits == 0 || whole <= 0 || span <= 0) return;
-  const double bits = static_cast<double>(taken.bits) * span / whole;
-  const PowerRatio code = to_power(Decibels{taken.coding_gain_dB});
+  for (Taken& taken : taken_) count_bits(taken, until);
+}
+
+void SignalReceiver::count_bits(Taken& taken, Time until) const {
+  if (until <= taken.counted_until) return;
+  const TakenSignal& signal = taken.signal;
+  const double span = to_seconds(std::min(until, signal.ended) - taken.counted_until);
+  const double whole = to_seconds(signal.ended - signal.begun);
+  taken.counted_until = until;
+  const PowerRatio alone = signal.sound.power / (signal.noise + signal.disturbing);
+  const PowerRatio sinr = signal.sound.power / (signal.noise + signal.disturbing + others(signal.sound));
+  if (sinr < taken.worst_sinr) taken.worst_sinr = sinr;
+  if (signal.bits == 0 || whole <= 0 || span <= 0) return;
+  const double bits = static_cast<double>(signal.bits) * span / whole;
+  const PowerRatio code = to_power(Decibels{signal.coding_gain_dB});
   const auto log_right = [&](PowerRatio snr) {
-    const PowerRatio EbN0 = energy_per_bit(snr, taken.sound.bandwidth_Hz, taken.bit_rate_bps) * code;
-    return bits * std::log1p(-bit_error_probability(taken.modulation, EbN0));
+    const PowerRatio EbN0 = energy_per_bit(snr, signal.sound.bandwidth_Hz, signal.bit_rate_bps) * code;
+    return bits * std::log1p(-bit_error_probability(signal.modulation, EbN0));
   };
-  log_success_ += log_right(sinr);
-  log_success_alone_ += log_right(alone);
+  taken.log_success += log_right(sinr);
+  taken.log_success_alone += log_right(alone);
 }
 
 void SignalReceiver::begin(const PresentSound& sound, Time at) {
@@ -54,34 +58,41 @@ SignalLoss SignalReceiver::take(const TakenSignal& signal, const Rules& rules, s
   const PowerRatio still = signal.noise + signal.disturbing;
   if (signal.sound.power / still < needed) return SignalLoss::noise;
   const bool noticed = signal.sound.power / (still + others(signal.sound)) >= needed;
-  if (taking()) {
-    const PowerRatio stronger = signal.sound.power / taken_.sound.power;
+  auto rival = taken_.end();
+  for (auto each = taken_.begin(); each != taken_.end(); ++each) {
+    if (share_in_band(each->signal.sound, signal.sound) <= 0) continue;
+    if (rival != taken_.end()) return SignalLoss::busy;
+    rival = each;
+  }
+  if (rival != taken_.end()) {
+    const PowerRatio stronger = signal.sound.power / rival->signal.sound.power;
     if (!noticed || stronger < to_power(Decibels{rules.capture_dB})) return SignalLoss::busy;
-    displaced = taken_.sound.flight;
+    displaced = rival->signal.sound.flight;
+    taken_.erase(rival);
   } else if (!noticed) {
     return SignalLoss::interference;
   }
-  taken_ = signal;
-  counted_until_ = signal.begun;
-  log_success_ = log_success_alone_ = 0;
-  worst_sinr_ = signal.sound.power / still;
+  taken_.push_back({signal, signal.begun, 0, 0, signal.sound.power / still});
   return SignalLoss::none;
 }
 
 bool SignalReceiver::end(std::int64_t flight, Time at, Outcome& outcome) {
   count_bits(at);
-  const bool was_taken = taken_.sound.flight == flight;
+  const auto taken =
+      std::find_if(taken_.begin(), taken_.end(), [&](const Taken& each) { return each.signal.sound.flight == flight; });
+  const bool was_taken = taken != taken_.end();
   if (was_taken) {
-    outcome = {std::exp(log_success_), std::exp(log_success_alone_), worst_sinr_};
-    taken_ = {};
+    outcome = {std::exp(taken->log_success), std::exp(taken->log_success_alone), taken->worst_sinr};
+    taken_.erase(taken);
   }
   std::erase_if(present_, [&](const PresentSound& sound) { return sound.flight == flight; });
   return was_taken;
 }
 
 std::int64_t SignalReceiver::drop() {
-  const std::int64_t flight = taken_.sound.flight;
-  taken_ = {};
+  if (taken_.empty()) return -1;
+  const std::int64_t flight = taken_.back().signal.sound.flight;
+  taken_.pop_back();
   return flight;
 }
 
@@ -91,10 +102,12 @@ void SignalReceiver::hash_state(StateHash& hash) const {
     hash.add(sound.flight);
     hash.add(sound.power.linear());
   }
-  hash.add(taken_.sound.flight);
-  hash.add(static_cast<std::int64_t>(counted_until_.count()));
-  hash.add(log_success_);
-  hash.add(log_success_alone_);
+  for (const Taken& taken : taken_) {
+    hash.add(taken.signal.sound.flight);
+    hash.add(static_cast<std::int64_t>(taken.counted_until.count()));
+    hash.add(taken.log_success);
+    hash.add(taken.log_success_alone);
+  }
 }
 
 }  // namespace sim

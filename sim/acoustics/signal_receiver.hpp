@@ -28,7 +28,8 @@ struct TakenSignal {
 };
 
 /// The receiver of a transducer: which of the sounds that overlap it takes, and how well it comes through.  It takes
-/// the first signal that it notices; a much stronger one takes it over.  While what else is heard stays the same the
+/// the first signal that it notices in a band; a much stronger one takes it over.  Signals in bands apart from each
+/// other are taken side by side.  While what else is heard stays the same the
 /// bits are equally likely to be wrong, so the probability that all are right is a product over such spans.
 class SignalReceiver {
  public:
@@ -45,26 +46,33 @@ class SignalReceiver {
 
   /// A sound begins.  Before take() of the same one.
   void begin(const PresentSound& sound, Time at);
-  /// Tries to take a signal that has begun.  `displaced`: the flight that lost the receiver to it, or -1.
+  /// Tries to take a signal that has begun.  `displaced`: the flight that lost its band to it, or -1.  One that would
+  /// take more than one band over is not taken.
   SignalLoss take(const TakenSignal& signal, const Rules& rules, std::int64_t& displaced);
-  /// A sound ends.  True, with the outcome, when it is the one that was taken.
+  /// A sound ends.  True, with the outcome, when it was taken.
   bool end(std::int64_t flight, Time at, Outcome& outcome);
-  /// Lets go of what is taken; its flight, or -1 when there was none.
+  /// Lets go of the last signal that is taken; its flight, or -1 when there was none.
   std::int64_t drop();
-  bool taking() const { return taken_.sound.flight >= 0; }
+  bool taking() const { return !taken_.empty(); }
   void hash_state(StateHash& hash) const;
 
  private:
+  /// A signal that is taken, and what has come of it so far.
+  struct Taken {
+    TakenSignal signal;
+    Time counted_until{0};
+    double log_success = 0, log_success_alone = 0;
+    PowerRatio worst_sinr{0};
+  };
+
   /// Of all sounds but one, in a band.
   PowerRatio others(const PresentSound& but) const;
   /// Counts the bits of what is taken since the last change.
   void count_bits(Time until);
+  void count_bits(Taken& taken, Time until) const;
 
   std::vector<PresentSound> present_;
-  TakenSignal taken_;  // flight -1: none
-  Time counted_until_{0};
-  double log_success_ = 0, log_success_alone_ = 0;
-  PowerRatio worst_sinr_{0};
+  std::vector<Taken> taken_;
 };
 
 }  // namespace sim

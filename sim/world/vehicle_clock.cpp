@@ -204,7 +204,8 @@ double VehicleClock::estimated_std_s(Time now) const {
         state_->rate_is_unknown ? rate : std::min(rate, 50 * pps / std::pow(state_->loop.interval_s, 2));
     const double times = to_seconds(*state_->last_fix - *state_->first_fix) / tau_s;
     const double left = (1 + times) * std::exp(-times);
-    rate = told * left * left + jitter / (4 * std::pow(tau_s, 3)) + white / (4 * tau_s) + 5 * tau_s * walk / 4 + 2.5 * floor;
+    rate = told * left * left + jitter / (4 * std::pow(tau_s, 3)) + white / (4 * tau_s) + 5 * tau_s * walk / 4 +
+           2.5 * floor;
   }
   return std::sqrt(phase + rate * t_s * t_s + white * t_s + walk * std::pow(t_s, 3) / 3);
 }

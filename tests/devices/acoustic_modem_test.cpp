@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "devices/micromodem_rates.hpp"
+#include "sim/acoustics/channel.hpp"
 #include "tests/devices/modem_fixture.hpp"
 #include "tests/fidelity/closed_forms.hpp"
 
@@ -9,10 +11,10 @@ namespace {
 
 using Received = shoal::acoustic_received_t;
 
-/// a at the origin, b at 300 m, c at 600 m, 20 m deep.
+/// a at the origin, b 300 m to the east, c 300 m to the north of b (none hides another), 20 m deep.
 std::string three(const std::string& keys = "", const std::string& more = "") {
   const std::string modem = "{name: modem, type: acoustic_modem" + keys + "}";
-  return test::modem_sea({{"a", "[0, 0, -20]", modem}, {"b", "[300, 0, -20]", modem}, {"c", "[600, 0, -20]", modem}},
+  return test::modem_sea({{"a", "[0, 0, -20]", modem}, {"b", "[300, 0, -20]", modem}, {"c", "[300, 300, -20]", modem}},
                          more);
 }
 
@@ -42,25 +44,25 @@ TEST(AcousticModem, ArrivesAfterPreambleBitsAndTheWayOfTheSound) {
   test.run_for(0.3);
   const auto c = at_c.take_all();
   ASSERT_EQ(c.size(), 1u);
-  EXPECT_NEAR(c[0].travel_time_s, 0.4, 1e-6);
-  // Twice as far: 10 k log10(2) of spreading and 300 m of absorption more.
-  EXPECT_GT(b[0].level_db, c[0].level_db + 4.5);
+  EXPECT_NEAR(c[0].travel_time_s, std::hypot(0.2, 0.2), 1e-6);
+  // sqrt(2) times as far: 15 log10 of it by spreading, and 124 m of absorption more.
+  EXPECT_GT(b[0].level_db, c[0].level_db + 15 * std::log10(std::sqrt(2.0)));
 }
 
 TEST(AcousticModem, PacketsLastAsLongAsTheTableSays) {
   int found = 0;
   for (const auto& form : test::all_closed_forms()) {
     if (form.name != "micromodem_packet_time") continue;
-    for (int rate = 0; rate <= 6; ++rate) {
-      test::TestWorld test(three(", preset: micromodem_rate" + std::to_string(rate)));
+    for (const auto& rate : devices::micromodem_rates()) {
+      if (rate.bit_rate_bps != form.at("bps")) continue;
+      test::TestWorld test(three(", preset: micromodem_rate" + std::to_string(rate.number)));
       const auto& modem = test::device_of<devices::AcousticModem>(test, "a/modem");
       const auto bytes = static_cast<std::size_t>(form.at("frames") * form.at("frame_bytes"));
-      if (modem.longest_message_bytes() != bytes) continue;
-      const double bits_s = modem.duration_s(bytes) - 0.3;  // less the probe, which the table leaves out
-      if (std::abs(bits_s - form.expected) > form.tolerance) continue;
-      EXPECT_NEAR(bits_s, form.expected, 1e-6);
+      EXPECT_EQ(modem.longest_message_bytes(), bytes);
+      // Less the probe, which the table leaves out.
+      EXPECT_NEAR(modem.duration_s(bytes) - devices::micromodem_probe_s, form.expected, 1e-6);
+      EXPECT_EQ(modem.duration_s(1), modem.duration_s(static_cast<std::size_t>(form.at("frame_bytes"))));
       ++found;
-      break;
     }
   }
   EXPECT_EQ(found, 6);
@@ -92,6 +94,21 @@ TEST(AcousticModem, SendsAtWholeSecondsWhenItIsSynchronous) {
   EXPECT_EQ(received[0].sent_utime % 2'000'000, 0);
   EXPECT_EQ(received[1].sent_utime - received[0].sent_utime, 4'000'000);
   EXPECT_NEAR(received[1].travel_time_s, 0.2, 1e-6);
+}
+
+TEST(AcousticModem, OneWayTimesAreByTheTwoClocks) {
+  const std::string modem = "{name: modem, type: acoustic_modem, synchronous_s: 1, truth: true}";
+  test::TestWorld test(test::modem_sea({{"a", "[0, 0, -20]", modem, "clock: {offset_s: 0.25}"},
+                                        {"b", "[300, 0, -20]", modem, "clock: {offset_s: -0.01}"}}));
+  test::Listener<Received> at_b(test, "b.modem"), truth(test, "b.modem.truth");
+  test.run_for(0.5);
+  test.send("a.modem.cmd", test::bytes_to("x"));
+  test.run_for(6);
+  const Received b = at_b.last(), really = truth.last();
+  EXPECT_EQ(b.sent_utime, test.world.epoch_us() + 1'000'000);  // a whole second of its own
+  EXPECT_NEAR(b.travel_time_s, 0.2 - 0.01 - 0.25, 2e-6);
+  EXPECT_EQ(really.sent_utime, test.world.epoch_us() + 750'000);
+  EXPECT_NEAR(really.travel_time_s, 0.2, 2e-6);
 }
 
 TEST(AcousticModem, HearsNothingWhileItSends) {
@@ -183,6 +200,44 @@ TEST(AcousticModem, DeliversAsTheBitErrorsOfTheClosedFormSay) {
     return;
   }
   FAIL() << "no such row";
+}
+
+TEST(AcousticModem, DeliveryFallsOverRangeAsTheFadingSays) {
+  // One sender, receivers at growing ranges on bearings of their own.  Bits are spread over so much bandwidth that a
+  // packet that is noticed comes through: the share is that of fades that leave 6 dB, which is the normal
+  // distribution's.
+  const std::string modem =
+      "{name: modem, type: acoustic_modem, frame_bytes: 1, preamble_s: 0.05, source_level_dB: 135}";
+  const double ranges_m[] = {800, 1600, 2200, 2800, 3400, 4000};
+  std::vector<test::Moored> vehicles{{"a", "[0, 0, -20]", modem}};
+  for (int i = 0; i < 6; ++i)
+    vehicles.push_back(
+        {"r" + std::to_string(i),
+         "[" + std::to_string(ranges_m[i] * std::cos(i)) + ", " + std::to_string(ranges_m[i] * std::sin(i)) + ", -20]",
+         modem});
+  const double sigma_dB = 6;
+  test::TestWorld test(test::modem_sea(vehicles, "acoustics: {fading: {type: log_normal, std_dB: 6}}\n"));
+  const int packets = 400;
+  for (int i = 0; i < packets; ++i) {
+    test.send("a.modem.cmd", test::bytes_to("x"));
+    test.run_for(0.15);
+  }
+  test.run_for(3);
+  double last = 2;
+  for (int i = 0; i < 6; ++i) {
+    const auto& water = test.world.acoustics().propagation();
+    const sim::Vector3d there_W = test.world.find_vehicle("r" + std::to_string(i))->X_WV().translation();
+    const double snr_dB =
+        135 - water.transmission_loss({0, 0, -20}, there_W, 25000).dB() - water.ambient_level(25000, 4000).dB();
+    const double expected = 0.5 * std::erfc((6 - snr_dB) / (sigma_dB * std::sqrt(2.0)));
+    const auto& counts =
+        test::device_of<devices::AcousticModem>(test, "r" + std::to_string(i) + "/modem").transducer().counts();
+    const double share = static_cast<double>(counts.understood) / packets;
+    EXPECT_NEAR(share, expected, 4 * std::sqrt(expected * (1 - expected) / packets) + 0.01) << ranges_m[i];
+    EXPECT_LT(expected, last);
+    last = expected;
+  }
+  EXPECT_LT(last, 0.5);
 }
 
 TEST(AcousticModem, DropsTheOldestWhenItsQueueIsFull) {

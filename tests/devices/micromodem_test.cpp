@@ -173,6 +173,25 @@ TEST(Micromodem, ASynchronousPacketTellsItsOneWayTravelTime) {
   EXPECT_EQ(field(sent[0], 2).substr(0, 6), arrival.substr(0, 6));
 }
 
+TEST(Micromodem, TimesOfArrivalAreByItsOwnClock) {
+  const std::string keys = ", synchronous: true";
+  Hosts hosts(test::modem_sea({{"a", "[0, 0, -20]", modem_at(1, keys)},
+                               {"b", "[750, 0, -20]", modem_at(2, keys), "clock: {offset_s: 0.125}"},
+                               {"c", "[-300, 0, -20]", modem_at(3, keys), "clock: {offset_s: -2}"}}));
+  hosts.run_for(0.35);
+  hosts.say("a", "$CCMUC,1,2,1fab");
+  hosts.run_for(3);
+  const auto b = only(hosts.take("b"), "CACST"), c = only(hosts.take("c"), "CACST");
+  ASSERT_EQ(b.size(), 1u);
+  ASSERT_EQ(c.size(), 1u);
+  EXPECT_EQ(field(b[0], 2).substr(6), ".6250");  // 0.5 s of way, and the clock
+  EXPECT_EQ(field(c[0], 2).substr(6), ".2000");  // whole seconds do not show
+  // A two-way ping does not care.
+  hosts.say("a", "$CCMPC,1,2");
+  hosts.run_for(4);
+  EXPECT_THAT(hosts.take("a"), Contains("CAMPR,2,1,0.5000"));
+}
+
 TEST(Micromodem, AThirdModemMayAskForTheCycle) {
   Hosts hosts(three());
   hosts.run_for(0.05);

@@ -12,6 +12,7 @@ struct Moored {
   std::string name;
   std::string position_m;
   std::string devices;  ///< of the list, such as `{name: modem, type: acoustic_modem}`
+  std::string keys;     ///< further ones of the vehicle file, such as `clock: {offset_s: 1}`
 };
 
 /// Vehicles in water where sound goes at 1500 m/s; steps of 10 ms.  `more`: further keys of the world.

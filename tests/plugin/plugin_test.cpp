@@ -211,6 +211,27 @@ TEST_F(Plugin, WithATypeThatExistsIsRefused) {
   expect_refused(path("clash/build/clash.so"), "device type 'lidar' exists twice\n");
 }
 
+TEST_F(Plugin, InstallationHasTheClientLibrary) {
+  fs::copy(source("examples/client"), path("client"), fs::copy_options::recursive);
+  fs::remove_all(path("client/build"));
+  build(path("client"));
+  const std::string url = system_test::own_url(2);
+  system_test::Program pilot({"env", "LCM_DEFAULT_URL=" + url, path("client/build/pilot")});
+  const Ended ended = shoal({"run", path("prefix/share/shoal/worlds/minimal.yaml"), "--duration", "15", "--speed",
+                             "max", "--await", "pilot", "--lcm-url", url});
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_EQ(pilot.wait(), 0) << pilot.errors();
+  // It sees each 0.1 s how far the wall is, at 0.5 m/s, and then has to brake.
+  EXPECT_THAT(pilot.output(), testing::ContainsRegex("the run is over, 0\\.[89][0-9]* m before the wall"));
+}
+
+TEST_F(Plugin, ClientExampleIsThatOfThePage) {
+  EXPECT_THAT(system_test::text_of_file(source("docs/client.md")),
+              HasSubstr(system_test::text_of_file(source("examples/client/pilot.cpp"))));
+  EXPECT_THAT(system_test::text_of_file(source("docs/client.md")),
+              HasSubstr(system_test::text_of_file(source("examples/client/CMakeLists.txt"))));
+}
+
 TEST_F(Plugin, InstallationRunsItsOwnWorlds) {
   const Ended ended = shoal({"check", path("prefix/share/shoal/worlds/coop_land.yaml")});
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;

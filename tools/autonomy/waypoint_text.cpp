@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <stdexcept>
-#include <string_view>
 
 #include "sim/math.hpp"
 
@@ -31,6 +30,8 @@ double parse_number(std::string_view text) {
   return number;
 }
 
+}  // namespace
+
 std::vector<double> parse_numbers(std::string_view text, std::size_t count, const char* form) {
   const std::vector<std::string_view> pieces = split(text, ',');
   if (pieces.size() != count) throw std::invalid_argument("'" + std::string(text) + "' is not of the form " + form);
@@ -38,8 +39,6 @@ std::vector<double> parse_numbers(std::string_view text, std::size_t count, cons
   for (const std::string_view piece : pieces) numbers.push_back(parse_number(piece));
   return numbers;
 }
-
-}  // namespace
 
 std::vector<Vector2d> parse_waypoints(const std::string& text) {
   std::vector<Vector2d> waypoints;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/autonomy/pose2.hpp"
@@ -13,5 +15,8 @@ std::vector<Vector2d> parse_waypoints(const std::string& text);
 
 /// A start pose: `x,y,yaw_deg`.
 Pose2 parse_start(const std::string& text);
+
+/// So many numbers between commas; `form` is what the error says they should look like.
+std::vector<double> parse_numbers(std::string_view text, std::size_t count, const char* form);
 
 }  // namespace autonomy

@@ -107,7 +107,8 @@ LinkBudget link_budget(const AcousticLink& link, const sim::AcousticsConfig& aco
   const sim::AmbientNoise noise = acoustics.noise.with_wind(medium.mean_wind_mps());
   budget.wind_mps = noise.wind_mps;
   budget.noise_per_Hz = noise.spectral_level(link.centre_Hz / 1000);
-  budget.noise = noise.band_level(link.centre_Hz, link.bandwidth_Hz);
+  budget.noise_reduction = sim::directivity_index(link.to.directivity, link.centre_Hz, c_mps);
+  budget.noise = noise.band_level(link.centre_Hz, link.bandwidth_Hz) - budget.noise_reduction;
   budget.snr = budget.level - budget.noise;
   if (acoustics.multipath) {
     const sim::Echoes echoes = echoes_of(link, budget, acoustics, medium, water_depth_m, nullptr);

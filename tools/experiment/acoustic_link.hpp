@@ -31,6 +31,8 @@ struct LinkEnd {
   sim::Vector3d p_W = sim::Vector3d::Zero();
   sim::Matrix3d R_WS = sim::Matrix3d::Identity();
   sim::DirectivityConfig directivity;
+  int group = -1;                      ///< of the vehicle there
+  std::optional<double> detection_dB;  ///< of the transducer there, if there is one
 };
 
 struct AcousticLink {
@@ -53,8 +55,9 @@ struct LinkBudget {
   std::optional<sim::Decibels> late;    ///< multipath: level of what disturbs
   double delay_spread_s = 0;            ///< multipath: rms
   sim::Decibels level;                  ///< of the direct path at the receiver
-  sim::Decibels noise_per_Hz, noise;    ///< in the band
-  sim::Decibels snr;                    ///< of the direct path
+  sim::Decibels noise_per_Hz, noise_reduction;  ///< the second by the receiver's directivity
+  sim::Decibels noise;                          ///< in the band, after that
+  sim::Decibels snr;                            ///< of the direct path
 };
 
 /// Without fading.  `water_depth_m`: of a flat bottom, for echoes, where the world's `multipath:` does not say it;

@@ -51,6 +51,8 @@ std::string budget_text(const AcousticLink& link, const LinkBudget& budget, cons
   text +=
       row_text("noise per hertz", budget.noise_per_Hz,
                fmt::format("re 1 uPa^2/Hz; shipping {:g}, wind {:g} m/s", acoustics.noise.shipping, budget.wind_mps));
+  if (budget.noise_reduction.dB() != 0)
+    text += row_text("directivity index", -budget.noise_reduction, "of the receiver against noise from all sides");
   text += row_text("noise in the band", budget.noise, fmt::format("re 1 uPa; {:g} Hz", link.bandwidth_Hz));
   text += row_text("signal over noise", budget.snr, "direct path");
   if (budget.echoes && budget.late) {

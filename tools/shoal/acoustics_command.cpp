@@ -5,7 +5,10 @@
 #include <memory>
 #include <optional>
 
+#include "devices/acoustic_modem.hpp"
 #include "shoal/message_writer.hpp"
+#include "sim/acoustics/channel.hpp"
+#include "sim/acoustics/transducer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/world.hpp"
@@ -27,8 +30,9 @@ struct AcousticsArguments {
   std::string from, to, ranges, picture, closed_forms;
   std::vector<std::string> packets;
   bool micromodem = false;
-  double range_m = 1000, depth_m = 10, level_dB = 185, frequency_Hz = 25000, bandwidth_Hz = 4000;
-  double detection_dB = 6, coding_gain_dB = 0;
+  double range_m = 1000, depth_m = 10;
+  std::optional<double> level_dB, frequency_Hz, bandwidth_Hz, coding_gain_dB;  ///< unset: of the sending modem
+  std::optional<double> detection_dB;
   std::optional<double> water_depth_m;
 };
 
@@ -72,17 +76,20 @@ LinkEnd find_end(const char* option, const std::string& text, const sim::World& 
     if (transducer == nullptr) continue;
     known += (known.empty() ? "; transducers: " : ", ") + transducer->full_name();
     if (transducer->full_name() != text) continue;
-    return {transducer->p_W(world.now()), transducer->R_WS(), transducer->config().directivity};
+    return {transducer->p_W(world.now()), transducer->R_WS(), transducer->config().directivity,
+            transducer->vehicle().group(), transducer->config().detection_dB};
   }
   if (const sim::Vehicle* vehicle = world.find_vehicle(text)) {
     end.p_W = vehicle->base().X_WB().translation();
+    end.group = vehicle->group();
     return end;
   }
   throw CLI::ValidationError(option,
                              "is no place such as 4,-3,-2.5, no transducer and no vehicle: '" + text + "'" + known);
 }
 
-std::vector<AcousticPacket> packets_of(const AcousticsArguments& arguments) {
+std::vector<AcousticPacket> packets_of(const AcousticsArguments& arguments,
+                                       const devices::AcousticModem::Params* modem) {
   std::vector<AcousticPacket> packets;
   for (const std::string& text : arguments.packets) {
     const auto packet = parse_packet(text);
@@ -94,23 +101,49 @@ std::vector<AcousticPacket> packets_of(const AcousticsArguments& arguments) {
   if (arguments.micromodem)
     for (const AcousticPacket& packet : micromodem_packets()) packets.push_back(packet);
   if (!packets.empty()) return packets;
+  if (modem != nullptr)
+    return {*parse_packet(fmt::format("{}:{}:{}", sim::to_string(modem->modulation), modem->bit_rate_bps,
+                                      std::int64_t{modem->frames} * modem->frame_bytes))};
   for (const char* text : {"fsk:80:32", "psk:500:64", "psk:5300:256", "dpsk:1200:256"})
     packets.push_back(*parse_packet(text));
   return packets;
 }
 
+/// The keys of an acoustic modem, or null.
+const devices::AcousticModem::Params* modem_keys(const std::string& full_name, const sim::World& world) {
+  for (const auto& device : world.devices()) {
+    if (!device || device->full_name() != full_name) continue;
+    const auto* keys =
+        dynamic_cast<const sim::detail::ParamsOf<devices::AcousticModem::Params>*>(device->config().params.get());
+    return keys != nullptr ? &keys->params : nullptr;
+  }
+  return nullptr;
+}
+
+/// The signal of the sending modem, where there is one, with what the options say instead.
+void take_signal(AcousticLink& link, const AcousticsArguments& arguments, const devices::AcousticModem::Params* modem) {
+  if (modem != nullptr) {
+    link.source_level = sim::Decibels(modem->source_level_dB);
+    link.centre_Hz = modem->frequency_Hz;
+    link.bandwidth_Hz = modem->bandwidth_Hz;
+    link.coding_gain = sim::Decibels(modem->coding_gain_dB);
+  }
+  if (arguments.level_dB) link.source_level = sim::Decibels(*arguments.level_dB);
+  link.centre_Hz = arguments.frequency_Hz.value_or(link.centre_Hz);
+  link.bandwidth_Hz = arguments.bandwidth_Hz.value_or(link.bandwidth_Hz);
+  if (arguments.coding_gain_dB) link.coding_gain = sim::Decibels(*arguments.coding_gain_dB);
+}
+
 AcousticLink link_of(const AcousticsArguments& arguments, const sim::World& world) {
   AcousticLink link;
-  link.source_level = sim::Decibels(arguments.level_dB);
-  link.centre_Hz = arguments.frequency_Hz;
-  link.bandwidth_Hz = arguments.bandwidth_Hz;
-  link.detection = sim::Decibels(arguments.detection_dB);
-  link.coding_gain = sim::Decibels(arguments.coding_gain_dB);
+  take_signal(link, arguments, modem_keys(arguments.from, world));
+  link.detection = sim::Decibels(arguments.detection_dB.value_or(6));
   if (arguments.from.empty() != arguments.to.empty())
     throw CLI::ValidationError("--from", "needs --to, and --to needs --from");
   if (!arguments.from.empty()) {
     link.from = find_end("--from", arguments.from, world);
     link.to = find_end("--to", arguments.to, world);
+    link.detection = sim::Decibels(arguments.detection_dB.value_or(link.to.detection_dB.value_or(6)));
     return link;
   }
   const double z_m = world.medium().surface_m(0, 0) - arguments.depth_m;
@@ -131,6 +164,17 @@ std::optional<double> water_depth_m(const AcousticLink& link, const sim::World& 
   return surface_m - p_W.z() + bottom->range_m;
 }
 
+void warn(const AcousticLink& link, const sim::World& world) {
+  for (const LinkEnd* end : {&link.from, &link.to})
+    if (!world.medium().in_water(end->p_W)) std::cerr << "shoal: one end of the link is not under water\n";
+  sim::Random random(1, "look");
+  random.begin_step(0);
+  const int none = -2;  // a group that nothing has
+  const auto gain = world.acoustics().propagation().gain(link.from.p_W, link.from.group < 0 ? none : link.from.group,
+                                                         link.to.p_W, link.to.group, link.centre_Hz, random);
+  if (gain.blocked) std::cerr << "shoal: something stands between the ends, which the table does not count\n";
+}
+
 int show_closed_forms(const std::string& file) {
   const std::vector<ClosedFormRow> rows = acoustic_closed_forms(file);
   std::cout << closed_forms_text(rows);
@@ -142,7 +186,6 @@ int show_closed_forms(const std::string& file) {
 int show(AcousticsArguments& arguments) {
   if (!arguments.closed_forms.empty()) return show_closed_forms(arguments.closed_forms);
   if (!arguments.picture.empty()) check_writable(arguments.picture);
-  const std::vector<AcousticPacket> packets = packets_of(arguments);
   const std::vector<double> ranges_m =
       arguments.ranges.empty() && arguments.picture.empty()
           ? std::vector<double>()
@@ -156,8 +199,8 @@ int show(AcousticsArguments& arguments) {
   const sim::World world(config, bus);
   if (!world.medium().has_water()) throw CLI::ValidationError("WORLD", "has no water to carry sound");
   const AcousticLink link = link_of(arguments, world);
-  for (const LinkEnd* end : {&link.from, &link.to})
-    if (!world.medium().in_water(end->p_W)) std::cerr << "shoal: one end of the link is not under water\n";
+  const std::vector<AcousticPacket> packets = packets_of(arguments, modem_keys(arguments.from, world));
+  warn(link, world);
   const std::optional<double> depth_m = arguments.water_depth_m ? arguments.water_depth_m : water_depth_m(link, world);
   if (ranges_m.empty()) {
     const LinkBudget budget = link_budget(link, config.acoustics, world.medium(), depth_m);
@@ -172,8 +215,8 @@ int show(AcousticsArguments& arguments) {
     std::cout << csv_text(rows, packets);
   else
     draw_over_range(rows, packets,
-                    fmt::format("{:g} dB re 1 uPa at 1 m, {:g} Hz, {:g} Hz wide", arguments.level_dB,
-                                arguments.frequency_Hz, arguments.bandwidth_Hz),
+                    fmt::format("{:g} dB re 1 uPa at 1 m, {:g} Hz, {:g} Hz wide", link.source_level.dB(),
+                                link.centre_Hz, link.bandwidth_Hz),
                     arguments.picture);
   return exit_ok;
 }
@@ -185,18 +228,27 @@ void add_options(CLI::App& command, AcousticsArguments& arguments) {
   command.add_option("--range", arguments.range_m, "m, without --from and --to")->check(number_from(0, 1e7));
   command.add_option("--depth", arguments.depth_m, "of both ends, m, without --from and --to")
       ->check(number_from(0, 12000));
-  command.add_option("--level", arguments.level_dB, "source level, dB re 1 uPa at 1 m; 185")
+  command
+      .add_option("--level", arguments.level_dB,
+                  "source level, dB re 1 uPa at 1 m; absent: of the sending modem, else 185")
       ->check(number_from(-100, 300));
-  command.add_option("--frequency", arguments.frequency_Hz, "middle of the band, Hz; 25000")
+  command
+      .add_option("--frequency", arguments.frequency_Hz,
+                  "middle of the band, Hz; absent: of the sending modem, else 25000")
       ->check(number_from(10, 1e6));
-  command.add_option("--bandwidth", arguments.bandwidth_Hz, "Hz; 4000")->check(number_from(0.1, 1e6));
+  command.add_option("--bandwidth", arguments.bandwidth_Hz, "Hz; absent: of the sending modem, else 4000")
+      ->check(number_from(0.1, 1e6));
   command.add_option("--packet", arguments.packets, "modulation:bit/s:bytes, such as fsk:80:32; may be repeated")
       ->type_size(1)
       ->allow_extra_args(false);
   command.add_flag("--micromodem", arguments.micromodem, "a frame of each rate of the WHOI Micro-Modem");
-  command.add_option("--detection", arguments.detection_dB, "signal over noise that the receiver needs, dB; 6")
+  command
+      .add_option("--detection", arguments.detection_dB,
+                  "signal over noise that the receiver needs, dB; absent: that of the transducer, else 6")
       ->check(number_from(-60, 100));
-  command.add_option("--coding-gain", arguments.coding_gain_dB, "dB, added to Eb/N0; 0")->check(number_from(-60, 60));
+  command
+      .add_option("--coding-gain", arguments.coding_gain_dB, "dB, added to Eb/N0; absent: of the sending modem, else 0")
+      ->check(number_from(-60, 60));
   command
       .add_option("--water-depth", arguments.water_depth_m,
                   "of a flat bottom for echoes, m; absent: that of the world below the middle of the link")

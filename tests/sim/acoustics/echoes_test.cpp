@@ -71,6 +71,13 @@ TEST(Echoes, NoneWithoutBounces) {
   EXPECT_EQ(none.spread_s, 0);
 }
 
+TEST(Echoes, AreThereWhereNothingIsLeftOfTheSound) {
+  // 1e6 m at 6 dB/km: powers of 1e-600 are zero as numbers, their ratios are not.
+  MultipathMedium far = clear();
+  far.absorption_dBpkm = 6;
+  EXPECT_NEAR(sim::echoes(mirror(), far, {20, 20, 1e6, no_bottom}, nullptr).signal.linear(), 2, 1e-3);
+}
+
 TEST(Echoes, OfEndsBeyondTheWaterAreThoseAtItsBounds) {
   MultipathConfig config = mirror();
   config.max_bounces = 3;

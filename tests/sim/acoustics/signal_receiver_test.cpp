@@ -123,3 +123,40 @@ TEST(SignalReceiver, WhatIsDroppedIsNotTakenAnyMore) {
 }
 
 }  // namespace
+namespace {
+TakenSignal in_band(std::int64_t flight, double centre_Hz, double level_dB, sim::Time begun = 0s) {
+  TakenSignal taken = signal(flight, level_dB, begun);
+  taken.sound.centre_Hz = centre_Hz;
+  return taken;
+}
+
+TEST(SignalReceiver, TakesSignalsInBandsApartSideBySide) {
+  SignalReceiver receiver;
+  ASSERT_EQ(arrive(receiver, in_band(1, 20000, 10)), SignalLoss::none);
+  ASSERT_EQ(arrive(receiver, in_band(2, 24000, 12, 500ms)), SignalLoss::none);
+  SignalReceiver::Outcome outcome;
+  ASSERT_TRUE(receiver.end(1, 1s, outcome));
+  EXPECT_NEAR(outcome.success, success(10), 1e-12);
+  ASSERT_TRUE(receiver.end(2, 1500ms, outcome));
+  EXPECT_NEAR(outcome.success, success(12), 1e-12);
+}
+
+TEST(SignalReceiver, ASignalTakesOneBandOverAndNotTwo) {
+  SignalReceiver receiver;
+  ASSERT_EQ(arrive(receiver, in_band(1, 20000, 10)), SignalLoss::none);
+  ASSERT_EQ(arrive(receiver, in_band(2, 24000, 10)), SignalLoss::none);
+  std::int64_t displaced = -1;
+  EXPECT_EQ(arrive(receiver, in_band(3, 22000, 30, 100ms), displaced), SignalLoss::busy);
+  EXPECT_EQ(displaced, -1);
+  EXPECT_EQ(arrive(receiver, in_band(4, 18000, 30, 200ms), displaced), SignalLoss::none);
+  EXPECT_EQ(displaced, 1);
+}
+
+TEST(SignalReceiver, DropsAllThatItTakes) {
+  SignalReceiver receiver;
+  ASSERT_EQ(arrive(receiver, in_band(1, 20000, 10)), SignalLoss::none);
+  ASSERT_EQ(arrive(receiver, in_band(2, 24000, 10)), SignalLoss::none);
+  EXPECT_EQ(receiver.drop() + receiver.drop(), 3);
+  EXPECT_FALSE(receiver.taking());
+}
+}  // namespace

@@ -1,0 +1,183 @@
+#include "shoal/client.hpp"
+
+#include <cmath>
+#include <iostream>
+
+#include "bridges/lcm/bus_error.hpp"
+#include "bridges/lcm/lockstep_client.hpp"
+#include "shoal/utime_t.hpp"
+
+namespace shoal {
+
+struct Client::Connection {
+  Connection(const std::string& client, const std::string& url) : name(client), lcm(url, client) {
+    lcm.set_silence_limit(std::chrono::minutes(10));
+  }
+
+  void follow_clock(std::int64_t new_period_us);
+  std::optional<std::int64_t> next_joined_tick();
+  std::optional<std::int64_t> next_free_tick();
+
+  std::string name;
+  bridges::LockstepClient lcm;
+  Counts counts;
+  bool joined = false;
+  std::optional<shoal::sim_tick_t> unanswered;
+  std::int64_t period_us = 0;  ///< of free running; 0: it does not
+  std::optional<std::int64_t> clock_utime;
+  std::optional<std::int64_t> due_utime;
+  bool run_is_over = false;
+  End end = End::none;
+};
+
+namespace {
+
+/// Users of the library know its own error only.
+template <class Work>
+auto with_own_errors(const Work& work) {
+  try {
+    return work();
+  } catch (const bridges::BusError& error) {
+    throw ClientError(error.what());
+  }
+}
+
+Client::End end_of(bridges::LockstepClient::End end) {
+  switch (end) {
+    case bridges::LockstepClient::End::none:
+      return Client::End::none;
+    case bridges::LockstepClient::End::last_tick:
+      return Client::End::last_tick;
+    case bridges::LockstepClient::End::stopped:
+      return Client::End::stopped;
+    case bridges::LockstepClient::End::silence:
+      break;
+  }
+  return Client::End::silence;
+}
+
+}  // namespace
+
+Client::Client(const std::string& name, const std::string& lcm_url)
+    : connection_(with_own_errors([&] { return std::make_unique<Connection>(name, lcm_url); })) {}
+
+Client::~Client() {
+  if (!connection_->joined || connection_->end == End::last_tick) return;
+  try {
+    connection_->lcm.leave();
+  } catch (const std::exception&) {
+    // The world notices after lockstep.timeout_s.
+  }
+}
+
+void Client::subscribe_bytes(const std::string& channel, BytesHandler handler) {
+  Counts& counts = connection_->counts;
+  with_own_errors([&] {
+    connection_->lcm.subscribe(channel, [&counts, channel, handler = std::move(handler),
+                                         told = false](std::span<const std::byte> payload) mutable {
+      ++counts.received;
+      try {
+        handler(payload);
+      } catch (const MessageError& error) {
+        ++counts.bad;
+        if (!told) std::cerr << channel << ": " << error.what() << " (ignored; more such are only counted)\n";
+        told = true;
+      }
+    });
+  });
+}
+
+void Client::publish_bytes(std::string_view channel, std::span<const std::byte> payload) {
+  with_own_errors([&] { connection_->lcm.publish(channel, payload); });
+  ++connection_->counts.published;
+}
+
+void Client::join(double period_s, std::chrono::milliseconds timeout) {
+  with_own_errors([&] { connection_->lcm.join(period_s, timeout); });
+  connection_->joined = true;
+}
+
+void Client::follow(double period_s) {
+  if (!(period_s >= 1e-6) || !(period_s < 1e9)) throw ClientError("the period must be 1e-6 to 1e9 s");
+  with_own_errors([&] { connection_->follow_clock(std::llround(period_s * 1e6)); });
+}
+
+void Client::Connection::follow_clock(std::int64_t new_period_us) {
+  if (period_us == 0) {
+    lcm.subscribe("sim.clock", [this](std::span<const std::byte> payload) {
+      try {
+        clock_utime = shoal::decode<shoal::utime_t>(payload, Finite::any).utime;
+      } catch (const MessageError&) {
+        // Anybody may publish anything; the next one counts.
+      }
+    });
+    lcm.subscribe("sim.tick", [this](std::span<const std::byte> payload) {
+      try {
+        if (shoal::decode<shoal::sim_tick_t>(payload, Finite::any).last != 0) run_is_over = true;
+      } catch (const MessageError&) {
+      }
+    });
+  }
+  period_us = new_period_us;
+  due_utime.reset();
+}
+
+std::optional<std::int64_t> Client::next_tick() {
+  if (connection_->joined) return with_own_errors([&] { return connection_->next_joined_tick(); });
+  if (connection_->period_us == 0) throw std::logic_error("shoal::Client: join() or follow() comes before next_tick()");
+  return with_own_errors([&] { return connection_->next_free_tick(); });
+}
+
+std::optional<std::int64_t> Client::Connection::next_joined_tick() {
+  if (unanswered) lcm.acknowledge(*unanswered);
+  unanswered.reset();
+  shoal::sim_tick_t tick;
+  if (!lcm.next_tick(tick)) {
+    end = end_of(lcm.end());
+    return std::nullopt;
+  }
+  unanswered = tick;
+  return tick.utime;
+}
+
+std::optional<std::int64_t> Client::Connection::next_free_tick() {
+  const std::optional<std::int64_t> before = clock_utime;
+  while (!run_is_over) {
+    if (!lcm.handle_message()) {
+      end = end_of(lcm.end());
+      return std::nullopt;
+    }
+    if (!clock_utime) continue;
+    // A clock that went back is that of a new run.
+    if (!due_utime || (before && *clock_utime < *before)) due_utime = *clock_utime;
+    if (*clock_utime < *due_utime) continue;
+    due_utime = (*clock_utime / period_us + 1) * period_us;
+    return clock_utime;
+  }
+  end = End::last_tick;
+  return std::nullopt;
+}
+
+std::optional<std::int64_t> Client::wait_until(std::int64_t utime) {
+  auto now = next_tick();
+  while (now && *now < utime) now = next_tick();
+  return now;
+}
+
+void Client::stop() noexcept {
+  connection_->lcm.stop();
+}
+
+Client::End Client::end() const {
+  return connection_->end;
+}
+
+void Client::set_silence_limit(std::chrono::milliseconds limit) {
+  connection_->lcm.set_silence_limit(limit);
+}
+
+const Client::Counts& Client::counts() const {
+  return connection_->counts;
+}
+
+}  // namespace shoal

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "shoal/message_codec.hpp"
+
+namespace shoal {
+
+/// A bus that cannot be used, or a simulator that refuses or does not answer; the text says why and what to do.
+class ClientError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The connection of an autonomy program to its vehicle, in one thread:
+///
+///     shoal::Client client("pilot");
+///     client.subscribe<shoal::dvl_t>("auv1.dvl", [&](const shoal::dvl_t& dvl) { ... });
+///     client.join(0.1);
+///     while (client.next_tick()) client.publish("auv1.autopilot.cmd", command);
+///
+/// Handlers are called in next_tick() and wait_until() only, in the order in which messages came.  A payload that is
+/// not what its channel should carry is counted, told once for each channel on standard error, and not handled; so is
+/// one whose handler throws MessageError.  Any other exception of a handler leaves the call that waited.
+class Client {
+ public:
+  enum class End {
+    none,       ///< the run goes on
+    last_tick,  ///< the simulator ended the run
+    stopped,    ///< stop() was called
+    silence,    ///< nothing came for as long as the silence limit
+  };
+  struct Counts {
+    std::uint64_t received = 0;  ///< messages on channels that were subscribed to
+    std::uint64_t bad = 0;       ///< of those, refused
+    std::uint64_t published = 0;
+  };
+  using BytesHandler = std::function<void(std::span<const std::byte>)>;
+
+  /// `name`: of the program, by which the simulator waits for it.  `lcm_url` "": LCM_DEFAULT_URL, then LCM's default.
+  /// Throws ClientError when LCM cannot be used there.
+  explicit Client(const std::string& name, const std::string& lcm_url = {});
+  /// Leaves the lockstep, so that the world does not wait for a program that is gone.
+  ~Client();
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  /// Calls `handler(const Message&)` for each message of this channel.  `numbers`: whether NaN and infinity are
+  /// refused; many reports say NaN for what was not measured.
+  template <class Message, class Handler>
+  void subscribe(const std::string& channel, Handler handler, Finite numbers = Finite::any) {
+    subscribe_bytes(channel, [handler = std::move(handler), numbers](std::span<const std::byte> payload) mutable {
+      handler(shoal::decode<Message>(payload, numbers));
+    });
+  }
+  /// The payload as it came.
+  void subscribe_bytes(const std::string& channel, BytesHandler handler);
+
+  /// At once.  Throws MessageError when an array is not as long as its length member says, ClientError when LCM
+  /// refuses.
+  template <class Message>
+  void publish(std::string_view channel, const Message& message) {
+    encode_into(message, buffer_);
+    publish_bytes(channel, buffer_);
+  }
+  void publish_bytes(std::string_view channel, std::span<const std::byte> payload);
+
+  /// Lockstep: the world waits at a tick every `period_s` of simulated time, a multiple of its step.  Throws
+  /// ClientError with the simulator's words when it refuses, and when none answers within `timeout` of wall time.
+  void join(double period_s, std::chrono::milliseconds timeout = std::chrono::seconds(30));
+  /// Free running: the world does not wait.  next_tick() then returns when sim.clock passes a multiple of `period_s`;
+  /// sim.clock comes at `state_rate_hz` of the world, 10 Hz unless it says otherwise.
+  void follow(double period_s);
+
+  /// In lockstep this acknowledges the tick before: what was published since acts in the next step.  Waits for the next
+  /// tick, and gives the simulator's time in microseconds.  Every report up to then has been handled (in free running:
+  /// those that came).  Nothing when the run is over: see end().  Throws std::logic_error before join() and follow().
+  std::optional<std::int64_t> next_tick();
+  /// Goes through the ticks up to the first one at or after `utime`.
+  std::optional<std::int64_t> wait_until(std::int64_t utime);
+
+  /// Makes next_tick() return, for good.  From a signal handler or another thread.
+  void stop() noexcept;
+  End end() const;
+  /// How much wall time may pass without any message; zero: for ever.  10 minutes unless set: somebody may look at the
+  /// world while it is paused.
+  void set_silence_limit(std::chrono::milliseconds limit);
+  const Counts& counts() const;
+
+ private:
+  struct Connection;
+  std::unique_ptr<Connection> connection_;
+  std::vector<std::byte> buffer_;
+};
+
+}  // namespace shoal

@@ -1,0 +1,168 @@
+"""Estimates where an AUV is, beside whatever steers it, in lockstep with the simulator.
+
+    PYTHONPATH=build/release/python:examples/python python3 examples/python/coop_auv.py auv
+
+Reads NAME.dvl, .compass, .pressure, .gps and .modem; publishes NAME.python_estimate.
+"""
+import math
+import struct
+import sys
+
+import lcm
+import shoal
+
+from marine_ekf import MarineEkf, turned
+
+PERIOD_S = 0.5
+SOUND_SPEED_MPS = 1500.0
+WEEK_MS = 7 * 24 * 3600 * 1000
+FIRST_SUNDAY_MS = 3 * 24 * 3600 * 1000
+
+
+def checksum(data):
+    """CRC-16/CCITT-FALSE."""
+    remainder = 0xFFFF
+    for byte in data:
+        remainder ^= byte << 8
+        for _ in range(8):
+            remainder = (remainder << 1) ^ (0x1021 if remainder & 0x8000 else 0)
+        remainder &= 0xFFFF
+    return remainder
+
+
+def decode_frame(data, near_utime):
+    """The state in a frame of docs/autonomy.md, as a dict; None when it is none."""
+    if len(data) != 28 or data[0] != 0x10 or checksum(data[:26]) != struct.unpack(">H", data[26:])[0]:
+        return None
+    week_ms, east, north = struct.unpack(">Iii", data[2:14])
+    east_std, north_std, correlation, speed, course = struct.unpack(">HHbHH", data[17:26])
+    near_ms = near_utime // 1000
+    ahead_ms = (week_ms - (near_ms - FIRST_SUNDAY_MS) + WEEK_MS // 2) % WEEK_MS - WEEK_MS // 2
+    return {
+        "sender": data[1],
+        "utime": (near_ms + ahead_ms) * 1000,
+        "position_m": (east / 100, north / 100, -int.from_bytes(data[14:17], "big") / 100),
+        "covariance_m2": ((east_std / 100) ** 2, correlation / 127 * east_std * north_std / 1e4,
+                          (north_std / 100) ** 2),
+        "velocity_mps": turned((speed / 100, 0.0), course / 65536 * 2 * math.pi),
+    }
+
+
+class CoopAuv:
+    def __init__(self, name):
+        self.name = name
+        self.ekf = None
+        self.yaw_rad = None
+        self.depth_m = 0.0
+        self.fix_utime = 0
+
+    def on_compass(self, compass):
+        self.yaw_rad = math.pi / 2 - compass.heading_true_rad
+
+    def on_pressure(self, pressure):
+        self.depth_m = pressure.depth_m
+
+    def on_gps(self, fix):
+        if fix.gps_lock < 1 or self.yaw_rad is None:
+            return
+        if self.ekf is None:
+            self.ekf = MarineEkf(fix.utime * 1e-6, fix.xyz_pos[:2], fix.horizontal_accuracy, states=6)
+        elif fix.utime - self.fix_utime < 5_000_000:
+            return
+        else:
+            self.ekf.update_position(fix.xyz_pos[:2], fix.horizontal_accuracy)
+        self.fix_utime = fix.utime
+
+    def on_dvl(self, dvl):
+        if self.ekf is not None and self.yaw_rad is not None and dvl.bottom_lock:
+            self.ekf.predict(dvl.utime * 1e-6, turned(dvl.velocity_mps[:2], self.yaw_rad))
+
+    def on_modem(self, packet):
+        state = decode_frame(bytes(packet.data), packet.sent_utime)
+        if state is None or self.ekf is None:
+            return
+        moved_s = (packet.sent_utime - state["utime"]) * 1e-6
+        east, north, up = state["position_m"]
+        beacon = (east + moved_s * state["velocity_mps"][0], north + moved_s * state["velocity_mps"][1], up)
+        range_m = packet.travel_time_s * SOUND_SPEED_MPS
+        self.ekf.update_range(packet.utime * 1e-6, range_m, math.hypot(1.0, 0.001 * range_m), beacon,
+                              state["covariance_m2"], -self.depth_m)
+
+    def estimate(self):
+        message = shoal.estimate_t()
+        P = self.ekf.P
+        message.utime = round(self.ekf.time_s * 1e6)
+        message.position_m = [self.ekf.x[0], self.ekf.x[1], -self.depth_m]
+        message.covariance_m2 = [P[0][0], P[0][1], 0.0, P[1][0], P[1][1], 0.0, 0.0, 0.0, 0.01]
+        message.yaw_rad = self.yaw_rad + self.ekf.x[2]
+        message.clock_error_s = self.ekf.x[4] / SOUND_SPEED_MPS
+        return message
+
+
+class Lockstep:
+    """Joins, and calls `decide` at each tick; see docs/howto_attach_autonomy.md."""
+
+    def __init__(self, name, period_s):
+        self.lc = lcm.LCM()
+        self.name, self.period_s = name, period_s
+        self.joined = self.over = False
+        self.done_step = -1
+        self.decide = lambda utime: None
+        self.lc.subscribe("sim\\.control\\.reply", self.on_reply)
+        self.lc.subscribe("sim\\.tick", self.on_tick)
+
+    def subscribe(self, channel, message, handler):
+        self.lc.subscribe(channel.replace(".", "\\."), lambda _, data: handler(message.decode(data)))
+
+    def publish(self, channel, message):
+        self.lc.publish(channel, message.encode())
+
+    def run(self):
+        while not self.joined:
+            request = shoal.sim_control_request_t()
+            request.id, request.client, request.command, request.value = 1, self.name, "join", self.period_s
+            self.publish("sim.control", request)
+            self.lc.handle_timeout(200)
+        while not self.over:
+            self.lc.handle()
+
+    def on_reply(self, channel, data):
+        reply = shoal.sim_control_reply_t.decode(data)
+        if reply.client == self.name and reply.id == 1:
+            if not reply.ok:
+                raise SystemExit(reply.text)
+            self.joined = True
+
+    def on_tick(self, channel, data):
+        tick = shoal.sim_tick_t.decode(data)
+        if tick.last:
+            self.over = True
+        elif self.name in tick.client:
+            if tick.step > self.done_step:
+                self.done_step = tick.step
+                self.decide(tick.utime)
+            ack = shoal.sim_ack_t()
+            ack.utime, ack.step, ack.client = tick.utime, tick.step, self.name
+            self.publish("sim.ack", ack)
+
+
+def main():
+    name = sys.argv[1] if len(sys.argv) > 1 else "auv"
+    auv = CoopAuv(name)
+    bus = Lockstep(name + "_python", PERIOD_S)
+    bus.subscribe(name + ".compass", shoal.compass_t, auv.on_compass)
+    bus.subscribe(name + ".pressure", shoal.pressure_t, auv.on_pressure)
+    bus.subscribe(name + ".gps", shoal.gps_data_t, auv.on_gps)
+    bus.subscribe(name + ".dvl", shoal.dvl_t, auv.on_dvl)
+    bus.subscribe(name + ".modem", shoal.acoustic_received_t, auv.on_modem)
+
+    def decide(utime):
+        if auv.ekf is not None:
+            bus.publish(name + ".python_estimate", auv.estimate())
+
+    bus.decide = decide
+    bus.run()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,132 @@
+"""The filter of shoal-coop-auv in plain Python: position by dead reckoning and one-way ranges.
+
+States: east, north (m), heading bias (rad), speed scale, range bias (m), drift of that (m/s).  The equations are in
+docs/autonomy.md.
+"""
+import math
+from collections import deque
+
+N = 6
+
+
+def diagonal(values):
+    return [[values[i] if i == j else 0.0 for j in range(N)] for i in range(N)]
+
+
+def times(a, b):
+    return [[sum(a[i][k] * b[k][j] for k in range(N)) for j in range(N)] for i in range(N)]
+
+
+def transposed(a):
+    return [list(row) for row in zip(*a)]
+
+
+def turned(v, angle):
+    c, s = math.cos(angle), math.sin(angle)
+    return c * v[0] - s * v[1], s * v[0] + c * v[1]
+
+
+class MarineEkf:
+    GATE = 10.83  # 99.9 % of chi-square with one degree
+
+    def __init__(self, time_s, position_m, position_std_m, states=4, heading_bias_std_rad=0.05, speed_scale_std=0.03,
+                 range_bias_std_m=30.0, range_drift_std_mps=0.005, heading_noise=0.035, speed_noise=0.01):
+        stds = [position_std_m, position_std_m, heading_bias_std_rad, speed_scale_std, range_bias_std_m,
+                range_drift_std_mps]
+        self.x = [position_m[0], position_m[1], 0.0, 0.0, 0.0, 0.0]
+        self.P = diagonal([std ** 2 if i < states else 0.0 for i, std in enumerate(stds)])
+        self.walks = [0.0, 0.0, 1e-4, 1e-5, 0.01, 1e-5]
+        self.states = states
+        self.heading_noise, self.speed_noise = heading_noise, speed_noise
+        self.time_s = time_s
+        self.way = deque([(time_s, 0.0, 0.0)])  # measured, since the start
+        self.refusals = 0
+
+    def predict(self, time_s, velocity_mps):
+        """Moves on with a velocity over ground (east, north) as DVL and compass measure it."""
+        dt = time_s - self.time_s
+        if dt <= 0:
+            return
+        way = velocity_mps[0] * dt, velocity_mps[1] * dt
+        by_scale = turned(way, self.x[2])
+        moved = [(1 + self.x[3]) * m for m in by_scale]
+        F = diagonal([1.0] * N)
+        F[0][2], F[1][2] = -moved[1], moved[0]
+        F[0][3], F[1][3] = by_scale
+        F[4][5] = dt
+        self.P = times(times(F, self.P), transposed(F))
+
+        speed = math.hypot(*velocity_mps)
+        along, across = self.speed_noise ** 2, self.speed_noise ** 2 + (speed * self.heading_noise) ** 2
+        length = math.hypot(*moved)
+        c, s = (moved[0] / length, moved[1] / length) if length > 0 else (1.0, 0.0)
+        self.P[0][0] += (along * c * c + across * s * s) * dt
+        self.P[1][1] += (along * s * s + across * c * c) * dt
+        self.P[0][1] += (along - across) * c * s * dt
+        self.P[1][0] = self.P[0][1]
+        for i in range(2, self.states):
+            self.P[i][i] += self.walks[i] ** 2 * dt
+
+        self.x[0] += moved[0]
+        self.x[1] += moved[1]
+        self.x[4] += self.x[5] * dt
+        self.time_s = time_s
+        self.way.append((time_s, self.way[-1][1] + way[0], self.way[-1][2] + way[1]))
+        while self.way[1][0] < time_s - 60:
+            self.way.popleft()
+
+    def way_since(self, time_s):
+        """Measured way from then to now; None when that is too long ago."""
+        later = self.way[-1]
+        for mark in reversed(self.way):
+            if mark[0] <= time_s:
+                part = (time_s - mark[0]) / (later[0] - mark[0]) if later[0] > mark[0] else 0.0
+                return tuple(self.way[-1][i] - mark[i] - part * (later[i] - mark[i]) for i in (1, 2))
+            later = mark
+        return None
+
+    def update_range(self, time_s, range_m, std_m, beacon_m, beacon_covariance, own_z_m):
+        """A slant range that arrived at time_s from a beacon at (east, north, up) with a covariance (ee, en, nn)."""
+        since = self.way_since(time_s)
+        if since is None:
+            return False
+        by_scale = turned(since, self.x[2])
+        moved = [(1 + self.x[3]) * m for m in by_scale]
+        d = self.x[0] - moved[0] - beacon_m[0], self.x[1] - moved[1] - beacon_m[1]
+        distance = max(math.hypot(d[0], d[1], own_z_m - beacon_m[2]), 1.0)
+        u = d[0] / distance, d[1] / distance
+        age = self.time_s - time_s
+        h = [u[0], u[1], u[0] * moved[1] - u[1] * moved[0], -u[0] * by_scale[0] - u[1] * by_scale[1], 1.0, -age]
+        ee, en, nn = beacon_covariance
+        sideways = self.P[0][0] + self.P[1][1] - sum(u[i] * u[j] * self.P[i][j] for i in (0, 1) for j in (0, 1))
+        variance = (std_m ** 2 + u[0] ** 2 * ee + 2 * u[0] * u[1] * en + u[1] ** 2 * nn
+                    + 3 * (sideways / (2 * distance)) ** 2)
+        return self.update(h, range_m - distance - self.x[4] + self.x[5] * age, variance)
+
+    def update_position(self, position_m, std_m):
+        """A position by GPS, of now: one coordinate after the other, as their errors are independent."""
+        east = self.update([1.0, 0, 0, 0, 0, 0], position_m[0] - self.x[0], std_m ** 2)
+        north = self.update([0, 1.0, 0, 0, 0, 0], position_m[1] - self.x[1], std_m ** 2)
+        return east and north
+
+    def update(self, h, innovation, variance):
+        """One number measured with the row h.  False when it is refused."""
+        Ph = [sum(self.P[i][j] * h[j] for j in range(N)) for i in range(N)]
+        s = sum(h[i] * Ph[i] for i in range(N)) + variance
+        if not innovation ** 2 / s <= self.GATE:
+            self.refusals += 1
+            if self.refusals < 5 or not math.isfinite(innovation):
+                return False
+            for i in (0, 1) + ((4,) if self.states > 4 else ()):  # sure and wrong: open it
+                self.P[i][i] += innovation ** 2
+            self.refusals = 0
+            return self.update(h, innovation, variance)
+        self.refusals = 0
+        k = [p / s for p in Ph]
+        self.x = [self.x[i] + k[i] * innovation for i in range(N)]
+        A = [[(1.0 if i == j else 0.0) - k[i] * h[j] for j in range(N)] for i in range(N)]
+        self.P = times(times(A, self.P), transposed(A))  # Joseph's form
+        for i in range(N):
+            for j in range(N):
+                self.P[i][j] += k[i] * k[j] * variance
+        return True

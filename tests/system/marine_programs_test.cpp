@@ -1,0 +1,64 @@
+#include <gmock/gmock.h>
+
+#include "tests/system/shoal_program.hpp"
+
+namespace {
+
+using system_test::built;
+using system_test::Ended;
+using system_test::own_url;
+using testing::HasSubstr;
+
+Ended run(const std::string& name, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), built(name));
+  system_test::Program program(std::move(arguments));
+  const int exit_code = program.wait();
+  return {exit_code, program.output(), program.errors()};
+}
+
+TEST(MarinePrograms, HelpShowsExamplesAndExitCodes) {
+  for (const char* name : {"shoal-coop-craft", "shoal-coop-auv", "shoal-coop-rover"}) {
+    const Ended ended = run(name, {"--help"});
+    EXPECT_EQ(ended.exit_code, 0) << name;
+    EXPECT_THAT(ended.output, HasSubstr("Example"));
+    EXPECT_THAT(ended.output, HasSubstr("Exit codes: 0 the run ended, 2 usage"));
+  }
+}
+
+struct Mistake {
+  const char* program;
+  std::vector<std::string> arguments;
+  const char* says;
+};
+
+TEST(MarinePrograms, WrongUsageIsExitCodeTwoAndSaysWhat) {
+  const std::vector<Mistake> mistakes = {
+      {"shoal-coop-craft", {}, "--name is required"},
+      {"shoal-coop-craft", {"--name", "b"}, "the behaviour 'route' needs --route"},
+      {"shoal-coop-craft", {"--name", "b", "--route", "1,x"}, "'x' is not a number"},
+      {"shoal-coop-craft", {"--name", "b", "--route", "1,1", "--slot", "2/2"}, "0 <= I < N, got 2/2"},
+      {"shoal-coop-craft", {"--name", "b", "--route", "1,1", "--slot", "0/2", "--guard-s", "10"}, "guard time shorter"},
+      {"shoal-coop-craft", {"--name", "b", "--route", "1,1", "--slot", "0/2", "--random-s", "5"}, "give one"},
+      {"shoal-coop-auv", {"--name", "a", "--behaviour", "orbit:1"}, "unknown behaviour 'orbit:1'"},
+      {"shoal-coop-auv", {"--name", "a", "--behaviour", "circle:1,2"}, "circle:X,Y,RADIUS"},
+      {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--states", "3"}, "--states"},
+      {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--start", "1"}, "'1' is not of the form x,y"},
+      {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--steer", "luck"}, "--steer"},
+      {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--depth", "-1"}, "--depth"},
+  };
+  for (const Mistake& mistake : mistakes) {
+    const Ended ended = run(mistake.program, mistake.arguments);
+    EXPECT_EQ(ended.exit_code, 2) << mistake.says;
+    EXPECT_THAT(ended.errors, HasSubstr(mistake.says));
+  }
+}
+
+TEST(MarinePrograms, WithoutASimulatorIsExitCodeFour) {
+  for (const char* name : {"shoal-coop-craft", "shoal-coop-auv"}) {
+    const Ended ended = run(name, {"--name", "a", "--route", "1,1", "--join-timeout", "0.2", "--lcm-url", own_url(3)});
+    EXPECT_EQ(ended.exit_code, 4) << name;
+    EXPECT_THAT(ended.errors, HasSubstr("no simulator answered 'a' within 200 ms"));
+  }
+}
+
+}  // namespace

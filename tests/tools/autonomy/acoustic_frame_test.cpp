@@ -1,0 +1,181 @@
+#include "tools/autonomy/acoustic_frame.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string_view>
+#include <vector>
+
+#include "sim/math.hpp"
+#include "sim/random/random.hpp"
+
+namespace {
+
+namespace frame = autonomy::acoustic_frame;
+using autonomy::AcousticState;
+
+constexpr std::int64_t second = 1'000'000;
+constexpr std::int64_t week = 7 * 24 * 3600 * second;
+
+AcousticState some_state(sim::Random& random) {
+  AcousticState state;
+  state.sender = static_cast<int>(random.integer_below(256));
+  state.utime = 1'700'000'000 * second + static_cast<std::int64_t>(random.integer_below(2'000'000'000));
+  state.east_m = 2e4 * (2 * random.uniform() - 1);
+  state.north_m = 2e4 * (2 * random.uniform() - 1);
+  state.depth_m = 6000 * random.uniform();
+  state.east_std_m = 600 * random.uniform();
+  state.north_std_m = 600 * random.uniform();
+  state.correlation = 2 * random.uniform() - 1;
+  state.speed_mps = 20 * random.uniform();
+  state.course_rad = std::numbers::pi * (2 * random.uniform() - 1);
+  return state;
+}
+
+TEST(AcousticFrame, FitsIntoAFrameOfThe32ByteRate) {
+  EXPECT_LE(frame::size_bytes, 32u);
+}
+
+TEST(AcousticFrame, ChecksumIsThePublishedOne) {
+  // The check value of CRC-16/CCITT-FALSE, of the digits 1 to 9.
+  constexpr std::string_view digits = "123456789";
+  EXPECT_EQ(frame::checksum({reinterpret_cast<const std::uint8_t*>(digits.data()), digits.size()}), 0x29b1);
+}
+
+TEST(AcousticFrame, BytesAreWhereTheTableSays) {
+  AcousticState state;
+  state.sender = 7;
+  state.utime = (3 * 86400 + 1) * second;  // one second after the first Sunday began
+  state.east_m = 1;
+  state.north_m = -1;
+  state.depth_m = 2.55;
+  state.east_std_m = 0.301;  // rounded up
+  state.north_std_m = 1e6;   // as large as it gets
+  state.correlation = -1;
+  state.speed_mps = 1.5;
+  state.course_rad = std::numbers::pi / 2;
+  const auto bytes = frame::encode(state);
+  ASSERT_TRUE(bytes);
+  const std::vector<std::uint8_t> expected = {0x10, 7, 0, 0,   0x03, 0xe8, 0,    0,    0,    100, 0xff, 0xff, 0xff,
+                                              0x9c, 0, 0, 255, 0,    31,   0xff, 0xff, 0x81, 0,   150,  0x40, 0};
+  EXPECT_EQ(std::vector<std::uint8_t>(bytes->begin(), bytes->end() - 2), expected);
+}
+
+TEST(AcousticFrame, ComesBackWithinItsQuantisation) {
+  sim::Random random(1, "frame");
+  for (int i = 0; i < 2000; ++i) {
+    random.begin_step(i);
+    const AcousticState sent = some_state(random);
+    const auto bytes = frame::encode(sent);
+    ASSERT_TRUE(bytes);
+    const auto received = frame::decode(*bytes, sent.utime + 5 * second);
+    ASSERT_TRUE(received);
+    constexpr double half_cm = 0.005 + 1e-9;
+    EXPECT_EQ(received->sender, sent.sender);
+    EXPECT_LE(received->utime, sent.utime);
+    EXPECT_GT(received->utime, sent.utime - 1000);
+    EXPECT_NEAR(received->east_m, sent.east_m, half_cm);
+    EXPECT_NEAR(received->north_m, sent.north_m, half_cm);
+    EXPECT_NEAR(received->depth_m, sent.depth_m, half_cm);
+    // Nobody is told to be surer than it is.
+    EXPECT_GE(received->east_std_m, sent.east_std_m - 1e-9);
+    EXPECT_LE(received->east_std_m, sent.east_std_m + 0.01 + 1e-9);
+    EXPECT_NEAR(received->north_std_m, sent.north_std_m, 0.01 + 1e-9);
+    EXPECT_NEAR(received->correlation, sent.correlation, 0.5 / 127 + 1e-9);
+    EXPECT_NEAR(received->speed_mps, sent.speed_mps, half_cm);
+    EXPECT_NEAR(sim::wrap_angle(received->course_rad - sent.course_rad), 0, std::numbers::pi / 65536 + 1e-9);
+  }
+}
+
+TEST(AcousticFrame, EveryErrorOfOneOrTwoBitsIsFound) {
+  sim::Random random(2, "frame");
+  random.begin_step(0);
+  const AcousticState state = some_state(random);
+  const frame::Bytes good = *frame::encode(state);
+  for (std::size_t i = 0; i < 8 * good.size(); ++i)
+    for (std::size_t j = i; j < 8 * good.size(); ++j) {
+      frame::Bytes bad = good;
+      bad[i / 8] ^= static_cast<std::uint8_t>(1u << (i % 8));
+      if (j != i) bad[j / 8] ^= static_cast<std::uint8_t>(1u << (j % 8));
+      ASSERT_FALSE(frame::decode(bad, state.utime)) << i << ' ' << j;
+    }
+}
+
+TEST(AcousticFrame, EveryOtherLengthIsRefused) {
+  sim::Random random(3, "frame");
+  random.begin_step(0);
+  const AcousticState state = some_state(random);
+  const frame::Bytes good = *frame::encode(state);
+  std::vector<std::uint8_t> bytes(good.begin(), good.end());
+  bytes.resize(64);
+  for (std::size_t length = 0; length <= bytes.size(); ++length)
+    EXPECT_EQ(frame::decode(std::span(bytes).first(length), state.utime).has_value(), length == good.size());
+}
+
+TEST(AcousticFrame, RandomBytesPassAsRarelyAsTheChecksumSays) {
+  sim::Random random(4, "frame");
+  int passed = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    random.begin_step(i);
+    frame::Bytes bytes;
+    for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random.bits());
+    bytes[0] = frame::version << 4;  // else hardly any comes as far as the checksum
+    const auto state = frame::decode(bytes, 0);
+    if (!state) continue;
+    ++passed;
+    EXPECT_TRUE(std::isfinite(state->east_m) && std::abs(state->correlation) <= 1 && state->east_std_m > 0);
+  }
+  EXPECT_LE(passed, 15);  // 3 expected, of which 14 % have a time of the week
+}
+
+TEST(AcousticFrame, OtherVersionsAndKindsAreRefused) {
+  sim::Random random(5, "frame");
+  random.begin_step(0);
+  const AcousticState state = some_state(random);
+  frame::Bytes bytes = *frame::encode(state);
+  for (int first = 0; first < 256; ++first) {
+    bytes[0] = static_cast<std::uint8_t>(first);
+    const std::uint16_t checksum = frame::checksum(std::span(bytes).first(bytes.size() - 2));
+    bytes[bytes.size() - 2] = static_cast<std::uint8_t>(checksum >> 8);
+    bytes[bytes.size() - 1] = static_cast<std::uint8_t>(checksum);
+    EXPECT_EQ(frame::decode(bytes, state.utime).has_value(), first == 0x10);
+  }
+}
+
+TEST(AcousticFrame, TimeIsRightAcrossTheEndOfTheWeek) {
+  AcousticState state;
+  state.east_std_m = state.north_std_m = 1;
+  const std::int64_t sunday = 3000 * week + 3 * 24 * 3600 * second;
+  for (const std::int64_t sent : {sunday - second, sunday, sunday + second, std::int64_t{0}, -5 * second})
+    for (const std::int64_t late : {-2 * second, std::int64_t{0}, 3 * second, week / 2 - second, second - week / 2}) {
+      state.utime = sent;
+      const auto received = frame::decode(*frame::encode(state), sent + late);
+      ASSERT_TRUE(received);
+      EXPECT_EQ(received->utime, sent);
+    }
+}
+
+TEST(AcousticFrame, WhatDoesNotFitIsNotSent) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  AcousticState good;
+  EXPECT_TRUE(frame::encode(good));
+  const auto refused = [&](auto change) {
+    AcousticState state = good;
+    change(state);
+    return !frame::encode(state);
+  };
+  EXPECT_TRUE(refused([](AcousticState& s) { s.sender = 256; }));
+  EXPECT_TRUE(refused([](AcousticState& s) { s.sender = -1; }));
+  EXPECT_TRUE(refused([&](AcousticState& s) { s.east_m = nan; }));
+  EXPECT_TRUE(refused([](AcousticState& s) { s.north_m = 3e7; }));
+  EXPECT_TRUE(refused([](AcousticState& s) { s.depth_m = -1; }));
+  EXPECT_TRUE(refused([](AcousticState& s) { s.depth_m = 2e5; }));
+  EXPECT_TRUE(refused([](AcousticState& s) { s.east_std_m = -1; }));
+  EXPECT_TRUE(refused([](AcousticState& s) { s.correlation = 1.5; }));
+  EXPECT_TRUE(refused([](AcousticState& s) { s.speed_mps = -0.1; }));
+  EXPECT_TRUE(refused([](AcousticState& s) { s.course_rad = std::numeric_limits<double>::infinity(); }));
+}
+
+}  // namespace

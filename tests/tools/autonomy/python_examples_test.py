@@ -1,0 +1,98 @@
+"""The Python examples: the filter against the truth and closed forms, the frame against the bytes of the C++ codec."""
+import math
+import os
+import random
+import sys
+import types
+import unittest
+
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..")
+sys.path.insert(0, os.path.join(ROOT, "examples", "python"))
+
+# coop_auv.py imports them; Debian has no lcm for Python, and nothing of them is called here.
+for name in ("lcm", "shoal"):
+    sys.modules.setdefault(name, types.ModuleType(name))
+
+import coop_auv  # noqa: E402
+from marine_ekf import MarineEkf, turned  # noqa: E402
+
+
+class Filter(unittest.TestCase):
+    def test_heading_bias_makes_it_unsure_across_the_way(self):
+        ekf = MarineEkf(0, (0, 0), 0, heading_bias_std_rad=0.05, speed_scale_std=0.02, heading_noise=0, speed_noise=0)
+        ekf.walks = [0] * 6
+        for t in range(1, 1001):
+            ekf.predict(t, (0, 2))
+        self.assertAlmostEqual(math.sqrt(ekf.P[0][0]), 2000 * 0.05, delta=1e-6)
+        self.assertAlmostEqual(math.sqrt(ekf.P[1][1]), 2000 * 0.02, delta=1e-6)
+
+    def test_an_old_range_belongs_to_where_it_was(self):
+        ekf = MarineEkf(0, (100, 0), 3)
+        for t in range(1, 21):
+            ekf.predict(t, (2, 1))
+        self.assertTrue(ekf.update_range(10.5, math.hypot(121, 10.5), 1, (0, 0, 0), (0, 0, 0), 0))
+        self.assertAlmostEqual(ekf.x[0], 140, delta=1e-9)
+        self.assertAlmostEqual(ekf.x[1], 20, delta=1e-9)
+
+    def test_ranges_bound_the_error(self):
+        dice = random.Random(1)
+        ekf = MarineEkf(0, (0, 0), 1, states=6)
+        beacons = ((300, 300, -1), (900, -250, -1))
+        clock_m, reckoned = 18.0, [0.0, 0.0]
+        for t in range(1, 801):
+            measured = turned((1.5, 0), 0.07 + 0.02 * dice.gauss(0, 1))
+            ekf.predict(t, measured)
+            reckoned = [reckoned[i] + measured[i] for i in (0, 1)]
+            if t % 10 == 0 and t > 5:
+                heard = t - 3.2  # the packet is complete later
+                beacon = beacons[t // 10 % 2]
+                slant = math.hypot(1.5 * heard - beacon[0], beacon[1], 19)
+                ekf.update_range(heard, slant + clock_m + dice.gauss(0, 1), 1, beacon, (0.01, 0, 0.01), -20)
+        self.assertGreater(math.hypot(reckoned[0] - 1200, reckoned[1]), 75)
+        self.assertLess(math.hypot(ekf.x[0] - 1200, ekf.x[1]), 4)
+        self.assertAlmostEqual(ekf.x[4], clock_m, delta=3)
+
+    def test_outliers_are_refused_until_there_are_too_many(self):
+        ekf = MarineEkf(0, (100, 0), 1)
+        used = [ekf.update_range(0, 150, 1, (0, 0, 0), (0, 0, 0), 0) for _ in range(5)]
+        self.assertEqual(used, [False] * 4 + [True])
+        self.assertFalse(ekf.update_range(0, math.nan, 1, (0, 0, 0), (0, 0, 0), 0))
+
+
+class Frame(unittest.TestCase):
+    # The frame of the test AcousticFrame.BytesAreWhereTheTableSays.
+    BYTES = bytes([0x10, 7, 0, 0, 3, 0xE8, 0, 0, 0, 100, 0xFF, 0xFF, 0xFF, 0x9C, 0, 0, 255, 0, 31, 0xFF, 0xFF, 0x81, 0,
+                   150, 0x40, 0])
+
+    def test_is_read_as_it_was_written(self):
+        data = self.BYTES + coop_auv.checksum(self.BYTES).to_bytes(2, "big")
+        state = coop_auv.decode_frame(data, 3 * 86400 * 10**6)
+        self.assertEqual(state["sender"], 7)
+        self.assertEqual(state["utime"], (3 * 86400 + 1) * 10**6)
+        self.assertEqual(state["position_m"], (1, -1, -2.55))
+        self.assertAlmostEqual(state["covariance_m2"][0], 0.31**2)
+        self.assertAlmostEqual(state["velocity_mps"][1], 1.5)
+
+    def test_checksum_is_the_published_one(self):
+        self.assertEqual(coop_auv.checksum(b"123456789"), 0x29B1)
+
+    def test_what_is_no_frame_is_refused(self):
+        data = self.BYTES + coop_auv.checksum(self.BYTES).to_bytes(2, "big")
+        self.assertIsNone(coop_auv.decode_frame(data[:-1], 0))
+        for bit in range(8 * len(data)):
+            bad = bytearray(data)
+            bad[bit // 8] ^= 1 << bit % 8
+            self.assertIsNone(coop_auv.decode_frame(bytes(bad), 0))
+
+
+class Page(unittest.TestCase):
+    def test_shows_the_handlers_of_the_example(self):
+        with open(os.path.join(ROOT, "examples", "python", "coop_auv.py"), encoding="utf-8") as file:
+            text = file.read()
+        handlers = text[text.index("class CoopAuv:"):text.index("    def estimate(self):")].rstrip()
+        with open(os.path.join(ROOT, "docs", "howto_python.md"), encoding="utf-8") as file:
+            self.assertIn(handlers, file.read())
+
+
+if __name__ == "__main__":
+    unittest.main()

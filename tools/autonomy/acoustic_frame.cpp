@@ -1,0 +1,134 @@
+#include "tools/autonomy/acoustic_frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "sim/math.hpp"
+
+namespace autonomy::acoustic_frame {
+
+namespace {
+
+constexpr std::int64_t week_ms = 7LL * 24 * 3600 * 1000;
+constexpr std::int64_t first_sunday_ms = 3LL * 24 * 3600 * 1000;  // the epoch was a Thursday
+constexpr double turn = 65536;
+
+class Writer {
+ public:
+  /// The low `count` bytes of a number, the highest first.
+  void put(std::int64_t value, int count) {
+    for (int shift = 8 * (count - 1); shift >= 0; shift -= 8)
+      bytes[used_++] = static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> shift);
+  }
+  Bytes bytes{};
+
+ private:
+  std::size_t used_ = 0;
+};
+
+class Reader {
+ public:
+  explicit Reader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+  std::int64_t unsigned_number(int count) {
+    std::int64_t value = 0;
+    for (int i = 0; i < count; ++i) value = value * 256 + bytes_[used_++];
+    return value;
+  }
+  std::int64_t signed_number(int count) {
+    const std::int64_t value = unsigned_number(count);
+    const std::int64_t half = std::int64_t{1} << (8 * count - 1);
+    return value < half ? value : value - 2 * half;
+  }
+
+ private:
+  std::span<const std::uint8_t> bytes_;
+  std::size_t used_ = 0;
+};
+
+std::int64_t floor_modulo(std::int64_t a, std::int64_t b) {
+  const std::int64_t rest = a % b;
+  return rest < 0 ? rest + b : rest;
+}
+
+std::int64_t floor_ms(std::int64_t utime) {
+  return (utime - floor_modulo(utime, 1000)) / 1000;
+}
+
+/// The 65535th is also what is too large.
+std::int64_t saturated_up(double value) {
+  return static_cast<std::int64_t>(std::min(std::ceil(value - 1e-9), 65535.0));
+}
+
+bool fits(const AcousticState& s) {
+  for (const double number :
+       {s.east_m, s.north_m, s.depth_m, s.east_std_m, s.north_std_m, s.correlation, s.speed_mps, s.course_rad})
+    if (!std::isfinite(number)) return false;
+  constexpr double most_m = 2.1e7;
+  return s.sender >= 0 && s.sender <= 255 && std::abs(s.east_m) < most_m && std::abs(s.north_m) < most_m &&
+         s.depth_m > -0.005 && s.depth_m < 167'000 && s.east_std_m >= 0 && s.north_std_m >= 0 && s.speed_mps >= 0 &&
+         std::abs(s.correlation) <= 1;
+}
+
+std::int64_t centimetres(double metres) {
+  return std::llround(100 * metres);
+}
+
+}  // namespace
+
+std::uint16_t checksum(std::span<const std::uint8_t> bytes) {
+  std::uint32_t remainder = 0xffff;
+  for (const std::uint8_t byte : bytes) {
+    remainder ^= static_cast<std::uint32_t>(byte) << 8;
+    for (int bit = 0; bit < 8; ++bit) remainder = (remainder << 1) ^ ((remainder & 0x8000) != 0 ? 0x1021u : 0u);
+    remainder &= 0xffff;
+  }
+  return static_cast<std::uint16_t>(remainder);
+}
+
+std::optional<Bytes> encode(const AcousticState& state) {
+  if (!fits(state)) return std::nullopt;
+  Writer out;
+  out.put(version << 4 | state_kind, 1);
+  out.put(state.sender, 1);
+  out.put(floor_modulo(floor_ms(state.utime) - first_sunday_ms, week_ms), 4);
+  out.put(centimetres(state.east_m), 4);
+  out.put(centimetres(state.north_m), 4);
+  out.put(std::max<std::int64_t>(0, centimetres(state.depth_m)), 3);
+  // Never zero: nobody knows so well where it is.
+  out.put(std::max<std::int64_t>(1, saturated_up(100 * state.east_std_m)), 2);
+  out.put(std::max<std::int64_t>(1, saturated_up(100 * state.north_std_m)), 2);
+  out.put(std::llround(127 * state.correlation), 1);
+  out.put(std::min<std::int64_t>(centimetres(std::min(state.speed_mps, 1000.0)), 65535), 2);
+  out.put(std::llround(std::remainder(state.course_rad, 2 * std::numbers::pi) / (2 * std::numbers::pi) * turn), 2);
+  out.put(checksum(std::span(out.bytes).first(size_bytes - 2)), 2);
+  return out.bytes;
+}
+
+std::optional<AcousticState> decode(std::span<const std::uint8_t> bytes, std::int64_t near_utime) {
+  if (bytes.size() != size_bytes) return std::nullopt;
+  Reader in(bytes);
+  if (in.unsigned_number(1) != (version << 4 | state_kind)) return std::nullopt;
+  AcousticState state;
+  state.sender = static_cast<int>(in.unsigned_number(1));
+  const std::int64_t of_week_ms = in.unsigned_number(4);
+  state.east_m = 0.01 * static_cast<double>(in.signed_number(4));
+  state.north_m = 0.01 * static_cast<double>(in.signed_number(4));
+  state.depth_m = 0.01 * static_cast<double>(in.unsigned_number(3));
+  state.east_std_m = 0.01 * static_cast<double>(in.unsigned_number(2));
+  state.north_std_m = 0.01 * static_cast<double>(in.unsigned_number(2));
+  state.correlation = static_cast<double>(in.signed_number(1)) / 127;
+  state.speed_mps = 0.01 * static_cast<double>(in.unsigned_number(2));
+  state.course_rad = sim::wrap_angle(static_cast<double>(in.unsigned_number(2)) / turn * 2 * std::numbers::pi);
+  if (in.unsigned_number(2) != checksum(bytes.first(size_bytes - 2))) return std::nullopt;
+  if (of_week_ms >= week_ms || state.east_std_m <= 0 || state.north_std_m <= 0 || std::abs(state.correlation) > 1)
+    return std::nullopt;
+
+  const std::int64_t near_ms = floor_ms(near_utime);
+  const std::int64_t ahead_ms =
+      floor_modulo(of_week_ms - floor_modulo(near_ms - first_sunday_ms, week_ms) + week_ms / 2, week_ms) - week_ms / 2;
+  state.utime = (near_ms + ahead_ms) * 1000;
+  return state;
+}
+
+}  // namespace autonomy::acoustic_frame

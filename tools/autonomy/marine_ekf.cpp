@@ -1,0 +1,175 @@
+#include "tools/autonomy/marine_ekf.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace autonomy {
+
+namespace {
+
+constexpr double longest_memory_s = 60;
+
+double squared(double x) {
+  return x * x;
+}
+
+double seconds(std::int64_t time_us) {
+  return static_cast<double>(time_us) * 1e-6;
+}
+
+Vector2d left_of(const Vector2d& v) {
+  return {-v.y(), v.x()};
+}
+
+}  // namespace
+
+MarineEkf::MarineEkf(std::int64_t utime, const Vector2d& p_W, double position_std_m, const Params& params)
+    : params_(params), utime_(utime) {
+  if (params.states != 2 && (params.states < 4 || params.states > 6))
+    throw std::invalid_argument("the filter has 2, 4, 5 or 6 states, not " + std::to_string(params.states));
+  x_.head<2>() = p_W;
+  P_.diagonal() << squared(position_std_m), squared(position_std_m), squared(params.heading_bias_std_rad),
+      squared(params.speed_scale_std), squared(params.range_bias_std_m), squared(params.range_drift_std_mps);
+  // A state without variance, noise and correlation is never changed.
+  P_.diagonal().tail(max_states - params.states).setZero();
+  marks_.push_back({utime, Vector2d::Zero()});
+}
+
+Vector2d MarineEkf::corrected(const Vector2d& way_W) const {
+  return (1 + x_[3]) * turned(way_W, x_[2]);
+}
+
+Vector2d MarineEkf::velocity() const {
+  return corrected(v_measured_W_);
+}
+
+void MarineEkf::predict(std::int64_t utime, const Vector2d& v_measured_W, double more_noise_mpsprtHz) {
+  if (utime <= utime_ || !v_measured_W.allFinite()) return;
+  const double dt_s = seconds(utime - utime_);
+  const Vector2d way_W = v_measured_W * dt_s;
+  const Vector2d moved_W = corrected(way_W);
+  Covariance F = Covariance::Identity();
+  F.block<2, 1>(0, 2) = left_of(moved_W);
+  F.block<2, 1>(0, 3) = turned(way_W, x_[2]);
+  F(4, 5) = dt_s;
+
+  const double speed_mps = v_measured_W.norm();
+  double along = squared(params_.speed_noise_mpsprtHz) + squared(more_noise_mpsprtHz);
+  double across = squared(speed_mps * params_.heading_noise_radprtHz) + along;
+  if (params_.states == 2) {
+    along += squared(speed_mps * params_.speed_scale_std) * params_.bias_as_noise_s;
+    across += squared(speed_mps * params_.heading_bias_std_rad) * params_.bias_as_noise_s;
+  }
+  Covariance Q = Covariance::Zero();
+  const Vector2d ahead = speed_mps > 0 ? Vector2d(moved_W.normalized()) : Vector2d(1, 0);
+  const Vector2d left = left_of(ahead);
+  Q.topLeftCorner<2, 2>() = along * ahead * ahead.transpose() + across * left * left.transpose();
+  const Eigen::Vector4d walks(params_.heading_bias_walk_rad, params_.speed_scale_walk, params_.range_bias_walk_m,
+                              params_.range_drift_walk_mps);
+  for (int i = 2; i < params_.states; ++i) Q(i, i) = squared(walks[i - 2]);
+
+  x_.head<2>() += moved_W;
+  x_[4] += x_[5] * dt_s;
+  P_ = F * P_ * F.transpose() + Q * dt_s;
+  v_measured_W_ = v_measured_W;
+  utime_ = utime;
+  marks_.push_back({utime, marks_.back().way_W + way_W});
+  while (seconds(utime - marks_[1].utime) > longest_memory_s) marks_.pop_front();
+}
+
+void MarineEkf::shift_clock(std::int64_t by_us, double range_m, double range_std_m) {
+  utime_ += by_us;
+  for (Mark& mark : marks_) mark.utime += by_us;
+  if (params_.states <= 4) return;
+  x_[4] += range_m;
+  P_.row(4).setZero();
+  P_.col(4).setZero();
+  P_(4, 4) = squared(range_std_m);
+}
+
+std::optional<Vector2d> MarineEkf::way_since(std::int64_t utime) const {
+  if (utime >= utime_) return Vector2d(-v_measured_W_ * seconds(utime - utime_));
+  if (utime < marks_.front().utime) return std::nullopt;
+  const auto after = std::upper_bound(marks_.begin(), marks_.end(), utime,
+                                      [](std::int64_t time, const Mark& mark) { return time < mark.utime; });
+  const auto before = std::prev(after);
+  const double part = seconds(utime - before->utime) / seconds(after->utime - before->utime);
+  return Vector2d(marks_.back().way_W - before->way_W - part * (after->way_W - before->way_W));
+}
+
+Vector2d MarineEkf::position_at(std::int64_t utime) const {
+  const auto way_W = way_since(std::max(utime, marks_.front().utime));
+  return position() - corrected(*way_W);
+}
+
+Eigen::Matrix<double, 2, MarineEkf::max_states> MarineEkf::earlier_position_jacobian(const Vector2d& way_W) const {
+  Eigen::Matrix<double, 2, max_states> J = Eigen::Matrix<double, 2, max_states>::Zero();
+  J.leftCols<2>().setIdentity();
+  J.col(2) = -left_of(corrected(way_W));
+  J.col(3) = -turned(way_W, x_[2]);
+  return J;
+}
+
+MarineEkf::Outcome MarineEkf::update_position(std::int64_t utime, const Vector2d& p_W, double std_m) {
+  const auto way_W = way_since(utime);
+  if (!way_W) return Outcome::too_old;
+  const Vector2d innovation = p_W - (position() - corrected(*way_W));
+  return update<2>(innovation, earlier_position_jacobian(*way_W), squared(std_m) * Eigen::Matrix2d::Identity(),
+                   params_.position_gate);
+}
+
+MarineEkf::Outcome MarineEkf::update_range(const Range& range) {
+  const auto way_W = way_since(range.utime);
+  if (!way_W) return Outcome::too_old;
+  const Vector2d then_W = position() - corrected(*way_W);
+  const Vector2d d_W = then_W - range.p_WS.head<2>();
+  const double distance_m = std::hypot(d_W.x(), d_W.y(), range.own_z_m - range.p_WS.z());
+  const Vector2d u = d_W / std::max(distance_m, 1.0);  // of a unit vector in space, the part in the plane
+  const double since_s = seconds(utime_ - range.utime);
+
+  Eigen::Matrix<double, 1, max_states> H = u.transpose() * earlier_position_jacobian(*way_W);
+  H(0, 4) = 1;
+  H(0, 5) = -since_s;
+
+  // Points of equal range lie on a circle, not on a line: an error q sideways makes the range longer by q^2 / 2r, whose
+  // mean square is 3 (variance / 2r)^2.
+  const Eigen::Matrix2d P = position_covariance();
+  const double sideways_m2 = std::max(0.0, P.trace() - u.dot(P * u));
+  const double bend_m = sideways_m2 / (2 * std::max(distance_m, 1.0));
+  const double variance = squared(range.std_m) + u.dot(range.beacon_covariance * u) + 3 * squared(bend_m);
+  const double expected_m = distance_m + x_[4] - x_[5] * since_s;
+  using One = Eigen::Matrix<double, 1, 1>;
+  return update<1>(One(range.range_m - expected_m), H, One(variance), params_.range_gate);
+}
+
+template <int n>
+MarineEkf::Outcome MarineEkf::update(const Eigen::Matrix<double, n, 1>& innovation,
+                                     const Eigen::Matrix<double, n, max_states>& H,
+                                     const Eigen::Matrix<double, n, n>& R, double gate) {
+  Eigen::Matrix<double, n, n> S = H * P_ * H.transpose() + R;
+  last_nis_ = innovation.dot(S.inverse() * innovation);
+  Outcome outcome = Outcome::accepted;
+  // Written so that NaN is refused.
+  if (!(last_nis_ <= gate)) {
+    ++refused_;
+    if (!innovation.allFinite() || ++refusals_in_a_row_ < params_.most_refusals) return Outcome::refused;
+    // So many outliers in a row are none: a filter that is sure and wrong would refuse for ever.
+    P_.topLeftCorner<2, 2>() += innovation.squaredNorm() * Eigen::Matrix2d::Identity();
+    if (params_.states > 4 && n == 1) P_(4, 4) += innovation.squaredNorm();
+    ++inflated_;
+    S = H * P_ * H.transpose() + R;
+    outcome = Outcome::inflated;
+  }
+  refusals_in_a_row_ = 0;
+  ++accepted_;
+  const Eigen::Matrix<double, max_states, n> K = P_ * H.transpose() * S.inverse();
+  x_ += K * innovation;
+  // Joseph's form stays symmetric and positive under rounding.
+  const Covariance A = Covariance::Identity() - K * H;
+  P_ = A * P_ * A.transpose() + K * R * K.transpose();
+  return outcome;
+}
+
+}  // namespace autonomy

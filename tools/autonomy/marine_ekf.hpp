@@ -1,0 +1,125 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "tools/autonomy/pose2.hpp"
+
+namespace autonomy {
+
+/// Extended Kalman filter of a submerged vehicle's horizontal position.  Its states, in this order:
+///
+///     0, 1  east, north (m)
+///     2     heading bias b (rad): true heading = measured heading + b
+///     3     speed scale s: true velocity = (1 + s) * measured velocity
+///     4     range bias c (m): speed of sound times how far the own clock is ahead of the beacons'
+///     5     drift of c (m/s)
+///
+/// `states` of Params says how many of them it estimates; the others stay 0.  Times are by the vehicle's own clock.  A
+/// measurement may be older than the last prediction: a packet is complete seconds after its first sound.
+class MarineEkf {
+ public:
+  static constexpr int max_states = 6;
+  using State = Eigen::Matrix<double, max_states, 1>;
+  using Covariance = Eigen::Matrix<double, max_states, max_states>;
+
+  struct Params {
+    int states = 4;  ///< 2, 4, 5 or 6
+    // At the start, one sigma.
+    double heading_bias_std_rad = 0.05;
+    double speed_scale_std = 0.03;
+    double range_bias_std_m = 30;
+    double range_drift_std_mps = 0.005;
+    // White noise, by the root of its density: variances grow with time.
+    double heading_noise_radprtHz = 0.035;  ///< of the measured heading
+    double speed_noise_mpsprtHz = 0.01;     ///< of the measured velocity
+    // Random walks, after 1 s.
+    double heading_bias_walk_rad = 1e-4;
+    double speed_scale_walk = 1e-5;
+    double range_bias_walk_m = 0.01;
+    double range_drift_walk_mps = 1e-5;
+    /// With two states the biases are taken for noise that changes every so many seconds.
+    double bias_as_noise_s = 60;
+
+    double range_gate = 10.83;     ///< innovation squared over its variance: 99.9 % of chi-square with 1 degree
+    double position_gate = 13.82;  ///< the same with 2 degrees
+    int most_refusals = 5;         ///< in a row, before the estimate is held to be the wrong one
+  };
+  struct Range {
+    std::int64_t utime = 0;  ///< of arrival, by the own clock
+    double range_m = 0;      ///< slant
+    double std_m = 1;
+    Eigen::Vector3d p_WS = Eigen::Vector3d::Zero();  ///< where the beacon was when it sent
+    Eigen::Matrix2d beacon_covariance = Eigen::Matrix2d::Zero();
+    double own_z_m = 0;  ///< known by pressure
+  };
+  enum class Outcome {
+    accepted,
+    refused,   ///< the gate did not let it through
+    inflated,  ///< refused once too often: the covariance was opened, and the measurement was used
+    too_old,
+  };
+
+  MarineEkf(std::int64_t utime, const Vector2d& p_W, double position_std_m, const Params& params);
+
+  /// Moves on to `utime` with a velocity over ground as DVL and compass measure it, in the axes of the world.
+  /// `more_noise_mpsprtHz`: what a worse source of velocity adds.  A time that is not later changes nothing.
+  void predict(std::int64_t utime, const Vector2d& v_measured_W, double more_noise_mpsprtHz = 0);
+  /// A position by GPS.
+  Outcome update_position(std::int64_t utime, const Vector2d& p_W, double std_m);
+  Outcome update_range(const Range& range);
+
+  /// The own clock was set: what was at `utime` is now at `utime + by_us`, and ranges are longer by `range_m`, which is
+  /// known to `range_std_m`.
+  void shift_clock(std::int64_t by_us, double range_m, double range_std_m);
+
+  std::int64_t utime() const { return utime_; }
+  Vector2d position() const { return x_.head<2>(); }
+  Eigen::Matrix2d position_covariance() const { return P_.topLeftCorner<2, 2>(); }
+  Vector2d velocity() const;
+  /// Where it was or will be at a time near to that of the filter: by the way it made since, or by its velocity.
+  Vector2d position_at(std::int64_t utime) const;
+  double heading_bias_rad() const { return x_[2]; }
+  double speed_scale() const { return x_[3]; }
+  double range_bias_m() const { return x_[4]; }
+  const State& state() const { return x_; }
+  const Covariance& covariance() const { return P_; }
+  /// Innovation squared over its variance, of the last measurement that was looked at.
+  double last_nis() const { return last_nis_; }
+  int accepted() const { return accepted_; }
+  int refused() const { return refused_; }
+  int inflated() const { return inflated_; }
+
+ private:
+  /// Way made by the measured velocity, since the beginning.
+  struct Mark {
+    std::int64_t utime;
+    Vector2d way_W;
+  };
+  /// Measured way from `utime` to now.  Nothing when that is too long ago.
+  std::optional<Vector2d> way_since(std::int64_t utime) const;
+  /// The estimated way that belongs to a measured one.
+  Vector2d corrected(const Vector2d& way_W) const;
+  /// Rows of the derivative of the position at an earlier time, by the state now.
+  Eigen::Matrix<double, 2, max_states> earlier_position_jacobian(const Vector2d& way_W) const;
+
+  template <int n>
+  Outcome update(const Eigen::Matrix<double, n, 1>& innovation, const Eigen::Matrix<double, n, max_states>& H,
+                 const Eigen::Matrix<double, n, n>& R, double gate);
+
+  Params params_;
+  std::int64_t utime_;
+  State x_ = State::Zero();
+  Covariance P_ = Covariance::Zero();
+  Vector2d v_measured_W_ = Vector2d::Zero();
+  std::deque<Mark> marks_;
+  int refusals_in_a_row_ = 0;
+  int accepted_ = 0;
+  int refused_ = 0;
+  int inflated_ = 0;
+  double last_nis_ = 0;
+};
+
+}  // namespace autonomy

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tools/autonomy/channel_access.hpp"
+#include "tools/autonomy/helm_behaviour.hpp"
+#include "tools/autonomy/waypoint_text.hpp"
+
+namespace autonomy {
+
+/// The options that both marine programs have.
+struct MarineOptions {
+  std::string route;
+  std::string behaviour = "route";
+  double speed_mps = 1.5;
+  bool loop = false;
+  std::string slot;
+  double slot_s = 10;
+  double guard_s = 5;
+  double random_s = 0;
+  std::uint64_t seed = 1;
+
+  void add_options(CLI::App& app);
+  /// Throw std::invalid_argument with what is wrong.
+  std::unique_ptr<HelmBehaviour> make() const;
+  ChannelAccess::Params access() const;
+};
+
+}  // namespace autonomy

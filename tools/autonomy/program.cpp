@@ -1,0 +1,82 @@
+#include "tools/autonomy/program.hpp"
+
+#include <cmath>
+#include <csignal>
+#include <iostream>
+
+namespace autonomy {
+
+namespace {
+
+shoal::Client* client_to_stop = nullptr;
+volatile std::sig_atomic_t signal_caught = 0;
+
+void on_signal(int signal) {
+  signal_caught = signal;
+  if (client_to_stop != nullptr) client_to_stop->stop();
+}
+
+/// SIGTERM and SIGINT stop the client as long as this lives.
+class StopBySignal {
+ public:
+  explicit StopBySignal(shoal::Client& client) {
+    client_to_stop = &client;
+    std::signal(SIGTERM, on_signal);
+    std::signal(SIGINT, on_signal);
+  }
+  ~StopBySignal() {
+    std::signal(SIGTERM, SIG_DFL);
+    std::signal(SIGINT, SIG_DFL);
+    client_to_stop = nullptr;
+  }
+  StopBySignal(const StopBySignal&) = delete;
+  StopBySignal& operator=(const StopBySignal&) = delete;
+};
+
+}  // namespace
+
+void Participation::add_options(CLI::App& app) {
+  app.add_option("--period", period_s, "s of simulated time between decisions")
+      ->capture_default_str()
+      ->check(CLI::Range(0.001, 10.0));
+  app.add_option("--join-timeout", join_timeout_s, "s to wait for the simulator")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 3600.0));
+  app.add_option("--lcm-url", lcm_url, "unset: LCM_DEFAULT_URL, then LCM's default");
+}
+
+int take_part(shoal::Client& client, const Participation& participation,
+              const std::function<void(std::int64_t utime)>& decide) {
+  const StopBySignal stop(client);
+  if (participation.free_running)
+    client.follow(participation.period_s);
+  else
+    client.join(participation.period_s, std::chrono::milliseconds(std::llround(1000 * participation.join_timeout_s)));
+  while (const auto utime = client.next_tick()) decide(*utime);
+  if (signal_caught != 0) return 128 + signal_caught;
+  return client.end() == shoal::Client::End::silence ? exit_timeout : exit_ok;
+}
+
+int run_program(const char* name, const std::function<int()>& program) {
+  try {
+    return program();
+  } catch (const std::invalid_argument& error) {
+    std::cerr << name << ": " << error.what() << '\n';
+    return exit_usage;
+  } catch (const std::exception& error) {
+    std::cerr << name << ": " << error.what() << '\n';
+    return signal_caught != 0 ? 128 + signal_caught : exit_bus;
+  }
+}
+
+std::optional<int> parse(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    // CLI11 has exit codes of its own; all that is not help is wrong usage.
+    return app.exit(error) == 0 ? exit_ok : exit_usage;
+  }
+}
+
+}  // namespace autonomy

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "shoal/client.hpp"
+
+namespace autonomy {
+
+enum ExitCode { exit_ok = 0, exit_usage = 2, exit_bus = 4, exit_timeout = 5 };
+
+/// What all programs say of their exit codes in --help.
+inline constexpr const char* exit_code_help =
+    "Exit codes: 0 the run ended, 2 usage, 4 bus trouble, 5 the simulator fell silent, 130 SIGINT, 143 SIGTERM.";
+
+/// How a program takes part in a run.
+struct Participation {
+  std::string lcm_url;
+  double period_s = 0.1;
+  double join_timeout_s = 30;
+  bool free_running = false;
+
+  void add_options(CLI::App& app);
+};
+
+/// Joins the run and calls `decide` at each tick, until the run ends or a signal comes.  Gives the exit code.
+int take_part(shoal::Client& client, const Participation& participation,
+              const std::function<void(std::int64_t utime)>& decide);
+
+/// Runs a program: what std::invalid_argument says is wrong usage, any other exception is bus trouble.
+int run_program(const char* name, const std::function<int()>& program);
+
+/// Parses the command line.  Nothing: go on; else the exit code.
+std::optional<int> parse(CLI::App& app, int argc, char** argv);
+
+}  // namespace autonomy

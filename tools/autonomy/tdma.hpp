@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace autonomy {
+
+/// Time division: `slots` senders take turns of `slot_s` each, by the time of their own clocks.
+class Tdma {
+ public:
+  struct Params {
+    int slot = 0;   ///< the own one, from 0
+    int slots = 1;  ///< in a cycle
+    double slot_s = 10;
+    /// The slot is not begun in its last seconds: a packet and the way of its sound have to fit into the rest.
+    double guard_s = 5;
+  };
+
+  /// Throws std::invalid_argument unless 0 <= slot < slots and 0 <= guard_s < slot_s.
+  explicit Tdma(const Params& params);
+
+  /// Whether to send now; true once for each turn.
+  bool take_turn(std::int64_t utime);
+
+ private:
+  Params params_;
+  std::int64_t slot_us_;
+  std::int64_t guard_us_;
+  std::int64_t last_turn_ = INT64_MIN;
+};
+
+/// A slot as on the command line: `0/2` is the first of two.  Throws std::invalid_argument.
+Tdma::Params parse_slot(const std::string& text);
+
+}  // namespace autonomy
