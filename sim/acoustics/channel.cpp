@@ -193,6 +193,7 @@ void AcousticChannel::approach(int number, Time due) {
     if (arrival) {
       flight.travel_time_s = arrival->travel_time_s;
       flight.begun = std::max(due, sending.sent + from_seconds(arrival->travel_time_s));
+      flight.p_begun_W = flight.to->p_W(flight.begun);
     } else {
       flight.to = nullptr;  // faster than sound: it was thrown out of the world
     }
@@ -283,7 +284,13 @@ void AcousticChannel::begin(int number) {
     return;
   }
   Transducer& to = *flight.to;
-  flight.p_begun_W = to.p_W(flight.begun);
+  const Vector3d p_W = to.p_W(flight.begun);
+  // Where it was expected, but for its turns; somebody who was put elsewhere is met anew.
+  if ((p_W - flight.p_begun_W).norm() > 1) {
+    approach(number, flight.begun);
+    return;
+  }
+  flight.p_begun_W = p_W;
   const PowerRatio disturbing = work_out_level(flight, sending);
   flight.listened = to.listener_.listens_to(sending.signal);
   flight.present = flight.loss == SignalLoss::none && around_.medium.in_water(flight.p_begun_W);

@@ -55,7 +55,8 @@ TEST(MarinePrograms, WrongUsageIsExitCodeTwoAndSaysWhat) {
 
 TEST(MarinePrograms, WithoutASimulatorIsExitCodeFour) {
   for (const char* name : {"shoal-coop-craft", "shoal-coop-auv"}) {
-    const Ended ended = run(name, {"--name", "a", "--route", "1,1", "--join-timeout", "0.2", "--lcm-url", own_url(3)});
+    const Ended ended = run(name, {"--name", "a", "--route", "1,1", "--slot", "0/3", "--slot-s", "5", "--join-timeout",
+                                   "0.2", "--lcm-url", own_url(3)});
     EXPECT_EQ(ended.exit_code, 4) << name;
     EXPECT_THAT(ended.errors, HasSubstr("no simulator answered 'a' within 200 ms"));
   }

@@ -15,8 +15,7 @@ void MarineOptions::add_options(CLI::App& app) {
       ->check(CLI::Range(0.05, 10.0));
   app.add_option("--slot", slot, "I/N: sends its state in slot I of N, from 0, by the clock of its vehicle");
   app.add_option("--slot-s", slot_s, "length of a slot")->capture_default_str()->check(CLI::Range(0.1, 3600.0));
-  app.add_option("--guard-s", guard_s, "the end of a slot in which nothing is begun")
-      ->capture_default_str()
+  app.add_option("--guard-s", guard_s, "the end of a slot in which nothing is begun; unset: half of the slot")
       ->check(CLI::Range(0.0, 3600.0));
   app.add_option("--random-s", random_s, "sends at random, so often on average, s; 0: in its slot or never")
       ->capture_default_str()
@@ -37,7 +36,7 @@ ChannelAccess::Params MarineOptions::access() const {
   if (random_s > 0) throw std::invalid_argument("--slot and --random-s are two ways of sending; give one");
   access.slot = parse_slot(slot);
   access.slot->slot_s = slot_s;
-  access.slot->guard_s = guard_s;
+  access.slot->guard_s = guard_s.value_or(0.5 * slot_s);
   const Tdma checked(*access.slot);
   return access;
 }

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,7 @@ struct MarineOptions {
   bool loop = false;
   std::string slot;
   double slot_s = 10;
-  double guard_s = 5;
+  std::optional<double> guard_s;  ///< half of the slot unless set
   double random_s = 0;
   std::uint64_t seed = 1;
 

@@ -36,6 +36,16 @@ Estimate decode_estimate(const sim::Bytes& payload) {
   return estimate;
 }
 
+/// error^T P^-1 error in the first `size` dimensions; NaN when P is none that a covariance can be.
+template <int size>
+double nees_of(const Eigen::Matrix3d& covariance_m2, const sim::Vector3d& error) {
+  const Eigen::Matrix<double, size, size> P = covariance_m2.topLeftCorner<size, size>();
+  if ((P - P.transpose()).cwiseAbs().maxCoeff() > 1e-6 * P.cwiseAbs().maxCoeff()) return no_figure;
+  const Eigen::LLT<Eigen::Matrix<double, size, size>> factor(P);
+  const Eigen::Matrix<double, size, 1> e = error.head<size>();
+  return factor.info() == Eigen::Success ? e.dot(factor.solve(e)) : no_figure;
+}
+
 /// position_error and consistency: estimates of a vehicle's position against the truth.
 class EstimateMetric final : public Metric {
  public:
@@ -100,26 +110,24 @@ class EstimateMetric final : public Metric {
     const sim::Vector3d error = estimate.position_m - truth->position_m;
     ErrorSample sample;
     sample.time_s = sim::to_seconds(time);
-    sample.error_m = error.head(config().dimensions).norm();
+    const bool flat = config().dimensions == 2;
+    sample.error_m = flat ? error.head<2>().norm() : error.norm();
     sample.truth_m = truth->position_m;
     sample.estimate_m = estimate.position_m;
     sample.travelled_m = truth->travelled_m;
     sample.nees = nees(estimate, error);
-    if (std::isfinite(sample.nees))
-      sample.sigma_m = std::sqrt(estimate.covariance_m2->diagonal().head(config().dimensions).sum());
+    if (std::isfinite(sample.nees)) {
+      const Eigen::Matrix3d& P = *estimate.covariance_m2;
+      sample.sigma_m = std::sqrt(flat ? P(0, 0) + P(1, 1) : P.trace());
+    }
     samples_.push_back(sample);
     return true;
   }
 
-  /// error^T P^-1 error in the dimensions that count; NaN when there is no P that a covariance can be.
   double nees(const Estimate& estimate, const sim::Vector3d& error) const {
     if (!estimate.covariance_m2 || !estimate.covariance_m2->allFinite()) return no_figure;
-    const int size = config().dimensions;
-    const Eigen::MatrixXd P = estimate.covariance_m2->topLeftCorner(size, size);
-    if ((P - P.transpose()).cwiseAbs().maxCoeff() > 1e-6 * P.cwiseAbs().maxCoeff()) return no_figure;
-    const Eigen::LLT<Eigen::MatrixXd> factor(P);
-    const Eigen::VectorXd e = error.head(size);
-    return factor.info() == Eigen::Success ? e.dot(factor.solve(e)) : no_figure;
+    return config().dimensions == 2 ? nees_of<2>(*estimate.covariance_m2, error)
+                                    : nees_of<3>(*estimate.covariance_m2, error);
   }
 
   void add_errors(Figures& figures) const {
@@ -135,7 +143,7 @@ class EstimateMetric final : public Metric {
     add(figures, "rms_m", any ? std::sqrt(squares / count) : no_figure);
     add(figures, "final_m", any ? samples_.back().error_m : no_figure);
     add(figures, "max_m", any ? largest : no_figure);
-    add(figures, "per_distance_percent", way_m > 0 ? 100 * samples_.back().error_m / way_m : no_figure);
+    add(figures, "per_distance_percent", way_m >= shortest_way_m ? 100 * samples_.back().error_m / way_m : no_figure);
   }
 
   void add_consistency(Figures& figures) const {

@@ -1,5 +1,6 @@
 #include "tools/experiment/link_counts.hpp"
 
+#include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/transducer.hpp"
 
 namespace tools {

@@ -16,6 +16,9 @@ using Figures = std::map<std::string, double>;
 
 inline constexpr double no_figure = std::numeric_limits<double>::quiet_NaN();
 
+/// Errors are compared with the way travelled when that is at least so long: what stands may creep.
+inline constexpr double shortest_way_m = 1;
+
 /// One estimate beside the truth at the estimate's own time.
 struct ErrorSample {
   double time_s = 0;

@@ -17,6 +17,23 @@ constexpr std::size_t most_named_tracks = 12;
 
 using Tracks = std::vector<Scoring::Track>;
 
+/// Several metrics may look at one estimate, which is drawn once: by the first that has the most samples.  gnuplot
+/// fails on a plot without a point, so those without samples go as well.
+Tracks distinct(const Tracks& tracks) {
+  Tracks kept;
+  for (const Scoring::Track& track : tracks) {
+    if (track.samples->empty()) continue;
+    const auto same = std::find_if(kept.begin(), kept.end(), [&](const Scoring::Track& other) {
+      return other.vehicle == track.vehicle && other.channel == track.channel && other.dimensions == track.dimensions;
+    });
+    if (same == kept.end())
+      kept.push_back(track);
+    else if (track.samples->size() > same->samples->size())
+      *same = track;
+  }
+  return kept;
+}
+
 bool has_covariance(const Scoring::Track& track) {
   return std::any_of(track.samples->begin(), track.samples->end(),
                      [](const ErrorSample& sample) { return std::isfinite(sample.nees); });
@@ -95,9 +112,7 @@ std::string nees_script(const Tracks& tracks) {
 }  // namespace
 
 std::string run_pictures_script(const sim::World& world, const Scoring& scoring) {
-  auto tracks = scoring.tracks();
-  // gnuplot fails on a plot without a point.
-  std::erase_if(tracks, [](const Scoring::Track& track) { return track.samples->empty(); });
+  const Tracks tracks = distinct(scoring.tracks());
   std::string script =
       // The vehicles' rows alternate: without `missing` each row of another one would break the line.
       "set datafile separator ','\nset datafile missing NaN\n"
@@ -106,7 +121,7 @@ std::string run_pictures_script(const sim::World& world, const Scoring& scoring)
   if (tracks.empty()) return script;
   script += "set terminal pngcairo size 1000,700\n";
   script += errors_script(tracks, "errors.png", "time (s)", 1);
-  const auto went = [](const Scoring::Track& track) { return track.samples->back().travelled_m > 0; };
+  const auto went = [](const Scoring::Track& track) { return track.samples->back().travelled_m >= shortest_way_m; };
   if (std::any_of(tracks.begin(), tracks.end(), went))
     script += errors_script(tracks, "errors_by_distance.png", "distance travelled (m)", 10);
   return script + nees_script(tracks);

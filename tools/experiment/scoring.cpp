@@ -80,7 +80,8 @@ std::vector<Scoring::Track> Scoring::tracks() const {
   std::vector<Track> tracks;
   for (const auto& metric : metrics_)
     if (const std::vector<ErrorSample>* samples = metric->samples())
-      tracks.push_back({metric->config().name, metric->config().vehicle, metric->config().dimensions, samples});
+      tracks.push_back({metric->config().name, metric->config().vehicle, metric->config().channel,
+                        metric->config().dimensions, samples});
   return tracks;
 }
 

@@ -19,6 +19,7 @@ class Scoring {
   struct Track {
     std::string metric;
     std::string vehicle;
+    std::string channel;
     int dimensions;
     const std::vector<ErrorSample>* samples;
   };

@@ -303,7 +303,6 @@ TEST(AcousticChannelProperties, WhoComesWhileASignalIsUnderWayHearsTheNextOne) {
 
 RC_GTEST_PROP(AcousticChannel, SomebodyWhoIsPutElsewhereHearsNoSoonerThanSoundGetsThere, ()) {
   const double range_m = number_between(100, 1500), moved_s = 0.01 * *rc::gen::inRange(1, 120);
-  RC_PRE(moved_s < 0.97 * range_m / 1500 || moved_s > range_m / 1500 + 0.02);  // not in the last part of the way
   test::TestWorld test(test::sound_world(pair_at(range_m)));
   AcousticProbe a(test, "a"), b(test, "b");
   a.send(AcousticProbe::tone());

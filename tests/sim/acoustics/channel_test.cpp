@@ -116,7 +116,7 @@ TEST(AcousticChannel, OnlyWhoIsNearEnoughIsGivenASignal) {
 }
 
 TEST(AcousticChannel, BeyondItsAudibleRangeASignalIsBelowTheNoise) {
-  TestWorld test(sea("{absorption: {model: thorp}}", vehicle("a", "[0, 0, -10]")));
+  TestWorld test(sea("{absorption: {model: thorp}, noise: {wind_mps: 5}}", vehicle("a", "[0, 0, -10]")));
   const sim::Propagation& propagation = test.world.acoustics().propagation();
   const double range_m = propagation.audible_range_m(message());
   const Decibels level = message().source_level - propagation.transmission_loss({0, 0, -10}, {range_m, 0, -10}, 25000);
@@ -193,9 +193,9 @@ TEST(AcousticChannel, FadingDiffersFromSignalToSignalAndFromRunToRunOnlyBySeed) 
 
 TEST(AcousticChannel, AModemThatSendsHearsNothing) {
   TestWorld test(sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]")));
-  // a's message is at b from 0.1 to 3.3 s; b sends from 3 s on.
+  // a's message is at b from 0.1 to 3.3 s; b sends from 3.15 s on, when a has nearly ended.
   phone(test, "a").transducer().transmit(message(), 0ms);
-  phone(test, "b").transducer().transmit(message(), 3s);
+  phone(test, "b").transducer().transmit(message(), 3150ms);
   test.run_for(8);
   ASSERT_EQ(phone(test, "b").all().size(), 1u);
   EXPECT_EQ(phone(test, "b").all()[0].loss, SignalLoss::half_duplex);
@@ -301,7 +301,7 @@ TEST(AcousticChannel, WhoLeavesTheWaterWhileSendingIsNotUnderstood) {
 
 TEST(AcousticChannel, AWorldWithoutWaterCannotCarrySound) {
   EXPECT_EQ(test::error_of_world("shoal: 1\nname: dry\nvehicles:\n" + vehicle("a", "[0, 0, 0]")),
-            "worlds/test.yaml:11:11: vehicle 'a': device 'phone': a device of type 'test_hydrophone' needs water to "
+            "worlds/test.yaml:13:11: vehicle 'a': device 'phone': a device of type 'test_hydrophone' needs water to "
             "carry its sound: the world has no 'medium: {water: ...}'");
 }
 

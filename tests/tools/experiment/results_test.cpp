@@ -161,7 +161,7 @@ TEST(Results, ShowErrorsWithWhatTheEstimateSaysOfThem) {
                                           "estimate_z_m,truth_z_m,travelled_m,sigma_m,nees\n"));
   EXPECT_THAT(errors, testing::HasSubstr(",5.000000,"));  // sigma: the root of 9 + 16
   EXPECT_THAT(errors, testing::HasSubstr(",2.000"));
-  for (const char* picture : {"tracks.png", "errors.png", "errors_by_distance.png", "nees.png"})
+  for (const char* picture : {"tracks.png", "errors.png", "nees.png"})
     EXPECT_THAT(text_of_file(options.results + "/" + picture), testing::StartsWith("\x89PNG")) << picture;
   options.pictures = false;
   EXPECT_EQ(tools::run_world(loaded, options).exit_code, 0);
