@@ -43,6 +43,7 @@ class CoopAuv {
     double fix_period_s = 5;          ///< errors of GPS last, so more fixes say little more
     std::optional<Vector2d> start_W;  ///< known: it does not wait for GPS
     double start_std_m = 1;
+    double period_s = 0.5;         ///< between two calls of step()
     ChannelAccess::Params access;  ///< for its own state
   };
   struct Decision {
@@ -58,6 +59,7 @@ class CoopAuv {
     int refused = 0;  ///< by the gate, or came too late
     int sent = 0;
     int clock_steps = 0;
+    int silences = 0;  ///< of all devices
   };
   enum class Phase { waiting_for_fix, at_surface, under_way, done };
 
@@ -81,6 +83,8 @@ class CoopAuv {
 
  private:
   void note_time(std::int64_t utime);
+  void set_clock(std::int64_t by_us);
+  void coast_over_silence(std::int64_t utime);
   void start(std::int64_t utime, const Vector2d& p_W, double std_m);
   void predict(std::int64_t utime);
   void use_range(const shoal::acoustic_received_t& packet, const AcousticState& beacon);
@@ -96,6 +100,7 @@ class CoopAuv {
   std::optional<MarineEkf> dead_reckoning_;
 
   std::int64_t utime_ = 0;  ///< newest stamp
+  int steps_in_silence_ = 0;
   std::optional<Eigen::Quaterniond> q_WB_;
   std::optional<std::int64_t> attitude_utime_;  ///< of an AHRS, which counts more than a compass
   Eigen::Vector3d v_B_ = Eigen::Vector3d::Zero();

@@ -20,13 +20,13 @@ struct MarineOptions {
   bool loop = false;
   std::string slot;
   double slot_s = 10;
-  std::optional<double> guard_s;  ///< half of the slot unless set
+  std::optional<double> guard_s;  ///< default_guard_s() unless set
   double random_s = 0;
   std::uint64_t seed = 1;
 
   void add_options(CLI::App& app);
-  /// Throw std::invalid_argument with what is wrong.
-  std::unique_ptr<HelmBehaviour> make() const;
+  /// Of the vehicle `name`.  Throw std::invalid_argument with what is wrong.
+  std::unique_ptr<HelmBehaviour> make(const std::string& name) const;
   ChannelAccess::Params access() const;
 };
 
