@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "sim/acoustics/echoes.hpp"
 #include "sim/medium/absorption.hpp"
@@ -48,16 +49,39 @@ double Propagation::audible_range_m(const Signal& signal) const {
   return far_m;
 }
 
-bool Propagation::blocked(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group) const {
+double Propagation::free_part(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group,
+                              double frequency_Hz) const {
   const Vector3d way_W = from_W - to_W;
   const double length_m = way_W.norm();
-  if (length_m < 1e-3) return false;
+  if (length_m < 1e-3) return 1;
   RayFilter filter;
   filter.kind = RayKind::sound;
   filter.exclude_group = to_group;
   // From the receiver to where the sender was; the sender's own hull, which has gone on, hides nothing.
-  const auto hit = physics_.scene().cast(to_W, way_W / length_m, length_m - 1e-3, filter);
-  return hit && physics_.parts()[static_cast<std::size_t>(hit->part)].group != from_group;
+  const auto hit = [&](const Vector3d& p_W, const Vector3d& q_W) {
+    const Vector3d d_W = q_W - p_W;
+    const double d_m = d_W.norm();
+    const auto found = d_m > 1e-3 ? physics_.scene().cast(p_W, d_W / d_m, d_m - 1e-3, filter) : std::nullopt;
+    const bool counts = found && physics_.parts()[static_cast<std::size_t>(found->part)].group != from_group;
+    return counts ? std::optional(found->range_m) : std::nullopt;
+  };
+  const auto at_m = hit(to_W, from_W);
+  if (!at_m) return 1;
+  // Something is in the way.  Sound goes round what is smaller than the first Fresnel zone there; how much of the rim
+  // of that zone is free tells how much passes.
+  const double wavelength_m = medium_.sound_speed_mps(to_W) / frequency_Hz;
+  const double radius_m = std::sqrt(wavelength_m * *at_m * (length_m - *at_m) / length_m);
+  const Vector3d along_W = way_W / length_m;
+  const Vector3d across_W = along_W.unitOrthogonal(), other_W = along_W.cross(across_W);
+  constexpr int rim = 8;
+  int free = 0;
+  for (int i = 0; i < rim; ++i) {
+    const double angle = 2 * std::numbers::pi * i / rim;
+    const Vector3d bend_W =
+        to_W + along_W * *at_m + radius_m * (std::cos(angle) * across_W + std::sin(angle) * other_W);
+    if (medium_.in_water(bend_W) && !hit(to_W, bend_W) && !hit(bend_W, from_W)) ++free;
+  }
+  return static_cast<double>(free) / (rim + 1);
 }
 
 double Propagation::water_depth_m(const Vector3d& p_W) const {
@@ -87,7 +111,8 @@ Echoes Propagation::echoes_of(const Vector3d& from_W, const Vector3d& to_W, doub
 Propagation::Gain Propagation::gain(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group,
                                     double frequency_Hz, Random& random) const {
   Gain gain;
-  gain.blocked = config_.occlusion && blocked(from_W, from_group, to_W, to_group);
+  const double free = config_.occlusion ? free_part(from_W, from_group, to_W, to_group, frequency_Hz) : 1;
+  gain.blocked = free == 0;
   const bool nothing_passes = gain.blocked && !config_.occlusion_loss_dB;
   gain.signal = -transmission_loss(from_W, to_W, frequency_Hz);
   if (config_.multipath) {
@@ -97,6 +122,8 @@ Propagation::Gain Propagation::gain(const Vector3d& from_W, int from_group, cons
   } else if (nothing_passes) {
     gain.signal = Decibels{-std::numeric_limits<double>::infinity()};
   }
+  // Of the pressure that comes along all of the zone.
+  if (!gain.blocked && free < 1) gain.signal += pressure_level(free);
   if (gain.blocked && !nothing_passes) gain.signal -= Decibels{*config_.occlusion_loss_dB};
   const Decibels faded = fade(config_.fading, random);
   gain.signal += faded;

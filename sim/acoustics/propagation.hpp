@@ -36,7 +36,9 @@ class Propagation {
   double audible_range_m(const Signal& signal) const;
 
  private:
-  bool blocked(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group) const;
+  /// How much of the first Fresnel zone is free of terrain, objects and hulls: 1 all, 0 nothing.
+  double free_part(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group,
+                   double frequency_Hz) const;
   Echoes echoes_of(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, bool direct_blocked,
                    Random& random) const;
   /// Below the surface; infinite when there is no bottom.

@@ -7,6 +7,7 @@
 
 #include "shoal/message_codec.hpp"
 #include "shoal/modem_send_t.hpp"
+#include "sim/acoustics/channel.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/world.hpp"

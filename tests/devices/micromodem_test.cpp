@@ -192,6 +192,25 @@ TEST(Micromodem, TimesOfArrivalAreByItsOwnClock) {
   EXPECT_THAT(hosts.take("a"), Contains("CAMPR,2,1,0.5000"));
 }
 
+TEST(Micromodem, AsksTransponders) {
+  const std::string beacon = "{name: beacon, type: transponder}";
+  Hosts hosts(test::modem_sea({{"a", "[0, 0, -20]", modem_at(1, ", lbl: {transponders: [b, c/beacon, d]}")},
+                               {"b", "[750, 0, -20]", modem_at(2) + ", " + beacon},
+                               {"c", "[-300, 0, -20]", modem_at(3) + ", " + beacon}}));
+  hosts.run_for(0.05);
+  hosts.take("a");
+  hosts.say("a", "$CCPDT,1,1,0,0,3000,1,1,1,0");
+  hosts.run_for(4);
+  // 750 m and 300 m at 1500 m/s; the third is not there, the fourth was not asked for.
+  EXPECT_THAT(hosts.take("a"), testing::ElementsAre("CAPDT,1,1,0,0,3000,1,1,1,0", "SNTTA,0.5000,0.2000,,,000000.05"));
+  hosts.say("a", "$CCPNT,26000,5,5,3000,0,29000,0,0,1");  // at a whole second, and the second one only
+  hosts.run_for(5);
+  EXPECT_THAT(hosts.take("a"), Contains(StartsWith("SNTTA,,0.2000,,,0000")));
+  hosts.say("a", "$CCPDT,1,1,0,0,0,1,1,1,0");
+  hosts.run_for(0.1);
+  EXPECT_THAT(hosts.take("a"), Contains(HasSubstr("NMEA,3,PDT has a field out of range")));
+}
+
 TEST(Micromodem, AThirdModemMayAskForTheCycle) {
   Hosts hosts(three());
   hosts.run_for(0.05);

@@ -26,7 +26,7 @@ inline std::string modem_sea(const std::vector<Moored>& vehicles, const std::str
         ", model: {shoal: 1, vehicle: " + "ball_" + vehicle.name +
         ", bodies: [{name: hull, hydrodynamics: {model: none}, parts: [{shape: sphere, radius_m: 0.1, mass_kg: 1}]}]"
         ", devices: [" +
-        vehicle.devices + "]}}\n";
+        vehicle.devices + "]" + (vehicle.keys.empty() ? "" : ", " + vehicle.keys) + "}}\n";
   return yaml;
 }
 

@@ -282,7 +282,7 @@ TEST(Delivery, OfAWorldWithoutModemsHasNoRatio) {
 TEST(Delivery, CountsWhatModemsSentAndWhatTheOthersHeard) {
   const std::string modem = "{name: modem, type: acoustic_modem}";
   test::TestWorld test(
-      test::modem_sea({{"a", "[0, 0, -20]", modem}, {"b", "[300, 0, -20]", modem}, {"c", "[600, 0, -20]", modem}},
+      test::modem_sea({{"a", "[0, 0, -20]", modem}, {"b", "[300, 0, -20]", modem}, {"c", "[0, 600, -20]", modem}},
                       "metrics:\n"
                       "  - {name: all, type: delivery}\n"
                       "  - {name: a, type: delivery, vehicle: a}\n"
