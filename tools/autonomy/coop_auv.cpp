@@ -28,7 +28,10 @@ double seconds(std::int64_t time_us) {
 }  // namespace
 
 CoopAuv::CoopAuv(const Params& params, std::unique_ptr<HelmBehaviour> behaviour)
-    : params_(params), behaviour_(std::move(behaviour)), access_(params.access, params.name), wanted_depth_m_(params.depth_m) {
+    : params_(params),
+      behaviour_(std::move(behaviour)),
+      access_(params.access, params.name),
+      wanted_depth_m_(params.depth_m) {
   const MarineEkf checked(0, Vector2d::Zero(), 1, params.filter);
 }
 

@@ -44,8 +44,8 @@ class CoopAuv {
     double fix_period_s = 5;          ///< errors of GPS last, so more fixes say little more
     std::optional<Vector2d> start_W;  ///< known: it does not wait for GPS
     double start_std_m = 1;
-    ChannelAccess::Params access;  ///< for its own state
-    bool obey = false;             ///< orders for its id: it goes to the place and circles there
+    ChannelAccess::Params access;    ///< for its own state
+    bool obey = false;               ///< orders for its id: it goes to the place and circles there
     double order_depth_max_m = 100;  ///< deeper and faster orders are refused
     double order_speed_max_mps = 2.5;
     double hold_radius_m = 30;

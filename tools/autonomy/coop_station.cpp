@@ -74,8 +74,7 @@ void CoopStation::receive(const shoal::modem_received_t& packet) {
 
 AcousticOrder CoopStation::order(int number) const {
   const TimedOrder& timed = params_.orders[static_cast<std::size_t>(number - 1)];
-  return {params_.id,    params_.to_id, number,        utime_,
-          timed.p_W.x(), timed.p_W.y(), timed.depth_m, timed.speed_mps};
+  return {params_.id, params_.to_id, number, utime_, timed.p_W.x(), timed.p_W.y(), timed.depth_m, timed.speed_mps};
 }
 
 CoopStation::Decision CoopStation::step() {

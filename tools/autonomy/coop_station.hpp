@@ -16,8 +16,8 @@
 
 namespace autonomy {
 
-/// A station that sends a vehicle out of its hearing to places, by radio and whoever passes its messages on.  It says an
-/// order in each of its turns until a state of the vehicle tells that it was obeyed, or the next one is due.  A pure
+/// A station that sends a vehicle out of its hearing to places, by radio and whoever passes its messages on.  It says
+/// an order in each of its turns until a state of the vehicle tells that it was obeyed, or the next one is due.  A pure
 /// function of its reports in their order; its time is that of their stamps, the station's own clock.
 class CoopStation {
  public:

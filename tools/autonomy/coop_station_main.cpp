@@ -11,8 +11,8 @@ int drive(const autonomy::CoopStation::Params& params, const autonomy::Participa
   shoal::Client client(params.name, participation.lcm_url);
   client.subscribe<shoal::gps_data_t>(params.name + ".gps",
                                       [&](const shoal::gps_data_t& fix) { station.receive(fix); });
-  client.subscribe<shoal::modem_received_t>(
-      params.name + ".radio", [&](const shoal::modem_received_t& packet) { station.receive(packet); });
+  client.subscribe<shoal::modem_received_t>(params.name + ".radio",
+                                            [&](const shoal::modem_received_t& packet) { station.receive(packet); });
   const int exit_code = autonomy::take_part(client, participation, [&](std::int64_t) {
     const autonomy::CoopStation::Decision decision = station.step();
     if (decision.knowledge) client.publish(params.name + ".knowledge", *decision.knowledge);

@@ -24,10 +24,10 @@ std::optional<AcousticState> state_in(const shoal::modem_received_t& packet);
 /// As state_in(), for orders.
 std::optional<AcousticOrder> order_in(const shoal::acoustic_received_t& packet);
 
-/// Tells states that came from their sender from those that a gateway passed on: the sound of such a one began elsewhere,
-/// and its travel time says nothing of the sender.  Direct is what was sent within `newest_s` of the time of the state,
-/// by whoever was first heard with this sender's number.  A relayed state is older: its packet was whole before it was
-/// passed on, which takes seconds under water.
+/// Tells states that came from their sender from those that a gateway passed on: the sound of such a one began
+/// elsewhere, and its travel time says nothing of the sender.  Direct is what was sent within `newest_s` of the time of
+/// the state, by whoever was first heard with this sender's number.  A relayed state is older: its packet was whole
+/// before it was passed on, which takes seconds under water.
 class DirectStates {
  public:
   static constexpr double newest_s = 3;
