@@ -9,6 +9,7 @@ namespace {
 
 /// The part of a sound's power that falls into the band of another.
 double share_in_band(const PresentSound& of, const PresentSound& band) {
+  if (of.centre_Hz == band.centre_Hz && of.bandwidth_Hz == band.bandwidth_Hz) return 1;
   const double low_Hz = std::max(of.centre_Hz - of.bandwidth_Hz / 2, band.centre_Hz - band.bandwidth_Hz / 2);
   const double high_Hz = std::min(of.centre_Hz + of.bandwidth_Hz / 2, band.centre_Hz + band.bandwidth_Hz / 2);
   return std::clamp((high_Hz - low_Hz) / of.bandwidth_Hz, 0.0, 1.0);

@@ -1,41 +1,50 @@
 #include "sim/world/event_queue.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace sim {
 
-namespace {
-
-bool later(const Event& a, const Event& b) {
-  return a.due != b.due ? a.due > b.due : a.sequence > b.sequence;
-}
-
-}  // namespace
-
 void EventQueue::schedule(Event event) {
   event.sequence = next_sequence_++;
-  heap_.push_back(std::move(event));
+  if (free_slots_.empty()) {
+    free_slots_.push_back(events_.size());
+    events_.emplace_back();
+  }
+  const std::size_t slot = free_slots_.back();
+  free_slots_.pop_back();
+  heap_.push_back({event.due, event.sequence, slot});
   std::push_heap(heap_.begin(), heap_.end(), later);
+  events_[slot] = std::move(event);
 }
 
 bool EventQueue::take_due(Time now, Event& event) {
   if (heap_.empty() || heap_.front().due > now) return false;
   std::pop_heap(heap_.begin(), heap_.end(), later);
-  event = std::move(heap_.back());
+  const std::size_t slot = heap_.back().slot;
   heap_.pop_back();
+  event = std::move(events_[slot]);
+  free_slots_.push_back(slot);
   return true;
 }
 
 void EventQueue::forget_device(int device) {
-  if (std::erase_if(heap_, [&](const Event& event) { return event.device == device; }) > 0)
-    std::make_heap(heap_.begin(), heap_.end(), later);
+  const auto of_device = [&](const Key& key) {
+    if (events_[key.slot].device != device) return false;
+    events_[key.slot] = {};
+    free_slots_.push_back(key.slot);
+    return true;
+  };
+  if (std::erase_if(heap_, of_device) > 0) std::make_heap(heap_.begin(), heap_.end(), later);
 }
 
 void EventQueue::hash_state(StateHash& hash) const {
   // The heap's layout depends on its history; the order of delivery is what counts.
   std::vector<const Event*> ordered;
-  for (const Event& event : heap_) ordered.push_back(&event);
-  std::sort(ordered.begin(), ordered.end(), [](const Event* a, const Event* b) { return later(*b, *a); });
+  for (const Key& key : heap_) ordered.push_back(&events_[key.slot]);
+  std::sort(ordered.begin(), ordered.end(), [](const Event* a, const Event* b) {
+    return std::tie(a->due, a->sequence) < std::tie(b->due, b->sequence);
+  });
   hash.add(static_cast<std::uint64_t>(ordered.size()));
   for (const Event* event : ordered) {
     hash.add(static_cast<std::int64_t>(event->due.count()));

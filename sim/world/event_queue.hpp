@@ -34,7 +34,19 @@ class EventQueue {
   void hash_state(StateHash& hash) const;
 
  private:
-  std::vector<Event> heap_;
+  /// What the heap moves about; the events stay where they are.
+  struct Key {
+    Time due;
+    std::uint64_t sequence;
+    std::size_t slot;
+  };
+  static bool later(const Key& a, const Key& b) {
+    return a.due != b.due ? a.due > b.due : a.sequence > b.sequence;
+  }
+
+  std::vector<Key> heap_;
+  std::vector<Event> events_;
+  std::vector<std::size_t> free_slots_;
   std::uint64_t next_sequence_ = 0;
 };
 

@@ -24,8 +24,12 @@ std::string world_text(std::int64_t vehicles, double spacing_m, const std::strin
          acoustics + "\nobjects: [{name: bottom, fixed: true, position_m: [0, 0, -60], parts: [{shape: plane}]}]\n" +
          "vehicles:\n  - name: auv\n    count: " + std::to_string(vehicles) +
          "\n    position_m: [0, 0, -20]\n    placement: {pattern: grid, spacing_m: " + std::to_string(spacing_m) +
-         "}\n    file: naive_auv.yaml\n    overrides: {devices.modem: {type: acoustic_modem, preset: "
-         "micromodem_rate0}}\n";
+         "}\n    model:\n      shoal: 1\n      vehicle: talker\n      bodies:\n"
+         "        - {name: hull, kinematic: true, parts: [{shape: capsule, radius_m: 0.095, length_m: 1.41, "
+         "rpy_deg: [0, 90, 0]}]}\n      devices:\n"
+         "        - {name: drive, type: naive_drive, start_speed_mps: 1.5}\n"
+         "        - {name: heading, type: compass, rate_hz: 1}\n"
+         "        - {name: modem, type: acoustic_modem, preset: micromodem_rate0, rate_hz: 5}\n";
 }
 
 void talk(benchmark::State& state, double spacing_m, const std::string& acoustics) {

@@ -124,6 +124,7 @@ TEST(CoopRover, TellsNothingWithoutAFix) {
 std::vector<std::byte> arrived(const Outgoing& out, std::int64_t utime) {
   const auto sent = shoal::decode<shoal::modem_send_t>(find(out, "rover1.modem.cmd")->payload, shoal::Finite::any);
   shoal::modem_received_t packet{};
+  packet.sent_utime = utime;
   packet.utime = utime;
   packet.source = "rover1";
   packet.size = sent.size;
