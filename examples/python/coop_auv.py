@@ -17,6 +17,7 @@ from marine_ekf import MarineEkf, turned
 PERIOD_S = 0.5
 SILENCE_MS = 600_000
 WEEK_MS = 7 * 24 * 3600 * 1000
+NEWEST_S = 3
 OLDEST_MS = 60 * 1000
 FIRST_SUNDAY_MS = 3 * 24 * 3600 * 1000
 
@@ -66,6 +67,7 @@ class CoopAuv:
         self.has_ahrs = False
         self.depth_m = 0.0
         self.fix_utime = 0
+        self.senders = {}
 
     def on_ahrs(self, attitude):
         w, x, y, z = attitude.quat  # of the body in the world
@@ -102,6 +104,9 @@ class CoopAuv:
         if state is None or self.ekf is None or not 0 <= packet.travel_time_s < 60:
             return
         moved_s = (packet.sent_utime - state["utime"]) * 1e-6
+        # What a gateway passed on is older, and from elsewhere: its travel time says nothing of the sender.
+        if abs(moved_s) > NEWEST_S or self.senders.setdefault(state["sender"], packet.source) != packet.source:
+            return
         east, north, up = state["position_m"]
         beacon = (east + moved_s * state["velocity_mps"][0], north + moved_s * state["velocity_mps"][1], up)
         range_m = packet.travel_time_s * self.sound_speed_mps

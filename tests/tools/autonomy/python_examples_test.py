@@ -119,6 +119,25 @@ class Navigator(unittest.TestCase):
         auv.on_compass(report(heading_true_rad=math.pi / 2 - 0.5))
         self.assertAlmostEqual(auv.yaw_rad, 0.5)
 
+    def test_ranges_come_from_the_sender_itself(self):
+        sent = (3 * 86400 + 2) * 10**6
+        data = Frame.BYTES + coop_auv.checksum(Frame.BYTES).to_bytes(2, "big")  # of a second before
+
+        def place_after(*packets):
+            auv = self.started()
+            auv.ekf.time_s = sent * 1e-6
+            auv.ekf.way[0] = (auv.ekf.time_s, 0.0, 0.0)
+            before = list(auv.ekf.x)
+            for source, later_s in packets:
+                auv.on_modem(report(utime=sent + later_s * 10**6, sent_utime=sent + later_s * 10**6, source=source,
+                                    travel_time_s=0.02, data=data))
+            return None if auv.ekf.x == before else auv.ekf.x
+
+        once = place_after(("boat", 0))
+        self.assertIsNotNone(once)
+        self.assertEqual(place_after(("boat", 0), ("relay", 0)), once)
+        self.assertIsNone(place_after(("relay", 10)))
+
     def test_nonsense_does_no_harm(self):
         auv = self.started()
         before = list(auv.ekf.x), auv.yaw_rad, auv.depth_m
@@ -133,7 +152,7 @@ class Navigator(unittest.TestCase):
         auv.on_gps(report(gps_lock=1, utime=10**7, xyz_pos=(0.0, 0.0, 0.0), horizontal_accuracy=nan))
         near = 3 * 86400 * 10**6
         data = Frame.BYTES + coop_auv.checksum(Frame.BYTES).to_bytes(2, "big")
-        auv.on_modem(report(utime=near, sent_utime=near, travel_time_s=nan, data=data))
+        auv.on_modem(report(utime=near, sent_utime=near, source="boat", travel_time_s=nan, data=data))
         self.assertEqual((list(auv.ekf.x), auv.yaw_rad, auv.depth_m), before)
 
 
