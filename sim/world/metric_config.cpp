@@ -143,7 +143,9 @@ void PassRule::read(ParamReader& in) {
   in.read_reference("above_metric", above_metric, "figure", "the figure must be above this other one times factor");
   in.read("factor", factor, sim::above(0), "see below_metric and above_metric");
   if (in.describing()) return;
-  const auto count = std::count_if(std::begin(rule_forms), std::end(rule_forms), [&](auto key) { return in.has(key); });
+  const auto count = std::count_if(std::begin(rule_forms), std::end(rule_forms), [&](auto key) {
+    return in.has(key) && in.child(key)->kind != ConfigNode::Kind::null;
+  });
   if (count != 1) {
     const std::string forms = "'above', 'above_metric', 'below', 'below_metric' and 'equals'";
     in.error("needs one of " + forms + (count > 1 ? ", not several" : ""));
