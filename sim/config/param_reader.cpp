@@ -397,8 +397,7 @@ void ParamReader::read_reference(const char* key, std::string& value, const char
     return describe_words(key, ParamKind::text, "name of " + with_article(kind), yaml_of(value), meaning);
   const ConfigNode* node = take(key);
   if (node == nullptr || !take_text(quoted_name(key), *node, value)) return;
-  if (value.empty()) return error_at(node->place, quoted_name(key) + " must not be empty");
-  check_reference(key, kind, value, node->place);
+  if (!value.empty()) check_reference(key, kind, value, node->place);
 }
 
 void ParamReader::read_references(const char* key, std::vector<std::string>& value, const char* kind,
