@@ -101,7 +101,12 @@ bool SignalReceiver::end(std::int64_t flight, Time at, Outcome& outcome) {
     outcome = {std::exp(taken->log_success), std::exp(taken->log_success_alone), taken->worst_sinr};
     taken_.erase(taken);
   }
-  std::erase_if(present_, [&](const PresentSound& sound) { return sound.flight == flight; });
+  const auto gone =
+      std::find_if(present_.begin(), present_.end(), [&](const PresentSound& sound) { return sound.flight == flight; });
+  if (gone != present_.end()) {
+    *gone = present_.back();
+    present_.pop_back();
+  }
   return was_taken;
 }
 

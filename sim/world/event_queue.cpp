@@ -13,18 +13,32 @@ void EventQueue::schedule(Event event) {
   }
   const std::size_t slot = free_slots_.back();
   free_slots_.pop_back();
-  heap_.push_back({event.due, event.sequence, slot});
-  std::push_heap(heap_.begin(), heap_.end(), later);
+  const Key key{event.due, event.sequence, slot};
+  if (const std::int64_t slice = slice_of(event.due); slice > reached_) {
+    slices_[slice].push_back(key);
+  } else {
+    heap_.push_back(key);
+    std::push_heap(heap_.begin(), heap_.end(), Later());
+  }
   events_[slot] = std::move(event);
+  ++size_;
 }
 
 bool EventQueue::take_due(Time now, Event& event) {
+  while (!slices_.empty() && slices_.begin()->first <= slice_of(now)) {
+    const auto slice = slices_.begin();
+    heap_.insert(heap_.end(), slice->second.begin(), slice->second.end());
+    std::make_heap(heap_.begin(), heap_.end(), Later());
+    slices_.erase(slice);
+  }
+  reached_ = std::max(reached_, slice_of(now));
   if (heap_.empty() || heap_.front().due > now) return false;
-  std::pop_heap(heap_.begin(), heap_.end(), later);
+  std::pop_heap(heap_.begin(), heap_.end(), Later());
   const std::size_t slot = heap_.back().slot;
   heap_.pop_back();
   event = std::move(events_[slot]);
   free_slots_.push_back(slot);
+  --size_;
   return true;
 }
 
@@ -33,15 +47,19 @@ void EventQueue::forget_device(int device) {
     if (events_[key.slot].device != device) return false;
     events_[key.slot] = {};
     free_slots_.push_back(key.slot);
+    --size_;
     return true;
   };
-  if (std::erase_if(heap_, of_device) > 0) std::make_heap(heap_.begin(), heap_.end(), later);
+  for (auto& [slice, keys] : slices_) std::erase_if(keys, of_device);
+  if (std::erase_if(heap_, of_device) > 0) std::make_heap(heap_.begin(), heap_.end(), Later());
 }
 
 void EventQueue::hash_state(StateHash& hash) const {
   // The heap's layout depends on its history; the order of delivery is what counts.
   std::vector<const Event*> ordered;
   for (const Key& key : heap_) ordered.push_back(&events_[key.slot]);
+  for (const auto& [slice, keys] : slices_)
+    for (const Key& key : keys) ordered.push_back(&events_[key.slot]);
   std::sort(ordered.begin(), ordered.end(), [](const Event* a, const Event* b) {
     return std::tie(a->due, a->sequence) < std::tie(b->due, b->sequence);
   });

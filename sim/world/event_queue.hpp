@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "sim/bus/bus.hpp"
@@ -30,21 +31,28 @@ class EventQueue {
   bool take_due(Time now, Event& event);
   /// Drops what waits for a device that goes.
   void forget_device(int device);
-  std::size_t size() const { return heap_.size(); }
+  std::size_t size() const { return size_; }
   void hash_state(StateHash& hash) const;
 
  private:
-  /// What the heap moves about; the events stay where they are.
+  /// What is moved about; the events stay where they are.
   struct Key {
     Time due;
     std::uint64_t sequence;
     std::size_t slot;
   };
-  static bool later(const Key& a, const Key& b) {
-    return a.due != b.due ? a.due > b.due : a.sequence > b.sequence;
-  }
+  struct Later {
+    bool operator()(const Key& a, const Key& b) const {
+      return a.due != b.due ? a.due > b.due : a.sequence > b.sequence;
+    }
+  };
+  /// Times are cut into slices: a heap of all that waits for long would not fit into the cache.
+  static std::int64_t slice_of(Time due) { return due.count() >> 14; }
 
-  std::vector<Key> heap_;
+  std::vector<Key> heap_;  // up to the slice `reached_`
+  std::map<std::int64_t, std::vector<Key>> slices_;
+  std::int64_t reached_ = -1;
+  std::size_t size_ = 0;
   std::vector<Event> events_;
   std::vector<std::size_t> free_slots_;
   std::uint64_t next_sequence_ = 0;
