@@ -32,7 +32,7 @@ class Gateway final : public sim::Sensor {
     std::int64_t passed = 0, too_long = 0, repeated = 0, refused = 0;
   };
 
-  /// Throws ConfigError when `between` does not name two modems of the vehicle.
+  /// Throws ConfigError when `between` does not name two modems of the vehicle, or `destinations` no vehicles.
   Gateway(const Params& params, const sim::DeviceContext& context);
   void act(const sim::ActContext& context);
   void measure(const sim::SenseContext&) override { counts_ = counting_; }
@@ -53,7 +53,9 @@ class Gateway final : public sim::Sensor {
 
   void find_modems();
   void arrived(std::size_t from, sim::Time at, const std::string& source, const sim::Bytes& data);
+  /// The same bytes passed within repeat_s.
   bool seen_before(sim::Time at, const sim::Bytes& data);
+  void remember(sim::Time at, const sim::Bytes& data);
 
   Params params_;
   const sim::Vehicle& vehicle_;
