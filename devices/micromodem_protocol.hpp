@@ -61,6 +61,8 @@ class MicromodemProtocol {
   /// A line from the host, whatever it holds.
   void take_line(const NmeaLines::Line& line, sim::Time now);
   void tick(sim::Time now);
+  /// Forgets what it was about, and says hello anew at `up`.  Settings stay; the time that the host set does not.
+  void restart(sim::Time up);
   void heard(const MicromodemPacket& packet, const MicromodemArrival& arrival);
   /// A transponder (0: the first) answered.
   void beacon_answered(int beacon, sim::Time begun);
@@ -148,6 +150,7 @@ class MicromodemProtocol {
   std::vector<Due> due_;
   sim::Time sending_until_{0};
   sim::Time next_revision_{0};
+  bool starting_ = true;  // it will say INIT then
   std::optional<Cycle> cycle_;
   std::optional<Expected> expected_;
   std::optional<Ping> ping_;
