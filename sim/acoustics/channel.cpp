@@ -17,6 +17,8 @@ constexpr double early = 0.02;
 /// Who is near whom holds so long; and nobody goes farther meanwhile, nor while a sound is under way.
 constexpr double neighbours_hold_s = 1;
 constexpr double stray_m = 150;
+/// How often those who send or take signals are looked after.
+constexpr Time watch_period{100'000};
 /// A gain below this is none.
 constexpr double lowest_dB = -1000;
 
@@ -46,12 +48,72 @@ int AcousticChannel::join(Transducer& transducer) {
 }
 
 void AcousticChannel::leave(Transducer& transducer) {
+  const Transducer::Counts& counts = transducer.counts_;
+  gone_.sent += counts.sent;
+  gone_.sent_bytes += counts.sent_bytes;
+  gone_.understood += counts.understood;
+  gone_.understood_bytes += counts.understood_bytes;
+  gone_.unsent += counts.unsent;
+  for (std::size_t i = 0; i < counts.lost.size(); ++i) gone_.lost[i] += counts.lost[i];
   transducers_[static_cast<std::size_t>(transducer.number())] = nullptr;
   for (const auto& sending : sendings_)
     if (sending && sending->from == &transducer) sending->from = nullptr;
   for (Flight& flight : flights_)
     if (flight.to == &transducer) flight.to = nullptr;
   forget_places();
+}
+
+void AcousticChannel::join(ContinuousSound& sound) {
+  sounds_.push_back(&sound);
+  noise_changed();
+}
+
+void AcousticChannel::leave(ContinuousSound& sound) {
+  std::erase(sounds_, &sound);
+  noise_changed();
+}
+
+void AcousticChannel::noise_changed() {
+  for (std::size_t i = 0; i < flights_.size(); ++i) {
+    const Flight& flight = flights_[i];
+    const auto number = static_cast<std::int64_t>(i);
+    if (flight.to == nullptr || !flight.noticed || !flight.to->receiver_.takes(number)) continue;
+    const Signal& signal = sendings_[static_cast<std::size_t>(flight.sending)]->signal;
+    const PowerRatio noise = noise_at(*flight.to, flight.to->p_W(around_.medium.now()), signal);
+    flight.to->receiver_.set_noise(number, noise, around_.medium.now());
+  }
+}
+
+Decibels AcousticChannel::faintest(double frequency_Hz) const {
+  double below_dB = config_.inaudible_dB;
+  for (const Transducer* each : transducers_)
+    if (each != nullptr)
+      below_dB = std::max(below_dB, each->noise_reduction(frequency_Hz).dB() - each->config().detection_dB);
+  double gain_dB = 0;
+  for (const LinkConfig& link : config_.links) gain_dB += std::max(0.0, -link.extra_loss_dB);
+  // Fading makes one signal in fifty or fewer stronger than this.
+  if (config_.fading.type == FadingConfig::Type::rayleigh) gain_dB += 6;
+  if (config_.fading.type == FadingConfig::Type::log_normal) gain_dB += 2 * config_.fading.std_dB;
+  return Decibels{below_dB + gain_dB};
+}
+
+bool AcousticChannel::can(const Transducer& transducer) const {
+  return transducer.works() && around_.medium.in_water(transducer.p_W(step_end_));
+}
+
+void AcousticChannel::watch() {
+  bool more = false;
+  for (Transducer* each : transducers_) {
+    if (each == nullptr || (each->sending_ < 0 && !each->receiver_.taking())) continue;
+    more = true;
+    if (can(*each)) continue;
+    if (each->sending_ >= 0) sendings_[static_cast<std::size_t>(each->sending_)]->cut = true;
+    const SignalLoss loss = each->works() ? SignalLoss::out_of_water : SignalLoss::receiver_off;
+    for (std::int64_t flight = each->receiver_.drop(); flight >= 0; flight = each->receiver_.drop())
+      flights_[static_cast<std::size_t>(flight)].loss = loss;
+  }
+  watching_ = more;
+  if (more) schedule(step_end_ + watch_period, watch_event, 0);
 }
 
 int AcousticChannel::new_sending() {
@@ -126,6 +188,9 @@ void AcousticChannel::handle(const Event& event, Time now) {
     case end_event:
       end(item);
       break;
+    case watch_event:
+      watch();
+      break;
     default:
       break;
   }
@@ -143,6 +208,11 @@ void AcousticChannel::emit(int number, Time now) {
   sending.v_W = from->v_W();
   sending.R_WS = from->R_WS();
   sending.directivity = from->config().directivity;
+  from->sending_ = number;
+  if (!watching_) {
+    watching_ = true;
+    schedule(now + watch_period, watch_event, 0);
+  }
   from->sending_until_ = std::max(from->sending_until_, sending.sent + sending.signal.duration);
   if (sending.signal.kind == Signal::Kind::message) {
     ++from->counts_.sent;
@@ -151,7 +221,7 @@ void AcousticChannel::emit(int number, Time now) {
   for (std::int64_t flight = from->receiver_.drop(); flight >= 0; flight = from->receiver_.drop())
     flights_[static_cast<std::size_t>(flight)].loss = SignalLoss::half_duplex;
 
-  const double reach_m = propagation_.audible_range_m(sending.signal);
+  const double reach_m = propagation_.audible_range_m(sending.signal, faintest(sending.signal.centre_Hz));
   if (neighbours_age_ < 0 || to_seconds(now) - neighbours_age_ > neighbours_hold_s) {
     std::vector<Neighbourhood::Member> members;
     for (const Transducer* each : transducers_)
@@ -178,8 +248,9 @@ void AcousticChannel::emit(int number, Time now) {
 void AcousticChannel::end_emission(int number, Time at) {
   Sending& sending = *sendings_[static_cast<std::size_t>(number)];
   // It left the water meanwhile, or lost its power: the end of the signal is missing.
-  const Transducer* from = sending.from;
-  if (from == nullptr || !from->works() || !around_.medium.in_water(from->p_W(at))) sending.cut = at;
+  Transducer* from = sending.from;
+  if (from == nullptr || !from->works() || !around_.medium.in_water(from->p_W(at))) sending.cut = true;
+  if (from != nullptr && from->sending_ == number) from->sending_ = -1;
   release(number);
 }
 
@@ -202,18 +273,22 @@ void AcousticChannel::approach(int number, Time due) {
 }
 
 PowerRatio AcousticChannel::noise_at(const Transducer& to, const Vector3d& p_W, const Signal& signal) const {
-  const Decibels quieter = to.noise_reduction(signal.centre_Hz, around_.medium.sound_speed_mps(p_W));
+  const Decibels quieter = to.noise_reduction(signal.centre_Hz);
   PowerRatio noise = to_power(propagation_.ambient_level(signal.centre_Hz, signal.bandwidth_Hz) - quieter);
   for (const ContinuousSound* sound : sounds_) {
     if (!sound->on_ || !sound->vehicle_.systems().powered || sound->faults_.silent()) continue;
     const Vector3d from_W = sound->body_.X_WB() * sound->p_BS_;
     if (!around_.medium.in_water(from_W)) continue;
-    const double low_Hz =
-        std::max(sound->centre_Hz_ - sound->bandwidth_Hz_ / 2, signal.centre_Hz - signal.bandwidth_Hz / 2);
-    const double high_Hz =
-        std::min(sound->centre_Hz_ + sound->bandwidth_Hz_ / 2, signal.centre_Hz + signal.bandwidth_Hz / 2);
+    const double f = sound->centre_Hz_, half_Hz = sound->bandwidth_Hz_ / 2;
+    const double low_Hz = std::max(f - half_Hz, signal.centre_Hz - signal.bandwidth_Hz / 2);
+    const double high_Hz = std::min(f + half_Hz, signal.centre_Hz + signal.bandwidth_Hz / 2);
     if (high_Hz <= low_Hz) continue;
-    const Decibels level = sound->source_level_ - propagation_.transmission_loss(from_W, p_W, sound->centre_Hz_);
+    Decibels level = sound->source_level_ - propagation_.transmission_loss(from_W, p_W, f);
+    level += directivity_gain(to.config().directivity, to.R_WS().transpose() * (from_W - p_W), f,
+                              around_.medium.sound_speed_mps(p_W));
+    if (config_.occlusion)
+      level += pressure_level(
+          propagation_.free_part(from_W, sound->vehicle_.group(), p_W, to.vehicle().group(), signal.centre_Hz));
     noise += (high_Hz - low_Hz) / sound->bandwidth_Hz_ * to_power(level);
   }
   return noise;
@@ -243,7 +318,7 @@ Random AcousticChannel::stream(const Transducer& to, const Sending& sending, boo
   return random;
 }
 
-PowerRatio AcousticChannel::work_out_level(Flight& flight, const Sending& sending) {
+PowerRatio AcousticChannel::work_out_level(Flight& flight, const Sending& sending, double& later_s) {
   const Transducer& to = *flight.to;
   const Signal& signal = sending.signal;
   const Vector3d way_W = flight.p_begun_W - sending.p_W;
@@ -263,6 +338,7 @@ PowerRatio AcousticChannel::work_out_level(Flight& flight, const Sending& sendin
   level += directivity_gain(sending.directivity, sending.R_WS.transpose() * direction_W, signal.centre_Hz, c);
   level += directivity_gain(to.config().directivity, -(to.R_WS().transpose() * direction_W), signal.centre_Hz, c);
   flight.level = level + gain.signal;
+  later_s = gain.later_s;
   if (gain.blocked && gain.signal.dB() < lowest_dB) flight.loss = SignalLoss::blocked;
   return to_power(level) * gain.disturbing;
 }
@@ -285,18 +361,32 @@ void AcousticChannel::begin(int number) {
   }
   Transducer& to = *flight.to;
   const Vector3d p_W = to.p_W(flight.begun);
-  // Where it was expected, but for its turns; somebody who was put elsewhere is met anew.
-  if ((p_W - flight.p_begun_W).norm() > 1) {
+  // Where it was expected, but for what its turns do in so short a time; somebody who was put elsewhere is met anew.
+  if (!flight.delayed && (p_W - flight.p_begun_W).norm() > 0.01) {
     approach(number, flight.begun);
     return;
   }
   flight.p_begun_W = p_W;
-  const PowerRatio disturbing = work_out_level(flight, sending);
+  if (config_.range_max_m && (p_W - sending.p_W).norm() > *config_.range_max_m) {
+    end(number);
+    return;
+  }
+  double later_s = 0;
+  const PowerRatio disturbing = work_out_level(flight, sending, later_s);
+  if (later_s > 0 && !flight.delayed) {
+    // Nothing comes along the direct path: the first sound is an echo.
+    flight.delayed = true;
+    flight.travel_time_s += later_s;
+    flight.begun += from_seconds(later_s);
+    schedule(flight.begun, begin_event, number);
+    return;
+  }
   flight.listened = to.listener_.listens_to(sending.signal);
   flight.present = flight.loss == SignalLoss::none && around_.medium.in_water(flight.p_begun_W);
   if (flight.present) {
     const PowerRatio power = to_power(flight.level) + disturbing;
-    to.receiver_.begin({number, sending.signal.centre_Hz, sending.signal.bandwidth_Hz, power}, flight.begun);
+    to.receiver_.begin({number, sending.signal.centre_Hz, sending.signal.bandwidth_Hz, power, flight.ended},
+                       flight.begun);
   }
   if (flight.listened) take(number, flight, sending, disturbing);
   schedule(flight.ended, end_event, number);
@@ -306,7 +396,7 @@ void AcousticChannel::take(int number, Flight& flight, const Sending& sending, P
   const Signal& signal = sending.signal;
   Transducer& to = *flight.to;
   TakenSignal taken;
-  taken.sound = {number, signal.centre_Hz, signal.bandwidth_Hz, to_power(flight.level)};
+  taken.sound = {number, signal.centre_Hz, signal.bandwidth_Hz, to_power(flight.level), flight.ended};
   taken.noise = noise_at(to, flight.p_begun_W, signal);
   taken.disturbing = disturbing;
   taken.modulation = signal.modulation;
@@ -320,6 +410,7 @@ void AcousticChannel::take(int number, Flight& flight, const Sending& sending, P
   if (flight.loss != SignalLoss::none) return;
   std::int64_t displaced = -1;
   flight.loss = to.receiver_.take(taken, {to.config().detection_dB, to.config().capture_dB}, displaced);
+  flight.noticed = flight.loss == SignalLoss::none;
   if (displaced >= 0) flights_[static_cast<std::size_t>(displaced)].loss = SignalLoss::captured;
 }
 
@@ -347,8 +438,9 @@ void AcousticChannel::end(int number) {
         if (!around_.medium.in_water(to->p_W(flight.ended)) || sending.cut) flight.loss = SignalLoss::out_of_water;
         if (!to->works()) flight.loss = SignalLoss::receiver_off;
       }
-      ++to->counts_.lost[static_cast<std::size_t>(flight.loss)];
-      if (flight.loss == SignalLoss::none && sending.signal.kind == Signal::Kind::message) {
+      const bool message = sending.signal.kind == Signal::Kind::message;
+      if (message) ++to->counts_.lost[static_cast<std::size_t>(flight.loss)];
+      if (message && flight.loss == SignalLoss::none) {
         ++to->counts_.understood;
         to->counts_.understood_bytes += static_cast<std::int64_t>(sending.signal.payload.size());
       }
@@ -357,7 +449,7 @@ void AcousticChannel::end(int number) {
       if (!deaf)
         to->listener_.heard({sending.signal, sending.source, sending.number, sending.sent, flight.begun, flight.ended,
                              flight.travel_time_s, sending.p_W, flight.p_begun_W, flight.level, flight.snr, sinr,
-                             flight.closing_mps, flight.loss});
+                             flight.closing_mps, flight.loss, flight.noticed});
     }
   }
   // heard() may have transmitted: references are stale.
@@ -371,19 +463,27 @@ void AcousticChannel::hash_state(StateHash& hash) const {
   if (transducers_.empty()) return;
   for (const Transducer* transducer : transducers_)
     if (transducer != nullptr) transducer->hash_state(hash);
+  for (const ContinuousSound* sound : sounds_) {
+    hash.add(sound->on_);
+    hash.add(sound->source_level_.dB());
+  }
   for (const auto& sending : sendings_) {
     hash.add(sending->sequence);
     hash.add(static_cast<std::int64_t>(sending->sent.count()));
     hash.add(sending->p_W);
-    hash.add(sending->cut.has_value());
+    hash.add(sending->cut);
     hash.add_bytes(sending->signal.payload.data(), sending->signal.payload.size());
   }
   for (const Flight& flight : flights_) {
     hash.add(flight.sending);
     hash.add(static_cast<std::int64_t>(flight.begun.count()));
     hash.add(static_cast<std::int64_t>(flight.ended.count()));
+    hash.add(flight.to != nullptr ? flight.to->number() : -1);
     hash.add(flight.travel_time_s);
+    hash.add(flight.level.dB());
     hash.add(static_cast<int>(flight.loss));
+    hash.add(flight.present);
+    hash.add(flight.noticed);
   }
 }
 

@@ -41,6 +41,8 @@ class AcousticChannel {
   void handle(const Event& event, Time now);
   /// Somebody was put elsewhere: who is near whom is looked up again.
   void forget_places() { neighbours_age_ = -1; }
+  /// What transducers that have left sent and heard.
+  const Transducer::Counts& counts_of_those_gone() const { return gone_; }
 
   /// In device order; null where one has left.
   const std::vector<Transducer*>& transducers() const { return transducers_; }
@@ -52,7 +54,7 @@ class AcousticChannel {
  private:
   friend class Transducer;
   friend class ContinuousSound;
-  enum EventKind { emission_event, emission_end_event, near_event, begin_event, end_event };
+  enum EventKind { emission_event, emission_end_event, near_event, begin_event, end_event, watch_event };
 
   /// A signal under way.
   struct Sending {
@@ -66,8 +68,8 @@ class AcousticChannel {
     Vector3d p_W = Vector3d::Zero(), v_W = Vector3d::Zero();
     Matrix3d R_WS = Matrix3d::Identity();
     DirectivityConfig directivity;
-    std::optional<Time> cut;  // the sender left the water
-    int users = 0;            // flights and events that still need it
+    bool cut = false;  // the sender left the water, or lost its power
+    int users = 0;     // flights and events that still need it
   };
   /// A signal on its way to one receiver.
   struct Flight {
@@ -79,22 +81,30 @@ class AcousticChannel {
     double closing_mps = 0;
     Decibels level{0}, snr{0};
     SignalLoss loss = SignalLoss::none;
-    bool listened = false, present = false;
+    bool listened = false, present = false, noticed = false, delayed = false;
   };
 
   int join(Transducer& transducer);
   void leave(Transducer& transducer);
-  void join(ContinuousSound& sound) { sounds_.push_back(&sound); }
-  void leave(ContinuousSound& sound) { std::erase(sounds_, &sound); }
+  void join(ContinuousSound& sound);
+  void leave(ContinuousSound& sound);
   void transmit(Transducer& from, Signal signal, Time at);
 
   void emit(int sending, Time now);
   void end_emission(int sending, Time at);
   void approach(int flight, Time due);
   void begin(int flight);
+  /// Looks whether those who send and take signals still can.
+  void watch();
+  bool can(const Transducer& transducer) const;
+  /// A continuous sound began, ended or changed.
+  void noise_changed();
+  /// By how much a signal may be below the noise and still matter to somebody.
+  Decibels faintest(double frequency_Hz) const;
   void end(int flight);
   /// Level, end and Doppler.  Returns the power of echoes that disturb, re 1 uPa^2.
-  PowerRatio work_out_level(Flight& flight, const Sending& sending);
+  /// `later_s`: by which the first sound is an echo's.
+  PowerRatio work_out_level(Flight& flight, const Sending& sending, double& later_s);
   SignalLoss obstacle(const Flight& flight) const;
   Decibels link_loss(const Transducer& to, const Sending& sending, double& loss_probability) const;
   /// Of the sea and of continuous sounds, in the band of a signal, as a receiver hears it.
@@ -122,6 +132,8 @@ class AcousticChannel {
   Time step_end_{0};
   Neighbourhood neighbours_;
   double neighbours_age_ = -1;  // when they were looked up, s; negative: not
+  bool watching_ = false;       // a watch_event is under way
+  Transducer::Counts gone_;
   std::vector<int> near_;
 };
 

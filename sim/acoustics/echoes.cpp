@@ -1,11 +1,12 @@
 #include "sim/acoustics/echoes.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sim {
 
 Echoes echoes(const MultipathConfig& config, const MultipathMedium& medium, const LinkDepths& depths, Random* random,
-              bool direct_blocked) {
+              Decibels direct_left) {
   const double water_m = std::max(0.0, depths.water_m);
   std::vector<ImagePath> paths;
   image_paths(std::clamp(depths.source_m, 0.0, water_m), std::clamp(depths.receiver_m, 0.0, water_m),
@@ -15,7 +16,9 @@ Echoes echoes(const MultipathConfig& config, const MultipathMedium& medium, cons
   // Over the direct path from here on: at ranges where nothing is left of it, too.
   const Decibels direct = gains[0].gain;
   for (PathGain& gain : gains) gain.gain -= direct;
-  if (direct_blocked) gains.erase(gains.begin());
+  const double direct_s = gains[0].delay_s;
+  gains[0].gain += direct_left;
+  if (std::isinf(direct_left.dB())) gains.erase(gains.begin());
   Echoes result;
   const bool drawn = config.phases == MultipathConfig::Phases::random;
   if (drawn && random != nullptr) randomize_phases(gains, *random);
@@ -23,6 +26,7 @@ Echoes echoes(const MultipathConfig& config, const MultipathMedium& medium, cons
   result.signal = sum.signal;
   result.late = sum.interference;
   result.spread_s = sum.spread_s;
+  if (!gains.empty()) result.later_s = std::max(0.0, sum.first_s - direct_s);
   if (drawn && random == nullptr) {
     PowerRatio inside;
     for (const PathGain& gain : gains)

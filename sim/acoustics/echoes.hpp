@@ -16,12 +16,13 @@ struct Echoes {
   PowerRatio signal{1};  ///< all inside the window, the direct path with them
   PowerRatio late{0};    ///< what comes later and disturbs
   double spread_s = 0;   ///< rms of the delays
+  double later_s = 0;    ///< by which the first sound comes after that of the direct path, where nothing is left of it
 };
 
 /// Depths out of the water count as at surface and bottom.  `random`: draws the phases for `phases: random`; null:
-/// powers add up, which is their mean over all phases.  `direct_blocked`: the direct path gives nothing, but the powers
-/// are over what it would be.
+/// powers add up, which is their mean over all phases.  `direct`: what an obstacle leaves of the direct path, minus
+/// infinity when nothing; the powers are over what it would be without.
 Echoes echoes(const MultipathConfig& config, const MultipathMedium& medium, const LinkDepths& depths, Random* random,
-              bool direct_blocked = false);
+              Decibels direct = Decibels(0));
 
 }  // namespace sim

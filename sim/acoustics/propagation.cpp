@@ -22,23 +22,38 @@ Decibels Propagation::transmission_loss(const Vector3d& from_W, const Vector3d& 
   return spreading_loss(range_m, config_.spreading) + absorption_loss(range_m, dBpkm);
 }
 
-Decibels Propagation::ambient_level(double centre_Hz, double bandwidth_Hz) const {
-  for (const BandLevel& known : band_levels_)
-    if (known.centre_Hz == centre_Hz && known.bandwidth_Hz == bandwidth_Hz) return known.level;
-  const Decibels level = config_.noise.with_wind(medium_.mean_wind_mps()).band_level(centre_Hz, bandwidth_Hz);
-  constexpr std::size_t most_bands = 32;
-  if (band_levels_.size() < most_bands) band_levels_.push_back({centre_Hz, bandwidth_Hz, level});
-  return level;
+Propagation::Band Propagation::band(double centre_Hz, double bandwidth_Hz) const {
+  for (const Band& known : bands_)
+    if (known.centre_Hz == centre_Hz && known.bandwidth_Hz == bandwidth_Hz) return known;
+  const AmbientNoise noise = config_.noise.with_wind(medium_.mean_wind_mps());
+  const Band band{centre_Hz, bandwidth_Hz, noise.band_level(centre_Hz, bandwidth_Hz),
+                  least_absorption_dBpkm(centre_Hz)};
+  constexpr std::size_t most_bands = 64;
+  if (bands_.size() < most_bands) bands_.push_back(band);
+  return band;
 }
 
-double Propagation::audible_range_m(const Signal& signal) const {
-  const Decibels floor = ambient_level(signal.centre_Hz, signal.bandwidth_Hz) - Decibels{config_.inaudible_dB};
+Decibels Propagation::ambient_level(double centre_Hz, double bandwidth_Hz) const {
+  return band(centre_Hz, bandwidth_Hz).ambient;
+}
+
+double Propagation::least_absorption_dBpkm(double frequency_Hz) const {
+  double least_dBpkm = std::numeric_limits<double>::infinity();
+  const double surface_m = medium_.highest_surface_m();
+  for (const double depth_m : {0.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 12000.0}) {
+    const Vector3d p_W(0, 0, surface_m - depth_m);
+    least_dBpkm = std::min(least_dBpkm, absorption_dBpkm(config_.absorption, frequency_Hz, medium_, p_W, p_W));
+  }
+  return 0.95 * least_dBpkm;  // between those depths
+}
+
+double Propagation::audible_range_m(const Signal& signal, Decibels below) const {
+  const Band of = band(signal.centre_Hz, signal.bandwidth_Hz);
+  const Decibels floor = of.ambient - below;
   const double most_m = config_.range_max_m.value_or(1e6);
-  // Francois and Garrison's absorption is nowhere in the sea less than half of Thorp's.
-  const bool constant = config_.absorption.model == AbsorptionConfig::Model::constant;
-  const double dBpkm = constant ? config_.absorption.dBpkm : 0.5 * thorp_dBpkm(signal.centre_Hz * 1e-3);
   const auto heard = [&](double range_m) {
-    return signal.source_level - spreading_loss(range_m, config_.spreading) - absorption_loss(range_m, dBpkm) > floor;
+    return signal.source_level - spreading_loss(range_m, config_.spreading) - absorption_loss(range_m, of.least_dBpkm) >
+           floor;
   };
   if (heard(most_m)) return most_m;
   double near_m = 1, far_m = most_m;
@@ -86,13 +101,24 @@ double Propagation::free_part(const Vector3d& from_W, int from_group, const Vect
 
 double Propagation::water_depth_m(const Vector3d& p_W) const {
   if (config_.multipath->water_depth_m) return *config_.multipath->water_depth_m;
+  // The bottom does not move: what moves about over it is passed.
   RayFilter filter;
   filter.kind = RayKind::sound;
-  const auto hit = physics_.scene().cast(p_W, -Vector3d::UnitZ(), deepest_m, filter);
-  return hit ? std::max(0.0, medium_.depth_m(p_W)) + hit->range_m : std::numeric_limits<double>::infinity();
+  double below_m = 0;
+  for (int passed = 0; passed < 8; ++passed) {
+    const auto hit =
+        physics_.scene().cast(p_W - below_m * Vector3d::UnitZ(), -Vector3d::UnitZ(), deepest_m - below_m, filter);
+    if (!hit) break;
+    below_m += hit->range_m;
+    const PartInfo& part = physics_.parts()[static_cast<std::size_t>(hit->part)];
+    if (physics_.bodies()[static_cast<std::size_t>(part.body)]->fixed())
+      return std::max(0.0, medium_.depth_m(p_W)) + below_m;
+    below_m += 1e-3;
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
-Echoes Propagation::echoes_of(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, bool direct_blocked,
+Echoes Propagation::echoes_of(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, Decibels direct,
                               Random& random) const {
   LinkDepths depths;
   depths.source_m = medium_.depth_m(from_W);
@@ -105,7 +131,7 @@ Echoes Propagation::echoes_of(const Vector3d& from_W, const Vector3d& to_W, doub
   water.absorption_dBpkm = absorption_dBpkm(config_.absorption, frequency_Hz, medium_, from_W, to_W);
   water.wind_mps = config_.noise.wind_mps.value_or(medium_.mean_wind_mps());
   water.spreading = config_.spreading;
-  return echoes(*config_.multipath, water, depths, &random, direct_blocked);
+  return echoes(*config_.multipath, water, depths, &random, direct);
 }
 
 Propagation::Gain Propagation::gain(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group,
@@ -113,18 +139,18 @@ Propagation::Gain Propagation::gain(const Vector3d& from_W, int from_group, cons
   Gain gain;
   const double free = config_.occlusion ? free_part(from_W, from_group, to_W, to_group, frequency_Hz) : 1;
   gain.blocked = free == 0;
-  const bool nothing_passes = gain.blocked && !config_.occlusion_loss_dB;
+  // What passes by the obstacle, and what passes through it.
+  const double through = config_.occlusion_loss_dB ? std::pow(10.0, -*config_.occlusion_loss_dB / 20) : 0;
+  const Decibels direct = pressure_level(std::max(free, through));
   gain.signal = -transmission_loss(from_W, to_W, frequency_Hz);
   if (config_.multipath) {
-    const Echoes echoes = echoes_of(from_W, to_W, frequency_Hz, nothing_passes, random);
+    const Echoes echoes = echoes_of(from_W, to_W, frequency_Hz, direct, random);
     gain.disturbing = to_power(gain.signal) * echoes.late;
     gain.signal += to_decibels(echoes.signal);
-  } else if (nothing_passes) {
-    gain.signal = Decibels{-std::numeric_limits<double>::infinity()};
+    gain.later_s = echoes.later_s;
+  } else {
+    gain.signal += direct;
   }
-  // Of the pressure that comes along all of the zone.
-  if (!gain.blocked && free < 1) gain.signal += pressure_level(free);
-  if (gain.blocked && !nothing_passes) gain.signal -= Decibels{*config_.occlusion_loss_dB};
   const Decibels faded = fade(config_.fading, random);
   gain.signal += faded;
   gain.disturbing = to_power(faded) * gain.disturbing;

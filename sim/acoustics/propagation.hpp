@@ -23,6 +23,7 @@ class Propagation {
     Decibels signal;        ///< minus infinity: nothing comes through
     PowerRatio disturbing;  ///< echoes that come too late to help
     bool blocked = false;   ///< the direct path is
+    double later_s = 0;     ///< by which an echo comes after the direct path that is blocked
   };
   /// The random draws: phases of the echoes, then fading.  The groups are those of the vehicles at both ends, whose
   /// hulls do not stand in the way.
@@ -32,27 +33,32 @@ class Propagation {
   Decibels transmission_loss(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const;
   /// Ambient noise of a band: re 1 uPa.
   Decibels ambient_level(double centre_Hz, double bandwidth_Hz) const;
-  /// Beyond this a signal is `inaudible_dB` below the noise on any path, fading apart.
-  double audible_range_m(const Signal& signal) const;
-
- private:
+  /// Beyond this a signal is farther below the noise than `below` on any path.
+  double audible_range_m(const Signal& signal, Decibels below) const;
   /// How much of the first Fresnel zone is free of terrain, objects and hulls: 1 all, 0 nothing.
   double free_part(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group,
                    double frequency_Hz) const;
-  Echoes echoes_of(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, bool direct_blocked,
+
+ private:
+  Echoes echoes_of(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, Decibels direct,
                    Random& random) const;
+  /// The least absorption anywhere in the water.
+  double least_absorption_dBpkm(double frequency_Hz) const;
   /// Below the surface; infinite when there is no bottom.
   double water_depth_m(const Vector3d& p_W) const;
 
-  struct BandLevel {
+  /// What does not change in a run: the mean wind and the water stay.
+  struct Band {
     double centre_Hz, bandwidth_Hz;
-    Decibels level;
+    Decibels ambient;
+    double least_dBpkm;
   };
+  Band band(double centre_Hz, double bandwidth_Hz) const;
 
   const AcousticsConfig& config_;
   const Medium& medium_;
   const PhysicsWorld& physics_;
-  mutable std::vector<BandLevel> band_levels_;  // worked out before; the mean wind stays
+  mutable std::vector<Band> bands_;  // worked out before
 };
 
 }  // namespace sim

@@ -68,6 +68,7 @@ struct Reception {
   Decibels sinr{0};                       ///< against noise and other sounds, at its worst
   double closing_mps = 0;                 ///< Doppler: how fast sender and receiver came nearer
   SignalLoss loss = SignalLoss::none;
+  bool noticed = false;  ///< the receiver took it, whatever came of it then
 
   bool understood() const { return loss == SignalLoss::none; }
 };

@@ -17,10 +17,10 @@ double share_in_band(const PresentSound& of, const PresentSound& band) {
 
 }  // namespace
 
-PowerRatio SignalReceiver::others(const PresentSound& but) const {
+PowerRatio SignalReceiver::others(const PresentSound& but, Time at) const {
   PowerRatio sum{0};
   for (const PresentSound& sound : present_)
-    if (sound.flight != but.flight) sum += share_in_band(sound, but) * sound.power;
+    if (sound.flight != but.flight && sound.ended > at) sum += share_in_band(sound, but) * sound.power;
   return sum;
 }
 
@@ -33,9 +33,10 @@ void SignalReceiver::count_bits(Taken& taken, Time until) const {
   const TakenSignal& signal = taken.signal;
   const double span = to_seconds(std::min(until, signal.ended) - taken.counted_until);
   const double whole = to_seconds(signal.ended - signal.begun);
+  const PowerRatio other = others(signal.sound, taken.counted_until);
   taken.counted_until = until;
   const PowerRatio alone = signal.sound.power / (signal.noise + signal.disturbing);
-  const PowerRatio sinr = signal.sound.power / (signal.noise + signal.disturbing + others(signal.sound));
+  const PowerRatio sinr = signal.sound.power / (signal.noise + signal.disturbing + other);
   if (sinr < taken.worst_sinr) taken.worst_sinr = sinr;
   if (signal.bits == 0 || whole <= 0 || span <= 0) return;
   const double bits = static_cast<double>(signal.bits) * span / whole;
@@ -58,10 +59,11 @@ SignalLoss SignalReceiver::take(const TakenSignal& signal, const Rules& rules, s
   const PowerRatio needed = to_power(Decibels{rules.detection_dB});
   const PowerRatio still = signal.noise + signal.disturbing;
   if (signal.sound.power / still < needed) return SignalLoss::noise;
-  const bool noticed = signal.sound.power / (still + others(signal.sound)) >= needed;
+  const bool noticed = signal.sound.power / (still + others(signal.sound, signal.begun)) >= needed;
   auto rival = taken_.end();
   for (auto each = taken_.begin(); each != taken_.end(); ++each) {
-    if (share_in_band(each->signal.sound, signal.sound) <= 0) continue;
+    // One that ends as this one begins is no rival.
+    if (each->signal.ended <= signal.begun || share_in_band(each->signal.sound, signal.sound) <= 0) continue;
     if (rival != taken_.end()) return SignalLoss::busy;
     rival = each;
   }
@@ -75,6 +77,19 @@ SignalLoss SignalReceiver::take(const TakenSignal& signal, const Rules& rules, s
   }
   taken_.push_back({signal, signal.begun, 0, 0, signal.sound.power / still});
   return SignalLoss::none;
+}
+
+void SignalReceiver::set_noise(std::int64_t flight, PowerRatio noise, Time at) {
+  for (Taken& taken : taken_)
+    if (taken.signal.sound.flight == flight) {
+      count_bits(taken, at);
+      taken.signal.noise = noise;
+    }
+}
+
+bool SignalReceiver::takes(std::int64_t flight) const {
+  return std::any_of(taken_.begin(), taken_.end(),
+                     [&](const Taken& taken) { return taken.signal.sound.flight == flight; });
 }
 
 bool SignalReceiver::end(std::int64_t flight, Time at, Outcome& outcome) {

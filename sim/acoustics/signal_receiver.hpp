@@ -13,6 +13,7 @@ struct PresentSound {
   std::int64_t flight = -1;  ///< its number in the channel
   double centre_Hz = 0, bandwidth_Hz = 0;
   PowerRatio power{0};  ///< re 1 uPa^2, in its own band
+  Time ended{0};        ///< it is known when it will
 };
 
 /// What a receiver needs to know of a signal that it tries to take.
@@ -49,6 +50,9 @@ class SignalReceiver {
   /// Tries to take a signal that has begun.  `displaced`: the flight that lost its band to it, or -1.  One that would
   /// take more than one band over is not taken.
   SignalLoss take(const TakenSignal& signal, const Rules& rules, std::int64_t& displaced);
+  /// From now on the noise in the band of a signal that is taken is this.
+  void set_noise(std::int64_t flight, PowerRatio noise, Time at);
+  bool takes(std::int64_t flight) const;
   /// A sound ends.  True, with the outcome, when it was taken.
   bool end(std::int64_t flight, Time at, Outcome& outcome);
   /// Lets go of the last signal that is taken; its flight, or -1 when there was none.
@@ -65,8 +69,8 @@ class SignalReceiver {
     PowerRatio worst_sinr{0};
   };
 
-  /// Of all sounds but one, in a band.
-  PowerRatio others(const PresentSound& but) const;
+  /// Of all sounds but one, in its band, that last beyond a time.
+  PowerRatio others(const PresentSound& but, Time at) const;
   /// Counts the bits of what is taken since the last change.
   void count_bits(Time until);
   void count_bits(Taken& taken, Time until) const;

@@ -74,14 +74,16 @@ Matrix3d Transducer::R_WS() const {
 
 void Transducer::change(const ReceiverConfig& config) {
   config_ = config;
+  channel_.forget_places();
   index_of_Hz_ = std::numeric_limits<double>::quiet_NaN();
 }
 
-Decibels Transducer::noise_reduction(double frequency_Hz, double sound_speed_mps) const {
+Decibels Transducer::noise_reduction(double frequency_Hz) const {
   if (config_.directivity.pattern == DirectivityConfig::Pattern::omni) return {};
   if (index_of_Hz_ != frequency_Hz) {
-    // The speed of sound changes by some percent at most, the index by hundredths of dB.
-    index_ = directivity_index(config_.directivity, frequency_Hz, sound_speed_mps);
+    // The speed of sound in water changes by some percent at most, the index by hundredths of dB.
+    constexpr double usual_mps = 1500;
+    index_ = directivity_index(config_.directivity, frequency_Hz, usual_mps);
     index_of_Hz_ = frequency_Hz;
   }
   return index_;
@@ -92,7 +94,8 @@ void Transducer::hash_state(StateHash& hash) const {
   hash.add(static_cast<std::int64_t>(sending_until_.count()));
   hash.add(signals_);
   receiver_.hash_state(hash);
-  for (const std::int64_t count : {counts_.sent, counts_.sent_bytes, counts_.understood, counts_.understood_bytes})
+  for (const std::int64_t count :
+       {counts_.sent, counts_.sent_bytes, counts_.understood, counts_.understood_bytes, counts_.unsent})
     hash.add(count);
   for (const std::int64_t count : counts_.lost) hash.add(count);
 }
@@ -108,6 +111,17 @@ ContinuousSound::ContinuousSound(Decibels source_level, double centre_Hz, double
       centre_Hz_(centre_Hz),
       bandwidth_Hz_(bandwidth_Hz) {
   channel_.join(*this);
+}
+
+void ContinuousSound::set_on(bool on) {
+  if (on == on_) return;
+  on_ = on;
+  channel_.noise_changed();
+}
+
+void ContinuousSound::set_level(Decibels source_level) {
+  source_level_ = source_level;
+  channel_.noise_changed();
 }
 
 ContinuousSound::~ContinuousSound() {

@@ -47,7 +47,7 @@ class Transducer {
     std::int64_t sent = 0, sent_bytes = 0;  ///< signals of kind message
     std::int64_t understood = 0, understood_bytes = 0;
     std::int64_t unsent = 0;  ///< asked for without power, silent by a fault, or out of the water
-    std::array<std::int64_t, signal_losses> lost{};  ///< by SignalLoss
+    std::array<std::int64_t, signal_losses> lost{};  ///< signals of kind message, by SignalLoss
   };
 
   /// Throws ConfigError at the device's place when the world has no water.
@@ -77,7 +77,7 @@ class Transducer {
   const ReceiverConfig& config() const { return config_; }
   void change(const ReceiverConfig& config);
   /// By how much noise from all sides is less through its directivity: the directivity index.
-  Decibels noise_reduction(double frequency_Hz, double sound_speed_mps) const;
+  Decibels noise_reduction(double frequency_Hz) const;
   const Counts& counts() const { return counts_; }
 
  private:
@@ -95,6 +95,7 @@ class Transducer {
   int number_ = -1;
   Time busy_until_{0};     // of all it was asked to send
   Time sending_until_{0};  // of what it sends or sent last
+  int sending_ = -1;       // what it sends, in the channel; -1: nothing
   std::int64_t signals_ = 0;
   SignalReceiver receiver_;
   Counts counts_;
@@ -113,10 +114,10 @@ class ContinuousSound {
   ContinuousSound& operator=(const ContinuousSound&) = delete;
 
   /// On at first.  Silent as well without power, by a fault and out of the water.
-  void set_on(bool on) { on_ = on; }
+  void set_on(bool on);
   bool on() const { return on_; }
   /// Re 1 uPa at 1 m, over its band.
-  void set_level(Decibels source_level) { source_level_ = source_level; }
+  void set_level(Decibels source_level);
 
  private:
   friend class AcousticChannel;

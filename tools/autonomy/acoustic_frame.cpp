@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "sim/math.hpp"
 
@@ -16,15 +17,20 @@ constexpr double turn = 65536;
 
 class Writer {
  public:
+  explicit Writer(int kind) { put(version << 4 | kind, 1); }
   /// The low `count` bytes of a number, the highest first.
   void put(std::int64_t value, int count) {
     for (int shift = 8 * (count - 1); shift >= 0; shift -= 8)
-      bytes[used_++] = static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> shift);
+      bytes_.push_back(static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> shift));
   }
-  Bytes bytes{};
+  /// The whole frame, with its checksum.
+  Bytes finish() {
+    put(checksum(bytes_), 2);
+    return std::move(bytes_);
+  }
 
  private:
-  std::size_t used_ = 0;
+  Bytes bytes_;
 };
 
 class Reader {
@@ -60,14 +66,42 @@ std::int64_t saturated_up(double value) {
   return static_cast<std::int64_t>(std::min(std::ceil(value - 1e-9), 65535.0));
 }
 
+constexpr double most_m = 2.1e7;
+constexpr double deepest_m = 167'000;
+
+bool is_byte(int number) {
+  return number >= 0 && number <= 255;
+}
+
 bool fits(const AcousticState& s) {
   for (const double number :
        {s.east_m, s.north_m, s.depth_m, s.east_std_m, s.north_std_m, s.correlation, s.speed_mps, s.course_rad})
     if (!std::isfinite(number)) return false;
-  constexpr double most_m = 2.1e7;
-  return s.sender >= 0 && s.sender <= 255 && std::abs(s.east_m) < most_m && std::abs(s.north_m) < most_m &&
-         s.depth_m > -0.005 && s.depth_m < 167'000 && s.east_std_m >= 0 && s.north_std_m >= 0 && s.speed_mps >= 0 &&
+  return is_byte(s.sender) && is_byte(s.order) && std::abs(s.east_m) < most_m && std::abs(s.north_m) < most_m &&
+         s.depth_m > -0.005 && s.depth_m < deepest_m && s.east_std_m >= 0 && s.north_std_m >= 0 && s.speed_mps >= 0 &&
          std::abs(s.correlation) <= 1;
+}
+
+bool fits(const AcousticOrder& o) {
+  return is_byte(o.sender) && is_byte(o.receiver) && is_byte(o.number) && o.number > 0 && std::abs(o.east_m) < most_m &&
+         std::abs(o.north_m) < most_m && o.depth_m > -0.005 && o.depth_m < deepest_m && o.speed_mps >= 0.01 &&
+         o.speed_mps <= 655.35;
+}
+
+std::int64_t of_week_ms(std::int64_t utime) {
+  return floor_modulo(floor_ms(utime) - first_sunday_ms, week_ms);
+}
+
+/// The full time of a time of the week, within half a week of another.
+std::int64_t full_utime(std::int64_t time_of_week_ms, std::int64_t near_utime) {
+  const std::int64_t ahead_ms =
+      floor_modulo(time_of_week_ms - of_week_ms(near_utime) + week_ms / 2, week_ms) - week_ms / 2;
+  return (floor_ms(near_utime) + ahead_ms) * 1000;
+}
+
+bool has_good_checksum(std::span<const std::uint8_t> bytes) {
+  Reader in(bytes.last(2));
+  return in.unsigned_number(2) == checksum(bytes.first(bytes.size() - 2));
 }
 
 std::int64_t centimetres(double metres) {
@@ -88,10 +122,9 @@ std::uint16_t checksum(std::span<const std::uint8_t> bytes) {
 
 std::optional<Bytes> encode(const AcousticState& state) {
   if (!fits(state)) return std::nullopt;
-  Writer out;
-  out.put(version << 4 | state_kind, 1);
+  Writer out(state.order == 0 ? state_kind : obeying_state_kind);
   out.put(state.sender, 1);
-  out.put(floor_modulo(floor_ms(state.utime) - first_sunday_ms, week_ms), 4);
+  out.put(of_week_ms(state.utime), 4);
   out.put(centimetres(state.east_m), 4);
   out.put(centimetres(state.north_m), 4);
   out.put(std::max<std::int64_t>(0, centimetres(state.depth_m)), 3);
@@ -101,17 +134,19 @@ std::optional<Bytes> encode(const AcousticState& state) {
   out.put(std::llround(127 * state.correlation), 1);
   out.put(std::min<std::int64_t>(centimetres(std::min(state.speed_mps, 1000.0)), 65535), 2);
   out.put(std::llround(std::remainder(state.course_rad, 2 * std::numbers::pi) / (2 * std::numbers::pi) * turn), 2);
-  out.put(checksum(std::span(out.bytes).first(size_bytes - 2)), 2);
-  return out.bytes;
+  if (state.order != 0) out.put(state.order, 1);
+  return out.finish();
 }
 
 std::optional<AcousticState> decode(std::span<const std::uint8_t> bytes, std::int64_t near_utime) {
-  if (bytes.size() != size_bytes) return std::nullopt;
+  if (bytes.size() != state_bytes && bytes.size() != obeying_state_bytes) return std::nullopt;
+  const bool obeys = bytes.size() == obeying_state_bytes;
   Reader in(bytes);
-  if (in.unsigned_number(1) != (version << 4 | state_kind)) return std::nullopt;
+  if (in.unsigned_number(1) != (version << 4 | (obeys ? obeying_state_kind : state_kind)) || !has_good_checksum(bytes))
+    return std::nullopt;
   AcousticState state;
   state.sender = static_cast<int>(in.unsigned_number(1));
-  const std::int64_t of_week_ms = in.unsigned_number(4);
+  const std::int64_t time_of_week_ms = in.unsigned_number(4);
   state.east_m = 0.01 * static_cast<double>(in.signed_number(4));
   state.north_m = 0.01 * static_cast<double>(in.signed_number(4));
   state.depth_m = 0.01 * static_cast<double>(in.unsigned_number(3));
@@ -120,15 +155,44 @@ std::optional<AcousticState> decode(std::span<const std::uint8_t> bytes, std::in
   state.correlation = static_cast<double>(in.signed_number(1)) / 127;
   state.speed_mps = 0.01 * static_cast<double>(in.unsigned_number(2));
   state.course_rad = sim::wrap_angle(static_cast<double>(in.unsigned_number(2)) / turn * 2 * std::numbers::pi);
-  if (in.unsigned_number(2) != checksum(bytes.first(size_bytes - 2))) return std::nullopt;
-  if (of_week_ms >= week_ms || state.east_std_m <= 0 || state.north_std_m <= 0 || std::abs(state.correlation) > 1)
+  if (obeys) state.order = static_cast<int>(in.unsigned_number(1));
+  if (time_of_week_ms >= week_ms || state.east_std_m <= 0 || state.north_std_m <= 0 ||
+      std::abs(state.correlation) > 1 || (obeys && state.order == 0))
     return std::nullopt;
-
-  const std::int64_t near_ms = floor_ms(near_utime);
-  const std::int64_t ahead_ms =
-      floor_modulo(of_week_ms - floor_modulo(near_ms - first_sunday_ms, week_ms) + week_ms / 2, week_ms) - week_ms / 2;
-  state.utime = (near_ms + ahead_ms) * 1000;
+  state.utime = full_utime(time_of_week_ms, near_utime);
   return state;
+}
+
+std::optional<Bytes> encode(const AcousticOrder& order) {
+  if (!fits(order)) return std::nullopt;
+  Writer out(order_kind);
+  out.put(order.sender, 1);
+  out.put(order.receiver, 1);
+  out.put(order.number, 1);
+  out.put(of_week_ms(order.utime), 4);
+  out.put(centimetres(order.east_m), 4);
+  out.put(centimetres(order.north_m), 4);
+  out.put(std::max<std::int64_t>(0, centimetres(order.depth_m)), 3);
+  out.put(centimetres(order.speed_mps), 2);
+  return out.finish();
+}
+
+std::optional<AcousticOrder> decode_order(std::span<const std::uint8_t> bytes, std::int64_t near_utime) {
+  if (bytes.size() != order_bytes) return std::nullopt;
+  Reader in(bytes);
+  if (in.unsigned_number(1) != (version << 4 | order_kind) || !has_good_checksum(bytes)) return std::nullopt;
+  AcousticOrder order;
+  order.sender = static_cast<int>(in.unsigned_number(1));
+  order.receiver = static_cast<int>(in.unsigned_number(1));
+  order.number = static_cast<int>(in.unsigned_number(1));
+  const std::int64_t time_of_week_ms = in.unsigned_number(4);
+  order.east_m = 0.01 * static_cast<double>(in.signed_number(4));
+  order.north_m = 0.01 * static_cast<double>(in.signed_number(4));
+  order.depth_m = 0.01 * static_cast<double>(in.unsigned_number(3));
+  order.speed_mps = 0.01 * static_cast<double>(in.unsigned_number(2));
+  if (time_of_week_ms >= week_ms || order.number == 0 || order.speed_mps <= 0) return std::nullopt;
+  order.utime = full_utime(time_of_week_ms, near_utime);
+  return order;
 }
 
 }  // namespace autonomy::acoustic_frame

@@ -6,8 +6,6 @@
 #include <numbers>
 
 #include "sim/math.hpp"
-#include "tools/autonomy/state_packet.hpp"
-
 namespace autonomy {
 
 namespace {
@@ -30,7 +28,10 @@ double seconds(std::int64_t time_us) {
 }  // namespace
 
 CoopAuv::CoopAuv(const Params& params, std::unique_ptr<HelmBehaviour> behaviour)
-    : params_(params), behaviour_(std::move(behaviour)), access_(params.access, params.name) {
+    : params_(params),
+      behaviour_(std::move(behaviour)),
+      access_(params.access, params.name),
+      wanted_depth_m_(params.depth_m) {
   const MarineEkf checked(0, Vector2d::Zero(), 1, params.filter);
 }
 
@@ -122,14 +123,40 @@ void CoopAuv::receive(const shoal::gps_data_t& fix) {
 }
 
 void CoopAuv::receive(const shoal::acoustic_received_t& packet) {
+  if (const auto order = order_in(packet)) {
+    ++counts_.frames;
+    obey(*order);
+    return;
+  }
   const auto state = state_in(packet);
   if (!state) {
     ++counts_.bad_frames;
     return;
   }
   ++counts_.frames;
+  if (state->sender == params_.id || !direct_.is_direct(packet, *state)) {
+    ++counts_.relayed;
+    return;
+  }
   behaviour_->hear(packet.source, motion_of(*state));
   if (cooperative_ && params_.use_ranges) use_range(packet, *state);
+}
+
+void CoopAuv::obey(const AcousticOrder& order) {
+  if (!params_.obey || order.receiver != params_.id || order.number <= order_) return;
+  if (order.depth_m > params_.order_depth_max_m || order.speed_mps > params_.order_speed_max_mps) {
+    ++counts_.orders_refused;
+    return;
+  }
+  CircleBehaviour::Params hold;
+  hold.centre_W = {order.east_m, order.north_m};
+  hold.radius_m = params_.hold_radius_m;
+  hold.speed_mps = order.speed_mps;
+  behaviour_ = std::make_unique<HoldBehaviour>(hold);
+  wanted_depth_m_ = order.depth_m;
+  order_ = order.number;
+  ++counts_.orders;
+  if (phase_ == Phase::done) phase_ = Phase::under_way;
 }
 
 void CoopAuv::use_range(const shoal::acoustic_received_t& packet, const AcousticState& beacon) {
@@ -177,7 +204,7 @@ shoal::helm_command_t CoopAuv::helm() {
   const Course course = behaviour_->steer({utime_, filter.position_at(utime_), filter.velocity()});
   helm.speed_mps = course.speed_mps;
   helm.heading_rad = course.heading_rad;
-  helm.depth_m = params_.depth_m;
+  helm.depth_m = wanted_depth_m_;
   return helm;
 }
 
@@ -216,6 +243,7 @@ std::optional<shoal::modem_send_t> CoopAuv::state_frame() {
   state.correlation = std::clamp(P(0, 1) / std::sqrt(P(0, 0) * P(1, 1)), -1.0, 1.0);
   state.speed_mps = v_W.norm();
   state.course_rad = std::atan2(v_W.y(), v_W.x());
+  state.order = order_;
   auto message = to_everybody(state);
   if (message) ++counts_.sent;
   return message;

@@ -19,6 +19,7 @@
 #include "tools/autonomy/channel_access.hpp"
 #include "tools/autonomy/helm_behaviour.hpp"
 #include "tools/autonomy/marine_ekf.hpp"
+#include "tools/autonomy/state_packet.hpp"
 
 namespace autonomy {
 
@@ -43,7 +44,11 @@ class CoopAuv {
     double fix_period_s = 5;          ///< errors of GPS last, so more fixes say little more
     std::optional<Vector2d> start_W;  ///< known: it does not wait for GPS
     double start_std_m = 1;
-    ChannelAccess::Params access;  ///< for its own state
+    ChannelAccess::Params access;    ///< for its own state
+    bool obey = false;               ///< orders for its id: it goes to the place and circles there
+    double order_depth_max_m = 100;  ///< deeper and faster orders are refused
+    double order_speed_max_mps = 2.5;
+    double hold_radius_m = 30;
   };
   struct Decision {
     std::optional<shoal::helm_command_t> helm;        ///< for NAME.autopilot.cmd
@@ -58,6 +63,9 @@ class CoopAuv {
     int refused = 0;  ///< by the gate, or came too late
     int sent = 0;
     int clock_steps = 0;
+    int relayed = 0;  ///< states that did not come from their sender: no ranges
+    int orders = 0;   ///< obeyed
+    int orders_refused = 0;
   };
   enum class Phase { waiting_for_fix, at_surface, under_way, done };
 
@@ -83,6 +91,7 @@ class CoopAuv {
   void note_time(std::int64_t utime);
   void start(std::int64_t utime, const Vector2d& p_W, double std_m);
   void predict(std::int64_t utime);
+  void obey(const AcousticOrder& order);
   void use_range(const shoal::acoustic_received_t& packet, const AcousticState& beacon);
   void update_phase();
   shoal::helm_command_t helm();
@@ -92,6 +101,9 @@ class CoopAuv {
   Params params_;
   std::unique_ptr<HelmBehaviour> behaviour_;
   ChannelAccess access_;
+  DirectStates direct_;
+  int order_ = 0;              ///< number of the last one obeyed
+  double wanted_depth_m_ = 0;  ///< when under way
   std::optional<MarineEkf> cooperative_;
   std::optional<MarineEkf> dead_reckoning_;
 

@@ -46,6 +46,9 @@ int drive(const Options& options) {
   const autonomy::CoopAuv::Counts& counts = auv.counts();
   std::cerr << name << ": " << counts.frames << " frames heard, " << counts.bad_frames << " bad; " << counts.ranges
             << " ranges used, " << counts.refused << " refused; " << counts.sent << " frames sent\n";
+  if (options.auv.obey)
+    std::cerr << name << ": " << counts.orders << " orders obeyed, " << counts.orders_refused << " refused\n";
+  if (counts.relayed > 0) std::cerr << name << ": " << counts.relayed << " states came by relay\n";
   if (counts.clock_steps > 0) std::cerr << name << ": its clock was set " << counts.clock_steps << " times\n";
   return exit_code;
 }
@@ -99,6 +102,16 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--surface-s", auv.surface_s, "s at the surface after the first fix")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 3600.0));
+  app.add_flag("--obey", auv.obey, "orders for its --id: it goes to the place and circles there");
+  app.add_option("--order-depth-max", auv.order_depth_max_m, "deeper orders are refused, m")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 10'000.0));
+  app.add_option("--order-speed-max", auv.order_speed_max_mps, "faster orders are refused, m/s")
+      ->capture_default_str()
+      ->check(CLI::Range(0.01, 10.0));
+  app.add_option("--hold-radius", auv.hold_radius_m, "of the circle at an ordered place, m")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 10'000.0));
   options.marine.add_options(app);
   add_filter_options(app, options);
   options.participation.add_options(app);

@@ -5,8 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "tools/autonomy/state_packet.hpp"
-
 namespace autonomy {
 
 namespace {
@@ -37,11 +35,14 @@ void CoopCraft::receive(const shoal::gps_data_t& fix) {
 void CoopCraft::receive(const shoal::acoustic_received_t& packet) {
   const auto state = state_in(packet);
   if (!state) {
-    ++counts_.bad_frames;
+    ++(order_in(packet) ? counts_.orders : counts_.bad_frames);
     return;
   }
   ++counts_.heard;
-  behaviour_->hear(packet.source, motion_of(*state));
+  if (direct_.is_direct(packet, *state))
+    behaviour_->hear(packet.source, motion_of(*state));
+  else
+    ++counts_.relayed;
 }
 
 CoopCraft::Decision CoopCraft::step() {

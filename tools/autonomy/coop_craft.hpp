@@ -12,6 +12,7 @@
 #include "shoal/modem_send_t.hpp"
 #include "tools/autonomy/channel_access.hpp"
 #include "tools/autonomy/helm_behaviour.hpp"
+#include "tools/autonomy/state_packet.hpp"
 
 namespace autonomy {
 
@@ -34,6 +35,8 @@ class CoopCraft {
   struct Counts {
     int sent = 0;
     int heard = 0;
+    int relayed = 0;  ///< states that did not come from their sender, and are not used
+    int orders = 0;   ///< for others
     int bad_frames = 0;
   };
 
@@ -54,6 +57,7 @@ class CoopCraft {
   Params params_;
   std::unique_ptr<HelmBehaviour> behaviour_;
   ChannelAccess access_;
+  DirectStates direct_;
   std::int64_t utime_ = 0;  ///< newest stamp
   std::optional<Motion> motion_;
   double position_std_m_ = 0;

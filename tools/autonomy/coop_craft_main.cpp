@@ -24,6 +24,7 @@ int drive(const autonomy::CoopCraft::Params& params, const autonomy::MarineOptio
   const autonomy::CoopCraft::Counts& counts = craft.counts();
   std::cerr << params.name << ": " << counts.sent << " frames sent, " << counts.heard << " heard, " << counts.bad_frames
             << " bad\n";
+  if (counts.relayed > 0) std::cerr << params.name << ": " << counts.relayed << " states came by relay\n";
   return exit_code;
 }
 

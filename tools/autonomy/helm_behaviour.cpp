@@ -55,6 +55,14 @@ Course CircleBehaviour::steer(const Motion& own) {
   return {params_.speed_mps, sim::wrap_angle(tangent_rad + in_rad)};
 }
 
+HoldBehaviour::HoldBehaviour(const CircleBehaviour::Params& hold)
+    : way_({hold.centre_W}, {.speed_mps = hold.speed_mps, .lookahead_m = hold.lookahead_m}), circle_(hold) {}
+
+Course HoldBehaviour::steer(const Motion& own) {
+  const Course course = way_.steer(own);
+  return way_.finished() ? circle_.steer(own) : course;
+}
+
 void FollowBehaviour::hear(const std::string& vehicle, const Motion& other) {
   if (vehicle != params_.vehicle) return;
   if (other_ && other.utime <= other_->utime) return;

@@ -76,6 +76,18 @@ class CircleBehaviour final : public HelmBehaviour {
   Params params_;
 };
 
+/// Straight to a place, and then round it.
+class HoldBehaviour final : public HelmBehaviour {
+ public:
+  /// `hold`: the circle round the place.
+  explicit HoldBehaviour(const CircleBehaviour::Params& hold);
+  Course steer(const Motion& own) override;
+
+ private:
+  RouteBehaviour way_;
+  CircleBehaviour circle_;
+};
+
 /// At a place beside or behind another vehicle, as that one last said where it is and how it moves.
 class FollowBehaviour final : public HelmBehaviour {
  public:

@@ -13,7 +13,16 @@ void MarineOptions::add_options(CLI::App& app) {
   app.add_option("--speed", speed_mps, "m/s through the water; follow: at most")
       ->capture_default_str()
       ->check(CLI::Range(0.05, 10.0));
-  app.add_option("--slot", slot, "I/N: sends its state in slot I of N, from 0, by the clock of its vehicle");
+  sending.add_options(app, "its state");
+}
+
+std::unique_ptr<HelmBehaviour> MarineOptions::make() const {
+  const std::vector<Vector2d> waypoints = route.empty() ? std::vector<Vector2d>() : parse_waypoints(route);
+  return make_behaviour(behaviour, waypoints, speed_mps, loop);
+}
+
+void AccessOptions::add_options(CLI::App& app, const std::string& what) {
+  app.add_option("--slot", slot, "I/N: sends " + what + " in slot I of N, from 0, by the clock of its vehicle");
   app.add_option("--slot-s", slot_s, "length of a slot")->capture_default_str()->check(CLI::Range(0.1, 3600.0));
   app.add_option("--guard-s", guard_s, "the end of a slot in which nothing is begun; unset: half of the slot")
       ->check(CLI::Range(0.0, 3600.0));
@@ -23,12 +32,7 @@ void MarineOptions::add_options(CLI::App& app) {
   app.add_option("--seed", seed, "of --random-s")->capture_default_str();
 }
 
-std::unique_ptr<HelmBehaviour> MarineOptions::make() const {
-  const std::vector<Vector2d> waypoints = route.empty() ? std::vector<Vector2d>() : parse_waypoints(route);
-  return make_behaviour(behaviour, waypoints, speed_mps, loop);
-}
-
-ChannelAccess::Params MarineOptions::access() const {
+ChannelAccess::Params AccessOptions::access() const {
   ChannelAccess::Params access;
   access.random_mean_s = random_s;
   access.seed = seed;

@@ -12,22 +12,32 @@
 
 namespace autonomy {
 
-/// The options that both marine programs have.
-struct MarineOptions {
-  std::string route;
-  std::string behaviour = "route";
-  double speed_mps = 1.5;
-  bool loop = false;
+/// When to send.
+struct AccessOptions {
   std::string slot;
   double slot_s = 10;
   std::optional<double> guard_s;  ///< half of the slot unless set
   double random_s = 0;
   std::uint64_t seed = 1;
 
+  /// `what` it sends, for the help.
+  void add_options(CLI::App& app, const std::string& what);
+  /// Throws std::invalid_argument with what is wrong.
+  ChannelAccess::Params access() const;
+};
+
+/// The options that both programs of vehicles have.
+struct MarineOptions {
+  std::string route;
+  std::string behaviour = "route";
+  double speed_mps = 1.5;
+  bool loop = false;
+  AccessOptions sending;
+
   void add_options(CLI::App& app);
   /// Throw std::invalid_argument with what is wrong.
   std::unique_ptr<HelmBehaviour> make() const;
-  ChannelAccess::Params access() const;
+  ChannelAccess::Params access() const { return sending.access(); }
 };
 
 }  // namespace autonomy

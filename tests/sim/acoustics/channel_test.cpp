@@ -118,7 +118,7 @@ TEST(AcousticChannel, OnlyWhoIsNearEnoughIsGivenASignal) {
 TEST(AcousticChannel, BeyondItsAudibleRangeASignalIsBelowTheNoise) {
   TestWorld test(sea("{absorption: {model: thorp}, noise: {wind_mps: 5}}", vehicle("a", "[0, 0, -10]")));
   const sim::Propagation& propagation = test.world.acoustics().propagation();
-  const double range_m = propagation.audible_range_m(message());
+  const double range_m = propagation.audible_range_m(message(), Decibels{10});
   const Decibels level = message().source_level - propagation.transmission_loss({0, 0, -10}, {range_m, 0, -10}, 25000);
   EXPECT_LE(level.dB(), (propagation.ambient_level(25000, 4000) - Decibels{10}).dB());
   EXPECT_LT(range_m, 20000);
@@ -312,6 +312,69 @@ TEST(AcousticChannel, WhoLeavesTheWaterWhileSendingIsNotUnderstood) {
   test.run_for(5);
   EXPECT_EQ(phone(test, "b").transducer().counts().understood, 0);
   EXPECT_EQ(phone(test, "b").transducer().counts().lost[static_cast<std::size_t>(SignalLoss::out_of_water)], 1);
+}
+
+TEST(AcousticChannel, WhoIsOutOfTheWaterForAWhileWhileSendingOrTakingIsNotUnderstood) {
+  for (const char* who : {"a", "b"}) {
+    TestWorld test(sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]")));
+    const sim::Pose back = test.world.find_vehicle(who)->X_WV();
+    phone(test, "a").transducer().transmit(message(), 0ms);
+    test.run_for(1);
+    test.world.move_vehicle(who, sim::make_pose({0, 50, 5}, {0, 0, 0}));
+    test.run_for(0.5);
+    test.world.move_vehicle(who, back);
+    test.run_for(5);
+    EXPECT_EQ(phone(test, "b").transducer().counts().understood, 0) << who;
+    EXPECT_EQ(phone(test, "b").transducer().counts().lost[static_cast<std::size_t>(SignalLoss::out_of_water)], 1);
+  }
+}
+
+TEST(AcousticChannel, ShortSignalsOneAfterTheOtherAllComeThrough) {
+  TestWorld test(sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[300, 0, -10]")));
+  Signal blip = message();
+  blip.duration = 2ms;
+  blip.bits = 8;
+  blip.bit_rate_bps = 4000;
+  for (int i = 0; i < 20; ++i) phone(test, "a").transducer().transmit(blip, i * 2ms);
+  test.run_for(1);
+  EXPECT_EQ(phone(test, "b").transducer().counts().understood, 20);
+}
+
+TEST(AcousticChannel, BeyondTheLargestRangeNothingIsHeard) {
+  TestWorld test(sea("{range_max_m: 500}",
+                     vehicle("a", "[0, 0, -10]") + vehicle("b", "[499, 0, -10]") + vehicle("c", "[0, 501, -10]")));
+  phone(test, "a").transducer().transmit(message(), 0ms);
+  test.run_for(5);
+  EXPECT_EQ(phone(test, "b").all().size(), 1u);
+  EXPECT_TRUE(phone(test, "c").all().empty());
+}
+
+TEST(AcousticChannel, InFreshWaterSoundIsHeardFarther) {
+  // Francois and Garrison: at 100 kHz 33 dB/km in the sea, 3 in fresh water; at 6 km both noise limits are far apart.
+  const auto heard = [](double salinity_psu) {
+    std::string world = sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[6000, 0, -10]"));
+    const std::string water = "sound_speed_mps: 1500";
+    world.replace(world.find(water), water.size(), water + ", salinity_psu: " + std::to_string(salinity_psu));
+    TestWorld test(world);
+    Signal high = message();
+    high.centre_Hz = 100000;
+    phone(test, "a").transducer().transmit(high, 0ms);
+    test.run_for(9);
+    return phone(test, "b").transducer().counts().understood;
+  };
+  EXPECT_EQ(heard(0), 1);
+  EXPECT_EQ(heard(35), 0);
+}
+
+TEST(AcousticChannel, WhereOnlyAnEchoComesItComesLater) {
+  const std::string wall =
+      "objects:\n  - {name: wall, fixed: true, position_m: [75, 0, -10], parts: [{shape: box, size_m: [1, 20, 8]}]}\n";
+  TestWorld test(sea("{multipath: {max_bounces: 1, surface_loss_dB: 1, water_depth_m: 1000}}",
+                     vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]"), wall));
+  phone(test, "a").transducer().transmit(message(), 0ms);
+  test.run_for(5);
+  ASSERT_EQ(phone(test, "b").all().size(), 1u);
+  EXPECT_NEAR(phone(test, "b").all()[0].travel_time_s, std::hypot(150, 20) / 1500, 2e-6);  // by the surface
 }
 
 TEST(AcousticChannel, AWorldWithoutWaterCannotCarrySound) {

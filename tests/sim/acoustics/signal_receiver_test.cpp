@@ -19,7 +19,7 @@ constexpr SignalReceiver::Rules rules{6, 6};
 /// Of one second, in noise of 0 dB.
 TakenSignal signal(std::int64_t flight, double level_dB, sim::Time begun = 0s) {
   TakenSignal taken;
-  taken.sound = {flight, 25000, 4000, to_power(Decibels{level_dB})};
+  taken.sound = {flight, 25000, 4000, to_power(Decibels{level_dB}), begun + 1s};
   taken.noise = PowerRatio{1};
   taken.bit_rate_bps = 4000;  // Eb/N0 is the SNR
   taken.bits = 100;
@@ -75,7 +75,7 @@ TEST(SignalReceiver, AnOverlapCountsForTheBitsThatItHits) {
 
 TEST(SignalReceiver, AnInterferenceThatEndsInTheMiddleDoesNoMoreHarm) {
   SignalReceiver receiver;
-  receiver.begin({2, 25000, 4000, to_power(Decibels{4})}, 0s);
+  receiver.begin({2, 25000, 4000, to_power(Decibels{4}), 400ms}, 0s);
   ASSERT_EQ(arrive(receiver, signal(1, 14)), SignalLoss::none);
   SignalReceiver::Outcome outcome;
   EXPECT_FALSE(receiver.end(2, 400ms, outcome));
@@ -88,7 +88,7 @@ TEST(SignalReceiver, OnlyWhatFallsIntoTheBandDisturbs) {
   for (const auto& [centre_Hz, share] : {std::pair{25000.0, 1.0}, {27000.0, 0.5}, {29000.0, 0.0}, {40000.0, 0.0}}) {
     SignalReceiver receiver;
     ASSERT_EQ(arrive(receiver, signal(1, 20)), SignalLoss::none);
-    receiver.begin({2, centre_Hz, 4000, to_power(Decibels{15})}, 0s);
+    receiver.begin({2, centre_Hz, 4000, to_power(Decibels{15}), 1s}, 0s);
     SignalReceiver::Outcome outcome;
     ASSERT_TRUE(receiver.end(1, 1s, outcome));
     EXPECT_NEAR(to_decibels(outcome.worst_sinr).dB(), 20 - 10 * std::log10(1 + share * std::pow(10, 1.5)), 1e-9);
@@ -111,6 +111,15 @@ TEST(SignalReceiver, EchoesThatComeTooLateDisturbAsNoiseDoes) {
   TakenSignal late = signal(1, 20);
   late.disturbing = PowerRatio{99};
   EXPECT_EQ(arrive(receiver, late), SignalLoss::noise);  // 20 dB against 20 dB
+}
+
+TEST(SignalReceiver, NoiseThatBeginsInTheMiddleCountsFromThenOn) {
+  SignalReceiver receiver;
+  ASSERT_EQ(arrive(receiver, signal(1, 14)), SignalLoss::none);
+  receiver.set_noise(1, PowerRatio{10}, 250ms);
+  SignalReceiver::Outcome outcome;
+  ASSERT_TRUE(receiver.end(1, 1s, outcome));
+  EXPECT_NEAR(outcome.success, success(14, 25) * success(4, 75), 1e-12);
 }
 
 TEST(SignalReceiver, WhatIsDroppedIsNotTakenAnyMore) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -14,6 +15,7 @@
 namespace {
 
 namespace frame = autonomy::acoustic_frame;
+using autonomy::AcousticOrder;
 using autonomy::AcousticState;
 
 constexpr std::int64_t second = 1'000'000;
@@ -34,8 +36,40 @@ AcousticState some_state(sim::Random& random) {
   return state;
 }
 
+AcousticOrder some_order(sim::Random& random) {
+  AcousticOrder order;
+  order.sender = static_cast<int>(random.integer_below(256));
+  order.receiver = static_cast<int>(random.integer_below(256));
+  order.number = 1 + static_cast<int>(random.integer_below(255));
+  order.utime = 1'700'000'000 * second + static_cast<std::int64_t>(random.integer_below(2'000'000'000));
+  order.east_m = 2e4 * (2 * random.uniform() - 1);
+  order.north_m = 2e4 * (2 * random.uniform() - 1);
+  order.depth_m = 6000 * random.uniform();
+  order.speed_mps = 0.1 + 20 * random.uniform();
+  return order;
+}
+
+/// One frame of each kind.
+std::vector<frame::Bytes> one_of_each_kind(std::uint64_t seed) {
+  sim::Random random(seed, "frame");
+  random.begin_step(0);
+  AcousticState state = some_state(random);
+  const frame::Bytes plain = *frame::encode(state);
+  state.order = 17;
+  return {plain, *frame::encode(some_order(random)), *frame::encode(state)};
+}
+
+bool is_good(std::span<const std::uint8_t> bytes) {
+  return frame::decode(bytes, 1'700'000'000 * second) || frame::decode_order(bytes, 1'700'000'000 * second);
+}
+
 TEST(AcousticFrame, FitsIntoAFrameOfThe32ByteRate) {
-  EXPECT_LE(frame::size_bytes, 32u);
+  const std::vector<std::size_t> sizes = {frame::state_bytes, frame::order_bytes, frame::obeying_state_bytes};
+  const std::vector<frame::Bytes> frames = one_of_each_kind(6);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(frames[i].size(), sizes[i]);
+    EXPECT_LE(sizes[i], 32u);
+  }
 }
 
 TEST(AcousticFrame, ChecksumIsThePublishedOne) {
@@ -90,28 +124,25 @@ TEST(AcousticFrame, ComesBackWithinItsQuantisation) {
 }
 
 TEST(AcousticFrame, EveryErrorOfOneOrTwoBitsIsFound) {
-  sim::Random random(2, "frame");
-  random.begin_step(0);
-  const AcousticState state = some_state(random);
-  const frame::Bytes good = *frame::encode(state);
-  for (std::size_t i = 0; i < 8 * good.size(); ++i)
-    for (std::size_t j = i; j < 8 * good.size(); ++j) {
-      frame::Bytes bad = good;
-      bad[i / 8] ^= static_cast<std::uint8_t>(1u << (i % 8));
-      if (j != i) bad[j / 8] ^= static_cast<std::uint8_t>(1u << (j % 8));
-      ASSERT_FALSE(frame::decode(bad, state.utime)) << i << ' ' << j;
-    }
+  for (const frame::Bytes& good : one_of_each_kind(2)) {
+    ASSERT_TRUE(is_good(good));
+    for (std::size_t i = 0; i < 8 * good.size(); ++i)
+      for (std::size_t j = i; j < 8 * good.size(); ++j) {
+        frame::Bytes bad = good;
+        bad[i / 8] ^= static_cast<std::uint8_t>(1u << (i % 8));
+        if (j != i) bad[j / 8] ^= static_cast<std::uint8_t>(1u << (j % 8));
+        ASSERT_FALSE(is_good(bad)) << i << ' ' << j;
+      }
+  }
 }
 
 TEST(AcousticFrame, EveryOtherLengthIsRefused) {
-  sim::Random random(3, "frame");
-  random.begin_step(0);
-  const AcousticState state = some_state(random);
-  const frame::Bytes good = *frame::encode(state);
-  std::vector<std::uint8_t> bytes(good.begin(), good.end());
-  bytes.resize(64);
-  for (std::size_t length = 0; length <= bytes.size(); ++length)
-    EXPECT_EQ(frame::decode(std::span(bytes).first(length), state.utime).has_value(), length == good.size());
+  for (const frame::Bytes& good : one_of_each_kind(3)) {
+    std::vector<std::uint8_t> bytes = good;
+    bytes.resize(64);
+    for (std::size_t length = 0; length <= bytes.size(); ++length)
+      EXPECT_EQ(is_good(std::span(bytes).first(length)), length == good.size());
+  }
 }
 
 TEST(AcousticFrame, RandomBytesPassAsRarelyAsTheChecksumSays) {
@@ -119,7 +150,7 @@ TEST(AcousticFrame, RandomBytesPassAsRarelyAsTheChecksumSays) {
   int passed = 0;
   for (int i = 0; i < 200'000; ++i) {
     random.begin_step(i);
-    frame::Bytes bytes;
+    frame::Bytes bytes(frame::state_bytes);
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random.bits());
     bytes[0] = frame::version << 4;  // else hardly any comes as far as the checksum
     const auto state = frame::decode(bytes, 0);
@@ -131,17 +162,92 @@ TEST(AcousticFrame, RandomBytesPassAsRarelyAsTheChecksumSays) {
 }
 
 TEST(AcousticFrame, OtherVersionsAndKindsAreRefused) {
-  sim::Random random(5, "frame");
-  random.begin_step(0);
-  const AcousticState state = some_state(random);
-  frame::Bytes bytes = *frame::encode(state);
-  for (int first = 0; first < 256; ++first) {
-    bytes[0] = static_cast<std::uint8_t>(first);
-    const std::uint16_t checksum = frame::checksum(std::span(bytes).first(bytes.size() - 2));
-    bytes[bytes.size() - 2] = static_cast<std::uint8_t>(checksum >> 8);
-    bytes[bytes.size() - 1] = static_cast<std::uint8_t>(checksum);
-    EXPECT_EQ(frame::decode(bytes, state.utime).has_value(), first == 0x10);
+  // With a good checksum: each length has its one kind.
+  const std::vector<frame::Bytes> frames = one_of_each_kind(5);
+  for (std::size_t kind = 0; kind < frames.size(); ++kind)
+    for (int first = 0; first < 256; ++first) {
+      frame::Bytes bytes = frames[kind];
+      bytes[0] = static_cast<std::uint8_t>(first);
+      const std::uint16_t checksum = frame::checksum(std::span(bytes).first(bytes.size() - 2));
+      bytes[bytes.size() - 2] = static_cast<std::uint8_t>(checksum >> 8);
+      bytes[bytes.size() - 1] = static_cast<std::uint8_t>(checksum);
+      EXPECT_EQ(is_good(bytes), first == 0x10 + static_cast<int>(kind)) << kind << ' ' << first;
+    }
+}
+
+TEST(AcousticFrame, AnOrderIsNoStateAndAStateIsNoOrder) {
+  const std::vector<frame::Bytes> frames = one_of_each_kind(7);
+  for (std::size_t kind = 0; kind < frames.size(); ++kind) {
+    EXPECT_EQ(frame::decode(frames[kind], 1'700'000'000 * second).has_value(), kind != 1);
+    EXPECT_EQ(frame::decode_order(frames[kind], 1'700'000'000 * second).has_value(), kind == 1);
   }
+}
+
+TEST(AcousticFrame, StateTellsOfAnOrderInOneByteMore) {
+  sim::Random random(8, "frame");
+  random.begin_step(0);
+  AcousticState state = some_state(random);
+  const frame::Bytes plain = *frame::encode(state);
+  EXPECT_EQ(frame::decode(plain, state.utime)->order, 0);
+  for (const int order : {1, 17, 255}) {
+    state.order = order;
+    const frame::Bytes bytes = *frame::encode(state);
+    EXPECT_EQ(frame::decode(bytes, state.utime)->order, order);
+    EXPECT_TRUE(std::equal(plain.begin() + 1, plain.end() - 2, bytes.begin() + 1));
+  }
+}
+
+TEST(AcousticFrame, OrderComesBackWithinItsQuantisation) {
+  sim::Random random(9, "frame");
+  for (int i = 0; i < 2000; ++i) {
+    random.begin_step(i);
+    const AcousticOrder sent = some_order(random);
+    const auto bytes = frame::encode(sent);
+    ASSERT_TRUE(bytes);
+    const auto received = frame::decode_order(*bytes, sent.utime + 5 * second);
+    ASSERT_TRUE(received);
+    constexpr double half_cm = 0.005 + 1e-9;
+    EXPECT_EQ(received->sender, sent.sender);
+    EXPECT_EQ(received->receiver, sent.receiver);
+    EXPECT_EQ(received->number, sent.number);
+    EXPECT_EQ(received->utime, sent.utime - sent.utime % 1000);
+    EXPECT_NEAR(received->east_m, sent.east_m, half_cm);
+    EXPECT_NEAR(received->north_m, sent.north_m, half_cm);
+    EXPECT_NEAR(received->depth_m, sent.depth_m, half_cm);
+    EXPECT_NEAR(received->speed_mps, sent.speed_mps, half_cm);
+  }
+}
+
+TEST(AcousticFrame, BytesOfAnOrderAreWhereTheTableSays) {
+  const AcousticOrder order{200, 3, 5, (3 * 86400 + 1) * second, 1, -1, 2.55, 1.5};
+  const auto bytes = frame::encode(order);
+  ASSERT_TRUE(bytes);
+  const std::vector<std::uint8_t> expected = {0x11, 200,  3,    5,    0,    0, 0x03, 0xe8, 0, 0,  0,
+                                              100,  0xff, 0xff, 0xff, 0x9c, 0, 0,    255,  0, 150};
+  EXPECT_EQ(std::vector<std::uint8_t>(bytes->begin(), bytes->end() - 2), expected);
+}
+
+TEST(AcousticFrame, OrderThatDoesNotFitIsNotSent) {
+  AcousticOrder good;
+  good.speed_mps = 1;
+  EXPECT_TRUE(frame::encode(good));
+  const auto refused = [&](auto change) {
+    AcousticOrder order = good;
+    change(order);
+    return !frame::encode(order);
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(refused([](AcousticOrder& o) { o.sender = 256; }));
+  EXPECT_TRUE(refused([](AcousticOrder& o) { o.receiver = -1; }));
+  EXPECT_TRUE(refused([](AcousticOrder& o) { o.number = 0; }));
+  EXPECT_TRUE(refused([](AcousticOrder& o) { o.number = 256; }));
+  EXPECT_TRUE(refused([&](AcousticOrder& o) { o.east_m = nan; }));
+  EXPECT_TRUE(refused([](AcousticOrder& o) { o.north_m = -3e7; }));
+  EXPECT_TRUE(refused([](AcousticOrder& o) { o.depth_m = -1; }));
+  EXPECT_TRUE(refused([&](AcousticOrder& o) { o.depth_m = nan; }));
+  EXPECT_TRUE(refused([](AcousticOrder& o) { o.speed_mps = 0; }));
+  EXPECT_TRUE(refused([](AcousticOrder& o) { o.speed_mps = 700; }));
+  EXPECT_TRUE(refused([&](AcousticOrder& o) { o.speed_mps = nan; }));
 }
 
 TEST(AcousticFrame, TimeIsRightAcrossTheEndOfTheWeek) {
@@ -168,6 +274,7 @@ TEST(AcousticFrame, WhatDoesNotFitIsNotSent) {
   };
   EXPECT_TRUE(refused([](AcousticState& s) { s.sender = 256; }));
   EXPECT_TRUE(refused([](AcousticState& s) { s.sender = -1; }));
+  EXPECT_TRUE(refused([](AcousticState& s) { s.order = 256; }));
   EXPECT_TRUE(refused([&](AcousticState& s) { s.east_m = nan; }));
   EXPECT_TRUE(refused([](AcousticState& s) { s.north_m = 3e7; }));
   EXPECT_TRUE(refused([](AcousticState& s) { s.depth_m = -1; }));

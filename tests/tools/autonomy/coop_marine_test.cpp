@@ -138,6 +138,23 @@ TEST(CoopCraft, FollowsWhatItHears) {
   EXPECT_EQ(craft.counts().bad_frames, 1);
 }
 
+TEST(CoopCraft, FollowsNobodyByARelayedStateAndTakesNoOrders) {
+  CoopCraft craft(craft_params(), make_behaviour("follow:boat1,0,0", {}, 2, false));
+  craft.receive(fix_at(epoch, {0, 0}));
+  craft.receive(packet({500, 0}, epoch, epoch + second));
+  shoal::acoustic_received_t relayed = packet({0, 500}, epoch + 10 * second, epoch + 11 * second);
+  relayed.sent_utime += 5 * second;
+  craft.receive(relayed);
+  const shoal::modem_send_t order = *autonomy::to_everybody(autonomy::AcousticOrder{200, 7, 1, epoch, 0, 500, 1, 1});
+  relayed.sent_utime = epoch + second;
+  relayed.data = order.data;
+  craft.receive(relayed);
+  EXPECT_EQ(craft.counts().relayed, 1);
+  EXPECT_EQ(craft.counts().orders, 1);
+  EXPECT_EQ(craft.counts().bad_frames, 0);
+  EXPECT_NEAR(craft.step().helm->heading_rad, 0, 1e-9);  // east, where the other said that it was
+}
+
 /// An AUV that goes east at 1.5 m/s with a compass that is 4 degrees off, between two beacons that send each 10 s; a
 /// packet takes 3 s, and is reported when it is complete.
 struct Voyage {
@@ -324,6 +341,117 @@ TEST(CoopAuv, NonsenseDoesNoHarm) {
   }
   EXPECT_EQ(voyage.auv.counts().bad_frames, 1000);
   EXPECT_LT(voyage.error_m(), 3);
+}
+
+/// An order as it comes from whoever passes it on.
+shoal::acoustic_received_t order_packet(int number, const Vector2d& p_W, double depth_m, std::int64_t sent,
+                                        int receiver = 100) {
+  const shoal::modem_send_t message =
+      *autonomy::to_everybody(autonomy::AcousticOrder{200, receiver, number, sent, p_W.x(), p_W.y(), depth_m, 1.2});
+  shoal::acoustic_received_t received{};
+  received.sent_utime = sent + second;
+  received.utime = sent + 3 * second;
+  received.travel_time_s = 2;
+  received.source = "boat1";
+  received.size = message.size;
+  received.data = message.data;
+  return received;
+}
+
+CoopAuv::Params obeying_params() {
+  CoopAuv::Params params = auv_params();
+  params.obey = true;
+  params.access.slot.emplace();
+  return params;
+}
+
+TEST(CoopAuv, ObeysAnOrderAndSaysSoInItsState) {
+  Voyage voyage(obeying_params());
+  voyage.run(30);
+  const int ranges = voyage.auv.counts().ranges + voyage.auv.counts().refused;
+  voyage.auv.receive(order_packet(3, {0, 1000}, 35, voyage.t));
+  EXPECT_EQ(voyage.auv.counts().ranges + voyage.auv.counts().refused, ranges);  // an order is no range
+  const auto decision = voyage.auv.step();
+  EXPECT_EQ(decision.helm->speed_mps, 1.2);
+  EXPECT_NEAR(decision.helm->heading_rad, 0.5 * pi, 0.1);  // it is some 30 m east of its start
+  EXPECT_EQ(decision.helm->depth_m, 35);
+  const auto state = [&] {
+    for (int i = 0; i < 100; ++i) {
+      voyage.t += second / 5;
+      voyage.auv.receive(depth_at(voyage.t, 20));
+      if (const auto sent = voyage.auv.step().send) return autonomy::acoustic_frame::decode(sent->data, voyage.t);
+    }
+    return std::optional<AcousticState>();
+  }();
+  ASSERT_TRUE(state);
+  EXPECT_EQ(state->order, 3);
+}
+
+TEST(CoopAuv, ObeysOnlyNewOrdersThatAreForItAndCanBeDone) {
+  const auto obeyed = [](auto change, const CoopAuv::Params& params = obeying_params()) {
+    CoopAuv auv(params, make_behaviour("route", {{100, 0}}, 1.5, false));
+    auv.receive(order_packet(2, {0, 100}, 10, epoch));
+    auv.receive(change(order_packet(3, {0, 100}, 10, epoch + second)));
+    return auv.counts().orders;
+  };
+  const auto as_it_is = [](const shoal::acoustic_received_t& packet) { return packet; };
+  EXPECT_EQ(obeyed(as_it_is), 2);
+  EXPECT_EQ(obeyed(as_it_is, auv_params()), 0);  // without --obey
+  EXPECT_EQ(obeyed([](const auto&) { return order_packet(2, {0, 200}, 10, epoch + second); }), 1);
+  EXPECT_EQ(obeyed([](const auto&) { return order_packet(1, {0, 200}, 10, epoch + second); }), 1);
+  EXPECT_EQ(obeyed([](const auto&) { return order_packet(3, {0, 200}, 10, epoch + second, 99); }), 1);
+  EXPECT_EQ(obeyed([](const auto&) { return order_packet(3, {0, 200}, 100.1, epoch + second); }), 1);
+  EXPECT_EQ(obeyed([](auto packet) {
+              packet.sent_utime += 61 * second;  // an old order that somebody says again
+              return packet;
+            }),
+            1);
+  EXPECT_EQ(obeyed([](auto packet) {
+              packet.data[9] ^= 1;
+              return packet;
+            }),
+            1);
+}
+
+TEST(CoopAuv, OrderFetchesItBackFromTheEndOfItsRoute) {
+  CoopAuv::Params params = obeying_params();
+  params.start_W = Vector2d(0, 0);
+  CoopAuv auv(params, make_behaviour("route", {{2, 0}}, 1.5, false));
+  auv.receive(compass_at(epoch, 0));
+  auv.receive(dvl_at(epoch, 0));
+  auv.step();
+  auv.step();
+  ASSERT_EQ(auv.phase(), CoopAuv::Phase::done);
+  auv.receive(order_packet(1, {100, 0}, 15, epoch));
+  EXPECT_EQ(auv.step().helm->depth_m, 15);
+  EXPECT_EQ(auv.phase(), CoopAuv::Phase::under_way);
+}
+
+TEST(CoopAuv, StateThatCameByRelayIsNoRange) {
+  const auto ranges = [](auto change) {
+    Voyage voyage(auv_params());
+    voyage.run(60);
+    const int before = voyage.auv.counts().ranges + voyage.auv.counts().refused;
+    const int relayed = voyage.auv.counts().relayed;
+    shoal::acoustic_received_t relay = packet(voyage.beacons[0], voyage.t - second, voyage.t);
+    change(relay, voyage.t);
+    voyage.auv.receive(relay);
+    const int used = voyage.auv.counts().ranges + voyage.auv.counts().refused - before;
+    EXPECT_EQ(used + voyage.auv.counts().relayed - relayed, 1);
+    return used;
+  };
+  EXPECT_EQ(ranges([](auto&, std::int64_t) {}), 1);
+  // Said again by another vehicle, at once and late, and late by its own sender; and its own state, which came back.
+  EXPECT_EQ(ranges([](auto& relay, std::int64_t) { relay.source = "boat2"; }), 0);
+  EXPECT_EQ(ranges([](auto& relay, std::int64_t) { relay.sent_utime += 4 * second; }), 0);
+  EXPECT_EQ(ranges([](auto& relay, std::int64_t t) {
+              AcousticState own;
+              own.sender = 100;
+              own.utime = t - second;
+              own.east_std_m = own.north_std_m = 1;
+              relay.data = autonomy::to_everybody(own)->data;
+            }),
+            0);
 }
 
 TEST(CoopAuv, TellsItsStateInItsSlotWithItsCovariance) {

@@ -15,6 +15,7 @@ namespace {
 using autonomy::CircleBehaviour;
 using autonomy::Course;
 using autonomy::FollowBehaviour;
+using autonomy::HoldBehaviour;
 using autonomy::make_behaviour;
 using autonomy::Motion;
 using autonomy::RouteBehaviour;
@@ -120,6 +121,25 @@ TEST(CircleBehaviour, GoesRoundCounterClockwise) {
       EXPECT_GT(d_W.x() * craft.motion().v_W.y() - d_W.y() * craft.motion().v_W.x(), 0);
     }
   }
+}
+
+TEST(HoldBehaviour, GoesStraightToThePlaceAndStaysOnItsCircle) {
+  HoldBehaviour hold({.centre_W = {300, -100}, .radius_m = 30, .speed_mps = 1.5});
+  Craft craft({0, 0});
+  double off_line_m = 0;
+  int steps = 0;
+  for (; steps < 1000 && (craft.motion().p_W - Vector2d(300, -100)).norm() > 6; ++steps) {
+    craft.go(hold.steer(craft.motion()));
+    off_line_m = std::max(off_line_m, std::abs(turned(craft.motion().p_W, std::atan2(100, 300)).y()));
+  }
+  EXPECT_NEAR(0.5 * steps, std::hypot(300, 100) / 1.5, 5);  // s on the straight line
+  EXPECT_LT(off_line_m, 2);
+  for (int i = 0; i < 1000; ++i) {
+    craft.go(hold.steer(craft.motion()));
+    if (i < 200) continue;
+    EXPECT_NEAR((craft.motion().p_W - Vector2d(300, -100)).norm(), 30, 2);
+  }
+  EXPECT_FALSE(hold.finished());
 }
 
 TEST(FollowBehaviour, KeepsItsPlaceBesideTheOther) {
