@@ -38,6 +38,7 @@ void Gateway::Params::read(sim::ParamReader& in) {
 
 Gateway::Gateway(const Params& params, const sim::DeviceContext& context)
     : params_(params),
+      world_(context.world),
       vehicle_(context.vehicle),
       faults_(context.faults),
       all_modems_(context.world.shared<MessageModems>()) {
@@ -73,11 +74,24 @@ void Gateway::find_modems() {
   }
 }
 
+bool Gateway::is_same(const sim::Bytes& data, const sim::Bytes& seen) const {
+  if (data.size() < seen.size() || !std::equal(seen.rbegin(), seen.rend(), data.rbegin())) return false;
+  std::string_view names(reinterpret_cast<const char*>(data.data()), data.size() - seen.size());
+  if (!names.empty() && !params_.name_source) return false;
+  while (!names.empty()) {
+    const std::size_t colon = names.find(':');
+    if (colon == std::string_view::npos || world_.find_vehicle(std::string(names.substr(0, colon))) == nullptr)
+      return false;
+    names.remove_prefix(colon + 1);
+  }
+  return true;
+}
+
 bool Gateway::seen_before(sim::Time at, const sim::Bytes& data) {
   if (params_.repeat_s <= 0) return false;
   const sim::Time oldest = at - sim::from_seconds(params_.repeat_s);
   while (!seen_.empty() && (seen_.front().at < oldest || seen_.size() > 1000)) seen_.pop_front();
-  return std::any_of(seen_.begin(), seen_.end(), [&](const Seen& seen) { return seen.data == data; });
+  return std::any_of(seen_.begin(), seen_.end(), [&](const Seen& seen) { return is_same(data, seen.data); });
 }
 
 void Gateway::remember(sim::Time at, const sim::Bytes& data) {

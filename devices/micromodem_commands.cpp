@@ -33,6 +33,7 @@ MicromodemProtocol::Command MicromodemProtocol::command_of(const std::string& na
 }
 
 void MicromodemProtocol::take_line(const NmeaLines::Line& line, sim::Time now) {
+  if (is_down(now)) return;
   NmeaSentence in;
   if (line.too_long) {
     error("NMEA", unknown_sentence, "line too long", now);
@@ -109,7 +110,7 @@ void MicromodemProtocol::sleep_or_reset(const NmeaSentence& in, sim::Time now) {
   if (!who) return;
   side_.say(joined(in, "CAMSC"));
   if (who->second != address()) return;
-  if (!starting_) restart(now + sim::from_seconds(1));
+  restart(now + sim::from_seconds(1));
 }
 
 void MicromodemProtocol::begin_cycle(const NmeaSentence& in, sim::Time now) {

@@ -173,6 +173,7 @@ void MicromodemProtocol::send_cycle(sim::Time now) {
 }
 
 void MicromodemProtocol::heard(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
+  if (is_down(arrival.ended)) return;
   if (!arrival.good && packet.is_short()) {
     // What it was about is not known.
     side_.say("CAMSG,BAD_CRC,0");

@@ -116,6 +116,8 @@ class MicromodemProtocol {
   void ask_beacons(const NmeaSentence& in, sim::Time now);
   static Command command_of(const std::string& name);
 
+  /// It has been told to start again, and has not yet.
+  bool is_down(sim::Time now) const { return starting_ && now < next_revision_; }
   void say_later(sim::Time at, std::string body);
   void error(const std::string& module, int number, const std::string& text, sim::Time now);
   /// Says so when it is.

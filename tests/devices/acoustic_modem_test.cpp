@@ -300,6 +300,22 @@ TEST(AcousticModem, TellsWhatItsClockShowedThenHoweverLateItReports) {
   EXPECT_NEAR(received[0].travel_time_s, 10.2, 1e-5);
 }
 
+TEST(AcousticModem, FindsTheWholeSecondOfACoarseClock) {
+  for (const std::string resolution : {"0.3", "10"}) {
+    const std::string modem = "{name: modem, type: acoustic_modem, preset: high_rate, synchronous_s: 1, truth: true}";
+    test::TestWorld test(
+        test::modem_sea({{"a", "[0, 0, -20]", modem, "clock: {offset_s: 0.25, resolution_s: " + resolution + "}"},
+                         {"b", "[300, 0, -20]", modem}}));
+    test::Listener<Received> at_b(test, "b.modem.truth");
+    test.run_for(0.35);
+    test.send("a.modem.cmd", test::bytes_to("x"));
+    test.run_for(3);
+    const auto received = at_b.take_all();
+    ASSERT_EQ(received.size(), 1u);
+    EXPECT_EQ(received[0].sent_utime, test.world.epoch_us() + 750000) << resolution;
+  }
+}
+
 TEST(AcousticModem, NeedsWater) {
   const std::string error =
       test::error_of_world(test::modem_sea({{"a", "[0, 0, 0]", "{name: modem, type: acoustic_modem}"}}, "", "{}"));

@@ -55,7 +55,8 @@ TEST(Gateway, TwoOfThemDoNotPlayPingPong) {
            test::device_of<devices::Gateway>(test, "buoy2/gate").counts()[1].passed;
   };
   EXPECT_EQ(sent(""), 2);
-  EXPECT_GT(sent(", repeat_s: 0"), 5);  // for ever
+  EXPECT_EQ(sent(", name_source: true"), 2);  // although each of them puts a name before it
+  EXPECT_GT(sent(", repeat_s: 0"), 5);        // for ever
 }
 
 TEST(Gateway, RefusesWhatIsTooLongForTheOtherSideAndWhatHasNotItsPrefix) {

@@ -159,7 +159,8 @@ TEST(MicromodemProtocol, StartsOnceHoweverOftenItIsTold) {
   Modem modem;
   for (int i = 0; i < 1000; ++i) modem.host("$CCMSC,1,1,0");
   modem.wait(0.5);
-  modem.host("$CCMSC,1,1,0");
+  EXPECT_THAT(modem.host("$CCMSC,1,1,0"), ElementsAre());  // it is down
+  EXPECT_THAT(modem.host("$CCMPC,1,2"), ElementsAre());
   EXPECT_THAT(modem.wait(0.5), ElementsAre("CAREV,050608,INIT,0.93.0.48"));
   EXPECT_THAT(modem.wait(5), ElementsAre());
 }
