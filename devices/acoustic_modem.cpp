@@ -241,7 +241,7 @@ void AcousticModem::hash_state(sim::StateHash& hash) const {
       hash.add(static_cast<std::int64_t>(packet.sent_reading.count()));
       hash.add(static_cast<std::int64_t>(packet.arrived.count()));
       hash.add(static_cast<std::int64_t>(packet.arrived_reading.count()));
-      hash.add(packet.snr_dB);
+      for (const double number : {packet.snr_dB, packet.level_dB, packet.closing_mps}) hash.add(number);
       hash.add_bytes(packet.data.data(), packet.data.size());
     }
   }

@@ -300,6 +300,22 @@ TEST(AcousticModem, TellsWhatItsClockShowedThenHoweverLateItReports) {
   EXPECT_NEAR(received[0].travel_time_s, 10.2, 1e-5);
 }
 
+TEST(AcousticModem, APacketMayLastLongerThanTheClockRemembers) {
+  // 256 s at 1 bit/s; the clock of b, set right before, knows 60 s.
+  const std::string modem = "{name: modem, type: acoustic_modem, bit_rate_bps: 1}";
+  test::TestWorld test(
+      test::modem_sea({{"a", "[0, 0, -20]", modem}, {"b", "[300, 0, -20]", modem, "clock: {offset_s: 10}"}}));
+  test::Listener<Received> at_b(test, "b.modem");
+  auto& clock = const_cast<sim::VehicleClock&>(test.world.find_vehicle("b")->clock());
+  for (; test.world.now() < sim::from_seconds(270); test.run_for(1)) {
+    if (test.world.now() == sim::from_seconds(5)) test.send("a.modem.cmd", test::bytes_to("slow"));
+    clock.discipline(test.world.now(), clock.error_s(test.world.now()), {});
+  }
+  const auto received = at_b.take_all();
+  ASSERT_EQ(received.size(), 1u);
+  EXPECT_NEAR(received[0].travel_time_s, 0.2, 1e-5);
+}
+
 TEST(AcousticModem, FindsTheWholeSecondOfACoarseClock) {
   for (const std::string resolution : {"0.3", "10"}) {
     const std::string modem = "{name: modem, type: acoustic_modem, preset: high_rate, synchronous_s: 1, truth: true}";
