@@ -174,6 +174,32 @@ void check_weight_of_water(const WorldConfig& world, const ConfigNode& root, Dia
       "'gravity_mps2' must be 0 or more in a world with water, got " + number_text(world.physics.gravity_mps2));
 }
 
+/// The ends of `links:` are vehicles of the file, or devices of theirs.
+void check_acoustic_links(const WorldConfig& world, const ConfigNode& root, Diagnostics& diagnostics) {
+  const ConfigNode* acoustics = root.find("acoustics");
+  const ConfigNode* links = acoustics != nullptr ? acoustics->find("links") : nullptr;
+  if (links == nullptr) return;
+  for (std::size_t i = 0; i < links->items.size(); ++i)
+    for (const char* key : {"from", "to"}) {
+      const ConfigNode* end = links->items[i].find(key);
+      if (end == nullptr || end->scalar.empty()) continue;
+      const std::size_t slash = end->scalar.find('/');
+      const auto found = std::find_if(world.vehicles.begin(), world.vehicles.end(), [&](const VehicleInstance& each) {
+        return each.name == end->scalar.substr(0, slash);
+      });
+      const std::string who = "acoustics: links: link " + std::to_string(i + 1);
+      if (found == world.vehicles.end()) {
+        diagnostics.error(end->place, who,
+                          "'" + std::string(key) + "' names no vehicle '" + end->scalar.substr(0, slash) + "'");
+      } else if (slash != std::string::npos) {
+        const auto& devices = found->config->devices;
+        if (std::none_of(devices.begin(), devices.end(),
+                         [&](const DeviceConfig& device) { return device.name == end->scalar.substr(slash + 1); }))
+          diagnostics.error(end->place, who, "'" + std::string(key) + "' names no device '" + end->scalar + "'");
+      }
+    }
+}
+
 LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& options, Diagnostics& diagnostics) {
   diagnostics.throw_if_any();
   LoadedWorld loaded;
@@ -194,6 +220,7 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
     for (VehicleInstance& instance : vehicles.load(entry)) loaded.config.vehicles.push_back(std::move(instance));
   check_channels(loaded.config, diagnostics);
   check_metrics(loaded.config, diagnostics);
+  check_acoustic_links(loaded.config, root, diagnostics);
   diagnostics.throw_if_any();
   gather_from_vehicles(loaded.config);
   check_script(loaded.config, diagnostics);

@@ -78,6 +78,16 @@ const std::vector<std::string>& loss_causes() {
   return causes;
 }
 
+namespace {
+
+/// An empty reference names nothing, which is a mistake where the key is written.
+void refuse_empty(ParamReader& in, const char* key, const std::string& value) {
+  if (!in.describing() && in.has(key) && value.empty() && in.child(key)->kind != ConfigNode::Kind::list)
+    in.error(key, "'" + std::string(key) + "' must not be empty");
+}
+
+}  // namespace
+
 void MetricConfig::read(ParamReader& in) {
   if (in.node() != nullptr) place = in.node()->place;
   in.require("name");
@@ -101,6 +111,10 @@ void MetricConfig::read(ParamReader& in) {
   in.read("position_m", position_m, any_place(), "mission_time: the vehicle's place to reach, instead of `when`");
   in.read("radius_m", radius_m, above(0), "mission_time: so near to `position_m`");
   in.read_reference("with", with, movable_kind, "collisions: with this one alone; unset: with all, but planes");
+  refuse_empty(in, "vehicle", vehicle);
+  refuse_empty(in, "metric", metric);
+  refuse_empty(in, "against", against);
+  refuse_empty(in, "with", with);
   if (!in.describing()) check_keys(in);
 }
 
@@ -143,7 +157,12 @@ void PassRule::read(ParamReader& in) {
   in.read_reference("above_metric", above_metric, "figure", "the figure must be above this other one times factor");
   in.read("factor", factor, sim::above(0), "see below_metric and above_metric");
   if (in.describing()) return;
-  const auto count = std::count_if(std::begin(rule_forms), std::end(rule_forms), [&](auto key) { return in.has(key); });
+  refuse_empty(in, "metric", metric);
+  refuse_empty(in, "below_metric", below_metric);
+  refuse_empty(in, "above_metric", above_metric);
+  const auto count = std::count_if(std::begin(rule_forms), std::end(rule_forms), [&](auto key) {
+    return in.has(key) && in.child(key)->kind != ConfigNode::Kind::null;
+  });
   if (count != 1) {
     const std::string forms = "'above', 'above_metric', 'below', 'below_metric' and 'equals'";
     in.error("needs one of " + forms + (count > 1 ? ", not several" : ""));
