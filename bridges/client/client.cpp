@@ -94,6 +94,8 @@ void Client::publish_bytes(std::string_view channel, std::span<const std::byte> 
 
 void Client::join(double period_s, std::chrono::milliseconds timeout) {
   with_own_errors([&] { connection_->lcm.join(period_s, timeout); });
+  connection_->end = End::none;
+  connection_->unanswered.reset();
   connection_->joined = true;
 }
 
@@ -123,6 +125,8 @@ void Client::Connection::follow_clock(std::int64_t new_period_us) {
 }
 
 std::optional<std::int64_t> Client::next_tick() {
+  // After silence somebody may come yet.
+  if (connection_->end == End::last_tick || connection_->end == End::stopped) return std::nullopt;
   if (connection_->joined) return with_own_errors([&] { return connection_->next_joined_tick(); });
   if (connection_->period_us == 0) throw std::logic_error("shoal::Client: join() or follow() comes before next_tick()");
   return with_own_errors([&] { return connection_->next_free_tick(); });

@@ -78,6 +78,7 @@ void LockstepClient::join(double period_s, std::chrono::milliseconds timeout) {
       early_.push_back(std::move(*message));
     }
   }
+  if (stop_) throw BusError("'" + name_ + "' was stopped while it waited for a simulator on " + lcm_.url());
   throw BusError("no simulator answered '" + name_ + "' within " + std::to_string(timeout.count()) + " ms on " +
                  lcm_.url() + "; is it running, with the same LCM URL?");
 }
@@ -104,8 +105,10 @@ std::optional<Received> LockstepClient::next_handled() {
     end_ = stop_ ? End::stopped : End::silence;
     return std::nullopt;
   }
-  if (const auto found = handlers_.find(message->channel); found != handlers_.end())
-    for (const Handler& handler : found->second) handler(message->payload);
+  if (const auto found = handlers_.find(message->channel); found != handlers_.end()) {
+    const std::size_t count = found->second.size();
+    for (std::size_t i = 0; i < count; ++i) found->second[i](message->payload);
+  }
   return message;
 }
 

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
@@ -37,11 +38,12 @@ class LockstepClient {
   /// Throws BusError when LCM cannot be used.
   LockstepClient(const std::string& url, std::string name);
 
+  /// Also from a handler, which then sees the messages after its own.
   void subscribe(const std::string& channel, Handler handler);
   /// At once, so it is out before the acknowledgement that follows.  Throws BusError when LCM refuses it.
   void publish(std::string_view channel, std::span<const std::byte> payload);
   /// Asks for a tick every `period_s` of simulated time.  Throws BusError with the simulator's text when it
-  /// refuses, or when it does not answer in time.
+  /// refuses, when it does not answer in time, and when stop() is called.
   void join(double period_s, std::chrono::milliseconds timeout);
   /// Calls the handlers in the order of arrival until a tick names this client.  False at the end of the run
   /// (its last tick is acknowledged here), when stop() was called, or after `silence_limit` without any
@@ -71,7 +73,8 @@ class LockstepClient {
 
   LcmListener lcm_;
   std::string name_;
-  std::map<std::string, std::vector<Handler>, std::less<>> handlers_;
+  // Handlers may subscribe: a deque grows without moving the one that is called.
+  std::map<std::string, std::deque<Handler>, std::less<>> handlers_;
   std::deque<Received> early_;  // came while joining
   std::int32_t request_id_ = 0;
   std::optional<std::int64_t> acknowledged_utime_;

@@ -1,9 +1,10 @@
 """Estimates where an AUV is, beside whatever steers it, in lockstep with the simulator.
 
-    PYTHONPATH=build/release/python:examples/python python3 examples/python/coop_auv.py auv
+    PYTHONPATH=build/release/python:examples/python python3 examples/python/coop_auv.py auv --sound-speed 1504
 
-Reads NAME.dvl, .compass, .pressure, .gps and .modem; publishes NAME.python_estimate.
+Reads NAME.dvl, .ahrs or .compass, .pressure, .gps and .modem; publishes NAME.python_estimate.
 """
+import argparse
 import math
 import struct
 import sys
@@ -14,8 +15,10 @@ import shoal
 from marine_ekf import MarineEkf, turned
 
 PERIOD_S = 0.5
-SOUND_SPEED_MPS = 1500.0
+SILENCE_MS = 600_000
 WEEK_MS = 7 * 24 * 3600 * 1000
+NEWEST_S = 3
+OLDEST_MS = 60 * 1000
 FIRST_SUNDAY_MS = 3 * 24 * 3600 * 1000
 
 
@@ -31,13 +34,17 @@ def checksum(data):
 
 
 def decode_frame(data, near_utime):
-    """The state in a frame of docs/autonomy.md, as a dict; None when it is none."""
+    """The state in a frame of docs/autonomy.md, as a dict; None when it is none, or of more than a minute from then."""
     if len(data) != 28 or data[0] != 0x10 or checksum(data[:26]) != struct.unpack(">H", data[26:])[0]:
         return None
     week_ms, east, north = struct.unpack(">Iii", data[2:14])
     east_std, north_std, correlation, speed, course = struct.unpack(">HHbHH", data[17:26])
+    if week_ms >= WEEK_MS or east_std == 0 or north_std == 0 or abs(correlation) > 127:
+        return None
     near_ms = near_utime // 1000
     ahead_ms = (week_ms - (near_ms - FIRST_SUNDAY_MS) + WEEK_MS // 2) % WEEK_MS - WEEK_MS // 2
+    if abs(ahead_ms) > OLDEST_MS:
+        return None
     return {
         "sender": data[1],
         "utime": (near_ms + ahead_ms) * 1000,
@@ -48,25 +55,40 @@ def decode_frame(data, near_utime):
     }
 
 
+def finite(*numbers):
+    return all(map(math.isfinite, numbers))
+
+
 class CoopAuv:
-    def __init__(self, name):
-        self.name = name
+    def __init__(self, sound_speed_mps=1500.0, heading_noise=0.035):
+        self.sound_speed_mps, self.heading_noise = sound_speed_mps, heading_noise
         self.ekf = None
         self.yaw_rad = None
+        self.has_ahrs = False
         self.depth_m = 0.0
         self.fix_utime = 0
+        self.senders = {}
+
+    def on_ahrs(self, attitude):
+        w, x, y, z = attitude.quat  # of the body in the world
+        if abs(math.hypot(w, x, y, z) - 1) < 0.01:
+            self.yaw_rad = math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+            self.has_ahrs = True
 
     def on_compass(self, compass):
-        self.yaw_rad = math.pi / 2 - compass.heading_true_rad
+        if not self.has_ahrs and finite(compass.heading_true_rad):
+            self.yaw_rad = math.pi / 2 - compass.heading_true_rad
 
     def on_pressure(self, pressure):
-        self.depth_m = pressure.depth_m
+        if finite(pressure.depth_m):
+            self.depth_m = pressure.depth_m
 
     def on_gps(self, fix):
-        if fix.gps_lock < 1 or self.yaw_rad is None:
+        if fix.gps_lock < 1 or self.yaw_rad is None or not finite(*fix.xyz_pos[:2]) or not fix.horizontal_accuracy > 0:
             return
         if self.ekf is None:
-            self.ekf = MarineEkf(fix.utime * 1e-6, fix.xyz_pos[:2], fix.horizontal_accuracy, states=6)
+            self.ekf = MarineEkf(fix.utime * 1e-6, fix.xyz_pos[:2], fix.horizontal_accuracy, states=6,
+                                 heading_noise=self.heading_noise)
         elif fix.utime - self.fix_utime < 5_000_000:
             return
         else:
@@ -74,17 +96,20 @@ class CoopAuv:
         self.fix_utime = fix.utime
 
     def on_dvl(self, dvl):
-        if self.ekf is not None and self.yaw_rad is not None and dvl.bottom_lock:
+        if self.ekf is not None and dvl.bottom_lock and finite(*dvl.velocity_mps[:2]):
             self.ekf.predict(dvl.utime * 1e-6, turned(dvl.velocity_mps[:2], self.yaw_rad))
 
     def on_modem(self, packet):
         state = decode_frame(bytes(packet.data), packet.sent_utime)
-        if state is None or self.ekf is None:
+        if state is None or self.ekf is None or not 0 <= packet.travel_time_s < 60:
             return
         moved_s = (packet.sent_utime - state["utime"]) * 1e-6
+        # What a gateway passed on is older, and from elsewhere: its travel time says nothing of the sender.
+        if abs(moved_s) > NEWEST_S or self.senders.setdefault(state["sender"], packet.source) != packet.source:
+            return
         east, north, up = state["position_m"]
         beacon = (east + moved_s * state["velocity_mps"][0], north + moved_s * state["velocity_mps"][1], up)
-        range_m = packet.travel_time_s * SOUND_SPEED_MPS
+        range_m = packet.travel_time_s * self.sound_speed_mps
         self.ekf.update_range(packet.utime * 1e-6, range_m, math.hypot(1.0, 0.001 * range_m), beacon,
                               state["covariance_m2"], -self.depth_m)
 
@@ -95,7 +120,7 @@ class CoopAuv:
         message.position_m = [self.ekf.x[0], self.ekf.x[1], -self.depth_m]
         message.covariance_m2 = [P[0][0], P[0][1], 0.0, P[1][0], P[1][1], 0.0, 0.0, 0.0, 0.01]
         message.yaw_rad = self.yaw_rad + self.ekf.x[2]
-        message.clock_error_s = self.ekf.x[4] / SOUND_SPEED_MPS
+        message.clock_error_s = self.ekf.x[4] / self.sound_speed_mps
         return message
 
 
@@ -124,7 +149,8 @@ class Lockstep:
             self.publish("sim.control", request)
             self.lc.handle_timeout(200)
         while not self.over:
-            self.lc.handle()
+            if not self.lc.handle_timeout(SILENCE_MS):
+                raise SystemExit("the simulator fell silent")
 
     def on_reply(self, channel, data):
         reply = shoal.sim_control_reply_t.decode(data)
@@ -146,23 +172,38 @@ class Lockstep:
             self.publish("sim.ack", ack)
 
 
-def main():
-    name = sys.argv[1] if len(sys.argv) > 1 else "auv"
-    auv = CoopAuv(name)
+def attach(options):
+    """The navigator of a vehicle, and its place in the lockstep, which Lockstep.run() takes."""
+    name = options.name
+    auv = CoopAuv(options.sound_speed, options.heading_noise)
     bus = Lockstep(name + "_python", PERIOD_S)
+    bus.subscribe(name + ".ahrs", shoal.ins_t, auv.on_ahrs)
     bus.subscribe(name + ".compass", shoal.compass_t, auv.on_compass)
     bus.subscribe(name + ".pressure", shoal.pressure_t, auv.on_pressure)
     bus.subscribe(name + ".gps", shoal.gps_data_t, auv.on_gps)
     bus.subscribe(name + ".dvl", shoal.dvl_t, auv.on_dvl)
     bus.subscribe(name + ".modem", shoal.acoustic_received_t, auv.on_modem)
 
+    patience = iter(range(round(60 / PERIOD_S), -1, -1))
+
     def decide(utime):
         if auv.ekf is not None:
             bus.publish(name + ".python_estimate", auv.estimate())
+        elif next(patience, None) == 0:
+            missing = "heading" if auv.yaw_rad is None else "GPS fix"
+            print(f"{name}: no estimate after a minute, as there was no {missing}", file=sys.stderr)
 
     bus.decide = decide
-    bus.run()
+    return auv, bus
+
+
+def parse(arguments=None):
+    parser = argparse.ArgumentParser(description="Estimates where an AUV is, by dead reckoning and acoustic ranges.")
+    parser.add_argument("name", nargs="?", default="auv", help="vehicle; auv")
+    parser.add_argument("--sound-speed", type=float, default=1500.0, help="that makes a range of a travel time, m/s")
+    parser.add_argument("--heading-noise", type=float, default=0.035, help="of the measured heading, rad in 1 s")
+    return parser.parse_args(arguments)
 
 
 if __name__ == "__main__":
-    main()
+    attach(parse())[1].run()

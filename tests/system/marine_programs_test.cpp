@@ -1,5 +1,8 @@
 #include <gmock/gmock.h>
 
+#include <csignal>
+
+#include "bridges/lcm/lcm_listener.hpp"
 #include "tests/system/shoal_program.hpp"
 
 namespace {
@@ -49,7 +52,13 @@ TEST(MarinePrograms, WrongUsageIsExitCodeTwoAndSaysWhat) {
       {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--start", "1"}, "'1' is not of the form x,y"},
       {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--steer", "luck"}, "--steer"},
       {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--depth", "-1"}, "--depth"},
+      {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--depth", "nan"}, "--depth: value nan not in range"},
+      {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--heading-noise", "nan"}, "not in range [0 - 10]"},
+      {"shoal-coop-craft", {"--name", "b", "--route", "1,1", "--speed", "nan"}, "not in range [0.05 - 10]"},
+      {"shoal-coop-craft", {"--name", "b", "--route", "1,1", "--join-timeout", "nan"}, "not in range [0.1 - 3600]"},
+      {"shoal-coop-craft", {"--name", "b", "--behaviour", "follow:b,0,10"}, "'b' cannot follow itself"},
       {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--hold-radius", "0"}, "--hold-radius"},
+      {"shoal-coop-station", {"--name", "s", "--to", "0", "--orders", "1:2,3,4", "--speed", "nan"}, "[0.05 - 10]"},
       {"shoal-coop-station", {"--name", "s", "--to", "0"}, "--orders is required"},
       {"shoal-coop-station", {"--name", "s", "--to", "0", "--orders", "1:2,3,4"}, "give --slot or --random-s"},
       {"shoal-coop-station", {"--name", "s", "--to", "0", "--orders", "1;2", "--slot", "0/1"}, "TIME:X,Y,DEPTH"},
@@ -71,6 +80,17 @@ TEST(MarinePrograms, WithoutASimulatorIsExitCodeFour) {
     EXPECT_EQ(ended.exit_code, 4) << name;
     EXPECT_THAT(ended.errors, HasSubstr("no simulator answered 'a' within 200 ms"));
   }
+}
+
+TEST(MarinePrograms, SignalWhileItWaitsForTheSimulatorIsSaid) {
+  system_test::Program program({built("shoal-coop-auv"), "--name", "a", "--route", "1,1", "--lcm-url", own_url(3)});
+  // Its requests to join say that it waits.
+  bridges::LcmListener requests(own_url(3));
+  requests.listen("sim.control");
+  ASSERT_TRUE(requests.next(system_test::patience));
+  program.send_signal(SIGTERM);
+  EXPECT_EQ(program.wait(), 143);
+  EXPECT_THAT(program.errors(), HasSubstr("'a' was stopped while it waited for a simulator"));
 }
 
 TEST(CoopRelay, OrderComesToTheAuvByTheRelayAndNotWithoutIt) {

@@ -16,6 +16,9 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double through_water_mpsprtHz = 0.3;
 constexpr double coasting_mpsprtHz = 0.5;
 constexpr double pressure_std_m = 0.1;
+/// A stamp may be older than the newest by so much, and newer by that.
+constexpr double late_s = 2;
+constexpr double longest_gap_s = 5;
 /// Longer without a velocity, it coasts on the last one.
 constexpr double coast_after_s = 1;
 /// An AHRS that has been silent for so long is gone.
@@ -36,21 +39,34 @@ CoopAuv::CoopAuv(const Params& params, std::unique_ptr<HelmBehaviour> behaviour)
 }
 
 void CoopAuv::note_time(std::int64_t utime) {
-  // Reports come in order but for their latencies, many each second.  A jump means that somebody set the clock.  How
-  // much of it is true time is not known, so the next range has to tell the clock's error.
-  constexpr double late_s = 2;
-  constexpr double silence_s = 5;
-  const double step_s = seconds(utime - utime_);
-  if (utime_ != 0 && (step_s < -late_s || step_s > silence_s)) {
-    ++counts_.clock_steps;
-    for (auto* time : {&attitude_utime_, &velocity_utime_, &fix_utime_, &first_fix_utime_})
-      if (*time) **time += utime - utime_;
-    for (auto* filter : {&cooperative_, &dead_reckoning_})
-      if (*filter)
-        (*filter)->shift_clock(utime - utime_, params_.sound_speed_mps * step_s, params_.sound_speed_mps * late_s);
-    utime_ = utime;
+  // Reports come in order but for their latencies, many each second.  After a jump of their stamps, time that passed
+  // for step() too was silence, as when the power failed; the rest means that somebody set the clock.
+  const double silence_s = steps_in_silence_ * params_.period_s;
+  steps_in_silence_ = 0;
+  if (utime_ != 0) {
+    const double set_s = seconds(utime - utime_) - silence_s;
+    if (set_s < -late_s || set_s > longest_gap_s) set_clock(std::llround(1e6 * set_s));
+    if (seconds(utime - utime_) > longest_gap_s) coast_over_silence(utime);
   }
   utime_ = std::max(utime_, utime);
+}
+
+void CoopAuv::set_clock(std::int64_t by_us) {
+  ++counts_.clock_steps;
+  utime_ += by_us;
+  for (auto* time : {&attitude_utime_, &velocity_utime_, &fix_utime_, &first_fix_utime_})
+    if (*time) **time += by_us;
+  // How much of it is true time is not known, so the next range has to tell the clock's error.
+  for (auto* filter : {&cooperative_, &dead_reckoning_})
+    if (*filter)
+      (*filter)->shift_clock(by_us, params_.sound_speed_mps * seconds(by_us), params_.sound_speed_mps * late_s);
+}
+
+void CoopAuv::coast_over_silence(std::int64_t utime) {
+  ++counts_.silences;
+  // It may have gone on, or stopped at once: the whole way is not known.
+  velocity_noise_mpsprtHz_ = std::max(coasting_mpsprtHz, v_B_.norm() * std::sqrt(seconds(utime - utime_)));
+  predict(utime);
 }
 
 void CoopAuv::start(std::int64_t utime, const Vector2d& p_W, double std_m) {
@@ -183,6 +199,7 @@ void CoopAuv::update_phase() {
 
 CoopAuv::Decision CoopAuv::step() {
   Decision decision;
+  ++steps_in_silence_;
   if (utime_ == 0) return decision;
   if (velocity_utime_ && seconds(utime_ - *velocity_utime_) > coast_after_s) {
     velocity_noise_mpsprtHz_ = coasting_mpsprtHz;

@@ -45,6 +45,7 @@ class CoopAuv {
     std::optional<Vector2d> start_W;  ///< known: it does not wait for GPS
     double start_std_m = 1;
     ChannelAccess::Params access;    ///< for its own state
+    double period_s = 0.5;           ///< between two calls of step()
     bool obey = false;               ///< orders for its id: it goes to the place and circles there
     double order_depth_max_m = 100;  ///< deeper and faster orders are refused
     double order_speed_max_mps = 2.5;
@@ -63,8 +64,9 @@ class CoopAuv {
     int refused = 0;  ///< by the gate, or came too late
     int sent = 0;
     int clock_steps = 0;
-    int relayed = 0;  ///< states that did not come from their sender: no ranges
-    int orders = 0;   ///< obeyed
+    int silences = 0;  ///< of all devices
+    int relayed = 0;   ///< states that did not come from their sender: no ranges
+    int orders = 0;    ///< obeyed
     int orders_refused = 0;
   };
   enum class Phase { waiting_for_fix, at_surface, under_way, done };
@@ -89,6 +91,8 @@ class CoopAuv {
 
  private:
   void note_time(std::int64_t utime);
+  void set_clock(std::int64_t by_us);
+  void coast_over_silence(std::int64_t utime);
   void start(std::int64_t utime, const Vector2d& p_W, double std_m);
   void predict(std::int64_t utime);
   void obey(const AcousticOrder& order);
@@ -108,6 +112,7 @@ class CoopAuv {
   std::optional<MarineEkf> dead_reckoning_;
 
   std::int64_t utime_ = 0;  ///< newest stamp
+  int steps_in_silence_ = 0;
   std::optional<Eigen::Quaterniond> q_WB_;
   std::optional<std::int64_t> attitude_utime_;  ///< of an AHRS, which counts more than a compass
   Eigen::Vector3d v_B_ = Eigen::Vector3d::Zero();

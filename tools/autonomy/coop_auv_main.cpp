@@ -33,7 +33,7 @@ void subscribe(shoal::Client& client, autonomy::CoopAuv& auv, const std::string&
 
 int drive(const Options& options) {
   const std::string& name = options.auv.name;
-  autonomy::CoopAuv auv(options.auv, options.marine.make());
+  autonomy::CoopAuv auv(options.auv, options.marine.make(name));
   shoal::Client client(name, options.participation.lcm_url);
   subscribe(client, auv, name);
   const int exit_code = autonomy::take_part(client, options.participation, [&](std::int64_t) {
@@ -50,6 +50,7 @@ int drive(const Options& options) {
     std::cerr << name << ": " << counts.orders << " orders obeyed, " << counts.orders_refused << " refused\n";
   if (counts.relayed > 0) std::cerr << name << ": " << counts.relayed << " states came by relay\n";
   if (counts.clock_steps > 0) std::cerr << name << ": its clock was set " << counts.clock_steps << " times\n";
+  if (counts.silences > 0) std::cerr << name << ": all its devices fell silent " << counts.silences << " times\n";
   return exit_code;
 }
 
@@ -65,53 +66,53 @@ void add_filter_options(CLI::App& app, Options& options) {
       ->check(CLI::IsMember({2, 4, 5, 6}));
   app.add_option("--sound-speed", auv.sound_speed_mps, "that makes a range of a travel time, m/s")
       ->capture_default_str()
-      ->check(CLI::Range(1000.0, 2000.0));
+      ->check(autonomy::between(1000.0, 2000.0));
   app.add_option("--range-std", auv.range_std_m, "error of a range, m")
       ->capture_default_str()
-      ->check(CLI::Range(0.001, 1000.0));
+      ->check(autonomy::between(0.001, 1000.0));
   app.add_option("--sound-speed-std", auv.sound_speed_std, "error of a range, of the range")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 0.5));
+      ->check(autonomy::between(0.0, 0.5));
   app.add_option("--heading-bias-std", options.heading_bias_std_deg, "steady error of the heading, deg")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 90.0));
+      ->check(autonomy::between(0.0, 90.0));
   app.add_option("--speed-scale-std", auv.filter.speed_scale_std, "scale error of the DVL")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 0.5));
+      ->check(autonomy::between(0.0, 0.5));
   app.add_option("--heading-noise", auv.filter.heading_noise_radprtHz,
                  "rad in 1 s; for a slow error s of time T: s sqrt(2 T)")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 10.0));
+      ->check(autonomy::between(0.0, 10.0));
   app.add_option("--clock-std-ms", options.clock_std_ms, "error of the clock at the start, with 5 or 6 states")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(autonomy::between(0.0, 1e6));
   app.add_option("--clock-drift-std-ppm", options.clock_drift_std_ppm, "drift of the clock, with 6 states")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e4));
+      ->check(autonomy::between(0.0, 1e4));
 }
 
 void add_options(CLI::App& app, Options& options) {
   autonomy::CoopAuv::Params& auv = options.auv;
   app.add_option("--name", auv.name, "vehicle to steer; also the name in the lockstep")->required();
   app.add_option("--id", auv.id, "in its frames")->capture_default_str()->check(CLI::Range(0, 255));
-  app.add_option("--depth", auv.depth_m, "m")->capture_default_str()->check(CLI::Range(0.0, 10'000.0));
+  app.add_option("--depth", auv.depth_m, "m")->capture_default_str()->check(autonomy::between(0.0, 10'000.0));
   app.add_option("--start", options.start, "\"x,y\": known place at the start; else it waits for GPS");
   app.add_option("--start-std", auv.start_std_m, "error of --start, m")
       ->capture_default_str()
-      ->check(CLI::Range(0.001, 1000.0));
+      ->check(autonomy::between(0.001, 1000.0));
   app.add_option("--surface-s", auv.surface_s, "s at the surface after the first fix")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 3600.0));
+      ->check(autonomy::between(0.0, 3600.0));
   app.add_flag("--obey", auv.obey, "orders for its --id: it goes to the place and circles there");
   app.add_option("--order-depth-max", auv.order_depth_max_m, "deeper orders are refused, m")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 10'000.0));
+      ->check(autonomy::between(0.0, 10'000.0));
   app.add_option("--order-speed-max", auv.order_speed_max_mps, "faster orders are refused, m/s")
       ->capture_default_str()
-      ->check(CLI::Range(0.01, 10.0));
+      ->check(autonomy::between(0.01, 10.0));
   app.add_option("--hold-radius", auv.hold_radius_m, "of the circle at an ordered place, m")
       ->capture_default_str()
-      ->check(CLI::Range(1.0, 10'000.0));
+      ->check(autonomy::between(1.0, 10'000.0));
   options.marine.add_options(app);
   add_filter_options(app, options);
   options.participation.add_options(app);
@@ -130,6 +131,7 @@ int run(int argc, char** argv) {
   add_options(app, options);
   if (const auto exit_code = autonomy::parse(app, argc, argv)) return *exit_code;
   autonomy::CoopAuv::Params& auv = options.auv;
+  auv.period_s = options.participation.period_s;
   auv.use_ranges = !options.no_cooperation;
   auv.steer_by_dead_reckoning = options.steer == "dead-reckoning";
   auv.filter.heading_bias_std_rad = sim::degrees_to_radians(options.heading_bias_std_deg);

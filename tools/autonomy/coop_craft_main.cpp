@@ -8,7 +8,7 @@ namespace {
 
 int drive(const autonomy::CoopCraft::Params& params, const autonomy::MarineOptions& marine,
           const autonomy::Participation& participation) {
-  autonomy::CoopCraft craft(params, marine.make());
+  autonomy::CoopCraft craft(params, marine.make(params.name));
   shoal::Client client(params.name, participation.lcm_url);
   const auto listen = [&]<class Message>(const char* device) {
     client.subscribe<Message>(params.name + device, [&](const Message& message) { craft.receive(message); });
@@ -25,6 +25,8 @@ int drive(const autonomy::CoopCraft::Params& params, const autonomy::MarineOptio
   std::cerr << params.name << ": " << counts.sent << " frames sent, " << counts.heard << " heard, " << counts.bad_frames
             << " bad\n";
   if (counts.relayed > 0) std::cerr << params.name << ": " << counts.relayed << " states came by relay\n";
+  if (const std::string remark = craft.behaviour().remark(); !remark.empty())
+    std::cerr << params.name << ": " << remark << '\n';
   return exit_code;
 }
 
@@ -38,7 +40,7 @@ int run(int argc, char** argv) {
   app.add_option("--id", craft.id, "in its frames")->capture_default_str()->check(CLI::Range(0, 255));
   app.add_option("--transducer-depth", craft.transducer_depth_m, "of its modem, m")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1000.0));
+      ->check(autonomy::between(0.0, 1000.0));
   marine.add_options(app);
   participation.add_options(app);
   app.footer(

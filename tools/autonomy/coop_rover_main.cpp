@@ -29,10 +29,10 @@ int run(int argc, char** argv) {
   app.add_option("--name", rover.name, "vehicle to drive; also the name in the lockstep")->required();
   app.add_option("--waypoints", waypoints, "\"x,y;x,y;...\", east and north in m, driven in a loop")->required();
   app.add_option("--start", start, "\"x,y,yaw_deg\": where the rover stands at first")->capture_default_str();
-  app.add_option("--speed", rover.speed_mps, "m/s")->capture_default_str()->check(CLI::Range(0.05, 5.0));
+  app.add_option("--speed", rover.speed_mps, "m/s")->capture_default_str()->check(autonomy::between(0.05, 5.0));
   app.add_option("--seen-std", rover.seen_std_m, "error of a swarm_position sighting, m")
       ->capture_default_str()
-      ->check(CLI::Range(0.001, 100.0));
+      ->check(autonomy::between(0.001, 100.0));
   participation.add_options(app);
   app.footer(std::string("It reads NAME.odometry, .lidar, .modem and, where there are such, .gps and .swarm_position; "
                          "it publishes\nNAME.drive.cmd, .modem.cmd, .estimate and .odometry_only.\n"

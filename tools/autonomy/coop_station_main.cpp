@@ -42,7 +42,7 @@ int run(int argc, char** argv) {
       ->required();
   app.add_option("--speed", speed_mps, "of orders without one, m/s through the water")
       ->capture_default_str()
-      ->check(CLI::Range(0.05, 10.0));
+      ->check(autonomy::between(0.05, 10.0));
   sending.add_options(app, "its order");
   participation.add_options(app);
   app.footer(std::string("It reads NAME.gps and NAME.radio; it publishes NAME.radio.cmd and NAME.knowledge, where the "

@@ -65,15 +65,21 @@ Course HoldBehaviour::steer(const Motion& own) {
 
 void FollowBehaviour::hear(const std::string& vehicle, const Motion& other) {
   if (vehicle != params_.vehicle) return;
-  if (other_ && other.utime <= other_->utime) return;
+  // Much older: the other's clock was set back.
+  constexpr std::int64_t oldest_us = 60'000'000;
+  if (other_ && other.utime <= other_->utime && other.utime > other_->utime - oldest_us) return;
   other_ = other;
   if (other.v_W.norm() > least_speed_mps) other_course_rad_ = direction_of(other.v_W);
+}
+
+std::string FollowBehaviour::remark() const {
+  return other_ ? "" : "it was to follow '" + params_.vehicle + "', and never heard of it";
 }
 
 std::optional<Vector2d> FollowBehaviour::place_W(std::int64_t utime) const {
   if (!other_) return std::nullopt;
   const double age_s = static_cast<double>(utime - other_->utime) * 1e-6;
-  if (age_s > params_.forget_s) return std::nullopt;
+  if (std::abs(age_s) > params_.forget_s) return std::nullopt;
   return Vector2d(other_->p_W + other_->v_W * age_s + turned({params_.ahead_m, params_.left_m}, other_course_rad_));
 }
 

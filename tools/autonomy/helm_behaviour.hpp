@@ -31,6 +31,8 @@ class HelmBehaviour {
   /// What another vehicle said of itself.
   virtual void hear(const std::string& /*vehicle*/, const Motion& /*other*/) {}
   virtual bool finished() const { return false; }
+  /// What is to be said of it at the end of a run; empty: nothing.
+  virtual std::string remark() const { return {}; }
 };
 
 /// Along the legs of a route, the first of which begins where it is first asked.  A leg is followed by line of sight:
@@ -98,13 +100,14 @@ class FollowBehaviour final : public HelmBehaviour {
     double speed_max_mps = 2;
     double lookahead_m = 15;
     double catch_up_per_s = 0.05;  ///< of the distance along the course, added to the other's speed
-    double forget_s = 300;         ///< without news for so long it stands still
+    double forget_s = 300;         ///< without news for so long it stands still; also when they are so far ahead
   };
   explicit FollowBehaviour(const Params& params) : params_(params) {}
-  /// News of the other; older ones than it has are of no use.
+  /// News of the other; older ones than it has are of no use, unless by more than a minute: then its clock was set.
   void hear(const std::string& vehicle, const Motion& other) override;
   /// Stands still until it has heard of the other.
   Course steer(const Motion& own) override;
+  std::string remark() const override;
   /// Where it wants to be.
   std::optional<Vector2d> place_W(std::int64_t utime) const;
 

@@ -1,6 +1,7 @@
 #include "tools/autonomy/marine_options.hpp"
 
 #include "tools/autonomy/behaviour_text.hpp"
+#include "tools/autonomy/program.hpp"
 
 namespace autonomy {
 
@@ -12,23 +13,26 @@ void MarineOptions::add_options(CLI::App& app) {
   app.add_flag("--loop", loop, "begin the route again after its last waypoint; else the vehicle stops there");
   app.add_option("--speed", speed_mps, "m/s through the water; follow: at most")
       ->capture_default_str()
-      ->check(CLI::Range(0.05, 10.0));
+      ->check(between(0.05, 10.0));
   sending.add_options(app, "its state");
 }
 
-std::unique_ptr<HelmBehaviour> MarineOptions::make() const {
+std::unique_ptr<HelmBehaviour> MarineOptions::make(const std::string& name) const {
+  if (behaviour.starts_with("follow:" + name + ",")) throw std::invalid_argument("'" + name + "' cannot follow itself");
   const std::vector<Vector2d> waypoints = route.empty() ? std::vector<Vector2d>() : parse_waypoints(route);
   return make_behaviour(behaviour, waypoints, speed_mps, loop);
 }
 
 void AccessOptions::add_options(CLI::App& app, const std::string& what) {
   app.add_option("--slot", slot, "I/N: sends " + what + " in slot I of N, from 0, by the clock of its vehicle");
-  app.add_option("--slot-s", slot_s, "length of a slot")->capture_default_str()->check(CLI::Range(0.1, 3600.0));
-  app.add_option("--guard-s", guard_s, "the end of a slot in which nothing is begun; unset: half of the slot")
-      ->check(CLI::Range(0.0, 3600.0));
+  app.add_option("--slot-s", slot_s, "length of a slot")->capture_default_str()->check(between(0.1, 3600.0));
+  app.add_option("--guard-s", guard_s,
+                 "the end of a slot in which nothing is begun; unset: all but its first second, or the second half of "
+                 "a short one")
+      ->check(between(0.0, 3600.0));
   app.add_option("--random-s", random_s, "sends at random, so often on average, s; 0: in its slot or never")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 3600.0));
+      ->check(between(0.0, 3600.0));
   app.add_option("--seed", seed, "of --random-s")->capture_default_str();
 }
 
@@ -40,7 +44,7 @@ ChannelAccess::Params AccessOptions::access() const {
   if (random_s > 0) throw std::invalid_argument("--slot and --random-s are two ways of sending; give one");
   access.slot = parse_slot(slot);
   access.slot->slot_s = slot_s;
-  access.slot->guard_s = guard_s.value_or(0.5 * slot_s);
+  access.slot->guard_s = guard_s.value_or(default_guard_s(slot_s));
   const Tdma checked(*access.slot);
   return access;
 }

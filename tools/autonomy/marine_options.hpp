@@ -16,7 +16,7 @@ namespace autonomy {
 struct AccessOptions {
   std::string slot;
   double slot_s = 10;
-  std::optional<double> guard_s;  ///< half of the slot unless set
+  std::optional<double> guard_s;  ///< default_guard_s() unless set
   double random_s = 0;
   std::uint64_t seed = 1;
 
@@ -35,8 +35,8 @@ struct MarineOptions {
   AccessOptions sending;
 
   void add_options(CLI::App& app);
-  /// Throw std::invalid_argument with what is wrong.
-  std::unique_ptr<HelmBehaviour> make() const;
+  /// Of the vehicle `name`.  Throw std::invalid_argument with what is wrong.
+  std::unique_ptr<HelmBehaviour> make(const std::string& name) const;
   ChannelAccess::Params access() const { return sending.access(); }
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <csignal>
 #include <iostream>
+#include <sstream>
 
 namespace autonomy {
 
@@ -35,13 +36,24 @@ class StopBySignal {
 
 }  // namespace
 
+CLI::Validator between(double low, double high) {
+  std::ostringstream range;
+  range << '[' << low << " - " << high << ']';
+  const auto check = [low, high, text = range.str()](std::string& input) -> std::string {
+    double value = 0;
+    if (CLI::detail::lexical_cast(input, value) && value >= low && value <= high) return {};
+    return "value " + input + " not in range " + text;
+  };
+  return CLI::Validator(check, "FLOAT in " + range.str());
+}
+
 void Participation::add_options(CLI::App& app) {
   app.add_option("--period", period_s, "s of simulated time between decisions")
       ->capture_default_str()
-      ->check(CLI::Range(0.001, 10.0));
+      ->check(between(0.001, 10.0));
   app.add_option("--join-timeout", join_timeout_s, "s to wait for the simulator")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 3600.0));
+      ->check(between(0.1, 3600.0));
   app.add_option("--lcm-url", lcm_url, "unset: LCM_DEFAULT_URL, then LCM's default");
 }
 

@@ -16,7 +16,8 @@ class RandomAccess {
   /// one seed.  Throws std::invalid_argument unless mean_s > 0 and 0 <= jitter <= 1.
   RandomAccess(double mean_s, double jitter, std::uint64_t seed, std::string_view name);
 
-  /// Whether to send now.  The first time is within one mean interval of the first call.
+  /// Whether to send now.  The first time is within one mean interval of the first call, and so is the next one after
+  /// the clock was set back.
   bool take_turn(std::int64_t utime);
 
  private:

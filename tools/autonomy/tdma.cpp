@@ -1,5 +1,6 @@
 #include "tools/autonomy/tdma.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
@@ -22,10 +23,15 @@ bool Tdma::take_turn(std::int64_t utime) {
   const std::int64_t cycle_us = slot_us_ * params_.slots;
   const std::int64_t since_us = utime - slot_us_ * params_.slot;
   const std::int64_t turn = since_us >= 0 ? since_us / cycle_us : -((-since_us + cycle_us - 1) / cycle_us);
-  // A clock that is set back gives no second turn in the same slot.
-  if (since_us - turn * cycle_us >= slot_us_ - guard_us_ || turn <= last_turn_) return false;
+  if (since_us - turn * cycle_us >= slot_us_ - guard_us_) return false;
+  // A clock that is set back a little gives no second turn in the same slot; one set back by more begins anew.
+  if (last_turn_ && (turn == *last_turn_ || turn == *last_turn_ - 1)) return false;
   last_turn_ = turn;
   return true;
+}
+
+double default_guard_s(double slot_s) {
+  return std::max(0.5 * slot_s, slot_s - 1);
 }
 
 Tdma::Params parse_slot(const std::string& text) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace autonomy {
@@ -19,15 +20,19 @@ class Tdma {
   /// Throws std::invalid_argument unless 0 <= slot < slots and 0 <= guard_s < slot_s.
   explicit Tdma(const Params& params);
 
-  /// Whether to send now; true once for each turn.
+  /// Whether to send now; true once for each turn.  A clock that is set back silences it for two cycles at most.
   bool take_turn(std::int64_t utime);
 
  private:
   Params params_;
   std::int64_t slot_us_;
   std::int64_t guard_us_;
-  std::int64_t last_turn_ = INT64_MIN;
+  std::optional<std::int64_t> last_turn_;
 };
+
+/// The guard time of who does not know how long a packet is: turns begin in the first second of the slot only, in a
+/// slot of less than 2 s in its first half.  Stamps that come once a second give a turn in each.
+double default_guard_s(double slot_s);
 
 /// A slot as on the command line: `0/2` is the first of two.  Throws std::invalid_argument.
 Tdma::Params parse_slot(const std::string& text);

@@ -32,7 +32,8 @@ class ClientError : public std::runtime_error {
 ///
 /// Handlers are called in next_tick() and wait_until() only, in the order in which messages came.  A payload that is
 /// not what its channel should carry is counted, told once for each channel on standard error, and not handled; so is
-/// one whose handler throws MessageError.  Any other exception of a handler leaves the call that waited.
+/// one whose handler throws MessageError.  Any other exception of a handler leaves the call that waited.  Handlers may
+/// publish and subscribe.
 class Client {
  public:
   enum class End {
@@ -77,7 +78,8 @@ class Client {
   void publish_bytes(std::string_view channel, std::span<const std::byte> payload);
 
   /// Lockstep: the world waits at a tick every `period_s` of simulated time, a multiple of its step.  Throws
-  /// ClientError with the simulator's words when it refuses, and when none answers within `timeout` of wall time.
+  /// ClientError with the simulator's words when it refuses, when none answers within `timeout` of wall time, and when
+  /// stop() is called meanwhile.
   void join(double period_s, std::chrono::milliseconds timeout = std::chrono::seconds(30));
   /// Free running: the world does not wait.  next_tick() then returns when sim.clock passes a multiple of `period_s`;
   /// sim.clock comes at `state_rate_hz` of the world, 10 Hz unless it says otherwise.
@@ -85,7 +87,8 @@ class Client {
 
   /// In lockstep this acknowledges the tick before: what was published since acts in the next step.  Waits for the next
   /// tick, and gives the simulator's time in microseconds.  Every report up to then has been handled (in free running:
-  /// those that came).  Nothing when the run is over: see end().  Throws std::logic_error before join() and follow().
+  /// those that came).  Nothing when the run is over, at once when asked again: see end().  Throws std::logic_error
+  /// before join() and follow().
   std::optional<std::int64_t> next_tick();
   /// Goes through the ticks up to the first one at or after `utime`.
   std::optional<std::int64_t> wait_until(std::int64_t utime);

@@ -65,6 +65,25 @@ TEST(Client, RunsInStepWithTheSimulator) {
   EXPECT_EQ(client.counts().bad, 0u);
 }
 
+TEST(Client, GivesNothingAtOnceWhenAskedAgainAfterTheEnd) {
+  FakeSimulator simulator;
+  shoal::Client client("pilot", own_url(1));
+  client.set_silence_limit(60s);
+  std::thread thread([&] {
+    simulator.reply(simulator.await_request(), true, "");
+    simulator.tick(1, {"pilot"}, true);
+    simulator.await_ack();
+  });
+  client.join(0.1, 10s);
+  EXPECT_FALSE(client.next_tick());
+  thread.join();
+  const auto before = std::chrono::steady_clock::now();
+  EXPECT_FALSE(client.next_tick());
+  EXPECT_FALSE(client.wait_until(1'000'000));
+  EXPECT_LT(std::chrono::steady_clock::now() - before, 30s);
+  EXPECT_EQ(client.end(), shoal::Client::End::last_tick);
+}
+
 TEST(Client, WaitsForATime) {
   FakeSimulator simulator;
   shoal::Client client("pilot", own_url(1));

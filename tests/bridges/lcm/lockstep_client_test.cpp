@@ -98,6 +98,36 @@ TEST(LockstepClient, SaysWhyTheSimulatorRefuses) {
   thread.join();
 }
 
+TEST(LockstepClient, SaysThatItWasStoppedWhileItWaited) {
+  LockstepClient client(own_url(1), "pilot");
+  client.stop();
+  try {
+    client.join(1, 10s);
+    ADD_FAILURE();
+  } catch (const BusError& error) {
+    EXPECT_EQ(std::string(error.what()).find("'pilot' was stopped while it waited for a simulator on udpm:"), 0u);
+  }
+}
+
+TEST(LockstepClient, HandlerMaySubscribeToItsOwnChannel) {
+  FakeSimulator simulator;
+  LockstepClient client(own_url(1), "pilot");
+  int first = 0;
+  int later = 0;
+  client.subscribe("auv1.note", [&, text = std::string(40, 'x')](std::span<const std::byte>) {
+    // Many: whatever holds the handlers has to grow.
+    for (int i = 0; i < 50; ++i) client.subscribe("auv1.note", [&](std::span<const std::byte>) { ++later; });
+    if (text == std::string(40, 'x')) ++first;  // it is still there
+  });
+  simulator.bus().publish("auv1.note", bytes_of("one"), sim::Time(0));
+  simulator.bus().publish("auv1.note", bytes_of("two"), sim::Time(0));
+  simulator.tick(1, {"pilot"});
+  shoal::sim_tick_t tick;
+  ASSERT_TRUE(client.next_tick(tick));
+  EXPECT_EQ(first, 2);
+  EXPECT_EQ(later, 50);  // with the second message
+}
+
 TEST(LockstepClient, SaysThatNoSimulatorAnswers) {
   LockstepClient client(own_url(1), "pilot");
   EXPECT_THROW(client.join(1, 50ms), BusError);

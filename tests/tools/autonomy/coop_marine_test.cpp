@@ -276,6 +276,43 @@ TEST(CoopAuv, ClockThatIsSetMovesItNowhere) {
   EXPECT_EQ(voyage.auv.counts().clock_steps, 3);
 }
 
+TEST(CoopAuv, SilenceOfAllDevicesIsNoClockThatWasSet) {
+  for (const double went_on : {1.0, 0.0}) {
+    Voyage voyage(auv_params());
+    voyage.run(200);
+    const double std_before_m = std::sqrt(voyage.decision.dead_reckoning->covariance_m2[0]);
+    voyage.t += 6 * second;  // a power fault
+    voyage.p_W.x() += went_on * 9;
+    voyage.waiting.clear();
+    for (int i = 0; i < 12; ++i) voyage.decision = voyage.auv.step();
+    voyage.run(1);
+    EXPECT_EQ(voyage.auv.counts().clock_steps, 0);
+    EXPECT_EQ(voyage.auv.counts().silences, 1);
+    // Along its way; the error of the heading is across.
+    const double now_m = voyage.auv.dead_reckoning()->position_at(voyage.t).x();
+    EXPECT_NEAR(now_m - voyage.p_W.x(), 9 - 9 * went_on, 1.5);
+    const double std_m = std::sqrt(voyage.decision.dead_reckoning->covariance_m2[0]);
+    EXPECT_GT(std_m, std::hypot(std_before_m, 9) - 0.1);
+    voyage.run(100);
+    EXPECT_LT(voyage.error_m(), 4);
+  }
+}
+
+TEST(CoopAuv, ClockThatIsSetInASilenceIsBoth) {
+  Voyage voyage(auv_params());
+  voyage.run(200);
+  voyage.t += 10 * second;
+  voyage.p_W.x() += 15;
+  voyage.clock_error_us = -3600 * second;
+  voyage.waiting.clear();
+  for (int i = 0; i < 20; ++i) voyage.decision = voyage.auv.step();
+  voyage.run(1);
+  EXPECT_EQ(voyage.auv.counts().clock_steps, 1);
+  EXPECT_EQ(voyage.auv.counts().silences, 1);
+  EXPECT_LT((voyage.auv.dead_reckoning()->position_at(voyage.t + voyage.clock_error_us) - voyage.p_W).norm(),
+            0.07 * voyage.p_W.x() + 3);
+}
+
 TEST(CoopAuv, KnownStartNeedsNoFix) {
   CoopAuv::Params params = auv_params();
   params.start_W = Vector2d(10, 20);

@@ -190,6 +190,31 @@ TEST(FollowBehaviour, ForgetsWhatIsOld) {
   EXPECT_FALSE(follow.place_W(311 * second));
 }
 
+TEST(FollowBehaviour, SaysWhomItNeverHeardOf) {
+  FollowBehaviour::Params params;
+  params.vehicle = "nobody";
+  FollowBehaviour follow(params);
+  follow.hear("auv", {});
+  EXPECT_EQ(follow.remark(), "it was to follow 'nobody', and never heard of it");
+  follow.hear("nobody", {});
+  EXPECT_EQ(follow.remark(), "");
+}
+
+TEST(FollowBehaviour, ListensToOneWhoseClockWasSetBack) {
+  FollowBehaviour::Params params;
+  params.vehicle = "auv";
+  FollowBehaviour follow(params);
+  Motion auv;
+  auv.utime = 3700 * second;
+  auv.v_W = {1, 0};
+  follow.hear("auv", auv);
+  EXPECT_FALSE(follow.place_W(100 * second));  // its own clock was set back, and the news are of the old time
+  auv.utime = 100 * second;
+  auv.p_W = {50, 0};
+  follow.hear("auv", auv);
+  EXPECT_NEAR((*follow.place_W(110 * second) - Vector2d(60, 30)).norm(), 0, 1e-9);
+}
+
 TEST(Zigzag, CrossesItsLine) {
   const auto points = autonomy::zigzag({0, 0}, {400, 0}, 20, 4);
   const std::vector<Vector2d> expected = {{50, 20}, {150, -20}, {250, 20}, {350, -20}, {400, 0}};

@@ -85,6 +85,77 @@ class Frame(unittest.TestCase):
             self.assertIsNone(coop_auv.decode_frame(bytes(bad), 0))
 
 
+    def test_refuses_what_the_codec_in_cpp_refuses(self):
+        near = 3 * 86400 * 10**6
+        for at, value in ((2, b"\x24\x0c\x84\x00"), (17, b"\0\0"), (19, b"\0\0"), (21, b"\x80")):
+            bad = bytearray(self.BYTES)
+            bad[at:at + len(value)] = value  # no time of a week, no deviations, a correlation of -128 / 127
+            self.assertIsNone(coop_auv.decode_frame(bytes(bad) + coop_auv.checksum(bad).to_bytes(2, "big"), near), at)
+        data = self.BYTES + coop_auv.checksum(self.BYTES).to_bytes(2, "big")
+        self.assertIsNotNone(coop_auv.decode_frame(data, near + 61 * 10**6))
+        self.assertIsNone(coop_auv.decode_frame(data, near + 62 * 10**6))  # a minute and a second after its time
+
+
+def report(**fields):
+    return types.SimpleNamespace(**fields)
+
+
+class Navigator(unittest.TestCase):
+    def started(self):
+        auv = coop_auv.CoopAuv()
+        auv.on_ahrs(report(quat=(math.cos(0.25), 0.0, 0.0, math.sin(0.25))))  # 0.5 rad left of east
+        auv.on_gps(report(gps_lock=1, utime=0, xyz_pos=(10.0, 20.0, 0.0), horizontal_accuracy=1.0))
+        return auv
+
+    def test_goes_where_the_ahrs_says(self):
+        auv = self.started()
+        auv.on_compass(report(heading_true_rad=3.0))  # counts less
+        auv.on_dvl(report(utime=10**6, bottom_lock=1, velocity_mps=(2.0, 0.0, 0.0)))
+        self.assertAlmostEqual(auv.ekf.x[0], 10 + 2 * math.cos(0.5))
+        self.assertAlmostEqual(auv.ekf.x[1], 20 + 2 * math.sin(0.5))
+
+    def test_does_with_a_compass(self):
+        auv = coop_auv.CoopAuv()
+        auv.on_compass(report(heading_true_rad=math.pi / 2 - 0.5))
+        self.assertAlmostEqual(auv.yaw_rad, 0.5)
+
+    def test_ranges_come_from_the_sender_itself(self):
+        sent = (3 * 86400 + 2) * 10**6
+        data = Frame.BYTES + coop_auv.checksum(Frame.BYTES).to_bytes(2, "big")  # of a second before
+
+        def place_after(*packets):
+            auv = self.started()
+            auv.ekf.time_s = sent * 1e-6
+            auv.ekf.way[0] = (auv.ekf.time_s, 0.0, 0.0)
+            before = list(auv.ekf.x)
+            for source, later_s in packets:
+                auv.on_modem(report(utime=sent + later_s * 10**6, sent_utime=sent + later_s * 10**6, source=source,
+                                    travel_time_s=0.02, data=data))
+            return None if auv.ekf.x == before else auv.ekf.x
+
+        once = place_after(("boat", 0))
+        self.assertIsNotNone(once)
+        self.assertEqual(place_after(("boat", 0), ("relay", 0)), once)
+        self.assertIsNone(place_after(("relay", 10)))
+
+    def test_nonsense_does_no_harm(self):
+        auv = self.started()
+        before = list(auv.ekf.x), auv.yaw_rad, auv.depth_m
+        nan = math.nan
+        auv.on_ahrs(report(quat=(nan, 0.0, 0.0, 0.0)))
+        auv.on_ahrs(report(quat=(0.0, 0.0, 0.0, 0.0)))
+        auv.has_ahrs = False
+        auv.on_compass(report(heading_true_rad=nan))
+        auv.on_pressure(report(depth_m=nan))
+        auv.on_dvl(report(utime=10**6, bottom_lock=1, velocity_mps=(nan, 0.0, 0.0)))
+        auv.on_gps(report(gps_lock=1, utime=10**7, xyz_pos=(nan, 0.0, 0.0), horizontal_accuracy=1.0))
+        auv.on_gps(report(gps_lock=1, utime=10**7, xyz_pos=(0.0, 0.0, 0.0), horizontal_accuracy=nan))
+        near = 3 * 86400 * 10**6
+        data = Frame.BYTES + coop_auv.checksum(Frame.BYTES).to_bytes(2, "big")
+        auv.on_modem(report(utime=near, sent_utime=near, source="boat", travel_time_s=nan, data=data))
+        self.assertEqual((list(auv.ekf.x), auv.yaw_rad, auv.depth_m), before)
+
+
 class Page(unittest.TestCase):
     def test_shows_the_handlers_of_the_example(self):
         with open(os.path.join(ROOT, "examples", "python", "coop_auv.py"), encoding="utf-8") as file:

@@ -14,6 +14,7 @@ using autonomy::RandomAccess;
 using autonomy::Tdma;
 
 constexpr std::int64_t second = 1'000'000;
+constexpr std::int64_t epoch = 1'767'225'600 * second;  // a multiple of 20 s
 
 Tdma slot(int i, int n, double slot_s = 10, double guard_s = 5) {
   Tdma::Params params;
@@ -25,13 +26,13 @@ Tdma slot(int i, int n, double slot_s = 10, double guard_s = 5) {
 }
 
 TEST(Tdma, GivesEachOneTurnACycle) {
-  for (const std::int64_t epoch : {std::int64_t{0}, 1'767'225'600 * second, -60 * second}) {
+  for (const std::int64_t begin : {std::int64_t{0}, epoch, -60 * second}) {
     for (int i = 0; i < 3; ++i) {
       Tdma tdma = slot(i, 3);
       std::vector<std::int64_t> turns;
       for (std::int64_t t = 0; t < 90 * second; t += second / 2)
-        if (tdma.take_turn(epoch + t)) turns.push_back(t / second);
-      EXPECT_EQ(turns, (std::vector<std::int64_t>{10 * i, 10 * i + 30, 10 * i + 60})) << epoch;
+        if (tdma.take_turn(begin + t)) turns.push_back(t / second);
+      EXPECT_EQ(turns, (std::vector<std::int64_t>{10 * i, 10 * i + 30, 10 * i + 60})) << begin;
     }
   }
 }
@@ -51,6 +52,22 @@ TEST(Tdma, ClockThatIsSetBackGivesNoSecondTurn) {
   EXPECT_TRUE(tdma.take_turn(40 * second));
 }
 
+TEST(Tdma, ClockThatIsSetBackByAnHourSilencesItForTwoCyclesAtMost) {
+  Tdma tdma = slot(0, 2);
+  EXPECT_TRUE(tdma.take_turn(epoch + 3600 * second));
+  std::vector<std::int64_t> turns;
+  for (std::int64_t t = 3 * second; t < 100 * second; t += second)
+    if (tdma.take_turn(epoch + t)) turns.push_back(t / second);
+  EXPECT_EQ(turns, (std::vector<std::int64_t>{3, 20, 40, 60, 80}));
+  for (const int cycles : {1, 2, 3}) {
+    Tdma other = slot(0, 2);
+    EXPECT_TRUE(other.take_turn(epoch + 20 * cycles * second));
+    int sent = 0;
+    for (std::int64_t t = 0; t <= 40 * second; t += second) sent += other.take_turn(epoch + t) ? 1 : 0;
+    EXPECT_GE(sent, 1) << cycles;
+  }
+}
+
 TEST(Tdma, TwoClocksThatDifferByLessThanTheGuardTimeDoNotMeet) {
   Tdma first = slot(0, 2);
   Tdma second_one = slot(1, 2);
@@ -59,6 +76,27 @@ TEST(Tdma, TwoClocksThatDifferByLessThanTheGuardTimeDoNotMeet) {
     const bool two = second_one.take_turn(t + 4 * second);  // a fast clock
     ASSERT_FALSE(one && two);
   }
+}
+
+TEST(Tdma, DefaultGuardTimeLeavesTheSlotToThePacket) {
+  // A craft whose fix comes back at any time of its slot: what it sends ends within the slot, with a packet of 3.5 s
+  // that the modem begins on a whole second.
+  for (std::int64_t back = 0; back < 5 * second; back += second / 10) {
+    Tdma tdma = slot(0, 3, 5, autonomy::default_guard_s(5));
+    for (std::int64_t t = back; t < 30 * second; t += second / 10) {
+      if (!tdma.take_turn(epoch + t)) continue;
+      const std::int64_t into_slot = t % (15 * second);
+      EXPECT_LE((into_slot + second - 1) / second * second + 3'500'000, 5 * second) << back;
+    }
+  }
+  // Stamps once a second, of any phase, give a turn in each cycle.
+  for (std::int64_t phase = 0; phase < second; phase += second / 10) {
+    Tdma tdma = slot(1, 3, 5, autonomy::default_guard_s(5));
+    int turns = 0;
+    for (std::int64_t t = phase; t < 150 * second; t += second) turns += tdma.take_turn(t) ? 1 : 0;
+    EXPECT_EQ(turns, 10) << phase;
+  }
+  EXPECT_EQ(autonomy::default_guard_s(1), 0.5);
 }
 
 TEST(Tdma, SlotsAreChecked) {
@@ -88,6 +126,17 @@ TEST(RandomAccess, ScattersAboutItsMean) {
       static_cast<double>(turns.back() - turns.front()) * 1e-6 / static_cast<double>(turns.size() - 1);
   EXPECT_NEAR(mean_s, 10, 0.26);
   EXPECT_LE(turns.front(), 10 * second);
+}
+
+TEST(RandomAccess, ClockThatIsSetBackDoesNotSilenceIt) {
+  RandomAccess access(10, 0.5, 1, "auv");
+  for (std::int64_t t = 0; t < 100 * second; t += second / 10) access.take_turn(epoch + 3600 * second + t);
+  std::vector<std::int64_t> turns;
+  for (std::int64_t t = 0; t < 300 * second; t += second / 10)
+    if (access.take_turn(epoch + t)) turns.push_back(t);
+  ASSERT_GE(turns.size(), 19u);  // the first within 10 s, the others each 15 s at the latest
+  EXPECT_LE(turns.front(), 10 * second);
+  for (std::size_t i = 1; i < turns.size(); ++i) EXPECT_GE(turns[i] - turns[i - 1], 5 * second - second / 10);
 }
 
 TEST(RandomAccess, SameSeedAndNameGiveTheSameTurns) {
