@@ -103,6 +103,8 @@ void AcousticModem::Params::read(sim::ParamReader& in) {
   in.read("receiver", receiver, "how it hears");
   in.read("serial", serial, "a pseudo-terminal or FIFO that any program can open");
   if (in.describing()) return;
+  if (synchronous_s > 0 && synchronous_s < 1e-3)
+    in.error("synchronous_s", "'synchronous_s' must be 0 or >= 0.001, got " + sim::number_text(synchronous_s));
   if (bandwidth_Hz >= 2 * frequency_Hz)
     in.error("bandwidth_Hz", "'bandwidth_Hz' must be < 2 x frequency_Hz, got " + sim::number_text(bandwidth_Hz));
   if (max_message_bytes > frames * frame_bytes)
@@ -117,7 +119,7 @@ AcousticModem::AcousticModem(const Params& params, const sim::DeviceContext& con
       vehicle_(context.vehicle),
       transducer_(*this, params.receiver, context),
       now_(context.world.now()) {
-  if (params.serial) serial_ = std::make_unique<SerialMessages>(*params.serial, longest_message_bytes(), context);
+  if (params.serial) serial_ = std::make_unique<SerialMessages>(*params.serial, context);
   world_.shared<MessageModems>().join(transducer_.full_name(), *this);
 }
 
@@ -210,6 +212,7 @@ void AcousticModem::heard(const sim::Reception& heard) {
   if (!packet.destination.empty() && packet.destination != vehicle_.name() && !params_.promiscuous) return;
   packet.sent = heard.sent;
   packet.arrived = heard.begun;
+  packet.arrived_reading = own_time(vehicle_, heard.begun);
   packet.snr_dB = heard.sinr.dB();
   packet.level_dB = heard.level.dB();
   packet.closing_mps = heard.closing_mps;
@@ -237,7 +240,8 @@ void AcousticModem::hash_state(sim::StateHash& hash) const {
       hash.add(std::string_view(packet.destination));
       hash.add(static_cast<std::int64_t>(packet.sent_reading.count()));
       hash.add(static_cast<std::int64_t>(packet.arrived.count()));
-      hash.add(packet.snr_dB);
+      hash.add(static_cast<std::int64_t>(packet.arrived_reading.count()));
+      for (const double number : {packet.snr_dB, packet.level_dB, packet.closing_mps}) hash.add(number);
       hash.add_bytes(packet.data.data(), packet.data.size());
     }
   }
@@ -245,7 +249,7 @@ void AcousticModem::hash_state(sim::StateHash& hash) const {
 }
 
 void AcousticModem::read_serial(sim::Time now) {
-  for (sim::Bytes& data : serial_->take())
+  for (sim::Bytes& data : serial_->take(longest_message_bytes()))
     if (data.size() > longest_message_bytes())
       ++dropped_;
     else
@@ -255,7 +259,7 @@ void AcousticModem::read_serial(sim::Time now) {
 void AcousticModemReporter::report(sim::Time, sim::Publisher& out) const {
   for (const AcousticModem::Packet& packet : modem_.received()) {
     shoal::acoustic_received_t message;
-    message.utime = out.utime(packet.arrived);
+    message.utime = out.utime_elsewhere(packet.arrived, packet.arrived_reading);
     message.sent_utime = out.utime_elsewhere(packet.sent, packet.sent_reading);
     message.travel_time_s = static_cast<double>(message.utime - message.sent_utime) * 1e-6;
     message.source = packet.source;

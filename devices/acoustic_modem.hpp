@@ -48,6 +48,7 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
     std::string source, destination;
     sim::Time sent{0}, arrived{0};  ///< begin of sending, and of the sound here; true times
     sim::Time sent_reading{0};      ///< by the clock of the sender
+    sim::Time arrived_reading{0};   ///< by the own clock
     double snr_dB = 0, level_dB = 0, closing_mps = 0;
     sim::Bytes data;
   };

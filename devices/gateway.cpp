@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "devices/named_vehicle.hpp"
 #include "shoal/gateway_state_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/config/diagnostics.hpp"
@@ -22,7 +23,7 @@ void Gateway::Params::read(sim::ParamReader& in) {
   in.require("between");
   in.read("between", between, "two devices of the vehicle of type modem or acoustic_modem");
   in.read("destinations", destinations,
-          "vehicles that the first and the second modem send to what is passed to them; empty text: everybody");
+          "vehicles of the world that the first and the second modem send to; empty text: everybody");
   in.read("delay_s", delay_s, sim::between(0, 3600), "between arrival at one and sending by the other");
   in.read("repeat_s", repeat_s, sim::between(0, 86400), "the same bytes do not pass again so long; 0: they do");
   in.read("name_source", name_source, "puts the name of the sending vehicle and a colon before the bytes");
@@ -37,25 +38,31 @@ void Gateway::Params::read(sim::ParamReader& in) {
 
 Gateway::Gateway(const Params& params, const sim::DeviceContext& context)
     : params_(params),
+      world_(context.world),
       vehicle_(context.vehicle),
       faults_(context.faults),
       all_modems_(context.world.shared<MessageModems>()) {
+  const auto fail = [&](const std::string& text) {
+    sim::throw_config_error(context.config.place,
+                            "vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'", text);
+  };
   for (const std::string& name : params.between) {
     const auto& all = context.vehicle.config().devices;
     if (std::any_of(all.begin(), all.end(), [&](const auto& one) { return one.name == name && is_modem(one.type); }))
       continue;
-    sim::throw_config_error(context.config.place,
-                            "vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'",
-                            "'between' names no modem or acoustic_modem '" + name + "'");
+    fail("'between' names no modem or acoustic_modem '" + name + "'");
   }
   for (const sim::DeviceConfig& other : context.vehicle.config().devices) {
     if (other.type != "gateway" || other.name == context.config.name) continue;
     const auto& names = static_cast<const sim::detail::ParamsOf<Params>&>(*other.params).params.between;
     for (const std::string& name : params.between)
       if (std::find(names.begin(), names.end(), name) != names.end())
-        sim::throw_config_error(context.config.place,
-                                "vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'",
-                                "'" + name + "' belongs to gateway '" + other.name + "' already");
+        fail("'" + name + "' belongs to gateway '" + other.name + "' already");
+  }
+  for (const std::string& name : params.destinations) {
+    if (name == context.vehicle.name()) fail("'destinations' names its own vehicle");
+    if (!name.empty() && named_vehicle(context.world, name) == nullptr)
+      fail("'destinations' names no vehicle of the world '" + name + "'");
   }
 }
 
@@ -67,14 +74,28 @@ void Gateway::find_modems() {
   }
 }
 
+bool Gateway::is_same(const sim::Bytes& data, const sim::Bytes& seen) const {
+  if (data.size() < seen.size() || !std::equal(seen.rbegin(), seen.rend(), data.rbegin())) return false;
+  std::string_view names(reinterpret_cast<const char*>(data.data()), data.size() - seen.size());
+  if (!names.empty() && !params_.name_source) return false;
+  while (!names.empty()) {
+    const std::size_t colon = names.find(':');
+    if (colon == std::string_view::npos || world_.find_vehicle(std::string(names.substr(0, colon))) == nullptr)
+      return false;
+    names.remove_prefix(colon + 1);
+  }
+  return true;
+}
+
 bool Gateway::seen_before(sim::Time at, const sim::Bytes& data) {
   if (params_.repeat_s <= 0) return false;
   const sim::Time oldest = at - sim::from_seconds(params_.repeat_s);
   while (!seen_.empty() && (seen_.front().at < oldest || seen_.size() > 1000)) seen_.pop_front();
-  const auto same = std::find_if(seen_.begin(), seen_.end(), [&](const Seen& seen) { return seen.data == data; });
-  if (same != seen_.end()) return true;
-  seen_.push_back({at, data});
-  return false;
+  return std::any_of(seen_.begin(), seen_.end(), [&](const Seen& seen) { return is_same(data, seen.data); });
+}
+
+void Gateway::remember(sim::Time at, const sim::Bytes& data) {
+  if (params_.repeat_s > 0 && !seen_before(at, data)) seen_.push_back({at, data});
 }
 
 void Gateway::arrived(std::size_t from, sim::Time at, const std::string& source, const sim::Bytes& data) {
@@ -105,8 +126,9 @@ void Gateway::arrived(std::size_t from, sim::Time at, const std::string& source,
     ++counts.refused;
     return;
   }
+  remember(at, data);
   // What goes out is known, too, in case it comes back through another gateway.
-  if (params_.name_source) seen_before(at, message.data);
+  if (params_.name_source) remember(at, message.data);
   waiting_.push_back(std::move(message));
 }
 
@@ -126,11 +148,17 @@ void Gateway::act(const sim::ActContext& context) {
 }
 
 void Gateway::hash_state(sim::StateHash& hash) const {
+  hash.add(static_cast<std::uint64_t>(waiting_.size()));
   for (const Message& message : waiting_) {
     hash.add(static_cast<std::int64_t>(message.due.count()));
+    hash.add(static_cast<std::uint64_t>(message.from));
     hash.add_bytes(message.data.data(), message.data.size());
   }
   hash.add(static_cast<std::uint64_t>(seen_.size()));
+  for (const Seen& seen : seen_) {
+    hash.add(static_cast<std::int64_t>(seen.at.count()));
+    hash.add_bytes(seen.data.data(), seen.data.size());
+  }
   for (const Counts& counts : counting_)
     for (const std::int64_t count : {counts.passed, counts.too_long, counts.repeated, counts.refused}) hash.add(count);
 }

@@ -32,7 +32,7 @@ class Gateway final : public sim::Sensor {
     std::int64_t passed = 0, too_long = 0, repeated = 0, refused = 0;
   };
 
-  /// Throws ConfigError when `between` does not name two modems of the vehicle.
+  /// Throws ConfigError when `between` does not name two modems of the vehicle, or `destinations` no vehicles.
   Gateway(const Params& params, const sim::DeviceContext& context);
   void act(const sim::ActContext& context);
   void measure(const sim::SenseContext&) override { counts_ = counting_; }
@@ -53,9 +53,14 @@ class Gateway final : public sim::Sensor {
 
   void find_modems();
   void arrived(std::size_t from, sim::Time at, const std::string& source, const sim::Bytes& data);
+  /// Is `data` these bytes, or with `name_source` these bytes behind names of vehicles?
+  bool is_same(const sim::Bytes& data, const sim::Bytes& seen) const;
+  /// The same passed within repeat_s.
   bool seen_before(sim::Time at, const sim::Bytes& data);
+  void remember(sim::Time at, const sim::Bytes& data);
 
   Params params_;
+  const sim::World& world_;
   const sim::Vehicle& vehicle_;
   const sim::DeviceFaults& faults_;
   const MessageModems& all_modems_;

@@ -95,7 +95,10 @@ void Interrogator::hash_state(sim::StateHash& hash) const {
   hash.add(number_);
   hash.add(static_cast<std::int64_t>(pinged_.count()));
   hash.add(static_cast<std::int64_t>(window_end_.count()));
-  for (const std::string& name : waiting_for_) hash.add(std::string_view(name));
+  for (const auto* names : {&asked_, &waiting_for_}) {
+    hash.add(static_cast<std::uint64_t>(names->size()));
+    for (const std::string& name : *names) hash.add(std::string_view(name));
+  }
   for (const Answer& answer : answers_) {
     hash.add(std::string_view(answer.transponder));
     hash.add(static_cast<std::int64_t>(answer.begun.count()));

@@ -1,7 +1,9 @@
 #include "devices/micromodem.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "devices/named_vehicle.hpp"
 #include "devices/own_clock.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/nmea_sentence_t.hpp"
@@ -58,7 +60,23 @@ Micromodem::Micromodem(const Params& params, const sim::DeviceContext& context)
       transducer_(*this, params.receiver, context),
       protocol_(protocol_config(params), *this),
       now_(context.world.now()) {
+  check_beacons(context);
   if (params.serial) serial_ = std::make_unique<SerialPort>(*params.serial, context);
+}
+
+void Micromodem::check_beacons(const sim::DeviceContext& context) const {
+  if (!params_.lbl) return;
+  for (const std::string& name : params_.lbl->transponders) {
+    const std::size_t slash = name.find('/');
+    const sim::VehicleConfig* vehicle = named_vehicle(context.world, name.substr(0, slash));
+    const auto is_meant = [&](const sim::DeviceConfig& device) {
+      return device.type == "transponder" && (slash == std::string::npos || device.name == name.substr(slash + 1));
+    };
+    if (vehicle != nullptr && std::any_of(vehicle->devices.begin(), vehicle->devices.end(), is_meant)) continue;
+    sim::throw_config_error(context.config.place,
+                            "vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'",
+                            "'transponders' names no transponder of the world '" + name + "'");
+  }
 }
 
 void Micromodem::take(const std::string& sentence, sim::Time now) {
@@ -73,7 +91,12 @@ void Micromodem::act(const sim::ActContext& context) {
   now_ = context.now;
   if (!transducer_.works()) {
     if (serial_) serial_->read();  // nobody listens
+    off_ = true;
     return;
+  }
+  if (std::exchange(off_, false)) {
+    lines_ = {};
+    protocol_.restart(context.now);
   }
   protocol_.tick(context.now);
   if (!serial_) return;
@@ -88,7 +111,7 @@ void Micromodem::say(const std::string& body) {
   std::string sentence = nmea_sentence(body);
   if (serial_) serial_->write(sentence + "\r\n");
   if (saying_.size() >= most_sentences) saying_.pop_front();
-  saying_.push_back({now_, std::move(sentence)});
+  saying_.push_back({now_, own_time(vehicle_, now_), std::move(sentence)});
 }
 
 MicromodemSide::Sound Micromodem::send(sim::Signal signal, sim::Time at, bool on_the_second) {
@@ -143,10 +166,9 @@ bool Micromodem::listens_to(const sim::Signal& signal) const {
 void Micromodem::heard(const sim::Reception& heard) {
   now_ = std::max(now_, heard.ended);
   if (heard.signal.kind == sim::Signal::Kind::answer) return heard_beacon(heard);
-  // One that it did not notice at all is nothing to it.
-  const bool noticed = (heard.loss == sim::SignalLoss::noise || heard.loss == sim::SignalLoss::interference) &&
-                       heard.snr.dB() >= params_.receiver.detection_dB;
-  if (!heard.understood() && !noticed) return;
+  // One that it did not take is nothing to it.
+  const bool has_errors = heard.loss == sim::SignalLoss::noise || heard.loss == sim::SignalLoss::interference;
+  if (!heard.understood() && !(heard.noticed && has_errors)) return;
   const auto packet = MicromodemPacket::read(heard.signal.code, heard.signal.payload);
   if (!packet) return;
   MicromodemArrival arrival;
@@ -176,14 +198,20 @@ void Micromodem::measure(const sim::SenseContext&) {
 void Micromodem::hash_state(sim::StateHash& hash) const {
   protocol_.hash_state(hash);
   lines_.hash_state(hash);
+  hash.add(off_);
   hash.add(static_cast<std::uint64_t>(saying_.size()));
-  for (const Said& said : said_) hash.add(std::string_view(said.sentence));
+  const auto add = [&](const Said& said) {
+    hash.add(static_cast<std::int64_t>(said.reading.count()));
+    hash.add(std::string_view(said.sentence));
+  };
+  for (const Said& said : saying_) add(said);
+  for (const Said& said : said_) add(said);
 }
 
 void MicromodemReporter::report(sim::Time, sim::Publisher& out) const {
   for (const Micromodem::Said& said : modem_.said()) {
     shoal::nmea_sentence_t message;
-    message.utime = out.utime(said.at);
+    message.utime = out.utime_elsewhere(said.at, said.reading);
     message.sentence = said.sentence;
     shoal::encode_into(message, out.buffer());
     out.publish(out.buffer());

@@ -44,10 +44,12 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
     void read(sim::ParamReader& in);
   };
   struct Said {
-    sim::Time at;
+    sim::Time at;       ///< true time
+    sim::Time reading;  ///< by the vehicle's clock
     std::string sentence;
   };
 
+  /// Throws ConfigError when the world has no water, or `lbl` names no transponder of the world.
   Micromodem(const Params& params, const sim::DeviceContext& context);
 
   /// A sentence from the host by the bus; an end of line is not needed.
@@ -67,6 +69,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
  private:
   static constexpr std::size_t most_sentences = 4096;  // between two samples
 
+  void check_beacons(const sim::DeviceContext& context) const;
   bool listens_to(const sim::Signal& signal) const override;
   void heard(const sim::Reception& heard) override;
   void heard_beacon(const sim::Reception& heard);
@@ -86,6 +89,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   std::vector<Said> said_;
   std::unique_ptr<SerialPort> serial_;
   sim::Time now_{0};
+  bool off_ = false;  // without power, or silent by a fault
 };
 
 /// Publishes one shoal.nmea_sentence_t for each sentence to the host.

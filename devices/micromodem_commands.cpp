@@ -33,6 +33,7 @@ MicromodemProtocol::Command MicromodemProtocol::command_of(const std::string& na
 }
 
 void MicromodemProtocol::take_line(const NmeaLines::Line& line, sim::Time now) {
+  if (is_down(now)) return;
   NmeaSentence in;
   if (line.too_long) {
     error("NMEA", unknown_sentence, "line too long", now);
@@ -47,6 +48,8 @@ void MicromodemProtocol::take_line(const NmeaLines::Line& line, sim::Time now) {
     case NmeaError::none:
       break;
   }
+  // What a modem says comes back from a terminal that echoes; an answer to it would go round for ever.
+  if (in.name().starts_with("CA") || in.name().starts_with("SN")) return;
   if (const Command command = command_of(in.name()))
     (this->*command)(in, now);
   else
@@ -58,7 +61,7 @@ std::optional<std::pair<int, int>> MicromodemProtocol::addresses(const NmeaSente
   const auto source = in.number(first, 0, micromodem_broadcast - 1);
   const auto destination = in.number(first + 1, 0, micromodem_broadcast);
   if (source && destination) return std::pair{*source, *destination};
-  error("NMEA", bad_field, "address must be 0 to 127", now);
+  error("NMEA", bad_field, "address must be 0 to 126, or 127 as destination", now);
   return {};
 }
 
@@ -107,11 +110,7 @@ void MicromodemProtocol::sleep_or_reset(const NmeaSentence& in, sim::Time now) {
   if (!who) return;
   side_.say(joined(in, "CAMSC"));
   if (who->second != address()) return;
-  cycle_.reset(), expected_.reset(), ping_.reset(), beacon_ping_.reset();
-  if (!config_.synchronous) clock_offset_us_ = 0, clock_set_ = false;
-  const sim::Time up = now + sim::from_seconds(1);
-  say_later(up, "CAREV," + time_of_day(up) + ",INIT," + config_.revision);
-  next_revision_ = up;
+  restart(now + sim::from_seconds(1));
 }
 
 void MicromodemProtocol::begin_cycle(const NmeaSentence& in, sim::Time now) {
@@ -122,7 +121,8 @@ void MicromodemProtocol::begin_cycle(const NmeaSentence& in, sim::Time now) {
   if (!rate) return error("CYC", bad_field, "rate must be 0 to " + std::to_string(highest_rate), now);
   const int most = micromodem_rates()[static_cast<std::size_t>(*rate)].frames;
   const auto ack = in.number(5, 0, 1), frames = in.number(6, 1, most);
-  if (!ack || !frames) return error("CYC", bad_field, "frames must be 1 to " + std::to_string(most), now);
+  if (!ack) return error("CYC", bad_field, "ack must be 0 or 1", now);
+  if (!frames) return error("CYC", bad_field, "frames must be 1 to " + std::to_string(most), now);
   if (busy("CYC", now)) return;
   side_.say(joined(in, "CACYC"));
   Cycle cycle{who->first, who->second, *rate, *frames, *ack != 0, false, {}, sim::Time{0}};

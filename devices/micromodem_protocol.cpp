@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
 
 namespace devices {
 
@@ -79,6 +80,14 @@ bool MicromodemProtocol::busy(const char* module, sim::Time now) {
   return true;
 }
 
+void MicromodemProtocol::restart(sim::Time up) {
+  due_.clear();
+  cycle_.reset(), expected_.reset(), ping_.reset(), beacon_ping_.reset();
+  if (!config_.synchronous) clock_offset_us_ = 0, clock_set_ = false;
+  next_revision_ = up;
+  starting_ = true;
+}
+
 void MicromodemProtocol::tick(sim::Time now) {
   while (!due_.empty() && due_.front().at <= now) {
     const std::string body = std::move(due_.front().body);
@@ -86,9 +95,10 @@ void MicromodemProtocol::tick(sim::Time now) {
     side_.say(body);
   }
   if (now >= next_revision_) {
-    const char* event = next_revision_ == sim::Time{0} ? "INIT" : "AUV";
-    if (settings_.on("REV")) side_.say("CAREV," + time_of_day(now) + "," + event + "," + config_.revision);
+    const char* event = starting_ ? "INIT" : "AUV";
+    if (starting_ || settings_.on("REV")) side_.say("CAREV," + time_of_day(now) + "," + event + "," + config_.revision);
     next_revision_ = now + sim::from_seconds(revision_period_s);
+    starting_ = false;
   }
   if (cycle_ && now >= cycle_->deadline) {
     error("DRQ", 7, "no data for frame " + std::to_string(cycle_->gathered.size() + 1), now);
@@ -163,6 +173,7 @@ void MicromodemProtocol::send_cycle(sim::Time now) {
 }
 
 void MicromodemProtocol::heard(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
+  if (is_down(arrival.ended)) return;
   if (!arrival.good && packet.is_short()) {
     // What it was about is not known.
     side_.say("CAMSG,BAD_CRC,0");
@@ -327,16 +338,43 @@ void MicromodemProtocol::say_statistics(const MicromodemPacket& packet, const Mi
 void MicromodemProtocol::hash_state(sim::StateHash& hash) const {
   settings_.hash_state(hash);
   hash.add(clock_offset_us_);
-  for (const Due& due : due_) hash.add(std::string_view(due.body));
-  for (const sim::Time time : {sending_until_, next_revision_}) hash.add(static_cast<std::int64_t>(time.count()));
-  hash.add(cycle_.has_value());
-  if (cycle_)
-    for (const auto& frame : cycle_->gathered) hash.add_bytes(frame.data.data(), frame.data.size());
-  hash.add(expected_.has_value());
-  hash.add(ping_.has_value());
-  if (beacon_ping_)
-    for (const auto& answered : beacon_ping_->answered)
-      hash.add(answered ? static_cast<std::int64_t>(answered->count()) : std::int64_t{-1});
+  hash.add(clock_set_);
+  hash.add(starting_);
+  hash.add(static_cast<std::uint64_t>(due_.size()));
+  for (const Due& due : due_) {
+    hash.add(static_cast<std::int64_t>(due.at.count()));
+    hash.add(std::string_view(due.body));
+  }
+  const auto add = [&](std::initializer_list<sim::Time> times) {
+    for (const sim::Time time : times) hash.add(static_cast<std::int64_t>(time.count()));
+  };
+  add({sending_until_, next_revision_});
+  for (const bool is_there : {cycle_.has_value(), expected_.has_value(), ping_.has_value(), beacon_ping_.has_value()})
+    hash.add(is_there);
+  if (cycle_) {
+    for (const int field : {cycle_->source, cycle_->destination, cycle_->rate, cycle_->frames}) hash.add(field);
+    hash.add(cycle_->ack);
+    hash.add(cycle_->announced);
+    for (const auto& frame : cycle_->gathered) {
+      hash.add(frame.ack);
+      hash.add_bytes(frame.data.data(), frame.data.size());
+    }
+    add({cycle_->deadline});
+  }
+  if (expected_) {
+    for (const int field : {expected_->source, expected_->destination, expected_->rate, expected_->frames})
+      hash.add(field);
+    add({expected_->deadline});
+  }
+  if (ping_) {
+    hash.add(ping_->destination);
+    add({ping_->sent, ping_->deadline});
+  }
+  if (!beacon_ping_) return;
+  add({beacon_ping_->sent, beacon_ping_->deadline});
+  hash.add(beacon_ping_->turnaround_s);
+  for (const bool wanted : beacon_ping_->wanted) hash.add(wanted);
+  for (const auto& answered : beacon_ping_->answered) add({answered.value_or(sim::Time{-1})});
 }
 
 }  // namespace devices

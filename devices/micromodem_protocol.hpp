@@ -61,6 +61,8 @@ class MicromodemProtocol {
   /// A line from the host, whatever it holds.
   void take_line(const NmeaLines::Line& line, sim::Time now);
   void tick(sim::Time now);
+  /// Forgets what it was about, and says hello anew at `up`.  Settings stay; the time that the host set does not.
+  void restart(sim::Time up);
   void heard(const MicromodemPacket& packet, const MicromodemArrival& arrival);
   /// A transponder (0: the first) answered.
   void beacon_answered(int beacon, sim::Time begun);
@@ -114,6 +116,8 @@ class MicromodemProtocol {
   void ask_beacons(const NmeaSentence& in, sim::Time now);
   static Command command_of(const std::string& name);
 
+  /// It has been told to start again, and has not yet.
+  bool is_down(sim::Time now) const { return starting_ && now < next_revision_; }
   void say_later(sim::Time at, std::string body);
   void error(const std::string& module, int number, const std::string& text, sim::Time now);
   /// Says so when it is.
@@ -148,6 +152,7 @@ class MicromodemProtocol {
   std::vector<Due> due_;
   sim::Time sending_until_{0};
   sim::Time next_revision_{0};
+  bool starting_ = true;  // it will say INIT then
   std::optional<Cycle> cycle_;
   std::optional<Expected> expected_;
   std::optional<Ping> ping_;

@@ -77,7 +77,7 @@ std::optional<int> MicromodemSettings::find(const std::string& name) const {
 MicromodemSettings::Outcome MicromodemSettings::set(const std::string& name, int value) {
   const auto found = values_.find(name);
   if (found == values_.end()) return Outcome::unknown;
-  if (name == "SRC" && (value < 0 || value > 127)) return Outcome::out_of_range;
+  if (name == "SRC" && (value < 0 || value > 126)) return Outcome::out_of_range;
   const bool is_time = name == "CTO" || name == "DTO" || name == "PTO";
   if (is_time && (value < 1 || value > 3600)) return Outcome::out_of_range;
   if (name == "TAT" && (value < 0 || value > 10000)) return Outcome::out_of_range;

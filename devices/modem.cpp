@@ -53,7 +53,7 @@ Modem::Modem(const Params& params, const sim::DeviceContext& context)
       group_(context.vehicle.group()),
       body_(context.body),
       p_BS_(context.config.position_m) {
-  if (params.serial) serial_ = std::make_unique<SerialMessages>(*params.serial, longest_message_bytes(), context);
+  if (params.serial) serial_ = std::make_unique<SerialMessages>(*params.serial, context);
   // Last: a port that cannot be opened throws.
   network_.join(*this, context.world);
   context.world.shared<MessageModems>().join(full_name_, *this);
@@ -198,7 +198,7 @@ void Modem::hash_state(sim::StateHash& hash) const {
 }
 
 void Modem::read_serial(sim::Time now) {
-  for (sim::Bytes& data : serial_->take())
+  for (sim::Bytes& data : serial_->take(longest_message_bytes()))
     if (data.size() > longest_message_bytes())
       ++dropped_;
     else

@@ -43,7 +43,10 @@ class NmeaLines {
   };
   /// Lines that have ended, the empty ones left out.
   std::vector<Line> add(std::span<const std::byte> bytes);
-  void hash_state(sim::StateHash& hash) const { hash.add(std::string_view(line_)); }
+  void hash_state(sim::StateHash& hash) const {
+    hash.add(std::string_view(line_));
+    hash.add(too_long_);
+  }
 
   /// Room for a frame of 256 bytes in hexadecimal digits.
   static constexpr std::size_t longest = 640;

@@ -19,7 +19,8 @@ inline sim::Time true_time(const sim::Vehicle& vehicle, sim::Time reading) {
 /// The first true time, not before `from`, when the vehicle's clock shows a whole multiple of `period` (in UTC: the
 /// run's epoch counts).
 inline sim::Time next_whole(const sim::Vehicle& vehicle, std::int64_t epoch_us, sim::Time from, sim::Time period) {
-  const std::int64_t utc_us = epoch_us + own_time(vehicle, from).count();
+  // Not own_time(): that is a tick of the clock, which may be coarser than the period.
+  const std::int64_t utc_us = epoch_us + (from + sim::from_seconds(vehicle.clock().error_s(from))).count();
   std::int64_t over_us = utc_us % period.count();
   if (over_us < 0) over_us += period.count();
   if (over_us == 0) return from;

@@ -6,10 +6,23 @@
 
 namespace devices {
 
+namespace {
+
+struct SerialLosses {
+  std::uint64_t dropped_bytes = 0;
+};
+
+}  // namespace
+
+std::uint64_t serial_dropped_bytes(sim::World& world) {
+  return world.shared<SerialLosses>().dropped_bytes;
+}
+
 void SerialParams::read(sim::ParamReader& in) {
   in.read_choice("kind", kind, {"pty", "fifo"}, "pseudo-terminal, or a pair of FIFOs PATH.in and PATH.out");
   in.require("path");
   in.read("path", path, "where programs find it; {vehicle} is replaced");
+  if (in.has("path") && path.empty()) in.error("path", "'path' must not be empty");
 }
 
 void SerialMessageParams::read(sim::ParamReader& in) {
@@ -36,33 +49,41 @@ sim::Bytes SerialPort::read() {
 void SerialPort::write(std::span<const std::byte> bytes) {
   if (!port_) return;
   port_->write(bytes);
-  if (told_ || port_->dropped_bytes() == 0) return;
-  told_ = true;
-  world_.complain(who_, "nobody reads '" + path_ + "': what waits longest is dropped");
+  const std::uint64_t dropped_bytes = port_->dropped_bytes();
+  if (dropped_bytes == dropped_bytes_) return;
+  world_.shared<SerialLosses>().dropped_bytes += dropped_bytes - dropped_bytes_;
+  const bool told = dropped_bytes_ > 0;
+  dropped_bytes_ = dropped_bytes;
+  if (!told) world_.complain(who_, "nobody reads '" + path_ + "': what waits longest is dropped");
 }
 
 void SerialPort::write(const std::string& text) {
   write(std::as_bytes(std::span(text.data(), text.size())));
 }
 
-SerialMessages::SerialMessages(const SerialMessageParams& params, std::size_t max_bytes,
-                               const sim::DeviceContext& context)
-    : port_(params, context), lines_(params.framing == "line"), max_bytes_(max_bytes) {}
+SerialMessages::SerialMessages(const SerialMessageParams& params, const sim::DeviceContext& context)
+    : port_(params, context), lines_(params.framing == "line") {}
 
-std::vector<sim::Bytes> SerialMessages::take() {
+std::vector<sim::Bytes> SerialMessages::take(std::size_t max_bytes) {
   sim::Bytes bytes = port_.read();
   std::vector<sim::Bytes> messages;
   if (!lines_) {
-    if (bytes.size() > max_bytes_) bytes.resize(max_bytes_ + 1);
+    if (bytes.size() > max_bytes) bytes.resize(max_bytes + 1);
     if (!bytes.empty()) messages.push_back(std::move(bytes));
     return messages;
   }
   for (const std::byte b : bytes) {
     if (b == std::byte{'\n'}) {
+      // One byte more than allowed, so that the line is seen to be too long.
+      if (cut_) line_.resize(max_bytes + 1);
       if (!line_.empty()) messages.push_back(std::move(line_));
       line_.clear();
-    } else if (b != std::byte{'\r'} && line_.size() <= max_bytes_) {
-      line_.push_back(b);  // one byte more than allowed is kept, so that the line is seen to be too long
+      cut_ = false;
+    } else if (b != std::byte{'\r'}) {
+      if (line_.size() < max_bytes)
+        line_.push_back(b);
+      else
+        cut_ = true;
     }
   }
   return messages;

@@ -24,6 +24,10 @@ struct SerialMessageParams : SerialParams {
   void read(sim::ParamReader& in);
 };
 
+/// Bytes that nobody fetched from the serial ports of a world, since its start.  It depends on the programs at their
+/// other ends, and is no part of the state.
+std::uint64_t serial_dropped_bytes(sim::World& world);
+
 /// The port of a device; without one where the program that builds the world offers none.
 class SerialPort {
  public:
@@ -39,24 +43,27 @@ class SerialPort {
   sim::World& world_;
   std::string who_, path_;
   std::unique_ptr<sim::BytePort> port_;
-  bool told_ = false;
+  std::uint64_t dropped_bytes_ = 0;  // that were counted already
 };
 
 /// Messages through a serial port: lines, or what came within a step.
 class SerialMessages {
  public:
-  SerialMessages(const SerialMessageParams& params, std::size_t max_bytes, const sim::DeviceContext& context);
+  SerialMessages(const SerialMessageParams& params, const sim::DeviceContext& context);
 
   /// What has come since the last call.  A message that is too long has max_bytes + 1 bytes.
-  std::vector<sim::Bytes> take();
+  std::vector<sim::Bytes> take(std::size_t max_bytes);
   void write(sim::Bytes data);
-  void hash_state(sim::StateHash& hash) const { hash.add_bytes(line_.data(), line_.size()); }
+  void hash_state(sim::StateHash& hash) const {
+    hash.add_bytes(line_.data(), line_.size());
+    hash.add(cut_);
+  }
 
  private:
   SerialPort port_;
   bool lines_;
-  std::size_t max_bytes_;
-  sim::Bytes line_;  // not yet ended
+  sim::Bytes line_;   // not yet ended
+  bool cut_ = false;  // more of it came than is in line_
 };
 
 }  // namespace devices

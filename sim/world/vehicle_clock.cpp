@@ -43,7 +43,8 @@ struct VehicleClock::State {
   const Steer* steer_at(Time at) const {
     for (auto steer = steers.rbegin(); steer != steers.rend(); ++steer)
       if (steer->after < at) return &*steer;
-    return nullptr;
+    // Older than what is kept: the oldest that is kept is nearer to the truth than no correction at all.
+    return forgot_steers ? &steers.front() : nullptr;
   }
 
   double correction_s(Time at) const {
@@ -58,7 +59,10 @@ struct VehicleClock::State {
 
   void forget_what_is_old() {
     while (nodes.size() > 2 && nodes[1].at < now - memory) nodes.pop_front();
-    while (steers.size() > 1 && steers[1].after < now - memory) steers.pop_front();
+    while (steers.size() > 1 && steers[1].after < now - memory) {
+      steers.pop_front();
+      forgot_steers = true;
+    }
   }
 
   ClockConfig config;
@@ -66,6 +70,7 @@ struct VehicleClock::State {
   Time start, now;
   std::deque<Node> nodes;
   std::deque<Steer> steers;
+  bool forgot_steers = false;
   // The loop of the discipline.
   DisciplineParams loop;
   std::optional<Time> first_fix, last_fix;

@@ -5,6 +5,7 @@
 #include "devices/micromodem_rates.hpp"
 #include "sim/acoustics/channel.hpp"
 #include "tests/devices/modem_fixture.hpp"
+#include "tests/devices/port_fixture.hpp"
 #include "tests/fidelity/closed_forms.hpp"
 
 namespace {
@@ -264,6 +265,71 @@ TEST(AcousticModem, RefusesWhatItCannotSend) {
   EXPECT_NE(error(", max_message_bytes: 33").find("'max_message_bytes' must be <= frames x frame_bytes"),
             std::string::npos);
   EXPECT_NE(error(", preset: none").find("'preset'"), std::string::npos);
+  EXPECT_NE(error(", synchronous_s: 1e-7").find("'synchronous_s' must be 0 or >= 0.001, got 1e-07"), std::string::npos);
+  EXPECT_NE(error(", serial: {path: ''}").find("'path' must not be empty"), std::string::npos);
+}
+
+TEST(AcousticModem, AChangedLengthHoldsForItsSerialPortToo) {
+  test::WorldWithPorts test(three(", max_message_bytes: 16, serial: {path: \"/nowhere/{vehicle}\"}"));
+  const std::string line(30, 'x');
+  test.ends["/nowhere/a"]->to_world = line + "\n" + line;
+  test.run_for(0.1);
+  sim::Diagnostics diagnostics;
+  const auto longer = sim::parse_config_text("{max_message_bytes: 32}", "change", diagnostics);
+  ASSERT_TRUE(test.world.change_device("a/modem", longer, diagnostics));
+  test.ends["/nowhere/a"]->to_world = "\n" + line + "\n";  // the end of one that was cut, and a whole one
+  test.run_for(8);
+  EXPECT_EQ(test.ends["/nowhere/b"]->from_world, line + "\n");
+  EXPECT_EQ(test::device_of<devices::AcousticModem>(test.world, "a/modem").dropped_from_queue(), 2u);
+}
+
+TEST(AcousticModem, TellsWhatItsClockShowedThenHoweverLateItReports) {
+  // The clock of b is 10 s ahead and was set right after 5 s; what came then is reported 90 s later.
+  const std::string modem = "{name: modem, type: acoustic_modem, preset: high_rate, rate_hz: 0.01, phase_s: 95}";
+  test::TestWorld test(
+      test::modem_sea({{"a", "[0, 0, -20]", modem}, {"b", "[300, 0, -20]", modem, "clock: {offset_s: 10}"}}));
+  test::Listener<Received> at_b(test, "b.modem");
+  test.run_for(1);
+  test.send("a.modem.cmd", test::bytes_to("early"));
+  test.run_for(4);
+  auto& clock = const_cast<sim::VehicleClock&>(test.world.find_vehicle("b")->clock());
+  for (; test.world.now() < sim::from_seconds(98); test.run_for(1))
+    clock.discipline(test.world.now(), clock.error_s(test.world.now()), {});
+  const auto received = at_b.take_all();
+  ASSERT_EQ(received.size(), 1u);
+  EXPECT_NEAR(received[0].travel_time_s, 10.2, 1e-5);
+}
+
+TEST(AcousticModem, APacketMayLastLongerThanTheClockRemembers) {
+  // 256 s at 1 bit/s; the clock of b, set right before, knows 60 s.
+  const std::string modem = "{name: modem, type: acoustic_modem, bit_rate_bps: 1}";
+  test::TestWorld test(
+      test::modem_sea({{"a", "[0, 0, -20]", modem}, {"b", "[300, 0, -20]", modem, "clock: {offset_s: 10}"}}));
+  test::Listener<Received> at_b(test, "b.modem");
+  auto& clock = const_cast<sim::VehicleClock&>(test.world.find_vehicle("b")->clock());
+  for (; test.world.now() < sim::from_seconds(270); test.run_for(1)) {
+    if (test.world.now() == sim::from_seconds(5)) test.send("a.modem.cmd", test::bytes_to("slow"));
+    clock.discipline(test.world.now(), clock.error_s(test.world.now()), {});
+  }
+  const auto received = at_b.take_all();
+  ASSERT_EQ(received.size(), 1u);
+  EXPECT_NEAR(received[0].travel_time_s, 0.2, 1e-5);
+}
+
+TEST(AcousticModem, FindsTheWholeSecondOfACoarseClock) {
+  for (const std::string resolution : {"0.3", "10"}) {
+    const std::string modem = "{name: modem, type: acoustic_modem, preset: high_rate, synchronous_s: 1, truth: true}";
+    test::TestWorld test(
+        test::modem_sea({{"a", "[0, 0, -20]", modem, "clock: {offset_s: 0.25, resolution_s: " + resolution + "}"},
+                         {"b", "[300, 0, -20]", modem}}));
+    test::Listener<Received> at_b(test, "b.modem.truth");
+    test.run_for(0.35);
+    test.send("a.modem.cmd", test::bytes_to("x"));
+    test.run_for(3);
+    const auto received = at_b.take_all();
+    ASSERT_EQ(received.size(), 1u);
+    EXPECT_EQ(received[0].sent_utime, test.world.epoch_us() + 750000) << resolution;
+  }
 }
 
 TEST(AcousticModem, NeedsWater) {

@@ -55,7 +55,8 @@ TEST(Gateway, TwoOfThemDoNotPlayPingPong) {
            test::device_of<devices::Gateway>(test, "buoy2/gate").counts()[1].passed;
   };
   EXPECT_EQ(sent(""), 2);
-  EXPECT_GT(sent(", repeat_s: 0"), 5);  // for ever
+  EXPECT_EQ(sent(", name_source: true"), 2);  // although each of them puts a name before it
+  EXPECT_GT(sent(", repeat_s: 0"), 5);        // for ever
 }
 
 TEST(Gateway, RefusesWhatIsTooLongForTheOtherSideAndWhatHasNotItsPrefix) {
@@ -77,11 +78,47 @@ TEST(Gateway, RefusesWhatIsTooLongForTheOtherSideAndWhatHasNotItsPrefix) {
   EXPECT_EQ(test.world.counts().bad_messages, 0);
 }
 
+TEST(Gateway, WhatItRefusedMayBeSaidAgain) {
+  test::TestWorld test(ship_buoy_auv(", delay_s: 1, queue_messages: 1"));
+  const auto& gate = test::device_of<devices::Gateway>(test, "buoy/gate");
+  test.send("ship.radio.cmd", test::bytes_to("one"));
+  test.send("ship.radio.cmd", test::bytes_to("two"));
+  test.run_for(2);
+  EXPECT_EQ(gate.counts()[0].passed, 1);
+  EXPECT_EQ(gate.counts()[0].refused, 1);  // its queue was full
+  test.send("ship.radio.cmd", test::bytes_to("two"));
+  test.run_for(2);
+  EXPECT_EQ(gate.counts()[0].passed, 2);
+  test.send("ship.radio.cmd", test::bytes_to("two"));
+  test.run_for(2);
+  EXPECT_EQ(gate.counts()[0].passed, 2);
+  EXPECT_EQ(gate.counts()[0].repeated, 1);
+}
+
+TEST(Gateway, TheHashKnowsWhatHasPassed) {
+  const auto hash_after = [](const std::string& text) {
+    test::TestWorld test(ship_buoy_auv());
+    test.send("ship.radio.cmd", test::bytes_to(text));
+    test.run_for(5);  // it has passed, and the sound is gone
+    sim::StateHash hash;
+    test::device_of<devices::Gateway>(test, "buoy/gate").hash_state(hash);
+    return hash.value();
+  };
+  EXPECT_NE(hash_after("one"), hash_after("two"));
+  EXPECT_EQ(hash_after("one"), hash_after("one"));
+}
+
 TEST(Gateway, SaysWhatIsWrongWithItsParameters) {
   const auto error = [](const std::string& between) {
     return test::error_of_world(
         test::modem_sea({{"buoy", "[0, 0, -0.5]", radio + ", {name: gate, type: gateway, between: " + between + "}"}}));
   };
+  const auto error_of = [](const std::string& names) {
+    return test::error_of_world(ship_buoy_auv(", destinations: " + names));
+  };
+  EXPECT_EQ(error_of("[ship, auv]"), "");
+  EXPECT_NE(error_of("[ship, aux]").find("'destinations' names no vehicle of the world 'aux'"), std::string::npos);
+  EXPECT_NE(error_of("[buoy, auv]").find("'destinations' names its own vehicle"), std::string::npos);
   EXPECT_NE(error("[radio]").find("'between' must name two different devices"), std::string::npos);
   EXPECT_NE(error("[radio, radio]").find("'between' must name two different devices"), std::string::npos);
   EXPECT_NE(error("[radio, gate]").find("'between' names no modem or acoustic_modem 'gate'"), std::string::npos);

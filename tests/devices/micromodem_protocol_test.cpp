@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <random>
 
 namespace {
@@ -91,13 +92,14 @@ TEST(MicromodemProtocol, TellsTheHostWhatItDoesNotTake) {
   };
   EXPECT_EQ(error("$CCXYZ,1"), "CAERR,050607,NMEA,1,unknown sentence CCXYZ");
   EXPECT_EQ(error("$CCMPC,1,2*00"), "CAERR,050607,NMEA,2,bad checksum");
-  EXPECT_EQ(error("$CCMPC,1,200"), "CAERR,050607,NMEA,3,address must be 0 to 127");
+  EXPECT_EQ(error("$CCMPC,1,200"), "CAERR,050607,NMEA,3,address must be 0 to 126, or 127 as destination");
   EXPECT_EQ(error("$CCMPC,2,1"), "CAERR,050607,MPC,3,a ping goes from this modem to another one");
   EXPECT_EQ(error("$CCCYC,0,1,2,7,0,1"), "CAERR,050607,CYC,3,rate must be 0 to 6");
   EXPECT_EQ(error("$CCCYC,0,1,2,0,0,2"), "CAERR,050607,CYC,3,frames must be 1 to 1");
+  EXPECT_EQ(error("$CCCYC,0,1,2,0,2,1"), "CAERR,050607,CYC,3,ack must be 0 or 1");
   EXPECT_EQ(error("$CCTXD,1,2,0,00"), "CAERR,050607,TXD,6,no data was asked for");
   EXPECT_EQ(error("$CCMUC,1,2,2000"), "CAERR,050607,MUC,3,data must be 0000 to 1fff");
-  EXPECT_EQ(error("$CCCFG,SRC,128"), "CAERR,050607,NMEA,3,value of SRC out of range");
+  EXPECT_EQ(error("$CCCFG,SRC,127"), "CAERR,050607,NMEA,3,value of SRC out of range");  // everybody is nobody
   EXPECT_EQ(error("$CCCFG,ABC,1"), "CAERR,050607,NMEA,3,unknown setting ABC");
   EXPECT_EQ(error("$CCCLK,2026,2,30,0,0,0"), "CAERR,050607,NMEA,3,no such day");
   modem.protocol.take_line({"$CCTXD,1,2,0", true}, modem.now);
@@ -109,7 +111,7 @@ TEST(MicromodemProtocol, TellsTheHostWhatItDoesNotTake) {
   EXPECT_EQ(error("$CCTXD,1,2,0,0x"), "CAERR,050607,TXD,3,data must be bytes in hexadecimal");
   EXPECT_EQ(error("$CCMPC,1,2"), "CAERR,050607,MPC,4,busy");
   EXPECT_THAT(modem.host("$CCTXD,1,2,0," + std::string(64, '0')), ElementsAre("CATXD,1,2,0,32"));
-  EXPECT_EQ(modem.protocol.errors(), 15);
+  EXPECT_EQ(modem.protocol.errors(), 16);
 }
 
 TEST(MicromodemProtocol, GivesUpWhenTheHostSendsNoData) {
@@ -136,7 +138,64 @@ TEST(MicromodemProtocol, SetsItsClockAndRestarts) {
   EXPECT_THAT(modem.host("$CCCLK,2030,12,31,23,59,58"), ElementsAre("CACLK,2030,12,31,23,59,58"));
   EXPECT_THAT(modem.wait(10), ElementsAre("CAREV,000008,AUV,0.93.0.48"));
   EXPECT_THAT(modem.host("$CCMSC,1,1,0"), ElementsAre("CAMSC,1,1,0"));
-  EXPECT_THAT(modem.wait(1), testing::Contains("CAREV,050618,INIT,0.93.0.48"));
+  EXPECT_THAT(modem.wait(1), ElementsAre("CAREV,050618,INIT,0.93.0.48"));
+  EXPECT_THAT(modem.wait(9.9), ElementsAre());
+  EXPECT_THAT(modem.wait(0.1), ElementsAre("CAREV,050628,AUV,0.93.0.48"));
+}
+
+TEST(MicromodemProtocol, AFreshStartEndsWhatItWasAbout) {
+  Modem modem;
+  modem.host("$CCMUC,1,2,1fab");  // for 1 s; $CATXF and $CAXST are still to come
+  modem.host("$CCMSC,1,1,0");
+  EXPECT_THAT(modem.wait(1), ElementsAre("CAREV,050608,INIT,0.93.0.48"));
+  modem.host("$CCCYC,0,1,2,0,0,1");
+  modem.protocol.restart(modem.now);  // the power was off
+  EXPECT_THAT(modem.wait(0), ElementsAre("CAREV,050608,INIT,0.93.0.48"));
+  EXPECT_THAT(modem.wait(5), ElementsAre());  // nobody misses the data of the cycle
+  EXPECT_THAT(modem.host("$CCMPC,1,2"), ElementsAre("CAMPC,1,2"));
+}
+
+TEST(MicromodemProtocol, StartsOnceHoweverOftenItIsTold) {
+  Modem modem;
+  for (int i = 0; i < 1000; ++i) modem.host("$CCMSC,1,1,0");
+  modem.wait(0.5);
+  EXPECT_THAT(modem.host("$CCMSC,1,1,0"), ElementsAre());  // it is down
+  EXPECT_THAT(modem.host("$CCMPC,1,2"), ElementsAre());
+  EXPECT_THAT(modem.wait(0.5), ElementsAre("CAREV,050608,INIT,0.93.0.48"));
+  EXPECT_THAT(modem.wait(5), ElementsAre());
+}
+
+TEST(MicromodemProtocol, TakesNoNoticeOfWhatModemsSay) {
+  // A terminal that echoes gives it all back.
+  Modem modem;
+  for (const std::string& said : modem.host("$CCXYZ")) EXPECT_THAT(modem.host("$" + said), ElementsAre());
+  EXPECT_THAT(modem.host("$SNTTA,,0.2000,,,000000.05"), ElementsAre());
+  EXPECT_EQ(modem.protocol.errors(), 1);
+}
+
+TEST(MicromodemProtocol, TheHashKnowsWhatItIsAbout) {
+  const auto hash_after = [](const std::vector<std::string>& lines) {
+    Modem modem;
+    for (const auto& line : lines) modem.host(line);
+    sim::StateHash hash;
+    modem.protocol.hash_state(hash);
+    return hash.value();
+  };
+  const std::vector<std::vector<std::string>> all{{},
+                                                  {"$CCCYC,0,1,2,2,0,3"},
+                                                  {"$CCCYC,0,1,3,2,0,3"},
+                                                  {"$CCCYC,0,1,2,2,1,3"},
+                                                  {"$CCCYC,0,1,2,2,0,2"},
+                                                  {"$CCMPC,1,2"},
+                                                  {"$CCMPC,1,3"},
+                                                  {"$CCCYC,0,2,1,0,0,1"},
+                                                  {"$CCCYC,0,3,1,0,0,1"},
+                                                  {"$CCPDT,1,1,0,0,3000,1,1,1,0"},
+                                                  {"$CCPDT,1,1,0,0,3000,1,1,0,0"}};
+  std::vector<std::uint64_t> hashes;
+  for (const auto& lines : all) hashes.push_back(hash_after(lines));
+  std::sort(hashes.begin(), hashes.end());
+  EXPECT_EQ(std::adjacent_find(hashes.begin(), hashes.end()), hashes.end());
 }
 
 TEST(MicromodemProtocol, AnswersAPingAfterItsTurnaroundAndTakesItOff) {

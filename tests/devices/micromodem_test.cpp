@@ -196,12 +196,13 @@ TEST(Micromodem, AsksTransponders) {
   const std::string beacon = "{name: beacon, type: transponder}";
   Hosts hosts(test::modem_sea({{"a", "[0, 0, -20]", modem_at(1, ", lbl: {transponders: [b, c/beacon, d]}")},
                                {"b", "[750, 0, -20]", modem_at(2) + ", " + beacon},
-                               {"c", "[-300, 0, -20]", modem_at(3) + ", " + beacon}}));
+                               {"c", "[-300, 0, -20]", modem_at(3) + ", " + beacon},
+                               {"d", "[0, 300, -20]", "{name: beacon, type: transponder, network: other}"}}));
   hosts.run_for(0.05);
   hosts.take("a");
   hosts.say("a", "$CCPDT,1,1,0,0,3000,1,1,1,0");
   hosts.run_for(4);
-  // 750 m and 300 m at 1500 m/s; the third is not there, the fourth was not asked for.
+  // 750 m and 300 m at 1500 m/s; the third does not answer, the fourth was not asked for.
   EXPECT_THAT(hosts.take("a"), testing::ElementsAre("CAPDT,1,1,0,0,3000,1,1,1,0", "SNTTA,0.5000,0.2000,,,000000.05"));
   hosts.say("a", "$CCPNT,26000,5,5,3000,0,29000,0,0,1");  // at a whole second, and the second one only
   hosts.run_for(5);
@@ -248,6 +249,51 @@ TEST(Micromodem, RefusesBadSentencesAndGoesOn) {
   hosts.run_for(3);
   EXPECT_THAT(hosts.take("b"), Contains("CAMUA,1,127,0001"));
   EXPECT_THAT(hosts.take("c"), Contains("CAMUA,1,127,0001"));
+}
+
+TEST(Micromodem, ItsTranspondersMustExist) {
+  const auto error = [](const std::string& names) {
+    return test::error_of_world(
+        test::modem_sea({{"a", "[0, 0, -20]", modem_at(1, ", lbl: {transponders: [" + names + "]}")},
+                         {"b", "[750, 0, -20]", modem_at(2) + ", {name: beacon, type: transponder}"}}));
+  };
+  EXPECT_EQ(error("b, b/beacon"), "");
+  for (const std::string name : {"c", "a", "b/modem", "b/none"})
+    EXPECT_NE(error(name).find("'transponders' names no transponder of the world '" + name + "'"), std::string::npos);
+}
+
+TEST(Micromodem, SaysNothingOfAPacketThatItDidNotNotice) {
+  // A din beside b hides the packet, which would be loud enough in a quiet sea.
+  const std::string din =
+      "{name: din, type: noise_source, kind: pulses, level_dB: 190, frequency_Hz: 25000, bandwidth_Hz: 4000, "
+      "period_s: 100, sound_s: 20}";
+  Hosts hosts(test::modem_sea(
+      {{"a", "[0, 0, -20]", modem_at(1)}, {"b", "[750, 0, -20]", modem_at(2)}, {"c", "[760, 0, -20]", din}}));
+  hosts.run_for(1);
+  hosts.take("b");
+  hosts.say("a", "$CCMUC,1,2,1fab");
+  hosts.run_for(5);
+  hosts.say("a", "$CCCYC,0,1,2,1,0,1");
+  hosts.say("a", "$CCTXD,1,2,0,77");
+  hosts.run_for(6);
+  EXPECT_THAT(hosts.take("b"), testing::ElementsAre(StartsWith("CAREV")));
+  const auto& lost = test::device_of<devices::Micromodem>(hosts, "b/modem").transducer().counts().lost;
+  EXPECT_EQ(lost[static_cast<std::size_t>(sim::SignalLoss::interference)], 2);
+}
+
+TEST(Micromodem, StartsAnewWhenItsPowerComesBack) {
+  Hosts hosts(three());
+  hosts.run_for(0.05);
+  hosts.say("a", "$CCMUC,1,2,1fab");
+  hosts.say("b", "$CCCYC,0,2,1,0,0,1");
+  hosts.run_for(0.1);
+  hosts.take("a"), hosts.take("b");
+  for (const char* name : {"a/modem", "b/modem"}) hosts.world.set_fault(name, {.kind = sim::FaultKind::silent});
+  hosts.run_for(3);
+  for (const char* name : {"a/modem", "b/modem"}) hosts.world.clear_faults(name);
+  hosts.run_for(3);
+  for (const char* name : {"a", "b"})
+    EXPECT_THAT(hosts.take(name), testing::ElementsAre("CAREV,000003,INIT,0.93.0.48")) << name;
 }
 
 TEST(Micromodem, NeedsWater) {

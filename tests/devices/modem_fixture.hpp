@@ -44,8 +44,12 @@ std::string text_of(const Received& received) {
 }
 
 template <typename Model>
+const Model& device_of(const sim::World& world, const std::string& full_name) {
+  return dynamic_cast<const Model&>(*world.find_device(full_name)->sensor());
+}
+template <typename Model>
 const Model& device_of(const LoadedTestWorld& test, const std::string& full_name) {
-  return dynamic_cast<const Model&>(*test.world.find_device(full_name)->sensor());
+  return device_of<Model>(test.world, full_name);
 }
 
 }  // namespace test

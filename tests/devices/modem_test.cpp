@@ -1,6 +1,7 @@
 #include "shoal/modem_received_t.hpp"
 #include "shoal/modem_send_t.hpp"
 #include "tests/devices/immersed_sensor_fixture.hpp"
+#include "tests/devices/port_fixture.hpp"
 
 namespace {
 
@@ -188,42 +189,30 @@ TEST(Modem, RefusesWhatItCannotSend) {
   EXPECT_EQ(test.world.counts().bad_messages, 3);
 }
 
-/// A port whose other end is the test.
-class FakePort final : public sim::BytePort {
- public:
-  explicit FakePort(std::shared_ptr<std::pair<std::string, std::string>> ends) : ends_(std::move(ends)) {}
-  sim::Bytes read() override {
-    const auto* data = reinterpret_cast<const std::byte*>(ends_->first.data());
-    sim::Bytes bytes(data, data + ends_->first.size());
-    ends_->first.clear();
-    return bytes;
-  }
-  void write(std::span<const std::byte> bytes) override {
-    ends_->second.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  }
-  std::uint64_t dropped_bytes() const override { return 0; }
-
- private:
-  std::shared_ptr<std::pair<std::string, std::string>> ends_;  ///< to the modem, from the modem
-};
-
 TEST(Modem, SpeaksLinesThroughItsSerialPort) {
-  const auto loaded =
-      sim::load_world_text(modem_world("range_m: 1000, serial: {path: \"/nowhere/{vehicle}\"}"), "worlds/test.yaml");
-  std::map<std::string, std::shared_ptr<std::pair<std::string, std::string>>> ends;
-  sim::InProcessBus bus;
-  sim::World world(loaded.config, bus, [&](const std::string& kind, const std::string& path) {
-    EXPECT_EQ(kind, "pty");
-    ends[path] = std::make_shared<std::pair<std::string, std::string>>();
-    return std::make_unique<FakePort>(ends[path]);
-  });
-  ends.at("/nowhere/a")->first = "hello\nworld\npart of a li";
-  for (int i = 0; i < 500; ++i) world.step();
-  EXPECT_EQ(ends.at("/nowhere/b")->second, "hello\nworld\n");
-  EXPECT_EQ(ends.at("/nowhere/c")->second, "hello\nworld\n");
-  ends.at("/nowhere/a")->first = "ne\n";
-  for (int i = 0; i < 500; ++i) world.step();
-  EXPECT_EQ(ends.at("/nowhere/b")->second, "hello\nworld\npart of a line\n");
+  test::WorldWithPorts test(modem_world("range_m: 1000, serial: {path: \"/nowhere/{vehicle}\"}"));
+  test.ends["/nowhere/a"]->to_world = "hello\nworld\npart of a li";
+  test.run_for(0.5);
+  EXPECT_EQ(test.ends["/nowhere/b"]->from_world, "hello\nworld\n");
+  EXPECT_EQ(test.ends["/nowhere/c"]->from_world, "hello\nworld\n");
+  test.ends["/nowhere/a"]->to_world = "ne\n";
+  test.run_for(0.5);
+  EXPECT_EQ(test.ends["/nowhere/b"]->from_world, "hello\nworld\npart of a line\n");
+}
+
+TEST(Modem, CountsWhatNobodyFetchesFromItsSerialPort) {
+  test::WorldWithPorts test(modem_world("range_m: 1000, serial: {path: \"/nowhere/{vehicle}\"}"));
+  EXPECT_EQ(devices::serial_dropped_bytes(test.world), 0u);
+  test.ends["/nowhere/b"]->room_bytes = 8;
+  test.ends["/nowhere/c"]->room_bytes = 10;
+  test.ends["/nowhere/a"]->to_world = "hello\nworld\n";
+  test.run_for(0.5);
+  EXPECT_EQ(devices::serial_dropped_bytes(test.world), 6u);  // 4 of 12 at b, 2 at c
+  EXPECT_EQ(test.world.counts().bad_messages, 2);            // told once by each
+  test.ends["/nowhere/a"]->to_world = "hello\nworld\n";
+  test.run_for(0.5);
+  EXPECT_EQ(devices::serial_dropped_bytes(test.world), 30u);
+  EXPECT_EQ(test.world.counts().bad_messages, 2);
 }
 
 }  // namespace
