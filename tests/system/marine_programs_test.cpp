@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <csignal>
+#include <nlohmann/json.hpp>
 
 #include "bridges/lcm/lcm_listener.hpp"
 #include "tests/system/shoal_program.hpp"
@@ -107,6 +108,30 @@ TEST(CoopRelay, OrderComesToTheAuvByTheRelayAndNotWithoutIt) {
     const std::string obeyed = relay ? "station: 1 of 1 orders obeyed" : "station: 0 of 1 orders obeyed";
     EXPECT_THAT(text_of_file(results + "/station.log"), HasSubstr(obeyed));
     EXPECT_THAT(text_of_file(results + "/auv.log"), HasSubstr(relay ? "1 orders obeyed" : "0 orders obeyed"));
+  }
+}
+
+/// The summary of the first minutes of a world with its programs.
+nlohmann::json summary_of(const std::string& world, const std::string& results, int url, const std::string& threads) {
+  const Ended ended =
+      run_shoal({"run", source(world), "--launch", "--duration", "300", "--threads", threads, "--speed",
+                 threads == "1" ? "max" : "200", "--lcm-url", own_url(url), "--results", results, "--no-pictures"});
+  EXPECT_EQ(ended.exit_code, 1) << ended.errors;  // too short for its rules
+  return nlohmann::json::parse(text_of_file(results + "/summary.json"));
+}
+
+TEST(CooperativeNavigation, IsTheSameRunAtAnySpeedAndWithAnyThreads) {
+  const ScratchFolder folder;
+  for (const char* world : {"worlds/coop_underwater.yaml", "worlds/coop_one_beacon.yaml"}) {
+    const auto first = summary_of(world, folder.file("first"), 6, "1");
+    const auto second = summary_of(world, folder.file("second"), 7, "3");
+    EXPECT_EQ(first["state_hash"], second["state_hash"]) << world;
+    EXPECT_EQ(first["metrics"], second["metrics"]) << world;
+    EXPECT_EQ(first["bad_messages"], 0) << world;
+    EXPECT_GE(first["metrics"]["link.received"], 20) << world;
+    // With GPS of 1 m before the dive and ranges of decimetres after it.
+    EXPECT_LT(first["metrics"]["cooperative.rms_m"], 6) << world;
+    EXPECT_GT(first["acoustics"]["sent"], 20) << world;
   }
 }
 

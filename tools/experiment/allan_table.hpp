@@ -21,8 +21,9 @@ struct AllanTable {
   std::vector<AllanCurve> curves;
 };
 
-/// Of every double that is an element of an array of fixed size, and of `rate_error` of a clock.  Throws std::runtime_error when the channel has too
-/// few messages, has several types, or its messages do not come at equal intervals (1 % of one is allowed).
+/// Of every double that is an element of an array of fixed size, and of `rate_error` of a clock.  Throws
+/// std::runtime_error when the channel has too few messages, has several types, or its messages do not come at equal
+/// intervals (1 % of one is allowed).
 AllanTable allan_table(const std::string& log, const std::string& channel, const shoal::MessageTypes& types);
 
 /// `field,tau_s,deviation,relative_error`.

@@ -82,6 +82,12 @@ std::string Summary::to_json() const {
     entry["finish_s"] = record.finish_s ? nlohmann::ordered_json(*record.finish_s) : nlohmann::ordered_json();
     entry["speeding_s"] = record.speeding_s;
   }
+  if (acoustics) {
+    json["acoustics"] = {{"sent", acoustics->sent}, {"received", acoustics->received}};
+    for (const auto& [cause, count] : acoustics->lost)
+      if (count > 0) json["acoustics"]["lost"][cause] = count;
+  }
+  json["serial_dropped_bytes"] = serial_dropped_bytes;
   if (event) json["event"] = {{"text", event->text}, {"passed", event->passed}};
   json["passed"] = passed() && exit_code == 0;
   json["ended"] = ended;
@@ -99,6 +105,13 @@ std::string Summary::to_text() const {
       world, seed, steps, sim_time_s, wall_s, real_time_factor(), messages, dropped_messages, bad_messages);
   if (quick_steps > 0)
     text += fmt::format("  {} steps used QuickStep, for an island of bodies was too large\n", quick_steps);
+  if (acoustics) {
+    text += fmt::format("  acoustic packets: {} sent, {} received", acoustics->sent, acoustics->received);
+    for (const auto& [cause, count] : acoustics->lost)
+      if (count > 0) text += fmt::format(", {} lost ({})", count, cause);
+    text += '\n';
+  }
+  if (serial_dropped_bytes > 0) text += fmt::format("  {} bytes were fetched from no port\n", serial_dropped_bytes);
   for (const auto& [name, value] : metrics) text += fmt::format("  {:<28} {:.4g}\n", name, value);
   for (const Scoring::Verdict& verdict : verdicts)
     text += fmt::format("  {}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.rule);

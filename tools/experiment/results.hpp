@@ -11,6 +11,7 @@
 #include "sim/config/config_node.hpp"
 #include "sim/script/script.hpp"
 #include "sim/world/world.hpp"
+#include "tools/experiment/link_counts.hpp"
 #include "tools/experiment/scoring.hpp"
 
 namespace tools {
@@ -38,6 +39,8 @@ struct Summary {
   std::vector<Scoring::Verdict> verdicts;
   std::vector<Process> processes;
   std::map<std::string, sim::ZoneRecord> zones;  ///< by vehicle, when the world has zones with rules
+  std::optional<LinkCounts> acoustics;           ///< of all modems under water, when there are any
+  std::uint64_t serial_dropped_bytes = 0;        ///< that no program fetched from pseudo-terminals and FIFOs
   std::optional<sim::EndOfRun> event;            ///< of the world that ended the run
   std::string ended =
       "duration";     ///< duration, event, quit, signal, fault, bus, timeout, process, configuration, error

@@ -11,6 +11,8 @@
 #include "bridges/lcm/bus_error.hpp"
 #include "bridges/lcm/sim_service.hpp"
 #include "bridges/serial/serial_port.hpp"
+#include "devices/serial_port.hpp"
+#include "sim/acoustics/channel.hpp"
 #include "tools/experiment/process_group.hpp"
 #include "tools/experiment/progress.hpp"
 #include "tools/experiment/run_buses.hpp"
@@ -287,6 +289,9 @@ class Run {
     summary.dropped_messages = counts.dropped_incoming + counts.dropped_outgoing;
     summary.bad_messages = world_.counts().bad_messages + service_.bad_messages() + scoring_.bad_messages();
     summary.quick_steps = world_.physics().quick_steps();
+    const LinkCounts links = link_counts(world_, "", "");
+    if (!world_.acoustics().transducers().empty()) summary.acoustics = links;
+    summary.serial_dropped_bytes = devices::serial_dropped_bytes(world_);
     summary.metrics = scoring_.figures();
     summary.verdicts = scoring_.verdicts();
     summary.processes = ended_processes_;

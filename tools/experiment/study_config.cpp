@@ -46,8 +46,9 @@ std::vector<std::int64_t> read_seeds(sim::ParamReader& in) {
       in.error("seeds", "'seeds' must be whole numbers, got " + sim::number_text(number));
     seeds.push_back(static_cast<std::int64_t>(number));
   }
-  if (node != nullptr && numbers.empty() && node->kind == sim::ConfigNode::Kind::list && node->items.empty())
-    in.error("seeds", "'seeds' must have at least one seed");
+  const bool nothing = node != nullptr && (node->kind == sim::ConfigNode::Kind::null ||
+                                           (node->kind == sim::ConfigNode::Kind::list && node->items.empty()));
+  if (nothing) in.error("seeds", "'seeds' must have at least one seed");
   if (std::set<std::int64_t>(seeds.begin(), seeds.end()).size() != seeds.size())
     in.error("seeds", "'seeds' must differ from each other");
   return seeds;
@@ -160,7 +161,15 @@ void StudyRule::read(sim::ParamReader& in) {
   in.read("below_figure", below_figure, "it must be below the same of this figure times factor");
   in.read("factor", factor, sim::above(0), "see below_case and below_figure");
   int forms = 0;
-  for (const char* key : {"below", "above", "equals", "below_case", "below_figure"}) forms += in.has(key);
+  const auto written = [&](const char* key) {
+    const sim::ConfigNode* node = in.describing() || !in.has(key) ? nullptr : in.child(key);
+    return node != nullptr && node->kind != sim::ConfigNode::Kind::null &&
+           !(node->scalar.empty() && node->items.empty());
+  };
+  for (const char* key : {"below", "above", "equals", "below_case", "below_figure"}) forms += written(key);
+  if (!in.describing() && in.has("case") && !written("case")) in.error("case", "'case' must not be empty");
+  if (in.has("factor") && !in.has("below_case") && !in.has("below_figure"))
+    in.error("factor", "'factor' belongs to 'below_case' and 'below_figure'");
   if (!in.describing() && forms != 1)
     in.error("needs one of 'above', 'below', 'below_case', 'below_figure' and 'equals'" +
              std::string(forms > 1 ? ", not several" : ""));

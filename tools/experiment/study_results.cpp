@@ -101,7 +101,12 @@ std::vector<std::string> StudyResults::table_figures() const {
 
 Scoring::Verdict StudyResults::judge(const StudyRule& rule) const {
   const auto statistic = [&](const std::string& in_case, const std::string& figure) {
-    return of(in_case, figure).by_word(rule.statistic);
+    const Statistics statistics = of(in_case, figure);
+    const auto runs = std::count_if(runs_.begin(), runs_.end(), [&](const StudyRun& run) {
+      return study_.config.cases[run.in_case].name == in_case;
+    });
+    // A figure that nothing could be made of in some of the runs is no good figure.
+    return statistics.count == runs ? statistics.by_word(rule.statistic) : no_figure;
   };
   const double value = statistic(rule.in_case, rule.figure);
   const auto text = [&](const char* sign, const std::string& right) {

@@ -133,10 +133,22 @@ class StudyChildren {
 
   std::vector<std::string> arguments_of(const StudyRun& run, int slot, int attempt) const {
     const StudyConfig& config = study_.config;
-    std::vector<std::string> arguments{
-        "shoal",     "run",         config.world, "--seed",        std::to_string(run.seed),
-        "--results", run.directory, "--quiet",    "--no-pictures", "--threads",
-        "1",         "--log-level", "warn",       "--speed",       "max"};
+    std::vector<std::string> arguments{"shoal",
+                                       "run",
+                                       config.world,
+                                       "--seed",
+                                       std::to_string(run.seed),
+                                       "--results",
+                                       run.directory,
+                                       "--quiet",
+                                       "--no-pictures",
+                                       "--threads",
+                                       "1",
+                                       "--log-level",
+                                       "warn",
+                                       "--speed",
+                                       "max",
+                                       "--end-with-parent"};
     const auto add = [&](const std::string& option, const std::string& value) {
       arguments.push_back(option);
       arguments.push_back(value);

@@ -7,8 +7,9 @@ namespace tools {
 sim::Time true_time_of(const sim::World& world, const sim::Vehicle& vehicle, std::int64_t utime) {
   std::int64_t time_us = 0;
   if (__builtin_sub_overflow(utime, world.epoch_us(), &time_us)) return utime < 0 ? sim::Time::min() : sim::Time::max();
-  // What is far off is no time of this run; clocks are asked about times near now only.
-  const bool near_now = std::abs(time_us / 2 - world.now().count() / 2) < sim::VehicleClock::memory.count() / 2;
+  // What is far from what the clock shows now is no time of this run; clocks are asked about times near now only.
+  const sim::Time shown = vehicle.clock().reading(world.now());
+  const bool near_now = std::abs(time_us / 2 - shown.count() / 2) < sim::VehicleClock::memory.count() / 2;
   return near_now ? vehicle.clock().true_time(sim::Time{time_us}) : sim::Time{time_us};
 }
 
@@ -21,7 +22,11 @@ TruthHistory::TruthHistory(const sim::World& world, const sim::Vehicle& vehicle)
 void TruthHistory::after_step() {
   const Truth& before = recent_[slot_of(world_.step_number() - 1)];
   const sim::Vector3d position_m = vehicle_.X_WV().translation();
-  recent_[slot_of(world_.step_number())] = {position_m, before.travelled_m + (position_m - before.position_m).norm()};
+  // Who is put elsewhere has not travelled there.
+  constexpr double fastest_mps = 200;
+  const double way_m = (position_m - before.position_m).norm();
+  const bool travelled = way_m <= fastest_mps * sim::to_seconds(world_.step_time());
+  recent_[slot_of(world_.step_number())] = {position_m, before.travelled_m + (travelled ? way_m : 0)};
 }
 
 const TruthHistory::Truth& TruthHistory::now() const {

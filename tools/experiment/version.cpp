@@ -16,8 +16,8 @@ std::string version_text() {
       "ODE: {}\n"
       "LCM {}, Eigen {}.{}.{}, fmt {}\n"
       "compiler: {}\n",
-      short_version(), dGetConfiguration(), bridges::lcm_version(), EIGEN_WORLD_VERSION,
-      EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, FMT_VERSION, __VERSION__);
+      short_version(), dGetConfiguration(), bridges::lcm_version(), EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
+      EIGEN_MINOR_VERSION, FMT_VERSION, __VERSION__);
 }
 
 }  // namespace tools
