@@ -121,6 +121,60 @@ TEST(Study, EndsItsRunsOnASignal) {
   EXPECT_THAT(program.errors(), HasSubstr("goes on with the runs that are missing"));
 }
 
+TEST(Study, RunsOfAWorldWithASerialPortDoNotDisturbEachOther) {
+  const ScratchFolder folder;
+  write_file(folder.file("study.yaml"), "shoal: 1\nstudy: ports\nworld: " + source("worlds/micromodems.yaml") +
+                                            "\nduration_s: 300\nseeds: {first: 1, count: 4}\n");
+  const Ended ended = run_shoal({"study", folder.file("study.yaml"), "--output", folder.file("out"), "--jobs", "4"});
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors << ended.output;
+}
+
+TEST(Study, OfTheCooperativeWorldGoesOnWhereItWasStopped) {
+  const ScratchFolder folder;
+  const auto study = [&](const std::string& seeds) {
+    write_file(folder.file("study.yaml"),
+               "shoal: 1\nstudy: sea\nworld: " + source("worlds/coop_underwater.yaml") +
+                   "\nlaunch: true\nduration_s: 150\nseeds: " + seeds +
+                   "\nfigures: [cooperative.rms_m, link.received]\n"
+                   "pass: [{case: world, figure: link.received, statistic: min, above: 5}]\n");
+    return run_shoal({"study", folder.file("study.yaml"), "--output", folder.file("out"), "--jobs", "2"});
+  };
+  ASSERT_EQ(study("[1]").exit_code, 0);
+  const Ended second = study("[1, 2]");
+  EXPECT_EQ(second.exit_code, 0) << second.errors << second.output;
+  EXPECT_THAT(second.errors, HasSubstr("1 of 2 runs were done already"));
+  const auto hash = [&](const char* seed) {
+    return summary_value(folder.file("out/runs/world/seed_" + std::string(seed)), "state_hash");
+  };
+  EXPECT_NE(hash("1"), hash("2"));
+}
+
+TEST(Study, ItsRunsAndTheirProgramsEndWhenItIsKilled) {
+  const ScratchFolder marks;
+  const StudyFolder study(
+      "seeds: [1]\nduration_s: 1e9\nlaunch: true\n",
+      "processes: [{name: pilot, command: [sh, -c, 'echo $$ > " + marks.file("pid") + "; exec sleep 1000']}]\n");
+  Program program({built("shoal"), "study", study.folder.file("study.yaml"), "--output", study.folder.file("out")});
+  ASSERT_TRUE(await([&] { return text_of_file(marks.file("pid")).ends_with('\n'); }, patience)) << program.errors();
+  const auto runs = program.children();
+  ASSERT_EQ(runs.size(), 1u);
+  const pid_t pilot = std::stoi(text_of_file(marks.file("pid")));
+  program.send_signal(SIGKILL);
+  EXPECT_EQ(program.wait(), 128 + SIGKILL);
+  EXPECT_TRUE(await([&] { return !is_running(runs[0]) && !is_running(pilot); }, patience));
+}
+
+TEST(Run, ItsProgramsEndWhenItIsKilled) {
+  const ScratchFolder folder;
+  write_file(folder.file("world.yaml"), endless_world("processes: [{name: pilot, command: [sleep, '1000']}]\n"));
+  Program program({built("shoal"), "run", folder.file("world.yaml"), "--launch", "--lcm-url", own_url(2)});
+  ASSERT_TRUE(await([&] { return program.children().size() == 1; }, patience)) << program.errors();
+  const pid_t pilot = program.children()[0];
+  program.send_signal(SIGKILL);
+  EXPECT_EQ(program.wait(), 128 + SIGKILL);
+  EXPECT_TRUE(await([&] { return !is_running(pilot); }, patience));
+}
+
 TEST(Report, ExitCodesTellWhatIsWrong) {
   const ScratchFolder folder;
   EXPECT_EQ(run_shoal({"report"}).exit_code, 2);

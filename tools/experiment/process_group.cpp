@@ -1,8 +1,6 @@
 #include "tools/experiment/process_group.hpp"
 
-#include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,7 +11,7 @@
 #include <stdexcept>
 #include <thread>
 
-extern char** environ;
+#include "tools/experiment/child_program.hpp"
 
 namespace tools {
 
@@ -30,17 +28,9 @@ std::string find_program(const std::string& name) {
   return !error && fs::exists(beside, error) ? beside.string() : name;
 }
 
-std::vector<char*> pointers_to(std::vector<std::string>& texts) {
-  std::vector<char*> pointers;
-  for (std::string& text : texts) pointers.push_back(text.data());
-  pointers.push_back(nullptr);
-  return pointers;
-}
-
 std::vector<std::string> environment_with(const std::string& lcm_url) {
-  std::vector<std::string> environment;
-  for (char** at = environ; *at != nullptr; ++at)
-    if (std::strncmp(*at, "LCM_DEFAULT_URL=", 16) != 0) environment.emplace_back(*at);
+  std::vector<std::string> environment = own_environment();
+  std::erase_if(environment, [](const std::string& entry) { return entry.starts_with("LCM_DEFAULT_URL="); });
   environment.push_back("LCM_DEFAULT_URL=" + lcm_url);
   return environment;
 }
@@ -64,33 +54,9 @@ void ProcessGroup::start(const sim::ProcessConfig& config, const std::string& lc
   for (std::string& argument : arguments)
     for (std::size_t at = argument.find("{lcm_url}"); at != std::string::npos; at = argument.find("{lcm_url}"))
       argument.replace(at, 9, lcm_url);
-  std::vector<std::string> environment = environment_with(lcm_url);
-
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   const std::string log = log_directory.empty() ? "" : log_directory + "/" + config.name + ".log";
-  if (!log.empty()) {
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  }
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t none;
-  sigemptyset(&none);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  // Ignored signals would stay ignored; shoal ignores SIGPIPE.
-  sigset_t usual;
-  sigemptyset(&usual);
-  sigaddset(&usual, SIGPIPE);
-  posix_spawnattr_setsigdefault(&attributes, &usual);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
   pid_t pid = 0;
-  const int error = posix_spawnp(&pid, arguments[0].c_str(), &actions, &attributes, pointers_to(arguments).data(),
-                                 pointers_to(environment).data());
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
+  const int error = start_child({arguments[0], arguments, environment_with(lcm_url), log}, pid);
   if (error != 0)
     throw std::runtime_error("process '" + config.name + "': cannot start '" + arguments[0] +
                              "': " + std::strerror(error));

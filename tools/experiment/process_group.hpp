@@ -9,7 +9,8 @@
 
 namespace tools {
 
-/// The external programs of an experiment.  Each gets a process group of its own, so that its children end with it.
+/// The external programs of an experiment.  Each gets a process group of its own, so that its children end with it, and
+/// SIGTERM when we are killed.
 class ProcessGroup {
  public:
   struct Exit {

@@ -85,7 +85,7 @@ class Run {
       : loaded_(loaded),
         options_(options),
         buses_(loaded.config, options),
-        world_(loaded.config, buses_.outer(), bridges::open_serial_port,
+        world_(loaded.config, buses_.outer(), options.serial_ports ? bridges::open_serial_port : sim::PortOpener(),
                [this](const std::string& name) -> sim::Bus& { return buses_.of(name); }),
         service_(buses_.outer(), buses_.network(), world_, control_, lockstep_,
                  {sim::to_yaml(loaded.resolved), version_text()}),

@@ -22,6 +22,7 @@ struct RunOptions {
   bool paused = false;
   bool launch = false;
   std::vector<std::string> await;  ///< lockstep clients, started by hand, to wait for
+  bool serial_ports = true;        ///< pseudo-terminals and FIFOs of devices are opened
   int threads = 0;                 ///< that follow rays; 0: one for each processor
   bool quiet = false;
 };

@@ -1,8 +1,6 @@
 #include "tools/experiment/study_runs.hpp"
 
-#include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
 #include <spdlog/fmt/fmt.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -18,9 +16,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "tools/experiment/child_program.hpp"
 #include "tools/experiment/runner.hpp"
-
-extern char** environ;
 
 namespace tools {
 
@@ -133,22 +130,10 @@ class StudyChildren {
 
   std::vector<std::string> arguments_of(const StudyRun& run, int slot, int attempt) const {
     const StudyConfig& config = study_.config;
-    std::vector<std::string> arguments{"shoal",
-                                       "run",
-                                       config.world,
-                                       "--seed",
-                                       std::to_string(run.seed),
-                                       "--results",
-                                       run.directory,
-                                       "--quiet",
-                                       "--no-pictures",
-                                       "--threads",
-                                       "1",
-                                       "--log-level",
-                                       "warn",
-                                       "--speed",
-                                       "max",
-                                       "--end-with-parent"};
+    std::vector<std::string> arguments{
+        "shoal",     "run",         config.world, "--seed",        std::to_string(run.seed),
+        "--results", run.directory, "--quiet",    "--no-pictures", "--threads",
+        "1",         "--log-level", "warn",       "--speed",       "max"};
     const auto add = [&](const std::string& option, const std::string& value) {
       arguments.push_back(option);
       arguments.push_back(value);
@@ -157,6 +142,7 @@ class StudyChildren {
     if (config.duration_s) add("--duration", fmt::format("{}", *config.duration_s));
     if (!config.launch) {
       add("--bus", "none");
+      arguments.emplace_back("--no-serial-ports");  // nobody talks through them, and two runs cannot have the same
       return arguments;
     }
     arguments.emplace_back("--launch");
@@ -182,28 +168,10 @@ class StudyChildren {
         {spawn(arguments_of(run, slot, what.attempt), run.directory + "/run.log"), what, slot, Clock::now()});
   }
 
-  static pid_t spawn(std::vector<std::string> arguments, const std::string& log) {
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    pointers.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    sigset_t usual;
-    sigemptyset(&usual);
-    sigaddset(&usual, SIGPIPE);
-    posix_spawnattr_setsigdefault(&attributes, &usual);
-    // A group of its own: Ctrl-C reaches it through us.
-    posix_spawnattr_setpgroup(&attributes, 0);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
+  // In a group of its own: Ctrl-C reaches it through us.
+  static pid_t spawn(const std::vector<std::string>& arguments, const std::string& log) {
     pid_t pid = 0;
-    const int error = posix_spawn(&pid, "/proc/self/exe", &actions, &attributes, pointers.data(), environ);
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&actions);
+    const int error = start_child({"/proc/self/exe", arguments, own_environment(), log}, pid);
     if (error != 0) throw std::runtime_error(std::string("a run cannot be started: ") + std::strerror(error));
     return pid;
   }

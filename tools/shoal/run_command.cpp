@@ -1,6 +1,4 @@
-#include <signal.h>
 #include <spdlog/spdlog.h>
-#include <sys/prctl.h>
 
 #include <charconv>
 #include <iostream>
@@ -89,9 +87,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->type_size(1)
       ->allow_extra_args(false);
   add_plugin_option(*command);
-  command->add_flag_callback(
-      "--end-with-parent", [] { prctl(PR_SET_PDEATHSIG, SIGTERM); },
-      "end, as by SIGTERM, when the program that started it is gone");
+  command->add_flag("!--no-serial-ports", arguments->run.serial_ports,
+                    "do not open the pseudo-terminals and FIFOs of devices");
   command->add_flag("--quiet", arguments->run.quiet, "no progress and no summary");
   command->add_option("--log-level", arguments->log_level, "what is said on stderr")
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}));
