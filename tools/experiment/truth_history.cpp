@@ -1,16 +1,15 @@
 #include "tools/experiment/truth_history.hpp"
 
-#include <cstdlib>
-
 namespace tools {
 
 sim::Time true_time_of(const sim::World& world, const sim::Vehicle& vehicle, std::int64_t utime) {
-  std::int64_t time_us = 0;
-  if (__builtin_sub_overflow(utime, world.epoch_us(), &time_us)) return utime < 0 ? sim::Time::min() : sim::Time::max();
-  // What is far from what the clock shows now is no time of this run; clocks are asked about times near now only.
-  const sim::Time shown = vehicle.clock().reading(world.now());
-  const bool near_now = std::abs(time_us / 2 - shown.count() / 2) < sim::VehicleClock::memory.count() / 2;
-  return near_now ? vehicle.clock().true_time(sim::Time{time_us}) : sim::Time{time_us};
+  // Clocks know their errors near now only; how far off a stamp is shows against what the clock shows now.
+  const std::int64_t shown_us = world.epoch_us() + vehicle.clock().reading(world.now()).count();
+  std::int64_t ahead_us = 0;
+  if (__builtin_sub_overflow(utime, shown_us, &ahead_us)) return utime < shown_us ? sim::Time::min() : sim::Time::max();
+  if (ahead_us <= -sim::VehicleClock::memory.count()) return sim::Time::min();
+  if (ahead_us >= sim::VehicleClock::memory.count()) return sim::Time::max();
+  return vehicle.clock().true_time(sim::Time{utime - world.epoch_us()});
 }
 
 TruthHistory::TruthHistory(const sim::World& world, const sim::Vehicle& vehicle)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "shoal/estimate_t.hpp"
@@ -180,6 +181,41 @@ TEST(PositionError, OfAClockThatIsAheadWaitsForItsTime) {
   // It is compared with where the rover was 0.4 s later.
   EXPECT_NEAR(world.figure("e.final_m"), world.position_m().x() - here_m, 1e-3);
   EXPECT_GT(world.figure("e.final_m"), 0.15);
+}
+
+TEST(PositionError, IsOfTheTrueTimeHoweverFarTheClockIsOff) {
+  for (const char* clock : {"clock: {offset_s: 90}", "clock: {offset_s: -90}", "clock: {offset_s: 3e7}",
+                            "clock: {offset_s: -3e7, drift_ppm: 20}"}) {
+    test::TestWorld test(test::modem_sea({{"a", "[1, 2, -20]", "{name: modem, type: acoustic_modem}", clock}},
+                                         "metrics: [{name: e, vehicle: a, channel: est}]\n"));
+    tools::Scoring scoring(test.world);
+    const sim::Vehicle& vehicle = *test.world.find_vehicle("a");
+    const auto step = [&] {
+      test.world.step();
+      scoring.after_step();
+    };
+    while (test.world.now() < sim::Time{2'000'000}) step();
+    const sim::Time at{1'600'000};
+    shoal::pose_t message{};
+    message.utime = test.world.epoch_us() + vehicle.clock().reading(at).count();
+    const sim::Vector3d p = vehicle.X_WV().translation();
+    message.pos[0] = p.x() + 3, message.pos[1] = p.y() + 4;
+    test.send("est", message);
+    step();
+    EXPECT_EQ(scoring.bad_messages(), 0) << clock;
+    ASSERT_EQ(scoring.figures().at("e.samples"), 1) << clock;
+    EXPECT_NEAR(scoring.figures().at("e.final_m"), 5, creep_m) << clock;  // 3, 4, 5
+    EXPECT_NEAR(scoring.tracks().at(0).samples->at(0).time_s, sim::to_seconds(at), 2e-6) << clock;
+    // A stamp by true time, which the vehicle does not know, is far off.
+    for (const std::int64_t utime :
+         {test.world.epoch_us() + test.world.now().count(), std::numeric_limits<std::int64_t>::min(),
+          std::numeric_limits<std::int64_t>::max()}) {
+      message.utime = utime;
+      test.send("est", message);
+    }
+    step();
+    EXPECT_EQ(scoring.bad_messages(), 3) << clock;
+  }
 }
 
 TEST(Distance, IsTheLengthOfTheWay) {
