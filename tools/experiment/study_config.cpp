@@ -54,6 +54,11 @@ std::vector<std::int64_t> read_seeds(sim::ParamReader& in) {
   return seeds;
 }
 
+/// A key that is there must say something.
+void require_something(sim::ParamReader& in, const char* key, bool empty) {
+  if (in.has(key) && empty) in.error(key, "'" + std::string(key) + "' must not be empty");
+}
+
 /// All figures of all cases, sorted.
 std::vector<std::string> figures_of(const LoadedStudy& study) {
   std::set<std::string> names{"passed"};
@@ -135,6 +140,8 @@ void StudyPlot::read(sim::ParamReader& in) {
   in.read_choice("over", over, {{"cases", Over::cases}, {"distance", Over::distance}, {"time", Over::time}},
                  "what errors are drawn over: distance travelled or time");
   if (in.describing()) return;
+  require_something(in, "figure", figure.empty());
+  require_something(in, "metrics", metrics.empty());
   if (in.has("figure") == in.has("metrics"))
     in.error(in.has("figure") ? "needs either 'figure' or 'metrics', not both" : "needs either 'figure' or 'metrics'");
   else if (in.has("metrics") == (over == Over::cases))
@@ -160,17 +167,19 @@ void StudyRule::read(sim::ParamReader& in) {
   in.read_reference("below_case", below_case, "case", "it must be below the same of this case times factor");
   in.read("below_figure", below_figure, "it must be below the same of this figure times factor");
   in.read("factor", factor, sim::above(0), "see below_case and below_figure");
+  if (in.describing()) return;
+  require_something(in, "case", in_case.empty());
+  require_something(in, "figure", figure.empty());
+  require_something(in, "below", !below);
+  require_something(in, "above", !above);
+  require_something(in, "equals", !equals);
+  require_something(in, "below_case", below_case.empty());
+  require_something(in, "below_figure", below_figure.empty());
   int forms = 0;
-  const auto written = [&](const char* key) {
-    const sim::ConfigNode* node = in.describing() || !in.has(key) ? nullptr : in.child(key);
-    return node != nullptr && node->kind != sim::ConfigNode::Kind::null &&
-           !(node->scalar.empty() && node->items.empty());
-  };
-  for (const char* key : {"below", "above", "equals", "below_case", "below_figure"}) forms += written(key);
-  if (!in.describing() && in.has("case") && !written("case")) in.error("case", "'case' must not be empty");
+  for (const char* key : {"below", "above", "equals", "below_case", "below_figure"}) forms += in.has(key);
   if (in.has("factor") && !in.has("below_case") && !in.has("below_figure"))
     in.error("factor", "'factor' belongs to 'below_case' and 'below_figure'");
-  if (!in.describing() && forms != 1)
+  if (forms != 1)
     in.error("needs one of 'above', 'below', 'below_case', 'below_figure' and 'equals'" +
              std::string(forms > 1 ? ", not several" : ""));
 }

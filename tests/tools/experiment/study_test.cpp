@@ -147,6 +147,20 @@ TEST(StudyConfig, TellsWhatIsWrong) {
   EXPECT_EQ(error(two_cases), "");
   EXPECT_THAT(error("", "[]"), HasSubstr("study.yaml:4:8: 'seeds' must have at least one seed"));
   EXPECT_THAT(error("", "[1, 1]"), HasSubstr("'seeds' must differ from each other"));
+  EXPECT_THAT(error("", "~"), HasSubstr("study.yaml:4:8: 'seeds' must have at least one seed"));
+  const auto rule = [&](const std::string& keys) {
+    return error("pass: [{case: world, figure: passed, " + keys + "}]\n");
+  };
+  EXPECT_EQ(rule("below: 1"), "");
+  for (const char* key : {"below", "above", "equals", "below_case", "below_figure"})
+    EXPECT_THAT(rule(std::string(key) + ": ~"), HasSubstr("study.yaml:5:")) << key;
+  for (const char* key : {"below_case", "below_figure"})
+    EXPECT_THAT(rule(std::string(key) + ": ''"), HasSubstr("'" + std::string(key) + "' must not be empty")) << key;
+  EXPECT_THAT(rule("below: 1, factor: 2"), HasSubstr("'factor' belongs to 'below_case' and 'below_figure'"));
+  EXPECT_THAT(error("pass: [{case: '', figure: passed, below: 1}]\n"), HasSubstr("'case' must not be empty"));
+  EXPECT_THAT(error("pass: [{case: world, figure: '', below: 1}]\n"), HasSubstr("'figure' must not be empty"));
+  EXPECT_THAT(error("plots: [{name: p, figure: ''}]\n"), HasSubstr("'figure' must not be empty"));
+  EXPECT_THAT(error("plots: [{name: p, metrics: [], over: time}]\n"), HasSubstr("'metrics' must not be empty"));
   EXPECT_THAT(error("", "[1.5]"), HasSubstr("'seeds' must be whole numbers, got 1.5"));
   EXPECT_THAT(error("", "[-1]"), HasSubstr("must be >= 0"));
   EXPECT_THAT(error("", "{first: 3}"), HasSubstr("missing key 'count'"));
@@ -180,10 +194,10 @@ TEST(StudyResults, JudgeStatisticsOfCases) {
                            "  - {case: plain, figure: e.rms_m, below_case: quick, factor: 0.5}\n"  // 2 < 0.5 * 6
                            "  - {case: plain, figure: e.rms_m, below_figure: e.rms_m}\n"           // 2 < 2
                            "  - {case: plain, figure: passed, equals: 0.5}\n"                      // 1 < 3, not 3 < 3
-                           "  - {case: quick, figure: e.rms_m, statistic: std, above: 0}\n"        // one value: no std
+                           "  - {case: quick, figure: e.rms_m, statistic: std, above: 0}\n"        // equal ones
                            "  - {case: quick, figure: e.final_m, above: -1}\n");                   // nobody has it
   const tools::LoadedStudy study = tools::load_study(folder.path());
-  const auto runs = made_up_runs(study, {{1, 3}, {6, std::nan("")}});
+  const auto runs = made_up_runs(study, {{1, 3}, {6, 6}});
   const tools::StudyResults results(study, runs);
   std::vector<bool> passed;
   for (const auto& verdict : results.verdicts()) passed.push_back(verdict.passed);
@@ -193,11 +207,31 @@ TEST(StudyResults, JudgeStatisticsOfCases) {
   EXPECT_THAT(results.to_text(), HasSubstr("FAILED: plain: max of e.rms_m (3) < 2.5"));
   const auto json = nlohmann::json::parse(results.to_json(1));
   EXPECT_EQ(json["cases"][0]["figures"]["e.rms_m"]["mean"], 2);
-  EXPECT_EQ(json["cases"][1]["figures"]["e.rms_m"]["count"], 1);
-  EXPECT_TRUE(json["cases"][1]["figures"]["e.rms_m"]["std"].is_null());
+  EXPECT_EQ(json["cases"][1]["figures"]["e.rms_m"]["std"], 0);
   EXPECT_EQ(json["passed"], false);
   EXPECT_THAT(results.to_csv(), HasSubstr("case,seed,exit_code,passed,ended,sim_time_s,wall_s,e.rms_m\n"
                                           "plain,1,0,1,duration,0,0.000,1\n"));
+  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,0,0,duration,0,0.000,6\n"));
+}
+
+TEST(StudyResults, ARuleFailsWhenARunLacksItsFigure) {
+  const StudyFolder folder(two_cases +
+                           "pass:\n"
+                           "  - {case: quick, figure: e.rms_m, statistic: max, below: 10}\n"
+                           "  - {case: quick, figure: e.rms_m, statistic: min, above: 1}\n"
+                           "  - {case: quick, figure: e.rms_m, equals: 6}\n"
+                           "  - {case: plain, figure: e.rms_m, below_case: quick}\n"
+                           "  - {case: plain, figure: e.rms_m, below: 10}\n");
+  const tools::LoadedStudy study = tools::load_study(folder.path());
+  const auto runs = made_up_runs(study, {{1, 3}, {6, std::nan("")}});
+  const tools::StudyResults results(study, runs);
+  std::vector<bool> passed;
+  for (const auto& verdict : results.verdicts()) passed.push_back(verdict.passed);
+  EXPECT_THAT(passed, ElementsAre(false, false, false, false, true));
+  EXPECT_EQ(results.verdicts()[0].rule, "quick: max of e.rms_m (nan) < 10");
+  const auto json = nlohmann::json::parse(results.to_json(1));
+  EXPECT_EQ(json["cases"][1]["figures"]["e.rms_m"]["count"], 1);
+  EXPECT_TRUE(json["cases"][1]["figures"]["e.rms_m"]["std"].is_null());
   EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,0,0,duration,0,0.000,\n"));
 }
 
