@@ -13,6 +13,7 @@ LinkCounts link_counts(const sim::World& world, const std::string& vehicle, cons
     sum.sent += counts.sent;
     sum.bytes_sent += counts.sent_bytes;
     sum.received += counts.understood;
+    sum.unsent += counts.unsent;
     for (std::size_t i = 0; i < causes.size(); ++i) sum.lost[causes[i]] += counts.lost[i + 1];  // 0: none
   };
   if (vehicle.empty()) add(world.acoustics().counts_of_those_gone());

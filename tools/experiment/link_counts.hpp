@@ -13,6 +13,7 @@ struct LinkCounts {
   std::int64_t sent = 0;                     ///< packets
   std::int64_t bytes_sent = 0;               ///< in them
   std::int64_t received = 0;                 ///< of others' packets, as often as one of the modems understood one
+  std::int64_t unsent = 0;                   ///< asked for without power, silent by a fault, or out of the water
   std::map<std::string, std::int64_t> lost;  ///< heard but not understood, by cause: one of sim::loss_causes()
 };
 

@@ -83,7 +83,8 @@ std::string Summary::to_json() const {
     entry["speeding_s"] = record.speeding_s;
   }
   if (acoustics) {
-    json["acoustics"] = {{"sent", acoustics->sent}, {"received", acoustics->received}};
+    json["acoustics"] = {{"sent", acoustics->sent}, {"received", acoustics->received}, {"unsent", acoustics->unsent}};
+    json["acoustics"]["lost"] = nlohmann::ordered_json::object();
     for (const auto& [cause, count] : acoustics->lost)
       if (count > 0) json["acoustics"]["lost"][cause] = count;
   }
@@ -109,6 +110,7 @@ std::string Summary::to_text() const {
     text += fmt::format("  acoustic packets: {} sent, {} received", acoustics->sent, acoustics->received);
     for (const auto& [cause, count] : acoustics->lost)
       if (count > 0) text += fmt::format(", {} lost ({})", count, cause);
+    if (acoustics->unsent > 0) text += fmt::format(", {} not sent", acoustics->unsent);
     text += '\n';
   }
   if (serial_dropped_bytes > 0) text += fmt::format("  {} bytes were fetched from no port\n", serial_dropped_bytes);

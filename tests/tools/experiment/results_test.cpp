@@ -75,10 +75,10 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   const auto json = nlohmann::ordered_json::parse(summary.to_json());
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(keys,
-              testing::ElementsAre("world", "seed", "steps", "sim_time_s", "wall_s", "real_time_factor", "state_hash",
-                                   "messages", "dropped_messages", "bad_messages", "quick_steps", "metrics", "rules",
-                                   "processes", "passed", "ended", "error", "exit_code", "shoal"));
+  EXPECT_THAT(keys, testing::ElementsAre("world", "seed", "steps", "sim_time_s", "wall_s", "real_time_factor",
+                                         "state_hash", "messages", "dropped_messages", "bad_messages", "quick_steps",
+                                         "metrics", "rules", "processes", "serial_dropped_bytes", "passed", "ended",
+                                         "error", "exit_code", "shoal"));
   EXPECT_EQ(json["world"], "harbor");
   EXPECT_EQ(json["seed"], 3);
   EXPECT_EQ(json["steps"], 1000);
@@ -91,6 +91,29 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   EXPECT_EQ(json["processes"][0]["sim_time_s"], 2.5);
   EXPECT_EQ(json["passed"], true);
   EXPECT_THAT(summary.to_text(), testing::HasSubstr("process 'pilot' exited with code 1 at 2.50 s"));
+}
+
+TEST(Summary, TellsWhatBecameOfAcousticPackets) {
+  tools::Summary summary;
+  EXPECT_FALSE(nlohmann::json::parse(summary.to_json()).contains("acoustics"));
+  summary.acoustics.emplace();
+  EXPECT_EQ(nlohmann::json::parse(summary.to_json())["acoustics"]["lost"], nlohmann::json::object());
+  summary.acoustics->sent = 5;
+  summary.acoustics->received = 3;
+  summary.acoustics->unsent = 1;
+  summary.acoustics->lost = {{"busy", 0}, {"noise", 2}};
+  summary.serial_dropped_bytes = 7;
+  const auto json = nlohmann::json::parse(summary.to_json());
+  EXPECT_EQ(json["acoustics"],
+            nlohmann::json::parse(R"({"sent": 5, "received": 3, "unsent": 1, "lost": {"noise": 2}})"));
+  EXPECT_EQ(json["serial_dropped_bytes"], 7);
+  EXPECT_THAT(summary.to_text(),
+              testing::HasSubstr("acoustic packets: 5 sent, 3 received, 2 lost (noise), 1 not sent\n"));
+  EXPECT_THAT(summary.to_text(), testing::HasSubstr("  7 bytes were fetched from no port\n"));
+}
+
+TEST(RunWorld, CountsAcousticPacketsOnlyWhereThereAreModems) {
+  EXPECT_FALSE(tools::run_world(small_world(), quiet_run()).acoustics);
 }
 
 TEST(Summary, AFigureThatIsNoNumberIsNull) {
