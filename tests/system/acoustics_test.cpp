@@ -39,6 +39,27 @@ TEST(AcousticsCommand, TakesPlacesInAWorld) {
   EXPECT_THAT(ended.output, ContainsRegex("travel time +0.3378 s"));
 }
 
+TEST(AcousticsCommand, TakesNoVehicleForTheBottom) {
+  const ScratchFolder folder;
+  const auto budget = [&](const std::string& more, const char* water_depth_m = nullptr) {
+    write_file(folder.file("sea.yaml"),
+               "shoal: 1\nmedium: {water: {}}\nacoustics: {multipath: {max_bounces: 1, bottom: {loss_dB: 1}}}\n"
+               "objects: [{name: bottom, fixed: true, position_m: [0, 0, -50], parts: [{shape: plane}]}]\n" +
+                   more);
+    std::vector<std::string> arguments{folder.file("sea.yaml"), "--from", "-100,0,-10", "--to", "100,0,-10"};
+    if (water_depth_m != nullptr) arguments.insert(arguments.end(), {"--water-depth", water_depth_m});
+    const Ended ended = acoustics(arguments);
+    EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+    return ended.output;
+  };
+  const std::string above_the_bottom = budget("");
+  EXPECT_EQ(
+      budget("vehicles: [{name: auv, file: " + source("vehicles/remus100.yaml") + ", position_m: [0, 0, -20]}]\n"),
+      above_the_bottom);
+  EXPECT_EQ(budget("", "50"), above_the_bottom);
+  EXPECT_NE(budget("", "20"), above_the_bottom);
+}
+
 TEST(AcousticsCommand, PrintsATableOverRange) {
   const Ended ended = acoustics({"--ranges", "500:2000:500", "--micromodem"});
   ASSERT_EQ(ended.exit_code, 0) << ended.errors;
@@ -51,6 +72,13 @@ TEST(AcousticsCommand, DrawsAPicture) {
   const Ended ended = acoustics({"--ranges", "500:2000:500", "--picture", folder.file("link.png")});
   ASSERT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_GT(std::filesystem::file_size(folder.file("link.png")), 1000u);
+}
+
+TEST(AcousticsCommand, ShowsTheLinkThatItsPageShows) {
+  const Ended ended = acoustics(
+      {source("worlds/coop_underwater.yaml"), "--from", "boat1/modem", "--to", "boat2/modem", "--packet", "psk:500:64"});
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_THAT(ended.output, ContainsRegex("psk +500 +64"));
 }
 
 TEST(AcousticsCommand, ChecksTheClosedForms) {

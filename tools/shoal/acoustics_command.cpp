@@ -152,16 +152,25 @@ AcousticLink link_of(const AcousticsArguments& arguments, const sim::World& worl
   return link;
 }
 
-/// Of what is below the middle of the link, for echoes; nothing where nothing is.
+/// Of what is fixed below the middle of the link, for echoes; nothing where nothing is.
 std::optional<double> water_depth_m(const AcousticLink& link, const sim::World& world) {
   sim::Vector3d p_W = (link.from.p_W + link.to.p_W) / 2;
   const double surface_m = world.medium().surface_m(p_W.x(), p_W.y());
   p_W.z() = std::min(link.from.p_W.z(), link.to.p_W.z());
   sim::RayFilter filter;
   filter.kind = sim::RayKind::sound;
-  const auto bottom = world.physics().scene().cast(p_W, -sim::Vector3d::UnitZ(), 12000, filter);
-  if (!bottom) return std::nullopt;
-  return surface_m - p_W.z() + bottom->range_m;
+  const sim::PhysicsWorld& physics = world.physics();
+  // Vehicles and what floats are no bottom: the ray goes on through them.
+  constexpr int most_hits = 100;
+  for (int i = 0; i < most_hits; ++i) {
+    const auto hit = physics.scene().cast(p_W, -sim::Vector3d::UnitZ(), 12000, filter);
+    if (!hit) return std::nullopt;
+    p_W.z() -= hit->range_m;
+    const int body = physics.parts()[static_cast<std::size_t>(hit->part)].body;
+    if (physics.bodies()[static_cast<std::size_t>(body)]->fixed()) return surface_m - p_W.z();
+    p_W.z() -= 1e-3;
+  }
+  return std::nullopt;
 }
 
 void warn(const AcousticLink& link, const sim::World& world) {
