@@ -1,0 +1,206 @@
+#include <cmath>
+
+#include "sim/acoustics/channel.hpp"
+#include "sim/acoustics/sound_path.hpp"
+#include "sim/device/fault.hpp"
+#include "sim/world/vehicle.hpp"
+
+// What becomes of a signal where it arrives.
+
+namespace sim {
+
+namespace {
+
+/// A gain below this is none.
+constexpr double lowest_dB = -1000;
+
+}  // namespace
+
+PowerRatio AcousticChannel::noise_at(const Transducer& to, const Vector3d& p_W, const Signal& signal) const {
+  const Decibels quieter = to.noise_reduction(signal.centre_Hz);
+  PowerRatio noise = to_power(propagation_.ambient_level(signal.centre_Hz, signal.bandwidth_Hz) - quieter);
+  for (const ContinuousSound* sound : sounds_) {
+    if (!sound->on_ || !sound->vehicle_.systems().powered || sound->faults_.silent()) continue;
+    const Vector3d from_W = sound->body_.X_WB() * sound->p_BS_;
+    if (!around_.medium.in_water(from_W)) continue;
+    const double f = sound->centre_Hz_, half_Hz = sound->bandwidth_Hz_ / 2;
+    const double low_Hz = std::max(f - half_Hz, signal.centre_Hz - signal.bandwidth_Hz / 2);
+    const double high_Hz = std::min(f + half_Hz, signal.centre_Hz + signal.bandwidth_Hz / 2);
+    if (high_Hz <= low_Hz) continue;
+    Decibels level = sound->source_level_ - propagation_.transmission_loss(from_W, p_W, f);
+    level += directivity_gain(to.config().directivity, to.R_WS().transpose() * (from_W - p_W), f,
+                              around_.medium.sound_speed_mps(p_W));
+    if (config_.occlusion)
+      level += pressure_level(
+          propagation_.free_part(from_W, sound->vehicle_.group(), p_W, to.vehicle().group(), signal.centre_Hz));
+    noise += (high_Hz - low_Hz) / sound->bandwidth_Hz_ * to_power(level);
+  }
+  return noise;
+}
+
+Decibels AcousticChannel::link_loss(const Transducer& to, const Sending& sending, double& loss_probability) const {
+  const auto named = [](const std::string& name, const std::string& device) {
+    return name.empty() || name == device ||
+           (device.size() > name.size() && device[name.size()] == '/' && device.compare(0, name.size(), name) == 0);
+  };
+  Decibels loss{0};
+  loss_probability = 0;
+  for (const LinkConfig& link : config_.links) {
+    const bool there = named(link.from, sending.source) && named(link.to, to.full_name());
+    const bool back = link.both_ways && named(link.to, sending.source) && named(link.from, to.full_name());
+    if (!there && !back) continue;
+    loss = loss + Decibels{link.extra_loss_dB};
+    loss_probability = 1 - (1 - loss_probability) * (1 - link.loss_probability);
+  }
+  return loss;
+}
+
+Random AcousticChannel::stream(const Transducer& to, const Sending& sending, bool at_end) const {
+  // One for each pair, so that another modem in the world changes no other link.
+  Random random(around_.seed, sending.source + ">" + to.full_name() + "#sound");
+  random.begin_step(2 * sending.sequence + at_end);
+  return random;
+}
+
+PowerRatio AcousticChannel::work_out_level(Flight& flight, const Sending& sending, double& later_s) {
+  const Transducer& to = *flight.to;
+  const Signal& signal = sending.signal;
+  const Vector3d way_W = flight.p_begun_W - sending.p_W;
+  const double range_m = way_W.norm();
+  const Vector3d direction_W = range_m > 0 ? Vector3d(way_W / range_m) : Vector3d(Vector3d::UnitX());
+  const Vector3d v_to_W = to.v_W();
+  flight.closing_mps = closing_speed_mps(direction_W, sending.v_W, v_to_W);
+  const double c = around_.medium.sound_speed_mps(flight.p_begun_W);
+  const double squeezed = doppler_factor(direction_W, sending.v_W, v_to_W, c);
+  flight.ended = flight.begun + from_seconds(to_seconds(signal.duration) / squeezed);
+
+  Random random = stream(to, sending, false);
+  const Propagation::Gain gain =
+      propagation_.gain(sending.p_W, sending.group, flight.p_begun_W, to.vehicle().group(), signal.centre_Hz, random);
+  double loss_probability = 0;
+  Decibels level = signal.source_level - link_loss(to, sending, loss_probability);
+  level += directivity_gain(sending.directivity, sending.R_WS.transpose() * direction_W, signal.centre_Hz, c);
+  level += directivity_gain(to.config().directivity, -(to.R_WS().transpose() * direction_W), signal.centre_Hz, c);
+  flight.level = level + gain.signal;
+  later_s = gain.later_s;
+  if (gain.blocked && gain.signal.dB() < lowest_dB) flight.loss = SignalLoss::blocked;
+  return to_power(level) * gain.disturbing;
+}
+
+SignalLoss AcousticChannel::obstacle(const Flight& flight) const {
+  const Transducer& to = *flight.to;
+  if (!around_.medium.in_water(flight.p_begun_W)) return SignalLoss::out_of_water;
+  if (!to.works()) return SignalLoss::receiver_off;
+  if (flight.begun < to.sending_until_) return SignalLoss::half_duplex;
+  if (std::abs(flight.closing_mps) > to.config().doppler_limit_mps) return SignalLoss::doppler;
+  return flight.loss;  // blocked, or none
+}
+
+void AcousticChannel::begin(int number) {
+  Flight& flight = flights_[static_cast<std::size_t>(number)];
+  const Sending& sending = *sendings_[static_cast<std::size_t>(flight.sending)];
+  if (flight.to == nullptr) {
+    end(number);
+    return;
+  }
+  Transducer& to = *flight.to;
+  const Vector3d p_W = to.p_W(flight.begun);
+  // Where it was expected, but for what its turns do in so short a time; somebody who was put elsewhere is met anew.
+  if (!flight.delayed && (p_W - flight.p_begun_W).norm() > 0.01) {
+    approach(number, flight.begun);
+    return;
+  }
+  flight.p_begun_W = p_W;
+  if (config_.range_max_m && (p_W - sending.p_W).norm() > *config_.range_max_m) {
+    end(number);
+    return;
+  }
+  double later_s = 0;
+  const PowerRatio disturbing = work_out_level(flight, sending, later_s);
+  if (later_s > 0 && !flight.delayed) {
+    // Nothing comes along the direct path: the first sound is an echo.
+    flight.delayed = true;
+    flight.travel_time_s += later_s;
+    flight.begun += from_seconds(later_s);
+    schedule(flight.begun, begin_event, number);
+    return;
+  }
+  flight.listened = to.listener_.listens_to(sending.signal);
+  flight.present = flight.loss == SignalLoss::none && around_.medium.in_water(flight.p_begun_W);
+  if (flight.present) {
+    const PowerRatio power = to_power(flight.level) + disturbing;
+    to.receiver_.begin({number, sending.signal.centre_Hz, sending.signal.bandwidth_Hz, power, flight.ended},
+                       flight.begun);
+  }
+  if (flight.listened) take(number, flight, sending, disturbing);
+  schedule(flight.ended, end_event, number);
+}
+
+void AcousticChannel::take(int number, Flight& flight, const Sending& sending, PowerRatio disturbing) {
+  const Signal& signal = sending.signal;
+  Transducer& to = *flight.to;
+  TakenSignal taken;
+  taken.sound = {number, signal.centre_Hz, signal.bandwidth_Hz, to_power(flight.level), flight.ended};
+  taken.noise = noise_at(to, flight.p_begun_W, signal);
+  taken.disturbing = disturbing;
+  taken.modulation = signal.modulation;
+  taken.bit_rate_bps = signal.bit_rate_bps;
+  taken.bits = signal.bits;
+  taken.coding_gain_dB = signal.coding_gain_dB;
+  taken.begun = flight.begun;
+  taken.ended = flight.ended;
+  flight.snr = to_decibels(taken.sound.power / (taken.noise + disturbing));
+  flight.loss = obstacle(flight);
+  if (flight.loss != SignalLoss::none) return;
+  std::int64_t displaced = -1;
+  flight.loss = to.receiver_.take(taken, {to.config().detection_dB, to.config().capture_dB}, displaced);
+  flight.noticed = flight.loss == SignalLoss::none;
+  if (displaced >= 0) flights_[static_cast<std::size_t>(displaced)].loss = SignalLoss::captured;
+}
+
+void AcousticChannel::finish(Flight& flight, const Sending& sending, const SignalReceiver::Outcome& outcome) {
+  Random random = stream(*flight.to, sending, true);
+  const double luck = random.uniform();
+  const double link_luck = random.uniform();
+  if (luck > outcome.success) flight.loss = luck > outcome.success_alone ? SignalLoss::noise : SignalLoss::interference;
+  double loss_probability = 0;
+  link_loss(*flight.to, sending, loss_probability);
+  if (flight.loss == SignalLoss::none && link_luck < loss_probability) flight.loss = SignalLoss::link;
+}
+
+void AcousticChannel::end(int number) {
+  Flight& flight = flights_[static_cast<std::size_t>(number)];
+  const Sending& sending = *sendings_[static_cast<std::size_t>(flight.sending)];
+  if (Transducer* to = flight.to) {
+    SignalReceiver::Outcome outcome;
+    const bool taken = flight.present && to->receiver_.end(number, flight.ended, outcome);
+    if (flight.listened) {
+      Decibels sinr = flight.snr;
+      if (taken) {
+        sinr = to_decibels(outcome.worst_sinr);
+        finish(flight, sending, outcome);
+        if (!around_.medium.in_water(to->p_W(flight.ended)) || sending.cut) flight.loss = SignalLoss::out_of_water;
+        if (!to->works()) flight.loss = SignalLoss::receiver_off;
+      }
+      const bool message = sending.signal.kind == Signal::Kind::message;
+      if (message) ++to->counts_.lost[static_cast<std::size_t>(flight.loss)];
+      if (message && flight.loss == SignalLoss::none) {
+        ++to->counts_.understood;
+        to->counts_.understood_bytes += static_cast<std::int64_t>(sending.signal.payload.size());
+      }
+      const bool deaf = flight.loss == SignalLoss::receiver_off || flight.loss == SignalLoss::out_of_water ||
+                        flight.loss == SignalLoss::blocked;
+      if (!deaf)
+        to->listener_.heard({sending.signal, sending.source, sending.number, sending.sent, flight.begun, flight.ended,
+                             flight.travel_time_s, sending.p_W, flight.p_begun_W, flight.level, flight.snr, sinr,
+                             flight.closing_mps, flight.loss, flight.noticed});
+    }
+  }
+  // heard() may have transmitted: references are stale.
+  const int of = flights_[static_cast<std::size_t>(number)].sending;
+  free_flights_.push_back(number);
+  flights_[static_cast<std::size_t>(number)] = {};
+  release(of);
+}
+
+}  // namespace sim
