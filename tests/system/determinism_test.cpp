@@ -29,8 +29,7 @@ struct Case {
 class Determinism : public testing::TestWithParam<Case> {
  protected:
   std::vector<std::string> run_arguments(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {"run", source(GetParam().world), "--duration", GetParam().duration_s,
-                                          "--no-serial-ports"};
+    std::vector<std::string> arguments = {"run", source(GetParam().world), "--duration", GetParam().duration_s};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
@@ -110,8 +109,7 @@ INSTANTIATE_TEST_SUITE_P(Worlds, Determinism,
                                          Case{"worlds/proving_sea.yaml", "20"}, Case{"worlds/hill_course.yaml", "5"},
                                          Case{"worlds/sonar_tank.yaml", "5"}, Case{"worlds/survey.yaml", "10"},
                                          Case{"worlds/harbour.yaml", "5"}, Case{"worlds/clock_bench.yaml", "20"},
-                                         Case{"worlds/coop_underwater.yaml", "10"},
-                                         Case{"worlds/micromodems.yaml", "20"}),
+                                         Case{"worlds/coop_underwater.yaml", "10"}),
                          [](const auto& test) { return std::filesystem::path(test.param.world).stem().string(); });
 
 TEST(ProvingGroundAndSea, HaveEveryDevice) {
