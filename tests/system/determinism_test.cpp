@@ -108,8 +108,7 @@ INSTANTIATE_TEST_SUITE_P(Worlds, Determinism,
                                          Case{"worlds/proving_ground.yaml", "20"},
                                          Case{"worlds/proving_sea.yaml", "20"}, Case{"worlds/hill_course.yaml", "5"},
                                          Case{"worlds/sonar_tank.yaml", "5"}, Case{"worlds/survey.yaml", "10"},
-                                         Case{"worlds/harbour.yaml", "5"}, Case{"worlds/clock_bench.yaml", "20"},
-                                         Case{"worlds/coop_underwater.yaml", "10"}),
+                                         Case{"worlds/harbour.yaml", "5"}, Case{"worlds/coop_underwater.yaml", "10"}),
                          [](const auto& test) { return std::filesystem::path(test.param.world).stem().string(); });
 
 TEST(ProvingGroundAndSea, HaveEveryDevice) {

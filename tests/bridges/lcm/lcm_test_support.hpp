@@ -20,9 +20,9 @@ namespace lcm_test {
 
 using namespace std::chrono_literals;
 
-/// A port of this process's own: LCM 1.3 keeps apart ports only, and tests run in parallel.
+/// A port of this process's own, offset 0 to 7: LCM 1.3 keeps apart ports only, and tests run in parallel.
 inline std::string own_url(int offset = 0) {
-  const int port = 10'000 + (static_cast<int>(getpid()) * 4 + offset) % 20'000;
+  const int port = 10'000 + (static_cast<int>(getpid()) * 8 + offset) % 20'000;
   return "udpm://239.255.76.67:" + std::to_string(port) + "?ttl=0";
 }
 
