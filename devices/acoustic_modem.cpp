@@ -195,7 +195,7 @@ void AcousticModem::transmit(sim::Time at, Outgoing message) {
   signal.bits = bits(message.data.size());
   signal.coding_gain_dB = params_.coding_gain_dB;
   signal.network = params_.network;
-  signal.code = code_of(own_time(vehicle_, at), message.destination);
+  signal.code = code_of(vehicle_.clock().reading(at), message.destination);
   signal.payload = std::move(message.data);
   transducer_.transmit(std::move(signal), at);
 }
@@ -212,7 +212,7 @@ void AcousticModem::heard(const sim::Reception& heard) {
   if (!packet.destination.empty() && packet.destination != vehicle_.name() && !params_.promiscuous) return;
   packet.sent = heard.sent;
   packet.arrived = heard.begun;
-  packet.arrived_reading = own_time(vehicle_, heard.begun);
+  packet.arrived_reading = vehicle_.clock().reading(heard.begun);
   packet.snr_dB = heard.sinr.dB();
   packet.level_dB = heard.level.dB();
   packet.closing_mps = heard.closing_mps;

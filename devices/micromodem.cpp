@@ -111,7 +111,7 @@ void Micromodem::say(const std::string& body) {
   std::string sentence = nmea_sentence(body);
   if (serial_) serial_->write(sentence + "\r\n");
   if (saying_.size() >= most_sentences) saying_.pop_front();
-  saying_.push_back({now_, own_time(vehicle_, now_), std::move(sentence)});
+  saying_.push_back({now_, vehicle_.clock().reading(now_), std::move(sentence)});
 }
 
 MicromodemSide::Sound Micromodem::send(sim::Signal signal, sim::Time at, bool on_the_second) {
@@ -154,7 +154,7 @@ MicromodemSide::Sound Micromodem::ask_beacons(sim::Time at, bool on_the_second) 
 }
 
 std::int64_t Micromodem::utc_us(sim::Time at) const {
-  return epoch_us_ + own_time(vehicle_, at).count();
+  return epoch_us_ + vehicle_.clock().reading(at).count();
 }
 
 bool Micromodem::listens_to(const sim::Signal& signal) const {

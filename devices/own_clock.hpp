@@ -7,24 +7,15 @@
 
 namespace devices {
 
-/// What the clock of a vehicle shows at a true time, both since the start of the run.
-inline sim::Time own_time(const sim::Vehicle& vehicle, sim::Time at) {
-  return vehicle.clock().reading(at);
-}
-/// The true time when it shows this.
-inline sim::Time true_time(const sim::Vehicle& vehicle, sim::Time reading) {
-  return vehicle.clock().true_time(reading);
-}
-
 /// The first true time, not before `from`, when the vehicle's clock shows a whole multiple of `period` (in UTC: the
 /// run's epoch counts).
 inline sim::Time next_whole(const sim::Vehicle& vehicle, std::int64_t epoch_us, sim::Time from, sim::Time period) {
-  // Not own_time(): that is a tick of the clock, which may be coarser than the period.
+  // Not its reading: that is a tick of the clock, which may be coarser than the period.
   const std::int64_t utc_us = epoch_us + (from + sim::from_seconds(vehicle.clock().error_s(from))).count();
   std::int64_t over_us = utc_us % period.count();
   if (over_us < 0) over_us += period.count();
   if (over_us == 0) return from;
-  const sim::Time at = true_time(vehicle, sim::Time{utc_us + period.count() - over_us - epoch_us});
+  const sim::Time at = vehicle.clock().true_time(sim::Time{utc_us + period.count() - over_us - epoch_us});
   return at < from ? from : at;
 }
 

@@ -53,10 +53,6 @@ bool Transducer::works() const {
   return vehicle_.systems().powered && !faults_.silent();
 }
 
-bool Transducer::in_water() const {
-  return channel_.around_.medium.in_water(body_.X_WB() * X_BS_.translation());
-}
-
 Vector3d Transducer::p_W(Time at) const {
   const BodyMotion motion = body_.motion();
   const Vector3d p_BS_W = motion.R_WB * X_BS_.translation();

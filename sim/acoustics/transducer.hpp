@@ -65,7 +65,6 @@ class Transducer {
   bool receiving() const { return receiver_.taking(); }
   /// Has power, and no fault keeps it silent.
   bool works() const;
-  bool in_water() const;
 
   /// At a time within or near the step that just ended: by its velocity from where it is.
   Vector3d p_W(Time at) const;
