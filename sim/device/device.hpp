@@ -7,6 +7,7 @@
 #include "sim/bus/bus.hpp"
 #include "sim/math.hpp"
 #include "sim/random/random.hpp"
+#include "sim/state/state_archive.hpp"
 #include "sim/state_hash.hpp"
 #include "sim/step_memory.hpp"
 #include "sim/time.hpp"
@@ -17,6 +18,13 @@ class Body;
 class Vehicle;
 class VehicleClock;
 class World;
+
+/// For devices that can be hashed and not yet be saved.
+template <typename Model>
+void visit_by_hash(const Model& model, StateArchive& archive) {
+  if (!archive.hashing()) archive.fail("this device cannot be saved");
+  model.hash_state(archive.part_hash());
+}
 
 /// Where and when a sensor samples.
 struct SenseContext {
@@ -61,7 +69,8 @@ class Sensor {
   /// Something sent to this device at a simulated time arrives, see World::schedule_arrival.
   virtual void arrive(Time /*at*/, std::span<const std::byte> /*payload*/) {}
   /// The reading and everything that outlasts a sample.
-  virtual void hash_state(StateHash& hash) const = 0;
+  virtual void visit_state(StateArchive& archive) { visit_by_hash(*this, archive); }
+  virtual void hash_state(StateHash& /*hash*/) const {}
 };
 
 /// Takes the messages a reporter makes.  The channel is the framework's business.
@@ -127,7 +136,8 @@ class Actuator : public VisitedInSteps {
   virtual void make_safe(SafeState safe) = 0;
   /// What it takes from the battery now, beside the device's `power_W`.
   virtual double power_W() const { return 0; }
-  virtual void hash_state(StateHash& hash) const = 0;
+  virtual void visit_state(StateArchive& archive) { visit_by_hash(*this, archive); }
+  virtual void hash_state(StateHash& /*hash*/) const {}
 };
 
 /// Takes messages and sets the actuator.

@@ -124,7 +124,7 @@ class ActuatorSide final : public Actuator {
     else
       return 0;
   }
-  void hash_state(StateHash&) const override {}  // the sensor side hashes the whole model
+  void visit_state(StateArchive&) override {}  // the sensor side visits the whole model
 
  private:
   Model& model_;

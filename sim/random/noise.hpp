@@ -6,6 +6,7 @@
 
 #include "sim/config/param_reader.hpp"
 #include "sim/random/random.hpp"
+#include "sim/state/state_archive.hpp"
 #include "sim/state_hash.hpp"
 
 namespace sim {
@@ -53,6 +54,11 @@ class Noise {
   /// Other parameters from now on; biases drawn and drifts so far stay.
   void change(const NoiseParams& params);
 
+  void visit_state(StateArchive& archive) {
+    archive(started_);
+    archive.expect_count(slow_.size(), "slow errors of a quantity");
+    for (Slow& slow : slow_) archive(slow.bias, slow.walk, slow.gauss_markov);
+  }
   void hash_state(StateHash& hash) const;
 
  private:

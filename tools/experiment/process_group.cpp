@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -18,6 +19,9 @@ namespace tools {
 namespace {
 
 namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::seconds time_to_end{2};
 
 /// A program beside the running one is preferred, so that a build tree works without being installed.
 std::string find_program(const std::string& name) {
@@ -84,11 +88,17 @@ void ProcessGroup::signal_all(int signal) const {
   for (const pid_t group : left_behind_) kill(-group, signal);
 }
 
+void ProcessGroup::await_clients() {
+  const auto deadline = Clock::now() + time_to_end;
+  const auto is_client = [](const Running& process) { return !process.config.client.empty(); };
+  while (reap(), std::any_of(running_.begin(), running_.end(), is_client) && Clock::now() < deadline)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
 void ProcessGroup::stop() {
-  using Clock = std::chrono::steady_clock;
   reap();
   signal_all(SIGTERM);
-  const auto deadline = Clock::now() + std::chrono::seconds(2);
+  const auto deadline = Clock::now() + time_to_end;
   while (!empty() && Clock::now() < deadline) {
     reap();
     if (!empty()) std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -33,6 +33,8 @@ class ProcessGroup {
   void start(const sim::ProcessConfig& config, const std::string& lcm_url, const std::string& log_directory);
   /// Programs that ended since the last call.
   std::vector<Exit> reap();
+  /// Lets those that take part in the lockstep end by themselves, for up to 2 s: they were told that the run is over.
+  void await_clients();
   /// Asks all and their children to end, and waits; SIGKILL after 2 s.  Exit codes of programs that were asked do not
   /// matter.
   void stop();

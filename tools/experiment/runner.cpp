@@ -274,7 +274,10 @@ class Run {
   }
 
   void finish(Summary& summary) {
-    if (alone_) service_.publish_end();  // else it would end the other simulator's clients
+    if (alone_) {  // else it would end the other simulator's clients
+      service_.publish_end();
+      if (signal_caught == 0) processes_.await_clients();
+    }
     processes_.stop();
     buses_.close_record();
     if (const auto error = buses_.record_error(); error && summary.exit_code == 0) fail(summary, 4, "bus", *error);

@@ -1,0 +1,84 @@
+#include "sim/state/state_archive.hpp"
+
+#include "sim/config/message_text.hpp"
+
+namespace sim {
+
+namespace {
+
+constexpr std::size_t most_name_bytes = 300;
+
+}  // namespace
+
+void StateArchive::section(std::string_view name) {
+  end_part();
+  part_ = name;
+  if (hashing()) {
+    part_hash_ = StateHash();
+    in_part_ = true;
+    return;
+  }
+  std::string text(name);
+  visit(text);
+  std::uint64_t length = 0;  // known at the end of the part
+  if (restoring()) {
+    if (text.size() > most_name_bytes || text != name)
+      throw SnapshotError("the snapshot has '" + shortened(printable(text)) + "' where this world has '" +
+                          std::string(name) + "'");
+    scalar(length);
+    if (length > input_.size() - at_)
+      fail("the snapshot is cut off: " + std::to_string(length) + " bytes should follow, " +
+           std::to_string(input_.size() - at_) + " are there");
+    part_end_ = at_ + length;
+  } else {
+    scalar(length);
+    part_begin_ = output_.size();
+  }
+  in_part_ = true;
+}
+
+void StateArchive::end() {
+  end_part();
+  part_ = "the end";
+  if (restoring() && at_ != input_.size())
+    fail(std::to_string(input_.size() - at_) + " bytes are left over in the snapshot");
+}
+
+void StateArchive::end_part() {
+  if (!in_part_) return;
+  in_part_ = false;
+  if (hashing()) {
+    parts_.push_back({part_, part_hash_.value()});
+    total_.add(part_hash_.value());
+  } else if (saving()) {
+    const std::uint64_t length = output_.size() - part_begin_;
+    std::memcpy(output_.data() + part_begin_ - sizeof length, &length, sizeof length);
+  } else if (at_ != part_end_) {
+    fail("the snapshot has " + std::to_string(part_end_ - at_) + " bytes more than this world");
+  }
+}
+
+void StateArchive::fail(const std::string& what) const {
+  throw SnapshotError("snapshot: " + part_ + ": " + what);
+}
+
+void StateArchive::fail_short(std::size_t wanted) const {
+  fail("the snapshot ends where " + std::to_string(wanted) + " bytes should follow");
+}
+
+void StateArchive::expect_count(std::size_t size, std::string_view of) {
+  std::uint64_t there = size;
+  scalar(there);
+  if (there != size)
+    fail("the snapshot has " + std::to_string(there) + " " + std::string(of) + ", this world " + std::to_string(size));
+}
+
+std::size_t StateArchive::count(std::size_t size, std::size_t bytes_each) {
+  std::uint64_t there = size;
+  scalar(there);
+  if (restoring() && there > left() / bytes_each)
+    fail("the snapshot says that " + std::to_string(there) + " elements follow, more than it has bytes for");
+  return static_cast<std::size_t>(there);
+}
+
+}  // namespace sim

@@ -1,0 +1,250 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <deque>
+#include <map>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "sim/math.hpp"
+#include "sim/state_hash.hpp"
+
+namespace sim {
+
+/// A snapshot that does not fit: cut off, damaged, or of another world.  what() says at which part of the state.
+class SnapshotError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The hash of one part of the state.
+struct PartHash {
+  std::string part;  ///< such as `auv1/dvl`
+  std::uint64_t hash = 0;
+  bool operator==(const PartHash&) const = default;
+};
+
+/// Goes through all that is state, for one of three purposes: to hash it, to save it, to restore it.  A class with
+/// state has one function for all of them, so that nothing that counts can be left out of a snapshot:
+///
+///     void visit_state(StateArchive& archive) { archive(charge_, reading_, noise_); }
+///
+/// archive(...) takes numbers, enumerations, texts, durations, Eigen's fixed-size types, the containers below of what
+/// it takes, and every class with visit_state().  What follows from other state is worked out again when
+/// archive.restoring().  Hashing and saving change nothing.
+class StateArchive {
+ public:
+  /// Hashes; result in hash() and parts().
+  static StateArchive hasher() { return StateArchive(Purpose::hash); }
+  /// Saves; result in take_bytes().
+  static StateArchive saver() { return StateArchive(Purpose::save); }
+  /// Restores from bytes that outlive the archive.
+  static StateArchive restorer(std::span<const std::byte> bytes) {
+    StateArchive archive(Purpose::restore);
+    archive.input_ = bytes;
+    return archive;
+  }
+
+  bool hashing() const { return purpose_ == Purpose::hash; }
+  bool saving() const { return purpose_ == Purpose::save; }
+  bool restoring() const { return purpose_ == Purpose::restore; }
+
+  /// A part of the world begins, and the one before ends.  Names what errors and differences are told of.  Restoring
+  /// throws SnapshotError when the snapshot has another part here, or the part before was longer.
+  void section(std::string_view name);
+  /// The last part ends.  Restoring throws SnapshotError when bytes are left over.
+  void end();
+  /// Throws SnapshotError with the name of the part: for state that is well-formed and cannot be.
+  [[noreturn]] void fail(const std::string& what) const;
+
+  template <typename... Values>
+  void operator()(Values&... values) {
+    (visit(values), ...);
+  }
+  /// What is saved and restored but not hashed: it changes nothing that happens, such as counts for a summary.
+  template <typename... Values>
+  void unhashed(Values&... values) {
+    if (!hashing()) (visit(values), ...);
+  }
+  /// `size` numbers of objects that must be as many in the world as in the snapshot.
+  void expect_count(std::size_t size, std::string_view of);
+
+  /// Of all parts, and of what was visited outside of them.
+  std::uint64_t hash() const {
+    StateHash all = total_;
+    if (in_part_ || parts_.empty()) all.add(part_hash_.value());
+    return all.value();
+  }
+  /// One for each section, in order.
+  const std::vector<PartHash>& parts() const { return parts_; }
+  /// For classes that still have hash_state().
+  StateHash& part_hash() { return part_hash_; }
+  std::vector<std::byte> take_bytes() { return std::move(output_); }
+
+  /// Bits as they are.
+  void raw(void* data, std::size_t size) {
+    switch (purpose_) {
+      case Purpose::hash:
+        part_hash_.add_bytes(data, size);
+        return;
+      case Purpose::save: {
+        const auto* from = static_cast<const std::byte*>(data);
+        output_.insert(output_.end(), from, from + size);
+        return;
+      }
+      case Purpose::restore:
+        if (size > left()) fail_short(size);
+        if (size > 0) std::memcpy(data, input_.data() + at_, size);
+        at_ += size;
+        return;
+    }
+  }
+
+ private:
+  enum class Purpose { hash, save, restore };
+  explicit StateArchive(Purpose purpose) : purpose_(purpose) {}
+
+  template <typename T>
+  static constexpr bool is_plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
+  template <typename T>
+  void visit(T& value) {
+    if constexpr (is_plain<T>) {
+      scalar(value);
+    } else {
+      visit_class(value);
+    }
+  }
+  template <typename T>
+  void scalar(T& value) {
+    if (purpose_ != Purpose::hash) {
+      raw(&value, sizeof value);
+      return;
+    }
+    if constexpr (std::is_floating_point_v<T>)
+      part_hash_.add(static_cast<double>(value));
+    else
+      part_hash_.add(static_cast<std::uint64_t>(value));
+  }
+  template <typename T>
+  requires requires(T& value, StateArchive& archive) { value.visit_state(archive); }
+  void visit_class(T& value) { value.visit_state(*this); }
+  template <typename Rep, typename Period>
+  void visit_class(std::chrono::duration<Rep, Period>& value) {
+    Rep count = value.count();
+    scalar(count);
+    value = std::chrono::duration<Rep, Period>(count);
+  }
+  template <typename Scalar, int Rows, int Columns, int Options, int MaxRows, int MaxColumns>
+  requires(Rows != Eigen::Dynamic && Columns != Eigen::Dynamic) void visit_class(
+      Eigen::Matrix<Scalar, Rows, Columns, Options, MaxRows, MaxColumns>& value) {
+    raw(value.data(), sizeof(Scalar) * static_cast<std::size_t>(value.size()));
+  }
+  template <typename Scalar, int Options>
+  void visit_class(Eigen::Quaternion<Scalar, Options>& value) {
+    visit(value.coeffs());
+  }
+  template <typename Scalar, int Dim, int Mode, int Options>
+  void visit_class(Eigen::Transform<Scalar, Dim, Mode, Options>& value) {
+    visit(value.matrix());
+  }
+  void visit_class(std::string& text) {
+    const std::size_t size = count(text.size(), 1);
+    if (restoring()) text.resize(size);
+    raw(text.data(), size);
+  }
+  template <typename T>
+  void visit_class(std::vector<T>& values) {
+    static_assert(!std::is_same_v<T, bool>, "use std::vector<char>");
+    if constexpr (is_plain<T>) {
+      const std::size_t size = count(values.size(), sizeof(T));
+      if (restoring()) values.resize(size);
+      raw(values.data(), size * sizeof(T));
+    } else {
+      sequence(values);
+    }
+  }
+  template <typename T>
+  void visit_class(std::deque<T>& values) {
+    sequence(values);
+  }
+  template <typename T, std::size_t size>
+  void visit_class(std::array<T, size>& values) {
+    for (T& value : values) visit(value);
+  }
+  template <typename T, std::size_t size>
+  void visit_class(T (&values)[size]) {
+    for (T& value : values) visit(value);
+  }
+  template <typename First, typename Second>
+  void visit_class(std::pair<First, Second>& value) {
+    visit(value.first);
+    visit(value.second);
+  }
+  template <typename T>
+  void visit_class(std::optional<T>& value) {
+    bool there = value.has_value();
+    scalar(there);
+    if (restoring()) {
+      if (!there)
+        value.reset();
+      else if (!value)
+        value.emplace();
+    }
+    if (there) visit(*value);
+  }
+  template <typename Key, typename T, typename Less>
+  void visit_class(std::map<Key, T, Less>& values) {
+    const std::size_t size = count(values.size(), 1);
+    if (!restoring()) {
+      for (auto& [key, value] : values) {
+        Key same = key;
+        visit(same);
+        visit(value);
+      }
+      return;
+    }
+    values.clear();
+    for (std::size_t i = 0; i < size; ++i) {
+      Key key{};
+      visit(key);
+      visit(values[std::move(key)]);
+    }
+  }
+  template <typename Sequence>
+  void sequence(Sequence& values) {
+    const std::size_t size = count(values.size(), 1);
+    if (restoring()) values.resize(size);
+    for (auto& value : values) visit(value);
+  }
+  /// How many follow.  Restoring throws when so many elements of at least `bytes_each` cannot be there.
+  std::size_t count(std::size_t size, std::size_t bytes_each);
+  [[noreturn]] void fail_short(std::size_t wanted) const;
+  /// Bytes of this part, or of the snapshot outside of parts.
+  std::size_t left() const { return (in_part_ ? part_end_ : input_.size()) - at_; }
+  void end_part();
+
+  Purpose purpose_;
+  StateHash total_, part_hash_;
+  std::vector<PartHash> parts_;
+  std::string part_ = "the begin";
+  std::vector<std::byte> output_;
+  std::size_t part_begin_ = 0;  // in the output: where the length of the part stands
+  bool in_part_ = false;
+  std::span<const std::byte> input_;
+  std::size_t at_ = 0;
+  std::size_t part_end_ = 0;  // in the input
+};
+
+}  // namespace sim
