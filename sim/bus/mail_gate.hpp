@@ -48,6 +48,12 @@ class MailGate final : public Bus {
   /// next call.  Mail on channels that nobody reads is dropped.
   const std::vector<Mail>& admit();
 
+  /// admit() calls it after collecting and before giving: it may put the mail in another order, add and remove.
+  using Order = std::function<void(std::vector<Mail>& mail)>;
+  void set_order(Order order) { order_ = std::move(order); }
+  /// Somebody reads this channel here.
+  bool reads(std::string_view channel) const { return by_name_.contains(channel); }
+
   /// `watch` sees every publication, before the network does; empty: nobody.
   using Watch = std::function<void(std::string_view channel, std::span<const std::byte> payload)>;
   void set_watch(Watch watch) { watch_ = std::move(watch); }
@@ -67,6 +73,7 @@ class MailGate final : public Bus {
 
   Bus& network_;
   Watch watch_;
+  Order order_;
   MailFlags flags_;                                 // one for each slot: something may have come
   std::vector<std::unique_ptr<Channel>> channels_;  // by slot; null: the slot is free
   std::vector<std::size_t> free_slots_;

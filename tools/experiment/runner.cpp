@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "bridges/lcm/bus_error.hpp"
+#include "bridges/lcm/run_journal.hpp"
 #include "bridges/lcm/sim_service.hpp"
 #include "bridges/serial/serial_port.hpp"
 #include "devices/serial_port.hpp"
@@ -16,6 +17,7 @@
 #include "tools/experiment/process_group.hpp"
 #include "tools/experiment/progress.hpp"
 #include "tools/experiment/run_buses.hpp"
+#include "tools/experiment/run_identity.hpp"
 
 namespace tools {
 
@@ -85,13 +87,17 @@ class Run {
       : loaded_(loaded),
         options_(options),
         buses_(loaded.config, options),
-        world_(loaded.config, buses_.outer(), options.serial_ports ? bridges::open_serial_port : sim::PortOpener(),
+        journal_(buses_.outer()),
+        world_(loaded.config, buses_.outer(),
+               options.serial_ports ? journal_.wrap(bridges::open_serial_port) : sim::PortOpener(),
                [this](const std::string& name) -> sim::Bus& { return buses_.of(name); }),
         service_(buses_.outer(), buses_.network(), world_, control_, lockstep_,
-                 {sim::to_yaml(loaded.resolved), version_text()}),
+                 {sim::to_yaml(loaded.resolved), version_text(), build_text(), files_text(loaded.resolved)}),
         scoring_(world_),
         duration_s_(options.duration_s.value_or(loaded.config.run.duration_s)),
         progress_(duration_s_, options.quiet) {
+    journal_.attach(world_);
+    service_.use_journal(journal_);
     world_.use_threads(options.threads);
     for (sim::Bus* bus : buses_.other_networks()) service_.serve_vehicles(*bus);
     control_.speed = options.speed.value_or(loaded.config.run.speed);
@@ -147,6 +153,8 @@ class Run {
                      "another simulator publishes on " + buses_.url("") +
                          "; their clients would mix: choose another port with --lcm-url");
     }
+    service_.publish_info();  // a log tells of its run from the first event
+    buses_.end_of_step();
     if (options_.launch) {
       for (const sim::ProcessConfig& process : loaded_.config.processes) {
         try {
@@ -186,7 +194,9 @@ class Run {
   }
 
   void loop() {
+    journal_.start();
     service_.publish_step();
+    journal_.after_step();
     buses_.end_of_step();
     synchronize();
     const sim::Time end = duration_s_ > 0 ? sim::from_seconds(duration_s_) : sim::Time::max();
@@ -207,9 +217,12 @@ class Run {
 
   void step() {
     buses_.set_time(world_.now());
+    buses_.admit(
+        [this](const std::string& bus, std::span<const sim::MailGate::Mail> mail) { journal_.admitted(bus, mail); });
     world_.step();
     control_.step_taken();
     service_.publish_step();
+    journal_.after_step();
     scoring_.after_step();
     if (results_) results_->after_step();
     buses_.end_of_step();
@@ -274,6 +287,7 @@ class Run {
   }
 
   void finish(Summary& summary) {
+    journal_.finish();
     if (alone_) {  // else it would end the other simulator's clients
       service_.publish_end();
       if (signal_caught == 0) processes_.await_clients();
@@ -331,6 +345,7 @@ class Run {
   RunBuses buses_;
   sim::RunControl control_;
   sim::Lockstep lockstep_;
+  bridges::RunJournal journal_;
   sim::World world_;
   bridges::SimService service_;
   Scoring scoring_;
