@@ -146,6 +146,7 @@ const std::vector<MailGate::Mail>& MailGate::admit() {
   if (order_) order_(waiting_);
   admitted_.clear();
   admitted_.swap(waiting_);
+  if (order_) order_(admitted_);
   if (admitted_.empty()) return admitted_;
   std::erase_if(admitted_, [&](const Mail& mail) {
     const auto known = by_name_.find(mail.channel);

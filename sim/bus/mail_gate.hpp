@@ -48,7 +48,7 @@ class MailGate final : public Bus {
   /// next call.  Mail on channels that nobody reads is dropped.
   const std::vector<Mail>& admit();
 
-  /// admit() calls it after collecting and before giving: may put the mail in another order, and remove some.
+  /// admit() calls it after collecting and before giving: it may put the mail in another order, add and remove.
   using Order = std::function<void(std::vector<Mail>& mail)>;
   void set_order(Order order) { order_ = std::move(order); }
   /// Somebody reads this channel here.

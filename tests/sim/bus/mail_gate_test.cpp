@@ -140,6 +140,19 @@ TEST_F(MailGateTest, WhatWaitsCanBeOrderedAndAddedTo) {
   EXPECT_FALSE(gate.collect());
 }
 
+TEST_F(MailGateTest, WhoOrdersTheMailHasTheLastWordBeforeItIsGiven) {
+  const auto mailbox = gate.open_mailbox("a");
+  EXPECT_TRUE(gate.reads("a"));
+  EXPECT_FALSE(gate.reads("b"));
+  gate.set_order([](std::vector<MailGate::Mail>& mail) {
+    if (mail.size() > 1) std::swap(mail[0], mail[1]);
+    if (mail.size() > 2) mail.pop_back();
+  });
+  for (const char* text : {"1", "2", "3"}) from_afar("a", text);
+  EXPECT_THAT(admit(), ElementsAre("a:2", "a:1"));
+  EXPECT_THAT(all_of(*mailbox), ElementsAre("2", "1"));
+}
+
 TEST_F(MailGateTest, AFullMailboxDropsTheOldestAndCounts) {
   const auto small = gate.open_mailbox("a", 2);
   const auto large = gate.open_mailbox("a", 3);
