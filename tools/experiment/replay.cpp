@@ -93,6 +93,7 @@ class Replay {
         others_(make_others()),
         world_(loaded_.config, *main_.gate, serial_.opener(),
                [this](const std::string& name) -> sim::Bus& { return *others_.at(name).gate; }),
+        lockstep_(world_, control_),
         service_(*main_.gate, *main_.network, world_, control_, lockstep_,
                  {sim::to_yaml(loaded_.resolved), version_text(), build_text(), log_.info.files}) {
     check_times();
@@ -335,8 +336,8 @@ class Replay {
   Line main_;
   std::map<std::string, Line> others_;
   sim::RunControl control_;
-  sim::Lockstep lockstep_;
   sim::World world_;
+  bridges::LockstepService lockstep_;
   bridges::SimService service_;
   std::size_t next_letter_ = 0;
   bool cut_ = false;
