@@ -5,6 +5,7 @@
 
 #include "devices/lidar_presets.hpp"
 #include "devices/param_checks.hpp"
+#include "devices/same_size.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "sim/world/world.hpp"
@@ -98,10 +99,10 @@ std::span<const double> Lidar::intensities() const {
   return params_.intensities ? std::span<const double>(returns_.intensities) : std::span<const double>();
 }
 
-void Lidar::hash_state(sim::StateHash& hash) const {
-  hash.add(std::span<const double>(returns_.ranges_m));
-  if (params_.intensities) hash.add(intensities());
-  receiver_.hash_state(hash);
+void Lidar::visit_state(sim::StateArchive& archive) {
+  visit_same_size(archive, returns_.ranges_m, "beams");
+  if (params_.intensities) visit_same_size(archive, returns_.intensities, "beams");
+  archive(receiver_);
 }
 
 void LidarReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

@@ -7,6 +7,7 @@
 
 #include "devices/lidar_presets.hpp"
 #include "devices/param_checks.hpp"
+#include "devices/same_size.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/point_cloud_t.hpp"
 #include "sim/world/world.hpp"
@@ -143,13 +144,14 @@ void Lidar3d::disturb(double dt_s, sim::Random& random) {
   receiver_.disturb(returns_, dt_s, random);
 }
 
-void Lidar3d::hash_state(sim::StateHash& hash) const {
-  hash.add(std::span<const double>(returns_.ranges_m));
-  hash.add(std::span<const double>(returns_.intensities));
-  hash.add(static_cast<std::int64_t>(turn_end_.count()));
-  hash.add(static_cast<std::int64_t>(turn_length_.count()));
-  hash.add(static_cast<std::int64_t>(next_column_));
-  receiver_.hash_state(hash);
+void Lidar3d::visit_state(sim::StateArchive& archive) {
+  visit_same_size(archive, returns_.ranges_m, "beams");
+  visit_same_size(archive, returns_.intensities, "beams");
+  visit_same_size(archive, returns_.returned, "beams");
+  archive(turn_end_, turn_length_, step_, next_column_, receiver_);
+  const bool possible =
+      next_column_ >= 0 && next_column_ <= params_.columns && turn_length_ >= sim::Time{0} && step_ >= sim::Time{0};
+  if (archive.restoring() && !possible) archive.fail("a turn of the laser's head that cannot be");
 }
 
 void Lidar3dReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

@@ -33,7 +33,7 @@ class Lidar3d final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   std::int64_t rays() const override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   /// The last turn, column by column, ring by ring.
   const LaserReturns& returns() const { return returns_; }

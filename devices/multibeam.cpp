@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "devices/param_checks.hpp"
+#include "devices/same_size.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/multibeam_t.hpp"
 #include "sim/world/world.hpp"
@@ -133,11 +134,11 @@ void Multibeam::disturb(double dt_s, sim::Random& random) {
   }
 }
 
-void Multibeam::hash_state(sim::StateHash& hash) const {
-  hash.add(std::span<const double>(ranges_m_));
-  hash.add(std::span<const double>(strengths_dB_));
-  noise_.hash_state(hash);
-  strength_noise_.hash_state(hash);
+void Multibeam::visit_state(sim::StateArchive& archive) {
+  visit_same_size(archive, ranges_m_, "beams");
+  visit_same_size(archive, strengths_dB_, "beams");
+  visit_same_size(archive, valid_, "beams");
+  archive(receiver_, noise_, strength_noise_);
 }
 
 void MultibeamReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

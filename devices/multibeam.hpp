@@ -34,7 +34,7 @@ class Multibeam final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   std::int64_t rays() const override { return static_cast<std::int64_t>(rays_S_.size()); }
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   const std::vector<double>& angles_rad() const { return angles_rad_; }
   const std::vector<double>& ranges_m() const { return ranges_m_; }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devices/same_size.hpp"
+
 namespace devices {
 
 namespace {
@@ -101,6 +103,11 @@ void SonarBins::quantize() {
 void SonarBins::hash_state(sim::StateHash& hash) const {
   hash.add_bytes(pixels_.data(), pixels_.size());
   level_noise_.hash_state(hash);
+}
+
+void SonarBins::visit_state(sim::StateArchive& archive) {
+  visit_same_size(archive, pixels_, "values of a picture");
+  archive(level_noise_);
 }
 
 }  // namespace devices

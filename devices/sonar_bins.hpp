@@ -38,6 +38,7 @@ class SonarBins {
   int beams() const { return beams_; }
   const SonarPictureParams& params() const { return params_; }
   const std::vector<std::uint8_t>& pixels() const { return pixels_; }
+  void visit_state(sim::StateArchive& archive);
   void hash_state(sim::StateHash& hash) const;
 
  private:
