@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sim/config/param_reader.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace devices {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/config/param_reader.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace devices {
 

@@ -91,6 +91,10 @@ std::vector<Interrogator::Answer> Interrogator::take_answers() {
   return taken;
 }
 
+void Interrogator::visit_state(sim::StateArchive& archive) {
+  archive(number_, pinged_, window_end_, asked_, waiting_for_, answers_);
+}
+
 void Interrogator::hash_state(sim::StateHash& hash) const {
   hash.add(number_);
   hash.add(static_cast<std::int64_t>(pinged_.count()));
