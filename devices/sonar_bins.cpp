@@ -50,6 +50,7 @@ void SonarBins::change(const SonarPictureParams& params, const SonarParams& sona
 
 void SonarBins::begin(const SonarReceiver& receiver) {
   std::fill(power_uPa2_.begin(), power_uPa2_.end(), 0.0);
+  digest_.renew();
   range_scale_ = receiver.range_scale();
   pulse_m_ = receiver.pulse_m() * range_scale_;
 }
@@ -96,6 +97,11 @@ void SonarBins::quantize() {
     const double count = std::round((levels_dB_[i] - params_.floor_dB) / params_.dB_per_count());
     pixels_[i] = static_cast<std::uint8_t>(std::clamp(count, 0.0, 255.0));
   }
+}
+
+void SonarBins::visit_state(sim::StateArchive& archive) {
+  archive(level_noise_);
+  digest_.visit(archive, pixels_);
 }
 
 void SonarBins::hash_state(sim::StateHash& hash) const {
