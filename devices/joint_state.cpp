@@ -66,9 +66,11 @@ void JointState::change(const Params& params) {
   effort_noise_.change(params.effort_noise);
 }
 
-void JointState::hash_state(sim::StateHash& hash) const {
-  for (const auto* values : {&positions_, &velocities_, &efforts_}) hash.add(std::span<const double>(*values));
-  for (const auto* noise : {&position_noise_, &velocity_noise_, &effort_noise_}) noise->hash_state(hash);
+void JointState::visit_state(sim::StateArchive& archive) {
+  archive(position_noise_, velocity_noise_, effort_noise_);
+  archive.expect_count(axes_.size(), "axes of joints");
+  for (auto* values : {&positions_, &velocities_, &efforts_})
+    for (double& value : *values) archive(value);
 }
 
 void JointStateReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

@@ -5,7 +5,6 @@
 
 #include "devices/lidar_presets.hpp"
 #include "devices/param_checks.hpp"
-#include "devices/same_size.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "sim/world/world.hpp"
@@ -41,6 +40,7 @@ void Lidar::change(const Params& params) {
   receiver_.change(params.laser);
   const auto beams = static_cast<std::size_t>(params.beams);
   returns_.assign(beams, params.laser.range_max_m);
+  digest_.renew();
   fan_.count = params.beams;
   fan_.range_max_m = params.laser.range_max_m;
   fan_.first_angle_rad = params.beams == 1 ? 0.0 : -0.5 * params.fov_rad;
@@ -61,6 +61,7 @@ void Lidar::change(const Params& params) {
 }
 
 void Lidar::measure(const sim::SenseContext& context) {
+  digest_.renew();
   if (rays_.empty())
     measure_axes(context);
   else
@@ -100,8 +101,7 @@ std::span<const double> Lidar::intensities() const {
 }
 
 void Lidar::visit_state(sim::StateArchive& archive) {
-  visit_same_size(archive, returns_.ranges_m, "beams");
-  if (params_.intensities) visit_same_size(archive, returns_.intensities, "beams");
+  digest_.visit(archive, returns_.ranges_m, intensities());
   archive(receiver_);
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "devices/laser_return.hpp"
+#include "devices/reading_digest.hpp"
 
 namespace devices {
 
@@ -44,6 +45,7 @@ class Lidar final : public sim::Sensor {
   sim::Fan fan_;
   LaserReceiver receiver_;
   LaserReturns returns_;
+  ReadingDigest digest_;
   std::vector<sim::Vector3d> directions_S_;  ///< of the beams; of all their rays when several sample one
   std::vector<sim::Ray> rays_;
   std::vector<sim::RayHit> hits_;

@@ -7,7 +7,6 @@
 
 #include "devices/lidar_presets.hpp"
 #include "devices/param_checks.hpp"
-#include "devices/same_size.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/point_cloud_t.hpp"
 #include "sim/world/world.hpp"
@@ -75,6 +74,8 @@ void Lidar3d::change(const Params& params) {
   }
   returns_.assign(elevations_rad_.size() * static_cast<std::size_t>(params.columns), params.laser.range_max_m);
   turn_end_ = sim::Time{-1};  // begins again
+  next_column_ = 0;
+  digest_.renew();
 }
 
 sim::Vector3d Lidar3d::direction_S(int column, int ring) const {
@@ -96,6 +97,7 @@ void Lidar3d::begin_turn(const sim::SweepContext& context) {
     turn_length_ = config_.rate_hz > 0 ? sim::from_seconds(1 / config_.rate_hz) : context.now - context.from;
   turn_end_ = context.next_sample;
   next_column_ = 0;
+  digest_.renew();
   while (next_column_ < params_.columns && turn_end_ + offset(next_column_) <= context.from) ++next_column_;
   returns_.assign(returns_.size(), params_.laser.range_max_m);
 }
@@ -145,13 +147,27 @@ void Lidar3d::disturb(double dt_s, sim::Random& random) {
 }
 
 void Lidar3d::visit_state(sim::StateArchive& archive) {
-  visit_same_size(archive, returns_.ranges_m, "beams");
-  visit_same_size(archive, returns_.intensities, "beams");
-  visit_same_size(archive, returns_.returned, "beams");
   archive(turn_end_, turn_length_, step_, next_column_, receiver_);
   const bool possible =
       next_column_ >= 0 && next_column_ <= params_.columns && turn_length_ >= sim::Time{0} && step_ >= sim::Time{0};
   if (archive.restoring() && !possible) archive.fail("a turn of the laser's head that cannot be");
+  // A whole turn is out already.
+  if (next_column_ == params_.columns)
+    digest_.visit(archive, returns_.ranges_m, returns_.intensities, returns_.returned);
+  else
+    visit_begun_turn(archive);
+}
+
+void Lidar3d::visit_begun_turn(sim::StateArchive& archive) {
+  archive.expect_count(elevations_rad_.size(), "rings");
+  if (archive.restoring()) {
+    returns_.assign(returns_.size(), params_.laser.range_max_m);
+    digest_.renew();
+  }
+  const std::size_t passed = static_cast<std::size_t>(next_column_) * elevations_rad_.size();
+  archive.raw(returns_.ranges_m.data(), passed * sizeof(double));
+  archive.raw(returns_.intensities.data(), passed * sizeof(double));
+  archive.raw(returns_.returned.data(), passed);
 }
 
 void Lidar3dReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "devices/param_checks.hpp"
-#include "devices/same_size.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/multibeam_t.hpp"
 #include "sim/world/world.hpp"
@@ -47,6 +46,7 @@ void Multibeam::change(const Params& params) {
   true_ranges_m_ = ranges_m_;
   strengths_dB_.assign(beams, 0);
   valid_.assign(beams, 0);
+  digest_.renew();
   make_rays();
 }
 
@@ -74,6 +74,7 @@ void Multibeam::make_rays() {
 }
 
 void Multibeam::measure(const sim::SenseContext& context) {
+  digest_.renew();
   receiver_.cast(context.world.scene(), context.X_WS, rays_S_);
   for (std::size_t beam = 0; beam < ranges_m_.size(); ++beam) detect(beam);
   true_ranges_m_ = ranges_m_;
@@ -135,9 +136,7 @@ void Multibeam::disturb(double dt_s, sim::Random& random) {
 }
 
 void Multibeam::visit_state(sim::StateArchive& archive) {
-  visit_same_size(archive, ranges_m_, "beams");
-  visit_same_size(archive, strengths_dB_, "beams");
-  visit_same_size(archive, valid_, "beams");
+  digest_.visit(archive, ranges_m_, strengths_dB_, valid_);
   archive(receiver_, noise_, strength_noise_);
 }
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "devices/reading_digest.hpp"
 #include "devices/sonar_return.hpp"
 #include "sim/random/noise.hpp"
 
@@ -54,6 +55,7 @@ class Multibeam final : public sim::Sensor {
   std::vector<SonarEcho> echoes_;
   std::vector<double> ranges_m_, true_ranges_m_, strengths_dB_;
   std::vector<std::uint8_t> valid_;
+  ReadingDigest digest_;
 };
 
 /// Publishes shoal.multibeam_t.

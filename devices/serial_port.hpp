@@ -7,7 +7,7 @@
 #include "sim/bus/byte_port.hpp"
 #include "sim/config/param_reader.hpp"
 #include "sim/device/device_registry.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace devices {
 
@@ -56,10 +56,6 @@ class SerialMessages {
   void write(sim::Bytes data);
   /// What has come of a line that has not ended.  What is in the port itself is beyond the simulator.
   void visit_state(sim::StateArchive& archive) { archive(line_, cut_); }
-  void hash_state(sim::StateHash& hash) const {
-    hash.add_bytes(line_.data(), line_.size());
-    hash.add(cut_);
-  }
 
  private:
   SerialPort port_;

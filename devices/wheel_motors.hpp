@@ -21,8 +21,8 @@ class WheelMotors {
   void act(double max_acceleration_radps2, double max_torque_Nm, double step_s);
   double target_radps() const { return target_radps_; }
   double current_radps() const { return current_radps_; }
-  void visit_state(sim::StateArchive& archive) { archive(target_radps_, current_radps_); }
   double power_W(const MotorPower& power, double max_torque_Nm) const;
+  void visit_state(sim::StateArchive& archive) { archive(target_radps_, current_radps_); }
 
  private:
   struct Wheel {
