@@ -1,4 +1,5 @@
-// What devices in the water and some others must keep over a snapshot; tests/devices/device_state_test.cpp has the rest.
+// What devices in the water and some others must keep over a snapshot; tests/devices/device_state_test.cpp has the
+// rest.
 #include <gmock/gmock.h>
 
 #include <limits>
@@ -68,8 +69,9 @@ TEST(DeviceState, ASonarThatHasLeftTheWaterKnowsWhatTheWaterWasLike) {
       "}, {name: ahead, type: sonar, rate_hz: 20, noise: " + slow_error + sonar +
       "}, {name: swath, type: multibeam, rate_hz: 20, beams: 8, noise: " + slow_error + sonar +
       "}, {name: speed, type: water_speed, rate_hz: 50, speed_noise: " + slow_error +
-      "}, {name: pressure, type: pressure, rate_hz: 50, pressure_noise: " + slow_error + ", temperature_noise: " +
-      slow_error + "}, {name: leak, type: leak, rated_depth_m: 0.3, rate_hz: 50, water_noise: " + slow_error + "}";
+      "}, {name: pressure, type: pressure, rate_hz: 50, pressure_noise: " + slow_error +
+      ", temperature_noise: " + slow_error +
+      "}, {name: leak, type: leak, rated_depth_m: 0.3, rate_hz: 50, water_noise: " + slow_error + "}";
   const std::string yaml =
       "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nobjects: [{name: bottom, fixed: true, position_m: [0, 0, "
       "-5], parts: [{shape: plane}]}]\nmedium: {water: {surface_m: 0, profile: [{depth_m: 0, temperature_C: 20, "
@@ -93,7 +95,8 @@ TEST(DeviceState, PingsAndAnswersOnTheirWayArriveAfterARestore) {
   const std::string asking =
       "{name: usbl, type: usbl, network: a, rate_hz: 20, ping_period_s: 0.7, answer_dropout: 0.2, range_noise: " +
       slow_error + ", azimuth_noise: " + slow_error + ", elevation_noise: " + slow_error +
-      "}, {name: lbl, type: lbl, network: b, rate_hz: 20, ping_period_s: 1.1, answer_dropout: 0.2, frequency_Hz: 40000, "
+      "}, {name: lbl, type: lbl, network: b, rate_hz: 20, ping_period_s: 1.1, answer_dropout: 0.2, frequency_Hz: "
+      "40000, "
       "time_noise: {random_walk_std: 1.0e-4, gaussian_std: 1.0e-5}}";
   const std::string yaml = test::modem_sea({{"asking", "[0, 0, -20]", asking},
                                             {"a1", "[300, 0, -20]", transponder("a")},
@@ -106,8 +109,9 @@ TEST(DeviceState, PingsAndAnswersOnTheirWayArriveAfterARestore) {
 }
 
 TEST(DeviceState, MessagesInTheQueuesOfModemsAreSentAfterARestore) {
-  const std::string radio = "{name: radio, type: modem, data_rate_bps: 100, range_m: 1000, rate_hz: 3, loss_probability: "
-                            "0.3}";
+  const std::string radio =
+      "{name: radio, type: modem, data_rate_bps: 100, range_m: 1000, rate_hz: 3, loss_probability: "
+      "0.3}";
   const std::string yaml = test::modem_sea({{"a", "[0, 0, 5]", radio}, {"b", "[30, 0, 5]", radio}});
   test::SavedRun run(yaml, [](test::TappedWorld& to, int step) {
     // 8 s of air time in the queue.
@@ -123,8 +127,8 @@ TEST(DeviceState, AMicromodemGoesOnInTheMiddleOfACycle) {
   const auto modem = [](int address) {
     return "{name: modem, type: micromodem, rate_hz: 10, address: " + std::to_string(address) + "}";
   };
-  const std::string yaml =
-      test::modem_sea({{"a", "[0, 0, -20]", modem(1)}, {"b", "[750, 0, -20]", modem(2)}, {"c", "[-300, 0, -20]", modem(3)}});
+  const std::string yaml = test::modem_sea(
+      {{"a", "[0, 0, -20]", modem(1)}, {"b", "[750, 0, -20]", modem(2)}, {"c", "[-300, 0, -20]", modem(3)}});
   test::SavedRun run(yaml, [](test::TappedWorld& to, int step) {
     const auto host = [&](const std::string& vehicle, const std::string& sentence) {
       shoal::nmea_sentence_t message{};
@@ -215,11 +219,11 @@ TEST(DeviceState, HalfALineOfASerialPortIsKept) {
   EXPECT_EQ(second.ends.at("port_b")->from_world, "the first half\n");
 }
 
-/// Everything but the devices' names.
+/// The state of each sensor of a world, cut off or with one bit turned over.
 class DamagedState : public testing::TestWithParam<std::string> {};
 
 TEST_P(DamagedState, IsRefusedOrDoesNoHarm) {
-  test::LoadedTestWorld original("worlds/" + GetParam());
+  test::LoadedTestWorld original(SHOAL_SOURCE_DIR "/worlds/" + GetParam());
   original.run_for(4);
   sim::Random random(1, GetParam());
   random.begin_step(0);
