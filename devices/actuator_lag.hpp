@@ -26,7 +26,6 @@ class Lag {
   double value() const { return value_; }
   double rate() const { return rate_; }  ///< of change, 1/s
   void visit_state(sim::StateArchive& archive) { archive(value_, rate_); }
-  void hash_state(sim::StateHash& hash) const;
 
  private:
   void prepare(double step_s);

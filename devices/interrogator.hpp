@@ -47,7 +47,6 @@ class Interrogator final : public sim::AcousticListener {
   std::vector<Answer> take_answers();
   /// All but its transducer, which the acoustic channel knows.
   void visit_state(sim::StateArchive& archive);
-  void hash_state(sim::StateHash& hash) const;
 
   bool listens_to(const sim::Signal& signal) const override;
   void heard(const sim::Reception& heard) override;

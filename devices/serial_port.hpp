@@ -54,11 +54,8 @@ class SerialMessages {
   /// What has come since the last call.  A message that is too long has max_bytes + 1 bytes.
   std::vector<sim::Bytes> take(std::size_t max_bytes);
   void write(sim::Bytes data);
+  /// What has come of a line that has not ended.  What is in the port itself is beyond the simulator.
   void visit_state(sim::StateArchive& archive) { archive(line_, cut_); }
-  void hash_state(sim::StateHash& hash) const {
-    hash.add_bytes(line_.data(), line_.size());
-    hash.add(cut_);
-  }
 
  private:
   SerialPort port_;

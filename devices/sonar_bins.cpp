@@ -104,9 +104,4 @@ void SonarBins::visit_state(sim::StateArchive& archive) {
   digest_.visit(archive, pixels_);
 }
 
-void SonarBins::hash_state(sim::StateHash& hash) const {
-  hash.add_bytes(pixels_.data(), pixels_.size());
-  level_noise_.hash_state(hash);
-}
-
 }  // namespace devices

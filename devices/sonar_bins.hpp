@@ -41,7 +41,6 @@ class SonarBins {
   const std::vector<std::uint8_t>& pixels() const { return pixels_; }
   /// The picture of the last ping is out already: its hash.
   void visit_state(sim::StateArchive& archive);
-  void hash_state(sim::StateHash& hash) const;
 
  private:
   void quantize();

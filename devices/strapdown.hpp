@@ -18,7 +18,6 @@ class LowPass {
   void change(double time_constant_s);
   const sim::Vector3d& apply(const sim::Vector3d& x, double dt_s);
   void visit_state(sim::StateArchive& archive) { archive(started_, y_); }
-  void hash_state(sim::StateHash& hash) const;
 
  private:
   double time_constant_s_;
@@ -39,7 +38,6 @@ class Strapdown {
   /// specific force of a sensor that is not accelerated.
   void measure(const sim::SenseContext& context);
   void visit_state(sim::StateArchive& archive) { archive(started_, q_WS_, v_WS_W_, w_WS_S_, f_S_); }
-  void hash_state(sim::StateHash& hash) const;
 
   /// Mean angular velocity: the rotation vector from the last attitude to this one by dt.  Its integral is the
   /// attitude exactly, as long as the sensor turns less than half a turn in a sample.
