@@ -1,6 +1,7 @@
 #include "devices/joint_state.hpp"
 
 #include "devices/joint_of_device.hpp"
+#include "devices/same_size.hpp"
 #include "shoal/joint_state_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/world/vehicle.hpp"
@@ -68,9 +69,7 @@ void JointState::change(const Params& params) {
 
 void JointState::visit_state(sim::StateArchive& archive) {
   archive(position_noise_, velocity_noise_, effort_noise_);
-  archive.expect_count(axes_.size(), "axes of joints");
-  for (auto* values : {&positions_, &velocities_, &efforts_})
-    for (double& value : *values) archive(value);
+  for (auto* values : {&positions_, &velocities_, &efforts_}) visit_same_size(archive, *values, "axes of joints");
 }
 
 void JointStateReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
