@@ -25,11 +25,11 @@ SavedRun file(const std::string& name) {
 
 /// Until the first events, and while faults, a gap in the satellites' view and an emergency stop last.
 TEST(DeviceState, OfEveryDeviceOnLandOutlastsASnapshot) {
-  file("proving_ground.yaml").expect_restored_worlds_go_on_alike({0, 333, 1711}, 150);
+  file("worlds/proving_ground.yaml").expect_restored_worlds_go_on_alike({0, 333, 1711}, 150);
 }
 
 TEST(DeviceState, OfEveryDeviceAtSeaOutlastsASnapshot) {
-  file("proving_sea.yaml").expect_restored_worlds_go_on_alike({0, 411, 921}, 150);
+  file("worlds/proving_sea.yaml").expect_restored_worlds_go_on_alike({0, 411, 921}, 150);
 }
 
 /// The images are taken in pieces over most of the time between two samples, so that every snapshot cuts one in two.
@@ -116,7 +116,7 @@ TEST(DeviceState, MarineActuatorsAreOnTheirWay) {
 }
 
 TEST(DeviceState, AnAutopilotGoesOnWithItsRouteItsStationAndItsSums) {
-  const auto world = [](const std::string& file, const std::string& overrides) {
+  const auto yaml = [](const std::string& file, const std::string& overrides) {
     return "shoal: 1\nphysics: {step_s: 0.01}\nmedium: {water: {}, current: [{type: constant, velocity_mps: [0, 0.3, "
            "0]}]}\nvehicles:\n  - name: v\n    file: " +
            file + "\n    position_m: [0, 0, -10]\n    overrides:\n" + overrides;
@@ -127,7 +127,7 @@ TEST(DeviceState, AnAutopilotGoesOnWithItsRouteItsStationAndItsSums) {
             "{at_m: [30, 8]}]\n"
             "      devices.autopilot.guidance: {lookahead_m: 5, integral: 0.3, acceptance_radius_m: 2}\n"));
   route.expect_restored_worlds_go_on_alike({5, 655, 1431}, 300);
-  SavedRun station(world("bluerov2_station.yaml", "      devices.autopilot.rate_hz: 7\n"),
+  SavedRun station(yaml("bluerov2_station.yaml", "      devices.autopilot.rate_hz: 7\n"),
                    [](TappedWorld& world, int step) {
                      if (step == 200) world.send("v.autopilot.cmd", shoal::station_command_t{0, 1, 2, 0.5, 11});
                      if (step == 500) world.send("v.autopilot.cmd", shoal::autopilot_command_t{0, 0});

@@ -79,7 +79,11 @@ class SavedRun {
       if (std::find(at.begin(), at.end(), step - more) != at.end()) ends[step] = original.world.part_hashes();
       sent.push_back(run_step(original, step));
     }
+    EXPECT_EQ(original.world.counts().bad_messages, 0u);
     for (const int step : at) {
+      const auto first = sent.begin() + step;
+      EXPECT_FALSE(std::all_of(first, first + more, [](const auto& all) { return all.empty(); }))
+          << "nothing to compare";
       TappedWorld fresh(load_());
       for (TappedWorld* world : {&fresh, &original}) {
         SCOPED_TRACE("saved after " + std::to_string(step) + " steps, restored in " +
