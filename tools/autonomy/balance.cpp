@@ -107,7 +107,10 @@ std::optional<Balance::Torques> Balance::step() {
       p.balanced_lean_rad + std::clamp(by_speed_rad + by_way_rad, -p.max_lean_rad, p.max_lean_rad);
 
   const double both_Nm = p.kp_Nm_per_rad * (lean_rad_ - wanted_rad) + p.kd_Nms_per_rad * rate_radps_;
-  const double between_Nm = p.turn_gain_Nms_per_rad * (asked_turn_radps_ - turn_radps_);
+  const double slow_radps = asked_turn_radps_ - turn_radps_;
+  const double most_rad = p.turn_ki_Nm_per_rad > 0 ? p.max_torque_Nm / p.turn_ki_Nm_per_rad : 0;
+  turned_rad_ = std::clamp(turned_rad_ + slow_radps * p.period_s, -most_rad, most_rad);
+  const double between_Nm = p.turn_gain_Nms_per_rad * slow_radps + p.turn_ki_Nm_per_rad * turned_rad_;
   const auto cut = [&p](double torque_Nm) { return std::clamp(torque_Nm, -p.max_torque_Nm, p.max_torque_Nm); };
   return Torques{cut((both_Nm - between_Nm) / 2), cut((both_Nm + between_Nm) / 2)};
 }

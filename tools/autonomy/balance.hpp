@@ -40,11 +40,12 @@ class Balance {
     double ki_rad_per_m = 0.02;
     double max_lean_rad = 0.2;  ///< of the wanted lean, from the balanced one
     double max_acceleration_mps2 = 0.5;
-    double turn_gain_Nms_per_rad = 20;  ///< torque between the wheels for an error of the turn rate
+    double turn_gain_Nms_per_rad = 40;  ///< torque between the wheels for the error of the turn rate
+    double turn_ki_Nm_per_rad = 120;    ///< and for its integral: wide wheels scrub on the ground
     double rate_filter_s = 0.005;       ///< low pass on the rate of the lean
     double speed_filter_s = 0.05;       ///< low pass on speed and turn rate
     double wheel_radius_m = 0.236;
-    double track_m = 0.57;
+    double track_m = 0.481;     ///< between the inner edges of its wheels, on which they turn
     double max_torque_Nm = 50;  ///< of each wheel
     double fallen_rad = 0.8;    ///< so far from the balanced lean it gives up
   };
@@ -78,6 +79,7 @@ class Balance {
   double asked_mps_ = 0, asked_turn_radps_ = 0;
   double wanted_mps_ = 0;  // follows what is asked with a limited acceleration
   double way_m_ = 0;       // integral of the error of the speed
+  double turned_rad_ = 0;  // integral of the error of the turn rate
 };
 
 }  // namespace autonomy

@@ -71,6 +71,7 @@ void add_gains(CLI::App& app, Options& options) {
   number("--max-lean", gains.max_lean_rad, 0.01, 0.7, "of the wanted lean, from the balanced one, rad");
   number("--max-acceleration", gains.max_acceleration_mps2, 0.01, 10, "of the wanted speed, m/s^2");
   number("--turn-gain", gains.turn_gain_Nms_per_rad, 0, 1e4, "torque between the wheels for the turn rate, N m s/rad");
+  number("--turn-ki", gains.turn_ki_Nm_per_rad, 0, 1e4, "torque between the wheels for its integral, N m/rad");
   number("--rate-filter", gains.rate_filter_s, 0, 1, "time constant of the low pass on the rate of the lean, s");
   number("--speed-filter", gains.speed_filter_s, 0, 1, "time constant of the low pass on speed and turn rate, s");
   number("--wheel-radius", gains.wheel_radius_m, 0.01, 10, "m");
