@@ -1,9 +1,10 @@
 #include <iostream>
-#include <limits>
+#include <stdexcept>
 
 #include "shoal/utime_t.hpp"
 #include "sim/math.hpp"
 #include "tools/autonomy/balance.hpp"
+#include "tools/autonomy/balance_model.hpp"
 #include "tools/autonomy/program.hpp"
 
 namespace {
@@ -83,7 +84,10 @@ int run(int argc, char** argv) {
   Options options;
   options.participation.period_s = 0.01;
   CLI::App app{"Balances a vehicle on two wheels, such as the Segway RMP, in lockstep with `shoal run`."};
-  app.add_option("--name", options.name, "vehicle to balance; also the name in the lockstep")->required();
+  app.add_option("--name", options.name, "vehicle to balance; also the name in the lockstep");
+  bool tell_margin = false;
+  app.add_flag("--delay-margin", tell_margin,
+               "tell how late the torque of a Segway RMP may come with these gains, and end");
   app.add_option("--speeds", options.speeds,
                  "\"10:0.5;20:-0.5;30:0:0.3\": from 10 s on 0.5 m/s, ..., from 30 s on turn at 0.3 rad/s");
   add_gains(app, options);
@@ -98,6 +102,13 @@ int run(int argc, char** argv) {
   if (const auto exit_code = autonomy::parse(app, argc, argv)) return *exit_code;
   options.balance.period_s = options.participation.period_s;
   options.balance.balanced_lean_rad = sim::degrees_to_radians(options.balanced_lean_deg);
+  if (tell_margin) {
+    const autonomy::DelayMargin margin = autonomy::delay_margin(options.balance);
+    std::cout << "it swings at " << margin.frequency_radps << " rad/s when the torque comes " << 1e3 * margin.delay_s
+              << " ms late\n";
+    return autonomy::exit_ok;
+  }
+  if (options.name.empty()) throw std::invalid_argument("--name is required");
   return balance(options);
 }
 
