@@ -94,7 +94,6 @@ class Reader {
       if (info.step_us < 1) throw shoal::MessageError("step_us must be 1 or more, got " + std::to_string(info.step_us));
       informed_ = true;
       branch_ = info.branch;
-      last_info_step_ = info.step;
       log_.info = std::move(info);
       check_stamp(event, log_.info.utime, log_.info.step);
       check_sequence(log_.info.mail_sequence, log_.info.step);
@@ -104,12 +103,11 @@ class Reader {
     const shoal::sim_info_t& first = log_.info;
     const bool same_run = info.world == first.world && info.seed == first.seed && info.step_us == first.step_us &&
                           info.epoch_utime == first.epoch_utime && info.resolved_config == first.resolved_config;
-    if (!same_run || (info.branch <= branch_ && info.step < last_info_step_))
+    if (!same_run || (info.branch <= branch_ && info.step < log_.last_step))
       fail(fmt::format("holds two runs: another begins at byte {} (world '{}', seed {}); cut it in two", event.offset,
                        info.world, info.seed));
     check_stamp(event, info.utime, info.step);
     if (info.branch > branch_) begin_branch(info);
-    last_info_step_ = info.step;
     check_sequence(info.mail_sequence, info.step);
     note_step(info.step);
   }
@@ -173,7 +171,6 @@ class Reader {
   ReplayLog log_;
   bool informed_ = false, stepped_ = false;
   std::int32_t branch_ = 0;
-  std::int64_t last_info_step_ = 0;
   std::int64_t next_sequence_ = 0;
   std::int64_t mail_step_ = 0;  // of the last sim.mail
 };
