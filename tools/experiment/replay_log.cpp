@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <unordered_map>
 #include <utility>
 
 #include "bridges/lcm/event_log.hpp"
@@ -30,14 +31,17 @@ class Reader {
   explicit Reader(const std::string& path) : file_(path) { log_.path = path; }
 
   ReplayLog read() {
-    while (const auto event = file_.next()) {
-      ++log_.events[event->channel];
+    std::unordered_map<std::string, std::uint64_t> events;  // copied into order below
+    bridges::LogEvent event;
+    while (file_.next(event)) {
+      ++events[event.channel];
       try {
-        take(*event);
+        take(event);
       } catch (const shoal::MessageError& error) {
-        problem(fmt::format("byte {}: {}: {}", event->offset, event->channel, error.what()));
+        problem(fmt::format("byte {}: {}: {}", event.offset, event.channel, error.what()));
       }
     }
+    log_.events.insert(events.begin(), events.end());
     for (const std::string& text : file_.problems()) problem(text);
     if (!informed_) fail_without_info();
     if (log_.proven_step && *log_.proven_step > log_.last_step) log_.proven_step = log_.last_step;
@@ -60,6 +64,7 @@ class Reader {
   }
 
   void take(const bridges::LogEvent& event) {
+    if (!event.channel.starts_with("sim.")) return;
     if (event.channel == "sim.info") return take_info(event);
     if (event.channel == "sim.mail") return take_mail(event);
     if (event.channel == "sim.hash") return take_hash(event);
