@@ -73,7 +73,9 @@ class Reader {
 
   void take_state(const bridges::LogEvent& event) {
     if (shoal::fingerprint(event.payload) != shoal::sim_state_t::getHash() || event.payload.size() < 24) return;
-    note_step(number_at(event.payload, 1));
+    const std::int64_t step = number_at(event.payload, 1);
+    if (!informed_ || !is_time_of(step, number_at(event.payload, 0))) return;  // of somebody else
+    note_step(step);
     if (event.utime != number_at(event.payload, 0)) log_.own_stamps = false;
   }
 
@@ -83,11 +85,18 @@ class Reader {
     log_.last_step = std::max(log_.last_step, step);
   }
 
+  bool is_time_of(std::int64_t step, std::int64_t utime) const {
+    if (step < 0 || step > 1'000'000'000'000) return false;
+    // Without signs: the numbers are a stranger's, and may overflow.
+    const std::uint64_t since = static_cast<std::uint64_t>(step) * static_cast<std::uint64_t>(log_.info.step_us);
+    return static_cast<std::uint64_t>(utime) == static_cast<std::uint64_t>(log_.info.epoch_utime) + since;
+  }
+
   /// A stamp that is not that of its step is of another run, or of another epoch.
   void check_stamp(const bridges::LogEvent& event, std::int64_t utime, std::int64_t step) const {
     if (!informed_) return;
     const shoal::sim_info_t& info = log_.info;
-    if (step < 0 || step > 1'000'000'000'000 || utime != info.epoch_utime + step * info.step_us)
+    if (!is_time_of(step, utime))
       fail(fmt::format("byte {}: {} is stamped {} at step {}, which is no time of this run (epoch {}, step {} us)",
                        event.offset, event.channel, utime, step, info.epoch_utime, info.step_us));
   }
@@ -96,7 +105,8 @@ class Reader {
     auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
     if (event.utime != info.utime) log_.own_stamps = false;
     if (!informed_) {
-      if (info.step_us < 1) throw shoal::MessageError("step_us must be 1 or more, got " + std::to_string(info.step_us));
+      if (info.step_us < 1 || info.step_us > 10'000'000)
+        throw shoal::MessageError("step_us must be from 1 to 10000000, got " + std::to_string(info.step_us));
       informed_ = true;
       branch_ = info.branch;
       log_.info = std::move(info);

@@ -20,9 +20,10 @@ namespace {
 /// Those of the run itself: another run has others.
 bool is_of_the_run(std::string_view channel) {
   if (!channel.starts_with("sim.")) return false;
-  static constexpr std::array<std::string_view, 7> names{"sim.ack",  "sim.control", "sim.control.reply", "sim.hash",
-                                                         "sim.info", "sim.mail",    "sim.tick"};
-  return std::find(names.begin(), names.end(), channel) != names.end() || channel.starts_with("sim.lockstep");
+  static constexpr std::array<std::string_view, 9> names{"sim.ack",    "sim.control", "sim.control.reply",
+                                                         "sim.hash",   "sim.info",    "sim.mail",
+                                                         "sim.resend", "sim.resent",  "sim.tick"};
+  return std::find(names.begin(), names.end(), channel) != names.end();
 }
 
 std::size_t hash_of(std::span<const std::byte> payload) {

@@ -82,7 +82,7 @@ TEST_F(ReplayTest, ARunWithAClientIsEqualWithoutIt) {
   const ReplayOutcome outcome = again();
   EXPECT_EQ(outcome.exit_code(), 0);
   EXPECT_EQ(outcome.steps, steps);
-  EXPECT_EQ(outcome.hashes, 7u);  // steps 0, 50, ... 300
+  EXPECT_EQ(outcome.hashes, 7u);           // steps 0, 50, ... 300
   EXPECT_GT(outcome.messages, 60u + 30u);  // 20 Hz of odometry, 10 Hz of lidar and more
   EXPECT_EQ(outcome.missing_messages, 0u);
   EXPECT_THAT(outcome.notes, IsEmpty());
@@ -211,6 +211,20 @@ TEST_F(ReplayTest, ALogThatIsCutOffIsEqualAsFarAsItGoes) {
   EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
   EXPECT_LT(outcome.steps, steps);
   EXPECT_GT(outcome.steps, steps / 3);
+}
+
+TEST_F(ReplayTest, ARunThatAFaultEndedIsEqualUpToIt) {
+  // Free fall: 5 m/s are reached after 0.51 s.
+  RecordedRun run(
+      "shoal: 1\nphysics: {max_speed_mps: 5, step_s: 0.01}\nvehicles:\n  - name: stone\n    position_m: [0, 0, 100]\n"
+      "    model: {shoal: 1, bodies: [{name: body, parts: [{shape: sphere, mass_kg: 1}]}]}\n",
+      log);
+  EXPECT_THROW(run.run(steps), sim::PhysicsFault);
+  run.journal.finish(false);
+  run.recorder.close();
+  const ReplayOutcome outcome = again();
+  EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
+  EXPECT_THAT(outcome.steps, AllOf(testing::Ge(40), testing::Le(51)));
 }
 
 TEST_F(ReplayTest, UntilEndsEarlier) {
