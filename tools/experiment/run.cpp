@@ -26,6 +26,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       world_(loaded.config, buses_.outer(),
              options.serial_ports ? journal_.wrap(bridges::open_serial_port) : sim::PortOpener(),
              [this](const std::string& name) -> sim::Bus& { return buses_.of(name); }),
+      lockstep_(world_, control_),
       service_(buses_.outer(), buses_.network(), world_, control_, lockstep_,
                {sim::to_yaml(loaded.resolved), version_text(), build_text(), files_text(loaded.resolved)}),
       scoring_(world_),
@@ -35,7 +36,11 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
   journal_.attach(world_);
   service_.use_journal(journal_);
   world_.use_threads(options.threads);
-  for (sim::Bus* bus : buses_.other_networks()) service_.serve_vehicles(*bus);
+  lockstep_.add_line(buses_.network(), buses_.gate());
+  for (const sim::BusConfig& bus : loaded.config.buses) {
+    service_.serve_vehicles(buses_.network(bus.name));
+    lockstep_.add_line(buses_.network(bus.name), buses_.gate(bus.name));
+  }
   control_.speed = options.speed.value_or(loaded.config.run.speed);
   control_.paused = options.paused;
   if (!options.results.empty()) results_ = std::make_unique<Results>(options.results, world_, options.pictures);
@@ -127,9 +132,12 @@ void Run::loop() {
       buses_.wait(std::chrono::milliseconds(20));
       continue;
     }
-    pace();
+    if (synchronized_) pace();
     if (!control_.may_step()) continue;
-    step();
+    if (synchronized_)
+      step();
+    else
+      synchronize();
   }
 }
 
@@ -155,13 +163,15 @@ void Run::step() {
 }
 
 void Run::synchronize() {
-  service_.synchronize(
-      loaded_.config.lockstep.timeout_s, [this](std::chrono::milliseconds time) { buses_.wait(time); },
-      [this] {
-        check_programs();
-        check_bus();
-        return caught_signal() == 0;
-      });
+  const auto outcome = lockstep_.synchronize([this](std::chrono::milliseconds time) { buses_.wait(time); },
+                                             [this] {
+                                               service_.handle_requests();
+                                               if (control_.paused) progress_.update(world_.now(), messages(), true);
+                                               check_programs();
+                                               check_bus();
+                                               return caught_signal() == 0;
+                                             });
+  synchronized_ = outcome == bridges::LockstepOutcome::done;
 }
 
 void Run::pace() {

@@ -5,7 +5,6 @@
 
 #include "bridges/lcm/run_journal.hpp"
 #include "bridges/lcm/sim_service.hpp"
-#include "sim/run/lockstep.hpp"
 #include "sim/run/run_control.hpp"
 #include "tools/experiment/pacer.hpp"
 #include "tools/experiment/progress.hpp"
@@ -46,15 +45,16 @@ class Run {
   const RunOptions& options_;
   RunBuses buses_;
   sim::RunControl control_;
-  sim::Lockstep lockstep_;
   bridges::RunJournal journal_;
   sim::World world_;
+  bridges::LockstepService lockstep_;
   bridges::SimService service_;
   Scoring scoring_;
   double duration_s_;
   Progress progress_;
   Pacer pacer_;
   RunPrograms programs_;
+  bool synchronized_ = true;  ///< the clients have answered the present step
   bool alone_ = true;  ///< no other simulator was heard at the start
   std::unique_ptr<Results> results_;
 };

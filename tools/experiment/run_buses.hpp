@@ -27,8 +27,10 @@ class RunBuses {
 
   /// The world's bus, recorded, behind its gate.
   sim::Bus& outer() { return main_.outer(); }
-  /// The world's bus without the record.
-  sim::Bus& network() { return *main_.network; }
+  /// A bus without gate and record; empty: the world's.
+  sim::Bus& network(const std::string& name = {}) {
+    return name.empty() ? *main_.network : *others_.at(name).network;
+  }
   /// The bus of a name in `buses:`, recorded, behind its gate; empty: the world's.
   sim::Bus& of(const std::string& name) { return name.empty() ? main_.outer() : others_.at(name).outer(); }
   /// The gate of a bus; empty: the world's.
@@ -36,8 +38,6 @@ class RunBuses {
   /// The begin of a step: hands over what has come on every bus, the world's first, then by name, and tells of it.
   using Admitted = std::function<void(const std::string& bus, std::span<const sim::MailGate::Mail> mail)>;
   void admit(const Admitted& admitted);
-  /// Without their records, those that vehicles have to themselves.
-  std::vector<sim::Bus*> other_networks();
 
   bool over_lcm() const { return main_.lcm != nullptr; }
   /// LCM URL of a bus; empty when it is none.
