@@ -56,6 +56,12 @@ bool Summary::passed() const {
   return std::all_of(verdicts.begin(), verdicts.end(), [](const Scoring::Verdict& v) { return v.passed; });
 }
 
+void Summary::fail(int code, const std::string& how_ended, const std::string& why) {
+  exit_code = code;
+  ended = how_ended;
+  error = why;
+}
+
 std::string Summary::to_json() const {
   nlohmann::ordered_json json;
   json["world"] = world;
@@ -137,6 +143,14 @@ void write_summary(const std::string& directory, const Summary& summary) {
     std::filesystem::rename(path + ".part", path, error);
   }
   if (error) throw cannot_write(path, error.message());
+}
+
+void try_to_write_summary(const std::string& directory, const Summary& summary) {
+  try {
+    write_summary(directory, summary);
+  } catch (const std::exception& error) {
+    spdlog::debug("{}", error.what());
+  }
 }
 
 Results::Results(const std::string& directory, const sim::World& world, bool pictures)

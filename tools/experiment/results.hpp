@@ -50,6 +50,7 @@ struct Summary {
 
   double real_time_factor() const { return wall_s > 0 ? sim_time_s / wall_s : 0; }
   bool passed() const;
+  void fail(int code, const std::string& how_ended, const std::string& why);
   std::string to_json() const;
   /// The end summary on a terminal.
   std::string to_text() const;
@@ -58,6 +59,8 @@ struct Summary {
 /// Writes DIRECTORY/summary.json; a reader finds it whole or not at all.  Makes the directory.  Throws
 /// std::runtime_error.
 void write_summary(const std::string& directory, const Summary& summary);
+/// The same when there is a worse error to tell of already.
+void try_to_write_summary(const std::string& directory, const Summary& summary);
 
 /// Writes the results directory: tracks while the run goes, the rest at its end.
 class Results {
