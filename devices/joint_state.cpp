@@ -26,8 +26,10 @@ std::vector<JointState::Axis> axes_of(const JointState::Params& params, const si
   if (names.empty()) refuse(context, "the vehicle has no joint with an axis");
   std::vector<JointState::Axis> axes;
   for (const std::string& name : names) {
-    sim::Joint& joint = joint_with_axis(context, name, 0);
-    for (int axis = 0; axis < joint.axes(); ++axis) axes.push_back({axis == 0 ? name : name + "/1", &joint, axis});
+    sim::Joint& named = context.joint(name);
+    sim::Joint& joint = named.type() == "ball" && named.axes() > 0 ? named : joint_with_axis(context, name, 0);
+    for (int axis = 0; axis < joint.axes(); ++axis)
+      axes.push_back({axis == 0 ? name : name + "/" + std::to_string(axis), &joint, axis});
   }
   return axes;
 }

@@ -6,7 +6,8 @@
 
 namespace devices {
 
-/// Positions, velocities and efforts of joints.  A joint with two axes is listed twice: NAME and NAME/1.
+/// Positions, velocities and efforts of joints.  A joint with two axes is listed twice: NAME and NAME/1; a
+/// ball with a motor three times.
 class JointState final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Positions, velocities and efforts of the vehicle's joints.";
