@@ -1,6 +1,7 @@
 #include "sim/physics/joint.hpp"
 
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "sim/physics/ode_math.hpp"
@@ -36,6 +37,12 @@ int axes_of(dJointType kind, bool ball_motor) {
 /// All axes of a ball are configured alike.
 const JointAxisConfig& axis_config(const JointConfig& config, int axis) {
   return axis == 0 || config.type == "ball" ? config.axis1 : config.axis2;
+}
+
+/// Where its axes are: ODE does not measure that of a motor with axes of ours, and needs it for the stops.
+void tell_ball_angles(dJointID motor, double sign, std::span<const double> position) {
+  for (int axis = 0; motor != nullptr && axis < dJointGetAMotorNumAxes(motor); ++axis)
+    dJointSetAMotorAngle(motor, axis, sign * position[static_cast<std::size_t>(axis)]);
 }
 
 /// ODE's frame of a body, at its centre of mass.
@@ -232,10 +239,8 @@ void Joint::update_position(double step_s) {
   }
   if (kind_ == dJointTypeBall) {
     const Vector3d rotation = rotation_of_ball();
-    for (int axis = 0; axis < axes_; ++axis) {
-      position_[axis] = rotation[axis];
-      dJointSetAMotorAngle(ball_motor_.get(), axis, sign_ * rotation[axis]);
-    }
+    for (int axis = 0; axis < axes_; ++axis) position_[axis] = rotation[axis];
+    tell_ball_angles(ball_motor_.get(), sign_, position_);
     return;
   }
   for (int axis = 0; axis < axes_; ++axis) {
