@@ -179,7 +179,8 @@ void Joint::set_parameter(int parameter, double value, int axis) {
     case dJointTypeUniversal:
       return dJointSetUniversalParam(ode_.get(), parameter, value);
     case dJointTypeBall:
-      return dJointSetAMotorParam(ball_motor_.get(), parameter, value);
+      if (ball_motor_) dJointSetAMotorParam(ball_motor_.get(), parameter, value);
+      return;
     default:
       return;
   }
@@ -205,6 +206,7 @@ double Joint::velocity(int axis) const {
     case dJointTypeUniversal:
       return sign_ * (axis == 0 ? dJointGetUniversalAngle1Rate(ode_.get()) : dJointGetUniversalAngle2Rate(ode_.get()));
     case dJointTypeBall: {
+      if (!ball_motor_) return 0;
       const dBodyID first = dJointGetBody(ode_.get(), 0), second = dJointGetBody(ode_.get(), 1);
       Vector3d w_W = to_eigen(dBodyGetAngularVel(first));
       if (second != nullptr) w_W -= to_eigen(dBodyGetAngularVel(second));
@@ -283,7 +285,8 @@ void Joint::add_effort(double effort, int axis) {
     case dJointTypeUniversal:
       return dJointAddUniversalTorques(ode_.get(), torque1, torque2);
     case dJointTypeBall:
-      return dJointAddAMotorTorques(ball_motor_.get(), torque1, torque2, axis == 2 ? sign_ * effort : 0);
+      if (ball_motor_) dJointAddAMotorTorques(ball_motor_.get(), torque1, torque2, axis == 2 ? sign_ * effort : 0);
+      return;
     default:
       return;
   }
@@ -301,7 +304,7 @@ double Joint::get_parameter(int parameter, int axis) const {
     case dJointTypeUniversal:
       return dJointGetUniversalParam(ode_.get(), parameter);
     case dJointTypeBall:
-      return dJointGetAMotorParam(ball_motor_.get(), parameter);
+      return ball_motor_ ? dJointGetAMotorParam(ball_motor_.get(), parameter) : 0;
     default:
       return 0;
   }
