@@ -8,7 +8,13 @@
 #include "sim/bus/bus.hpp"
 #include "sim/world/world.hpp"
 
+namespace sim {
+struct SpawnRequest;
+}
+
 namespace bridges {
+
+class RunJournal;
 
 /// The vehicles that clients bring over `sim.control`, and whose they are.  Every vehicle that comes or goes, whoever
 /// brings or takes it, is told on `sim.vehicle`.
@@ -19,6 +25,8 @@ class Visitors {
   /// Adds the vehicle that `text` describes (an entry of `vehicles:` in YAML); returns one line that names it, its
   /// channels and rates.  Throws sim::ConfigError, with the same lines as for files.
   std::string spawn(const std::string& client, const std::string& text);
+  /// The same with a text that a journal wrote down.
+  std::string spawn_again(const std::string& client, const std::string& text);
   /// A vehicle or an object.  Throws sim::WorldError.
   void remove(const std::string& name);
   /// Says the same as spawn() did.  Throws sim::WorldError.
@@ -35,6 +43,8 @@ class Visitors {
   /// Removes the vehicles that came with this client and go with it.
   void remove_those_of(const std::string& client);
   bool has(const std::string& client) const { return clients_.contains(client); }
+  /// Told of every request that is about to change the world, whoever makes it, and of descriptions.
+  void use_journal(RunJournal& journal) { journal_ = &journal; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -47,10 +57,13 @@ class Visitors {
     bool with_client = false;
   };
 
+  std::string add(const std::string& client, const sim::SpawnRequest& request);
   void tell(shoal::sim_vehicle_t& message, bool present);
+  void write_down(const std::string& client, const std::string& command, const std::string& text);
 
   sim::World& world_;
   sim::Bus& bus_;
+  RunJournal* journal_ = nullptr;
   std::map<std::string, Owner, std::less<>> owners_;                // by vehicle
   std::map<std::string, Client, std::less<>> clients_;              // those with vehicles that go with them
   std::map<std::string, shoal::sim_vehicle_t, std::less<>> known_;  // the vehicles told of, or there from the start

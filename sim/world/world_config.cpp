@@ -22,6 +22,7 @@ void RunConfig::read(ParamReader& in) {
   in.read("speed", speed, between(0, 1e6), "times real time; 0: as fast as possible");
   in.read("seed", seed, at_least(0), "of every random stream");
   in.read("track_rate_hz", track_rate_hz, between(1e-3, 1e6), "samples per second of the tracks in the results");
+  in.read("hash_every_steps", hash_every_steps, between(0, 1e9), "steps from hash to hash on sim.hash; 0: none");
 }
 
 void ChannelConfig::read(ParamReader& in) {
@@ -41,7 +42,10 @@ void refuse_reserved(ParamReader& in, const std::string& name) {
 }  // namespace
 
 void ObjectConfig::read(ParamReader& in) {
-  if (in.node() != nullptr) place = in.node()->place;
+  if (in.node() != nullptr) {
+    place = in.node()->place;
+    source = std::make_shared<const ConfigNode>(*in.node());
+  }
   in.require("name");
   in.read_name("name", name, "name of the object, unique in the world");
   refuse_reserved(in, name);
@@ -101,6 +105,10 @@ void ProcessConfig::read(ParamReader& in) {
 void LockstepConfig::read(ParamReader& in) {
   in.read("timeout_s", timeout_s, between(0.001, 1e6), "wall time to wait for a client's acknowledgement");
   in.read("join_timeout_s", join_timeout_s, between(0.001, 1e6), "wall time to wait for launched clients to join");
+  in.read_choice("on_timeout", on_timeout, {"wait", "pause", "continue", "end"},
+                 "when a client does not answer in timeout_s: wait for it for ever, pause the world, continue without "
+                 "it, end the run with exit code 5; clients may ask for another when they join");
+  agreed = in.has("on_timeout");
 }
 
 void LimitsConfig::read(ParamReader& in) {

@@ -31,7 +31,8 @@ struct RunConfig {
   double duration_s = 60;  ///< 0: until told to quit
   double speed = 0;        ///< times real time; 0: as fast as possible
   std::int64_t seed = 1;
-  double track_rate_hz = 10;  ///< of the tracks in the results
+  double track_rate_hz = 10;            ///< of the tracks in the results
+  std::int64_t hash_every_steps = 100;  ///< of the hashes on `sim.hash`; 0: none
   void read(ParamReader& in);
 };
 
@@ -54,6 +55,7 @@ struct ObjectConfig {
   int count = 1;
   PlacementConfig placement;
   std::vector<PartConfig> parts;
+  std::shared_ptr<const ConfigNode> source;  ///< what it was read from; null: made by hand
   SourcePlace place;
   void read(ParamReader& in);
 };
@@ -102,8 +104,10 @@ struct ProcessConfig {
 };
 
 struct LockstepConfig {
-  double timeout_s = 10;       ///< wall time to wait for an acknowledgement
-  double join_timeout_s = 30;  ///< wall time to wait for the launched clients to join
+  double timeout_s = 10;           ///< wall time to wait for an acknowledgement
+  double join_timeout_s = 30;      ///< wall time to wait for the launched clients to join
+  std::string on_timeout = "end";  ///< what is done then: wait, pause, continue, end
+  bool agreed = false;             ///< the file says on_timeout
   void read(ParamReader& in);
 };
 

@@ -56,6 +56,12 @@ bool Summary::passed() const {
   return std::all_of(verdicts.begin(), verdicts.end(), [](const Scoring::Verdict& v) { return v.passed; });
 }
 
+void Summary::fail(int code, const std::string& how_ended, const std::string& why) {
+  exit_code = code;
+  ended = how_ended;
+  error = why;
+}
+
 std::string Summary::to_json() const {
   nlohmann::ordered_json json;
   json["world"] = world;
@@ -77,6 +83,15 @@ std::string Summary::to_json() const {
   json["processes"] = nlohmann::ordered_json::array();
   for (const Process& process : processes)
     json["processes"].push_back({{"name", process.name}, {"how", process.how}, {"sim_time_s", process.sim_time_s}});
+  if (!clients.empty()) json["clients"] = nlohmann::ordered_json::array();
+  for (const bridges::LockstepSummary& client : clients)
+    json["clients"].push_back({{"name", client.client},
+                               {"ticks", client.ticks},
+                               {"repeated_ticks", client.repeated_ticks},
+                               {"messages_sent_again", client.messages_sent_again},
+                               {"messages_asked_for", client.messages_asked_for},
+                               {"timeouts", client.timeouts},
+                               {"ended", client.ended.empty() ? "with the run" : client.ended}});
   for (const auto& [vehicle, record] : zones) {
     auto& entry = json["zones"][vehicle];
     entry["finish_s"] = record.finish_s ? nlohmann::ordered_json(*record.finish_s) : nlohmann::ordered_json();
@@ -137,6 +152,14 @@ void write_summary(const std::string& directory, const Summary& summary) {
     std::filesystem::rename(path + ".part", path, error);
   }
   if (error) throw cannot_write(path, error.message());
+}
+
+void try_to_write_summary(const std::string& directory, const Summary& summary) {
+  try {
+    write_summary(directory, summary);
+  } catch (const std::exception& error) {
+    spdlog::debug("{}", error.what());
+  }
 }
 
 Results::Results(const std::string& directory, const sim::World& world, bool pictures)

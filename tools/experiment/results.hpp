@@ -10,6 +10,7 @@
 
 #include "sim/config/config_node.hpp"
 #include "sim/script/script.hpp"
+#include "bridges/lcm/lockstep_summary.hpp"
 #include "sim/world/world.hpp"
 #include "tools/experiment/link_counts.hpp"
 #include "tools/experiment/scoring.hpp"
@@ -38,6 +39,7 @@ struct Summary {
   std::map<std::string, double> metrics;
   std::vector<Scoring::Verdict> verdicts;
   std::vector<Process> processes;
+  std::vector<bridges::LockstepSummary> clients;  ///< that took part in the lockstep, by name
   std::map<std::string, sim::ZoneRecord> zones;  ///< by vehicle, when the world has zones with rules
   std::optional<LinkCounts> acoustics;           ///< of all modems under water, when there are any
   std::uint64_t serial_dropped_bytes = 0;        ///< that no program fetched from pseudo-terminals and FIFOs
@@ -50,6 +52,7 @@ struct Summary {
 
   double real_time_factor() const { return wall_s > 0 ? sim_time_s / wall_s : 0; }
   bool passed() const;
+  void fail(int code, const std::string& how_ended, const std::string& why);
   std::string to_json() const;
   /// The end summary on a terminal.
   std::string to_text() const;
@@ -58,6 +61,8 @@ struct Summary {
 /// Writes DIRECTORY/summary.json; a reader finds it whole or not at all.  Makes the directory.  Throws
 /// std::runtime_error.
 void write_summary(const std::string& directory, const Summary& summary);
+/// The same when there is a worse error to tell of already.
+void try_to_write_summary(const std::string& directory, const Summary& summary);
 
 /// Writes the results directory: tracks while the run goes, the rest at its end.
 class Results {

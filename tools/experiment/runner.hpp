@@ -6,6 +6,7 @@
 
 #include "sim/world/load_world.hpp"
 #include "tools/experiment/results.hpp"
+#include "tools/experiment/signals.hpp"
 
 namespace tools {
 
@@ -31,12 +32,6 @@ struct RunOptions {
 /// lockstep clients, scores, writes the results.  Errors end up in the summary with their exit code; nothing is
 /// thrown but ConfigError.
 Summary run_world(const sim::LoadedWorld& loaded, const RunOptions& options);
-
-/// SIGINT, SIGTERM and SIGHUP end the run at the next step, once this was called.  SIGPIPE ends the program unless it
-/// is ignored.
-void catch_signals(bool ignore_pipe);
-/// The signal that came, or 0.
-int caught_signal();
 
 /// Versions of shoal and of the libraries it runs with.
 std::string version_text();

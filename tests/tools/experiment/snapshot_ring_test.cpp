@@ -1,0 +1,96 @@
+#include "tools/experiment/snapshot_ring.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "sim/state/state_archive.hpp"
+
+namespace {
+
+using tools::SnapshotRing;
+
+/// A state of three parts: one that moves, one that stays, one whose length changes.
+sim::Bytes state_at(std::int64_t step) {
+  auto archive = sim::StateArchive::saver();
+  std::mt19937_64 draw(static_cast<std::uint64_t>(step));
+  std::vector<double> moving(200), standing(2000, 1.25);
+  for (double& value : moving) value = static_cast<double>(draw() >> 12);
+  std::vector<std::int64_t> queue(static_cast<std::size_t>(step % 7), step);
+  archive.section("moving");
+  archive(moving);
+  archive.section("standing");
+  archive(standing);
+  archive.section("queue");
+  archive(queue);
+  archive.end();
+  return archive.take_bytes();
+}
+
+TEST(SnapshotRing, GivesBackWhatWasAddedBitForBit) {
+  SnapshotRing ring(10'000, 1 << 24);
+  for (std::int64_t step = 0; step <= 10'000; step += 100) ring.add(step, state_at(step));
+  EXPECT_EQ(ring.size(), 101u);
+  for (std::int64_t step = 0; step <= 10'000; step += 100) EXPECT_EQ(ring.get(step), state_at(step)) << step;
+  EXPECT_EQ(ring.newest_until(4'399), 4'300);
+  EXPECT_EQ(ring.newest_until(4'400), 4'400);
+  EXPECT_EQ(ring.newest_until(-1), std::nullopt);
+}
+
+TEST(SnapshotRing, KeepsNoMoreStepsThanAskedForButAFamily) {
+  SnapshotRing ring(2'000, 1 << 24);
+  for (std::int64_t step = 0; step <= 100'000; step += 100) ring.add(step, state_at(step));
+  // 2000 steps, and at most 30 snapshots that lean on the same whole one.
+  EXPECT_LE(*ring.oldest(), 98'000);
+  EXPECT_GT(*ring.oldest(), 98'000 - 3'000);
+  EXPECT_EQ(ring.get(*ring.oldest()), state_at(*ring.oldest()));
+}
+
+TEST(SnapshotRing, KeepsNoMoreBytesThanAskedFor) {
+  constexpr std::size_t most = 200'000;
+  SnapshotRing ring(1'000'000, most);
+  for (std::int64_t step = 0; step <= 100'000; step += 100) {
+    ring.add(step, state_at(step));
+    EXPECT_LE(ring.bytes(), most);
+  }
+  EXPECT_GT(*ring.oldest(), 0);
+}
+
+TEST(SnapshotRing, WhatStandsStillCostsNextToNothing) {
+  SnapshotRing ring(1'000'000, 1 << 24);
+  const sim::Bytes state = state_at(3);
+  for (std::int64_t step = 0; step < 30; ++step) ring.add(step, state);
+  // One whole one of at most its size, and 29 of zeros: deflate makes a thousandth of them.
+  EXPECT_LT(ring.bytes(), state.size() + 29 * (state.size() / 1000 + 250));
+}
+
+TEST(SnapshotRing, ForgetsTheFutureAndGoesOnFromThere) {
+  SnapshotRing ring(10'000, 1 << 24);
+  for (std::int64_t step = 0; step <= 10'000; step += 100) ring.add(step, state_at(step));
+  const std::size_t all = ring.bytes();
+  ring.forget_after(4'250);
+  EXPECT_LT(ring.bytes(), all);
+  EXPECT_EQ(ring.size(), 43u);
+  EXPECT_EQ(ring.newest_until(9'999), 4'200);
+  for (std::int64_t step = 4'300; step <= 10'000; step += 100) ring.add(step, state_at(step + 1));
+  EXPECT_EQ(ring.get(4'200), state_at(4'200));
+  EXPECT_EQ(ring.get(9'000), state_at(9'001));
+  ring.forget_after(-1);
+  EXPECT_EQ(ring.size(), 0u);
+  EXPECT_EQ(ring.bytes(), 0u);
+  ring.add(5, state_at(5));
+  EXPECT_EQ(ring.get(5), state_at(5));
+}
+
+TEST(SnapshotRing, TakesBytesThatHaveNoParts) {
+  SnapshotRing ring(100, 1 << 20);
+  const sim::Bytes odd(37, std::byte{0xff});
+  ring.add(1, odd);
+  ring.add(2, {});
+  ring.add(3, odd);
+  EXPECT_EQ(ring.get(1), odd);
+  EXPECT_EQ(ring.get(2), sim::Bytes{});
+  EXPECT_EQ(ring.get(3), odd);
+}
+
+}  // namespace

@@ -1,0 +1,45 @@
+#include "tools/experiment/run_programs.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include "tools/experiment/run_error.hpp"
+
+namespace tools {
+
+RunPrograms::RunPrograms(const sim::WorldConfig& config, const RunOptions& options, RunBuses& buses)
+    : config_(config), options_(options), buses_(buses) {}
+
+std::vector<std::string> RunPrograms::start() {
+  std::vector<std::string> awaited = options_.await;
+  if (!options_.launch) {
+    if (!config_.processes.empty() && !options_.quiet)
+      spdlog::info("the world names {} processes; --launch starts them", config_.processes.size());
+    return awaited;
+  }
+  for (const sim::ProcessConfig& process : config_.processes) {
+    try {
+      processes_.start(process, buses_.url(process.bus), options_.results);
+    } catch (const std::runtime_error& error) {
+      throw RunError(4, "process", error.what());
+    }
+    if (!process.client.empty()) awaited.push_back(process.client);
+  }
+  return awaited;
+}
+
+void RunPrograms::check(sim::Time now, const std::function<void(const std::string& client)>& told_of) {
+  if (processes_.empty()) return;
+  for (const ProcessGroup::Exit& exit : processes_.reap()) {
+    const std::string text = "process '" + exit.name + "' " + exit.how;
+    ended_.push_back({exit.name, exit.how, sim::to_seconds(now)});
+    if (exit.ends_run) throw RunError(1, "process", text + "; the world says the run ends with it");
+    told_of(exit.client);
+    if (exit.failed)
+      spdlog::error("{}; the run goes on without it", text);
+    else
+      spdlog::info("{}", text);
+    gone_.insert(exit.client);
+  }
+}
+
+}  // namespace tools

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "sim/world/world_config.hpp"
+#include "tools/experiment/process_group.hpp"
+#include "tools/experiment/results.hpp"
+#include "tools/experiment/run_buses.hpp"
+
+namespace tools {
+
+/// The programs that a world names: started, awaited, watched.
+class RunPrograms {
+ public:
+  /// All must outlive this.
+  RunPrograms(const sim::WorldConfig& config, const RunOptions& options, RunBuses& buses);
+
+  /// Starts the programs when the options say so.  Returns the lockstep clients to wait for.  Throws RunError.
+  std::vector<std::string> start();
+  /// Looks for programs that have ended.  `told_of` gets the lockstep name of each.  Throws RunError when the world
+  /// says that the run ends with one.
+  void check(sim::Time now, const std::function<void(const std::string& client)>& told_of);
+  bool is_gone(const std::string& client) const { return gone_.contains(client); }
+  /// Lets those that take part in the lockstep end by themselves.
+  void await_clients() { processes_.await_clients(); }
+  void stop() { processes_.stop(); }
+  /// Those that ended before the run did.
+  const std::vector<Summary::Process>& ended() const { return ended_; }
+
+ private:
+  const sim::WorldConfig& config_;
+  const RunOptions& options_;
+  RunBuses& buses_;
+  ProcessGroup processes_;
+  std::vector<Summary::Process> ended_;
+  std::set<std::string, std::less<>> gone_;
+};
+
+}  // namespace tools

@@ -1,0 +1,74 @@
+#include <spdlog/spdlog.h>
+
+#include "devices/serial_port.hpp"
+#include "sim/acoustics/channel.hpp"
+#include "tools/experiment/run.hpp"
+
+namespace tools {
+
+namespace {
+
+/// One that came while the run was ending counts as well.
+void note_signal(Summary& summary) {
+  if (caught_signal() != 0 && summary.exit_code <= 1 && summary.error.empty())
+    summary.fail(128 + caught_signal(), "signal", "");
+}
+
+}  // namespace
+
+void Run::finish(Summary& summary) {
+  journal_.finish(summary.ended != "fault" && summary.ended != "error");
+  if (alone_) {  // else it would end the other simulator's clients
+    lockstep_.publish_end([this](std::chrono::milliseconds time) { buses_.wait(time); },
+                          std::chrono::milliseconds(caught_signal() == 0 ? 1000 : 200));
+    if (caught_signal() == 0) programs_.await_clients();
+  }
+  programs_.stop();
+  buses_.close_record();
+  if (const auto error = buses_.record_error(); error && summary.exit_code == 0) summary.fail(4, "bus", *error);
+  add_figures(summary);
+  if (summary.exit_code == 0 && !summary.passed()) summary.exit_code = 1;  // a rule, or the event that ended it
+  note_signal(summary);
+  if (results_) write_results(summary);
+}
+
+void Run::add_figures(Summary& summary) {
+  const sim::BusCounts counts = buses_.counts();
+  summary.world = loaded_.config.name;
+  summary.seed = loaded_.config.run.seed;
+  summary.version = short_version();
+  summary.steps = world_.step_number();
+  summary.sim_time_s = sim::to_seconds(world_.now());
+  summary.state_hash = world_.state_hash();
+  summary.messages = counts.published + counts.received;
+  summary.dropped_messages = counts.dropped_incoming + counts.dropped_outgoing;
+  summary.bad_messages = world_.counts().bad_messages + service_.bad_messages() + lockstep_.bad_messages() +
+                         scoring_.bad_messages();
+  summary.quick_steps = world_.physics().quick_steps();
+  const LinkCounts links = link_counts(world_, "", "");
+  if (!world_.acoustics().transducers().empty()) summary.acoustics = links;
+  summary.serial_dropped_bytes = devices::serial_dropped_bytes(world_);
+  summary.metrics = scoring_.figures();
+  summary.verdicts = scoring_.verdicts();
+  summary.processes = programs_.ended();
+  summary.clients = lockstep_.summaries();
+  summary.event = world_.ended();
+  for (const auto& [vehicle, record] : world_.zone_records()) summary.zones[vehicle] = record;
+  // Without the programs that a world names there is nothing to judge.
+  const bool judged = loaded_.config.processes.empty() || options_.launch || !options_.await.empty();
+  if (!judged) summary.verdicts.clear();
+}
+
+void Run::write_results(Summary& summary) {
+  const int exit_code = summary.exit_code;
+  const int signals = caught_signals();
+  try {
+    results_->finish(summary, scoring_, loaded_.resolved, [&] { return caught_signals() != signals; });
+  } catch (const std::exception& error) {
+    if (summary.exit_code <= 1 && summary.error.empty()) summary.fail(4, "bus", error.what());
+  }
+  note_signal(summary);
+  if (summary.exit_code != exit_code) try_to_write_summary(options_.results, summary);
+}
+
+}  // namespace tools

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "sim/bus/bus.hpp"
+
+namespace tools {
+
+/// Snapshots of the last seconds in memory.  Every few are kept whole; of those between, what differs from the whole
+/// one before is kept, compressed.  Bounded in number and bytes: the oldest go first, together with the whole one that
+/// they lean on.
+class SnapshotRing {
+ public:
+  /// Snapshots are kept for `steps` steps, but never more than `most_bytes` of them.
+  SnapshotRing(std::int64_t steps, std::size_t most_bytes) : steps_(steps), most_bytes_(most_bytes) {}
+
+  /// `step` must be larger than that of the newest.
+  void add(std::int64_t step, const sim::Bytes& snapshot);
+  /// The step of the newest snapshot that is not later than `step`.
+  std::optional<std::int64_t> newest_until(std::int64_t step) const;
+  /// The snapshot of a step that newest_until() gave.
+  sim::Bytes get(std::int64_t step) const;
+  /// Drops all that are later than `step`.
+  void forget_after(std::int64_t step);
+  /// The step of the oldest one.
+  std::optional<std::int64_t> oldest() const;
+  std::size_t size() const { return count_; }
+  std::size_t bytes() const { return bytes_; }
+
+ private:
+  struct Difference {
+    std::int64_t step;
+    sim::Bytes compressed;
+  };
+  /// A whole snapshot, and those that lean on it.
+  struct Family {
+    std::int64_t step;
+    sim::Bytes compressed;
+    std::size_t raw_bytes;
+    std::vector<Difference> others;
+    std::size_t bytes() const;
+  };
+
+  const Family* family_of(std::int64_t step) const;
+
+  std::int64_t steps_;
+  std::size_t most_bytes_;
+  std::deque<Family> families_;
+  sim::Bytes whole_;  // the newest family's, not compressed
+  std::size_t bytes_ = 0, count_ = 0;
+};
+
+}  // namespace tools
