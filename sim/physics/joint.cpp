@@ -433,6 +433,7 @@ void Joint::visit_state(StateArchive& archive) {
     set_parameter(dParamVel, sign_ * motor_velocity_[axis], axis);
     set_parameter(dParamFMax, motor_max_force_[axis], axis);
   }
+  if (archive.restoring()) tell_ball_angles(ball_motor_.get(), sign_, position_);
   bool measured = load_ != nullptr;
   archive.unhashed(measured);
   if (measured) measure_load();
