@@ -90,7 +90,7 @@ std::size_t SnapshotRing::Family::bytes() const {
   return sum;
 }
 
-void SnapshotRing::add(std::int64_t step, const sim::Bytes& snapshot) {
+void SnapshotRing::add(std::int64_t step, const sim::Bytes& snapshot, std::size_t bytes_beside) {
   assert(families_.empty() ||
          step > (families_.back().others.empty() ? families_.back().step : families_.back().others.back().step));
   const bool full = !families_.empty() && families_.back().others.size() + 1 >= most_in_family;
@@ -106,7 +106,7 @@ void SnapshotRing::add(std::int64_t step, const sim::Bytes& snapshot) {
   }
   ++count_;
   // A family goes when even its last is not needed any more; the newest family stays whatever it costs.
-  while (families_.size() > 1 && (families_[1].step <= step - steps_ || bytes_ > most_bytes_)) {
+  while (families_.size() > 1 && (families_[1].step <= step - steps_ || bytes_ + bytes_beside > most_bytes_)) {
     bytes_ -= families_.front().bytes();
     count_ -= 1 + families_.front().others.size();
     families_.pop_front();
