@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bridges/lcm/run_journal.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_control_reply_t.hpp"
@@ -46,6 +47,11 @@ void SimService::serve_vehicles(sim::Bus& network) {
   lines_.push_back({&network, network.open_mailbox("sim.control"), network.open_mailbox("sim.ack")});
 }
 
+void SimService::use_journal(RunJournal& journal) {
+  journal_ = &journal;
+  visitors_.use_journal(journal);
+}
+
 template <typename Message>
 void SimService::publish(sim::Bus& bus, const std::string& channel, const Message& message) {
   shoal::encode_into(message, buffer_);
@@ -63,7 +69,7 @@ bool SimService::due(double rate_hz) const {
 
 void SimService::publish_step() {
   visitors_.tell_changes();
-  if (due(info_rate_hz)) publish_info();
+  if (due(info_rate_hz) && info_step_ != world_.step_number()) publish_info();
   if (!due(world_.config().state_rate_hz)) return;
   shoal::utime_t clock;
   clock.utime = world_.epoch_us() + world_.now().count();
@@ -80,6 +86,13 @@ void SimService::publish_info() {
   info.step_us = world_.step_time().count();
   info.resolved_config = info_.resolved_config;
   info.versions = info_.versions;
+  info.epoch_utime = world_.epoch_us();
+  info.step = world_.step_number();
+  info.branch = journal_ != nullptr ? journal_->branch() : 0;
+  info.mail_sequence = journal_ != nullptr ? journal_->sequence() : 0;
+  info.build = info_.build;
+  info.files = info_.files;
+  info_step_ = world_.step_number();
   publish(bus_, "sim.info", info);
 }
 
@@ -218,6 +231,20 @@ std::string SimService::obey(const shoal::sim_control_request_t& request) {
                              "spawn, speed, step");
   }
   return {};
+}
+
+void SimService::obey_again(const shoal::sim_control_request_t& request) {
+  const std::string& command = request.command;
+  if (command == "spawn")
+    visitors_.spawn(request.client, request.text);
+  else if (command == "remove")
+    visitors_.remove(request.text);
+  else if (command == "describe")
+    visitors_.describe(request.text);
+  else if (command == "do")
+    visitors_.act(request.text);
+  else
+    throw std::runtime_error("'" + sim::shortened(sim::printable(command)) + "' does not change a world");
 }
 
 void SimService::client_gone(const std::string& client) {

@@ -29,6 +29,8 @@ class SimService {
   struct Info {
     std::string resolved_config;
     std::string versions;
+    std::string build = {};  ///< see sim_info_t
+    std::string files = {};
   };
 
   /// `network`: the bus under `bus`; the handshake goes there directly, so that records leave it out.
@@ -38,6 +40,12 @@ class SimService {
   /// A bus that vehicles have to themselves: there the service gives the time and keeps lockstep (sim.clock, sim.tick,
   /// sim.ack, and join, leave and alive on sim.control), and nothing else.
   void serve_vehicles(sim::Bus& network);
+  /// What changes the world is written down there.  It must outlive this.
+  void use_journal(RunJournal& journal);
+  /// Publishes sim.info now, and not a second time at this step.
+  void publish_info();
+  /// Carries out a request that a journal wrote down.  Throws std::runtime_error that says why it was refused, as then.
+  void obey_again(const shoal::sim_control_request_t& request);
   /// Publishes what is due after the world's current step: clock, state, info.
   void publish_step();
   /// Answers the requests that have come.
@@ -66,7 +74,6 @@ class SimService {
     std::unique_ptr<sim::Mailbox> requests, acknowledgements;
   };
 
-  void publish_info();
   void publish_state();
   void publish_tick(const std::vector<std::string>& clients, bool last);
   void take_acknowledgements();
@@ -89,7 +96,9 @@ class SimService {
   sim::Lockstep& lockstep_;
   Info info_;
   Visitors visitors_;
-  std::vector<Line> lines_;  // the world's first
+  RunJournal* journal_ = nullptr;
+  std::int64_t info_step_ = -1;  // of the last sim.info
+  std::vector<Line> lines_;      // the world's first
   sim::Bytes buffer_;
   std::int64_t bad_messages_ = 0;
 };

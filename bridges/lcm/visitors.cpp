@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "bridges/lcm/run_journal.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world/vehicle_loader.hpp"
@@ -60,6 +61,18 @@ void Visitors::tell(shoal::sim_vehicle_t& message, bool present) {
   bus_.publish("sim.vehicle", buffer_, world_.now());
 }
 
+void Visitors::write_down(const std::string& client, const std::string& command, const std::string& text) {
+  if (journal_ == nullptr) return;
+  shoal::sim_control_request_t request;
+  request.utime = world_.epoch_us() + world_.now().count();
+  request.id = 0;
+  request.client = client;
+  request.command = command;
+  request.value = 0;
+  request.text = text;
+  journal_->request(request);
+}
+
 void Visitors::tell_changes() {
   if (generation_ == world_.generation()) return;
   generation_ = world_.generation();
@@ -81,6 +94,7 @@ void Visitors::tell_changes() {
 }
 
 std::string Visitors::spawn(const std::string& client, const std::string& text) {
+  write_down(client, "spawn", text);
   const sim::SpawnRequest request = sim::read_spawn_request(world_.config(), text);
   if (request.with_client && client.empty())
     throw std::runtime_error("a vehicle that goes with its client needs a client name");
@@ -98,6 +112,7 @@ std::string Visitors::spawn(const std::string& client, const std::string& text) 
 }
 
 void Visitors::remove(const std::string& name) {
+  write_down("", "remove", name);
   const sim::Vehicle* vehicle = world_.find_vehicle(name);
   if (vehicle == nullptr) return world_.remove_object(name);
   world_.remove_vehicle(std::string(vehicle->name()));
@@ -105,6 +120,7 @@ void Visitors::remove(const std::string& name) {
 }
 
 std::string Visitors::describe(const std::string& name) {
+  write_down("", "describe", name);
   const sim::Vehicle* vehicle = world_.find_vehicle(name);
   if (vehicle == nullptr) throw sim::WorldError("there is no vehicle '" + sim::shortened(sim::printable(name)) + "'");
   shoal::sim_vehicle_t& message = known_.at(vehicle->name());
@@ -113,6 +129,7 @@ std::string Visitors::describe(const std::string& name) {
 }
 
 void Visitors::act(const std::string& text) {
+  write_down("", "do", text);
   const sim::ConfigNode action = sim::parse_untrusted(text, "do");
   sim::Diagnostics diagnostics;
   sim::check_untrusted(action, "", diagnostics);

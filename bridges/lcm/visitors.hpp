@@ -10,6 +10,8 @@
 
 namespace bridges {
 
+class RunJournal;
+
 /// The vehicles that clients bring over `sim.control`, and whose they are.  Every vehicle that comes or goes, whoever
 /// brings or takes it, is told on `sim.vehicle`.
 class Visitors {
@@ -35,6 +37,8 @@ class Visitors {
   /// Removes the vehicles that came with this client and go with it.
   void remove_those_of(const std::string& client);
   bool has(const std::string& client) const { return clients_.contains(client); }
+  /// Told of every request that is about to change the world, whoever makes it, and of descriptions.
+  void use_journal(RunJournal& journal) { journal_ = &journal; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -48,9 +52,11 @@ class Visitors {
   };
 
   void tell(shoal::sim_vehicle_t& message, bool present);
+  void write_down(const std::string& client, const std::string& command, const std::string& text);
 
   sim::World& world_;
   sim::Bus& bus_;
+  RunJournal* journal_ = nullptr;
   std::map<std::string, Owner, std::less<>> owners_;                // by vehicle
   std::map<std::string, Client, std::less<>> clients_;              // those with vehicles that go with them
   std::map<std::string, shoal::sim_vehicle_t, std::less<>> known_;  // the vehicles told of, or there from the start

@@ -22,6 +22,7 @@ void RunConfig::read(ParamReader& in) {
   in.read("speed", speed, between(0, 1e6), "times real time; 0: as fast as possible");
   in.read("seed", seed, at_least(0), "of every random stream");
   in.read("track_rate_hz", track_rate_hz, between(1e-3, 1e6), "samples per second of the tracks in the results");
+  in.read("hash_every_steps", hash_every_steps, between(0, 1e9), "steps from hash to hash on sim.hash; 0: none");
 }
 
 void ChannelConfig::read(ParamReader& in) {

@@ -31,7 +31,8 @@ struct RunConfig {
   double duration_s = 60;  ///< 0: until told to quit
   double speed = 0;        ///< times real time; 0: as fast as possible
   std::int64_t seed = 1;
-  double track_rate_hz = 10;  ///< of the tracks in the results
+  double track_rate_hz = 10;            ///< of the tracks in the results
+  std::int64_t hash_every_steps = 100;  ///< of the hashes on `sim.hash`; 0: none
   void read(ParamReader& in);
 };
 

@@ -8,6 +8,7 @@
 #include "bridges/lcm/bus_error.hpp"
 #include "bridges/serial/serial_port.hpp"
 #include "tools/experiment/run_error.hpp"
+#include "tools/experiment/run_identity.hpp"
 
 namespace tools {
 
@@ -21,14 +22,18 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
     : loaded_(loaded),
       options_(options),
       buses_(loaded.config, options),
-      world_(loaded.config, buses_.outer(), options.serial_ports ? bridges::open_serial_port : sim::PortOpener(),
+      journal_(buses_.outer()),
+      world_(loaded.config, buses_.outer(),
+             options.serial_ports ? journal_.wrap(bridges::open_serial_port) : sim::PortOpener(),
              [this](const std::string& name) -> sim::Bus& { return buses_.of(name); }),
       service_(buses_.outer(), buses_.network(), world_, control_, lockstep_,
-               {sim::to_yaml(loaded.resolved), version_text()}),
+               {sim::to_yaml(loaded.resolved), version_text(), build_text(), files_text(loaded.resolved)}),
       scoring_(world_),
       duration_s_(options.duration_s.value_or(loaded.config.run.duration_s)),
       progress_(duration_s_, options.quiet),
       programs_(loaded.config, options, buses_) {
+  journal_.attach(world_);
+  service_.use_journal(journal_);
   world_.use_threads(options.threads);
   for (sim::Bus* bus : buses_.other_networks()) service_.serve_vehicles(*bus);
   control_.speed = options.speed.value_or(loaded.config.run.speed);
@@ -78,6 +83,8 @@ void Run::start_clients() {
                    "another simulator publishes on " + buses_.url("") +
                        "; their clients would mix: choose another port with --lcm-url");
   }
+  service_.publish_info();  // a log tells of its run from the first event
+  buses_.end_of_step();
   await(programs_.start());
 }
 
@@ -105,7 +112,9 @@ void Run::await(const std::vector<std::string>& clients) {
 }
 
 void Run::loop() {
+  journal_.start();
   service_.publish_step();
+  journal_.after_step();
   buses_.end_of_step();
   synchronize();
   const sim::Time end = duration_s_ > 0 ? sim::from_seconds(duration_s_) : sim::Time::max();
@@ -126,9 +135,12 @@ void Run::loop() {
 
 void Run::step() {
   buses_.set_time(world_.now());
+  buses_.admit(
+      [this](const std::string& bus, std::span<const sim::MailGate::Mail> mail) { journal_.admitted(bus, mail); });
   world_.step();
   control_.step_taken();
   service_.publish_step();
+  journal_.after_step();
   scoring_.after_step();
   if (results_) results_->after_step();
   buses_.end_of_step();

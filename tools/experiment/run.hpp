@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "bridges/lcm/run_journal.hpp"
 #include "bridges/lcm/sim_service.hpp"
 #include "sim/run/lockstep.hpp"
 #include "sim/run/run_control.hpp"
@@ -46,6 +47,7 @@ class Run {
   RunBuses buses_;
   sim::RunControl control_;
   sim::Lockstep lockstep_;
+  bridges::RunJournal journal_;
   sim::World world_;
   bridges::SimService service_;
   Scoring scoring_;

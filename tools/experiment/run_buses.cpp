@@ -13,6 +13,7 @@ RunBuses::RunBuses(const sim::WorldConfig& world, const RunOptions& options) {
     main_.recorder = std::make_unique<bridges::RecordingBus>(
         *main_.network, options.record, world.epoch_us,
         options.overwrite ? bridges::Existing::overwrite : bridges::Existing::refuse);
+  main_.close_gate();
   std::map<std::string, std::string> names{{main_.lcm ? main_.lcm->url() : "", "the world's"}};
   for (const sim::BusConfig& bus : world.buses) {
     Line line = open(bus.lcm_url, options);
@@ -23,6 +24,7 @@ RunBuses::RunBuses(const sim::WorldConfig& world, const RunOptions& options) {
                                 line.lcm->url());
     }
     if (main_.recorder) line.recorder = std::make_unique<bridges::RecordingBus>(*line.network, *main_.recorder);
+    line.close_gate();
     others_.emplace(bus.name, std::move(line));
   }
 }
@@ -50,6 +52,15 @@ std::vector<sim::Bus*> RunBuses::other_networks() {
 std::string RunBuses::url(const std::string& name) const {
   const Line& line = name.empty() ? main_ : others_.at(name);
   return line.lcm ? line.lcm->url() : "";
+}
+
+void RunBuses::admit(const Admitted& admitted) {
+  const auto hand_over = [&](const std::string& name, Line& line) {
+    const std::vector<sim::MailGate::Mail>& mail = line.gate->admit();
+    if (!mail.empty()) admitted(name, mail);
+  };
+  hand_over("", main_);
+  for (auto& [name, line] : others_) hand_over(name, line);
 }
 
 void RunBuses::wait(std::chrono::milliseconds time) {
@@ -87,7 +98,7 @@ void RunBuses::close_record() {
 sim::BusCounts RunBuses::counts() const {
   sim::BusCounts sum;
   for_each([&](const Line& line) {
-    const sim::BusCounts counts = line.network->counts();
+    const sim::BusCounts counts = line.gate->counts();
     sum.published += counts.published;
     sum.received += counts.received;
     sum.dropped_outgoing += counts.dropped_outgoing;

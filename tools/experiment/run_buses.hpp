@@ -1,15 +1,18 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "bridges/lcm/lcm_bus.hpp"
 #include "bridges/lcm/recording_bus.hpp"
 #include "sim/bus/bus.hpp"
+#include "sim/bus/mail_gate.hpp"
 #include "sim/world/world_config.hpp"
 #include "tools/experiment/runner.hpp"
 
@@ -22,12 +25,17 @@ class RunBuses {
   /// Throws BusError.
   RunBuses(const sim::WorldConfig& world, const RunOptions& options);
 
-  /// The world's bus, recorded.
+  /// The world's bus, recorded, behind its gate.
   sim::Bus& outer() { return main_.outer(); }
   /// The world's bus without the record.
   sim::Bus& network() { return *main_.network; }
-  /// The bus of a name in `buses:`, recorded; empty: the world's.
+  /// The bus of a name in `buses:`, recorded, behind its gate; empty: the world's.
   sim::Bus& of(const std::string& name) { return name.empty() ? main_.outer() : others_.at(name).outer(); }
+  /// The gate of a bus; empty: the world's.
+  sim::MailGate& gate(const std::string& name = {}) { return name.empty() ? *main_.gate : *others_.at(name).gate; }
+  /// The begin of a step: hands over what has come on every bus, the world's first, then by name, and tells of it.
+  using Admitted = std::function<void(const std::string& bus, std::span<const sim::MailGate::Mail> mail)>;
+  void admit(const Admitted& admitted);
   /// Without their records, those that vehicles have to themselves.
   std::vector<sim::Bus*> other_networks();
 
@@ -51,7 +59,11 @@ class RunBuses {
     std::unique_ptr<sim::Bus> network;
     bridges::LcmBus* lcm = nullptr;  ///< the same, when it is LCM
     std::unique_ptr<bridges::RecordingBus> recorder;
-    sim::Bus& outer() { return recorder ? static_cast<sim::Bus&>(*recorder) : *network; }
+    std::unique_ptr<sim::MailGate> gate;
+    sim::Bus& outer() { return *gate; }
+    void close_gate() {
+      gate = std::make_unique<sim::MailGate>(recorder ? static_cast<sim::Bus&>(*recorder) : *network);
+    }
   };
   Line open(const std::string& url, const RunOptions& options);
   template <typename Use>

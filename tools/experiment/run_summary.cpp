@@ -17,6 +17,7 @@ void note_signal(Summary& summary) {
 }  // namespace
 
 void Run::finish(Summary& summary) {
+  journal_.finish();
   if (alone_) {  // else it would end the other simulator's clients
     service_.publish_end();
     if (caught_signal() == 0) programs_.await_clients();

@@ -31,6 +31,7 @@ void add_plugin_option(CLI::App& command);
 
 /// Each adds its sub-command.  When chosen, the command sets `exit_code`.
 void add_run_command(CLI::App& app, int& exit_code);
+void add_replay_command(CLI::App& app, int& exit_code);
 void add_check_command(CLI::App& app, int& exit_code);
 void add_snap_command(CLI::App& app, int& exit_code);
 void add_describe_command(CLI::App& app, int& exit_code);

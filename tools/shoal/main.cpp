@@ -54,6 +54,7 @@ int run(int argc, char** argv) {
     throw std::logic_error("this program was built wrong: " + problem);
   int exit_code = tools::exit_ok;
   tools::add_run_command(app, exit_code);
+  tools::add_replay_command(app, exit_code);
   tools::add_check_command(app, exit_code);
   tools::add_snap_command(app, exit_code);
   tools::add_describe_command(app, exit_code);

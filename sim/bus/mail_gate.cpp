@@ -1,0 +1,171 @@
+#include "sim/bus/mail_gate.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <utility>
+
+namespace sim {
+
+/// A channel that somebody reads, and its one mailbox at the network.
+struct MailGate::Channel {
+  std::string name;
+  std::size_t slot = 0;
+  std::shared_ptr<std::atomic<bool>> flag;
+  std::unique_ptr<Mailbox> inner;
+  std::vector<GateMailbox*> mailboxes;
+  std::size_t capacity = 0;  ///< of the largest mailbox
+  std::size_t waiting = 0;   ///< at most: waiting() may be changed by its user
+};
+
+class MailGate::GateMailbox final : public Mailbox {
+ public:
+  GateMailbox(MailGate& gate, Channel& channel, std::size_t capacity)
+      : gate_(gate), channel_(channel), capacity_(std::max<std::size_t>(capacity, 1)) {}
+  ~GateMailbox() override { gate_.close(*this); }
+  GateMailbox(const GateMailbox&) = delete;
+  GateMailbox& operator=(const GateMailbox&) = delete;
+
+  std::optional<Message> take() override {
+    if (messages_.empty()) return std::nullopt;
+    std::optional<Message> oldest = std::move(messages_.front());
+    messages_.pop_front();
+    return oldest;
+  }
+  std::uint64_t dropped() const override { return dropped_; }
+  void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) override {
+    if (!messages_.empty()) flag->store(true, std::memory_order_relaxed);
+    flag_ = std::move(flag);
+  }
+
+  /// False: the oldest had to make room.
+  bool add(Message message) {
+    messages_.push_back(std::move(message));
+    if (flag_) flag_->store(true, std::memory_order_relaxed);
+    if (messages_.size() <= capacity_) return true;
+    messages_.pop_front();
+    ++dropped_;
+    return false;
+  }
+  Channel& channel() { return channel_; }
+  std::size_t capacity() const { return capacity_; }
+
+ private:
+  MailGate& gate_;
+  Channel& channel_;
+  const std::size_t capacity_;
+  std::deque<Message> messages_;
+  std::shared_ptr<std::atomic<bool>> flag_;  // may be null
+  std::uint64_t dropped_ = 0;
+};
+
+MailGate::MailGate(Bus& network) : network_(network) {}
+
+MailGate::~MailGate() = default;
+
+void MailGate::publish(std::string_view channel, std::span<const std::byte> payload, Time at) {
+  if (watch_) watch_(channel, payload);
+  const auto known = by_name_.find(channel);
+  if (known == by_name_.end()) return network_.publish(channel, payload, at);
+  Channel& read = *known->second;
+  collect_from(read);  // what came before keeps its place
+  network_.publish(channel, payload, at);
+  // The network has given this back by now, and nobody of this process can have published in between.
+  while (auto message = read.inner->take()) {
+    if (!message->from_outside) continue;
+    waiting_.push_back({std::move(message->channel), std::move(message->payload)});
+    ++read.waiting;
+  }
+  give(read, payload, false);
+}
+
+std::unique_ptr<Mailbox> MailGate::open_mailbox(const std::string& channel, std::size_t capacity) {
+  const auto known = by_name_.find(channel);
+  Channel* read = known == by_name_.end() ? nullptr : known->second;
+  if (read == nullptr) {
+    auto inner = network_.open_mailbox(channel, default_mailbox_capacity);  // checks the name
+    const std::size_t slot = free_slots_.empty() ? channels_.size() : free_slots_.back();
+    if (free_slots_.empty())
+      channels_.emplace_back();
+    else
+      free_slots_.pop_back();
+    channels_[slot] = std::make_unique<Channel>();
+    read = channels_[slot].get();
+    read->name = channel;
+    read->slot = slot;
+    read->flag = flags_.of(static_cast<int>(slot));
+    read->flag->store(false, std::memory_order_relaxed);
+    read->inner = std::move(inner);
+    read->inner->raise_on_arrival(read->flag);
+    by_name_.emplace(channel, read);
+  }
+  auto mailbox = std::make_unique<GateMailbox>(*this, *read, capacity);
+  read->mailboxes.push_back(mailbox.get());
+  read->capacity = std::max(read->capacity, mailbox->capacity());
+  return mailbox;
+}
+
+void MailGate::close(GateMailbox& mailbox) {
+  Channel& channel = mailbox.channel();
+  std::erase(channel.mailboxes, &mailbox);
+  channel.capacity = 0;
+  for (const GateMailbox* other : channel.mailboxes) channel.capacity = std::max(channel.capacity, other->capacity());
+  if (!channel.mailboxes.empty()) return;
+  const std::size_t slot = channel.slot;
+  by_name_.erase(channel.name);
+  channels_[slot].reset();
+  free_slots_.push_back(slot);
+}
+
+bool MailGate::collect() {
+  for (const auto& channel : channels_)
+    if (channel && channel->flag->load(std::memory_order_relaxed) &&
+        channel->flag->exchange(false, std::memory_order_acquire))
+      collect_from(*channel);
+  return !waiting_.empty();
+}
+
+void MailGate::collect_from(Channel& channel) {
+  while (auto message = channel.inner->take()) {
+    if (channel.waiting >= channel.capacity) drop_oldest(channel);
+    waiting_.push_back({std::move(message->channel), std::move(message->payload)});
+    ++channel.waiting;
+  }
+}
+
+void MailGate::drop_oldest(Channel& channel) {
+  const auto oldest =
+      std::find_if(waiting_.begin(), waiting_.end(), [&](const Mail& mail) { return mail.channel == channel.name; });
+  --channel.waiting;
+  if (oldest == waiting_.end()) return;
+  waiting_.erase(oldest);
+  ++dropped_;
+}
+
+const std::vector<MailGate::Mail>& MailGate::admit() {
+  collect();
+  admitted_.clear();
+  admitted_.swap(waiting_);
+  if (order_) order_(admitted_);
+  if (admitted_.empty()) return admitted_;
+  std::erase_if(admitted_, [&](const Mail& mail) {
+    const auto known = by_name_.find(mail.channel);
+    if (known == by_name_.end()) return true;
+    known->second->waiting = 0;
+    give(*known->second, mail.payload, true);
+    return false;
+  });
+  return admitted_;
+}
+
+void MailGate::give(Channel& channel, std::span<const std::byte> payload, bool from_outside) {
+  for (GateMailbox* mailbox : channel.mailboxes)
+    if (!mailbox->add({channel.name, Bytes(payload.begin(), payload.end()), from_outside})) ++dropped_;
+}
+
+BusCounts MailGate::counts() const {
+  BusCounts counts = network_.counts();
+  counts.dropped_incoming += dropped_;
+  return counts;
+}
+
+}  // namespace sim

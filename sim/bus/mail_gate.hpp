@@ -1,0 +1,85 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "sim/bus/bus.hpp"
+#include "sim/world/mail_flags.hpp"
+
+namespace sim {
+
+/// A bus between a network and a world.  What comes from outside waits here until admit(), which the run calls once at
+/// the begin of each step: all readers of a channel see a message in the same step, and the order is known.  What is
+/// published through the gate is in its mailboxes at once, and not again when the network gives it back.
+///
+/// Whatever is published on the network beside the gate, also by this process, comes from outside.  For one thread.
+class MailGate final : public Bus {
+ public:
+  /// `network` must outlive the gate.
+  explicit MailGate(Bus& network);
+  ~MailGate() override;
+  MailGate(const MailGate&) = delete;
+  MailGate& operator=(const MailGate&) = delete;
+
+  struct Mail {
+    std::string channel;
+    Bytes payload;
+  };
+
+  void publish(std::string_view channel, std::span<const std::byte> payload, Time at) override;
+  std::unique_ptr<Mailbox> open_mailbox(const std::string& channel,
+                                        std::size_t capacity = default_mailbox_capacity) override;
+  void end_of_step() override { network_.end_of_step(); }
+  /// What the network counts, and what was dropped here.
+  BusCounts counts() const override;
+
+  /// Takes over what has come from outside on the channels that somebody reads.  True: something waits.  Of a channel
+  /// at most as many wait as its largest mailbox holds; then the oldest is dropped and counted.
+  bool collect();
+  /// Collected and not admitted: by channel in the order in which the channels were first read, within a channel in
+  /// the order of arrival.  May be put in another order, and added to.
+  std::vector<Mail>& waiting() { return waiting_; }
+  /// Collects, and gives all that waits to the mailboxes of its channels.  What was given stays readable until the
+  /// next call.  Mail on channels that nobody reads is dropped.
+  const std::vector<Mail>& admit();
+
+  /// admit() calls it after collecting and before giving: it may put the mail in another order, add and remove.
+  using Order = std::function<void(std::vector<Mail>& mail)>;
+  void set_order(Order order) { order_ = std::move(order); }
+  /// Somebody reads this channel here.
+  bool reads(std::string_view channel) const { return by_name_.contains(channel); }
+
+  /// `watch` sees every publication, before the network does; empty: nobody.
+  using Watch = std::function<void(std::string_view channel, std::span<const std::byte> payload)>;
+  void set_watch(Watch watch) { watch_ = std::move(watch); }
+
+ private:
+  class GateMailbox;
+  struct Channel;
+  struct NameHash {
+    using is_transparent = void;
+    std::size_t operator()(std::string_view name) const { return std::hash<std::string_view>()(name); }
+  };
+
+  void collect_from(Channel& channel);
+  void drop_oldest(Channel& channel);
+  void give(Channel& channel, std::span<const std::byte> payload, bool from_outside);
+  void close(GateMailbox& mailbox);
+
+  Bus& network_;
+  Watch watch_;
+  Order order_;
+  MailFlags flags_;                                 // one for each slot: something may have come
+  std::vector<std::unique_ptr<Channel>> channels_;  // by slot; null: the slot is free
+  std::vector<std::size_t> free_slots_;
+  std::unordered_map<std::string, Channel*, NameHash, std::equal_to<>> by_name_;  // asked, never iterated
+  std::vector<Mail> waiting_, admitted_;
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace sim

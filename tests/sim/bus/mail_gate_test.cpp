@@ -1,0 +1,226 @@
+#include "sim/bus/mail_gate.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+
+#include "sim/bus/in_process_bus.hpp"
+
+namespace {
+
+using sim::Bytes;
+using sim::MailGate;
+using sim::Time;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+Bytes bytes(const std::string& text) {
+  const auto* begin = reinterpret_cast<const std::byte*>(text.data());
+  return {begin, begin + text.size()};
+}
+
+std::string text_of(std::span<const std::byte> payload) {
+  return {reinterpret_cast<const char*>(payload.data()), payload.size()};
+}
+
+/// A network where `from_afar` publishes; what the gate publishes comes back at once.
+class MailGateTest : public testing::Test {
+ protected:
+  void from_afar(const std::string& channel, const std::string& text) {
+    network.publish(channel, bytes(text), Time{0});
+  }
+  void from_here(const std::string& channel, const std::string& text) { gate.publish(channel, bytes(text), Time{0}); }
+
+  static std::vector<std::string> all_of(sim::Mailbox& mailbox) {
+    std::vector<std::string> texts;
+    while (const auto message = mailbox.take()) texts.push_back(text_of(message->payload));
+    return texts;
+  }
+
+  std::vector<std::string> admit() {
+    std::vector<std::string> texts;
+    for (const MailGate::Mail& mail : gate.admit()) texts.push_back(mail.channel + ":" + text_of(mail.payload));
+    return texts;
+  }
+
+  sim::InProcessBus network;
+  MailGate gate{network};
+};
+
+TEST_F(MailGateTest, WhatComesFromOutsideWaitsUntilItIsAdmitted) {
+  const auto mailbox = gate.open_mailbox("a");
+  from_afar("a", "one");
+  EXPECT_THAT(all_of(*mailbox), IsEmpty());
+  EXPECT_THAT(admit(), ElementsAre("a:one"));
+  const auto message = mailbox->take();
+  ASSERT_TRUE(message);
+  EXPECT_EQ(message->channel, "a");
+  EXPECT_EQ(text_of(message->payload), "one");
+  EXPECT_TRUE(message->from_outside);
+  EXPECT_THAT(admit(), IsEmpty());
+}
+
+TEST_F(MailGateTest, WhatIsPublishedHereIsThereAtOnceAndOnce) {
+  const auto mailbox = gate.open_mailbox("a");
+  from_here("a", "own");
+  const auto message = mailbox->take();
+  ASSERT_TRUE(message);
+  EXPECT_EQ(text_of(message->payload), "own");
+  EXPECT_FALSE(message->from_outside);
+  EXPECT_THAT(admit(), IsEmpty());
+  EXPECT_THAT(all_of(*mailbox), IsEmpty());
+}
+
+TEST_F(MailGateTest, WhatIsPublishedHereReachesTheNetwork) {
+  const auto afar = network.open_mailbox("a", 10);
+  const auto mailbox = gate.open_mailbox("a");
+  from_here("a", "own");
+  from_here("b", "unread");
+  EXPECT_THAT(all_of(*afar), ElementsAre("own"));
+  EXPECT_EQ(gate.counts().published, 2u);
+}
+
+TEST_F(MailGateTest, WhatWaitsWhileSomethingIsPublishedHereIsNotTakenForTheEcho) {
+  const auto mailbox = gate.open_mailbox("a");
+  from_afar("a", "one");
+  from_here("a", "own");
+  from_afar("a", "two");
+  EXPECT_THAT(all_of(*mailbox), ElementsAre("own"));
+  EXPECT_THAT(admit(), ElementsAre("a:one", "a:two"));
+  EXPECT_THAT(all_of(*mailbox), ElementsAre("one", "two"));
+}
+
+TEST_F(MailGateTest, AllReadersOfAChannelSeeAMessageInTheSameStep) {
+  const auto first = gate.open_mailbox("a");
+  const auto second = gate.open_mailbox("a");
+  from_afar("a", "one");
+  admit();
+  from_afar("a", "two");
+  EXPECT_THAT(all_of(*first), ElementsAre("one"));
+  EXPECT_THAT(all_of(*second), ElementsAre("one"));
+  admit();
+  EXPECT_THAT(all_of(*first), ElementsAre("two"));
+  EXPECT_THAT(all_of(*second), ElementsAre("two"));
+}
+
+TEST_F(MailGateTest, WhoReadsOnlyWhenItsFlagIsRaisedMissesNothing) {
+  const auto mailbox = gate.open_mailbox("a");
+  const auto flag = std::make_shared<std::atomic<bool>>(false);
+  mailbox->raise_on_arrival(flag);
+  from_afar("a", "one");
+  EXPECT_FALSE(*flag);
+  admit();
+  EXPECT_TRUE(flag->exchange(false));
+  all_of(*mailbox);
+  from_here("a", "own");
+  EXPECT_TRUE(flag->exchange(false));
+  const auto late = std::make_shared<std::atomic<bool>>(false);
+  mailbox->raise_on_arrival(late);
+  EXPECT_TRUE(*late) << "something waits already";
+}
+
+TEST_F(MailGateTest, WhatIsAdmittedIsInTheOrderOfTheChannelsAndThenOfArrival) {
+  const auto b = gate.open_mailbox("b");
+  const auto a = gate.open_mailbox("a");
+  from_afar("a", "1");
+  from_afar("b", "2");
+  from_afar("a", "3");
+  EXPECT_THAT(admit(), ElementsAre("b:2", "a:1", "a:3"));
+}
+
+TEST_F(MailGateTest, WhatWaitsCanBeOrderedAndAddedTo) {
+  const auto mailbox = gate.open_mailbox("a");
+  from_afar("a", "two");
+  EXPECT_TRUE(gate.collect());
+  gate.waiting().insert(gate.waiting().begin(), {"a", bytes("one")});
+  EXPECT_THAT(admit(), ElementsAre("a:one", "a:two"));
+  EXPECT_THAT(all_of(*mailbox), ElementsAre("one", "two"));
+  EXPECT_FALSE(gate.collect());
+}
+
+TEST_F(MailGateTest, WhoOrdersTheMailHasTheLastWordBeforeItIsGiven) {
+  const auto mailbox = gate.open_mailbox("a");
+  EXPECT_TRUE(gate.reads("a"));
+  EXPECT_FALSE(gate.reads("b"));
+  gate.set_order([](std::vector<MailGate::Mail>& mail) {
+    if (mail.size() > 1) std::swap(mail[0], mail[1]);
+    if (mail.size() > 2) mail.pop_back();
+  });
+  for (const char* text : {"1", "2", "3"}) from_afar("a", text);
+  EXPECT_THAT(admit(), ElementsAre("a:2", "a:1"));
+  EXPECT_THAT(all_of(*mailbox), ElementsAre("2", "1"));
+}
+
+TEST_F(MailGateTest, AFullMailboxDropsTheOldestAndCounts) {
+  const auto small = gate.open_mailbox("a", 2);
+  const auto large = gate.open_mailbox("a", 3);
+  for (const char* text : {"1", "2", "3", "4"}) from_afar("a", text);
+  // The larger one holds three, so that one of four is dropped before it is admitted.
+  EXPECT_THAT(admit(), ElementsAre("a:2", "a:3", "a:4"));
+  EXPECT_THAT(all_of(*large), ElementsAre("2", "3", "4"));
+  EXPECT_THAT(all_of(*small), ElementsAre("3", "4"));
+  EXPECT_EQ(large->dropped(), 0u);
+  EXPECT_EQ(small->dropped(), 1u);
+  EXPECT_EQ(gate.counts().dropped_incoming, 2u);
+}
+
+TEST_F(MailGateTest, AFloodThatIsNeverAdmittedIsBounded) {
+  const auto mailbox = gate.open_mailbox("a", 5);
+  for (int i = 0; i < 100; ++i) {
+    from_afar("a", std::to_string(i));
+    gate.collect();
+  }
+  EXPECT_THAT(admit(), ElementsAre("a:95", "a:96", "a:97", "a:98", "a:99"));
+  EXPECT_EQ(gate.counts().dropped_incoming, 95u);
+}
+
+TEST_F(MailGateTest, AChannelThatNobodyReadsAnyMoreIsLeft) {
+  auto mailbox = gate.open_mailbox("a");
+  from_afar("a", "one");
+  gate.collect();
+  mailbox.reset();
+  from_afar("a", "two");
+  EXPECT_THAT(admit(), IsEmpty());
+  const auto again = gate.open_mailbox("a");
+  const auto other = gate.open_mailbox("b");
+  from_afar("b", "three");
+  from_afar("a", "four");
+  EXPECT_THAT(admit(), ElementsAre("a:four", "b:three"));
+  EXPECT_THAT(all_of(*again), ElementsAre("four"));
+}
+
+TEST_F(MailGateTest, WhoWatchesSeesAllThatIsPublishedHere) {
+  std::vector<std::string> seen;
+  gate.set_watch([&](std::string_view channel, std::span<const std::byte> payload) {
+    seen.push_back(std::string(channel) + ":" + text_of(payload));
+  });
+  const auto mailbox = gate.open_mailbox("a");
+  from_here("a", "one");
+  from_here("b", "two");
+  from_afar("a", "three");
+  admit();
+  EXPECT_THAT(seen, ElementsAre("a:one", "b:two"));
+  gate.set_watch({});
+  from_here("a", "four");
+  EXPECT_EQ(seen.size(), 2u);
+}
+
+TEST_F(MailGateTest, AGateInFrontOfAGateWorks) {
+  MailGate inner_room(static_cast<sim::Bus&>(gate));
+  const auto mailbox = inner_room.open_mailbox("a");
+  from_afar("a", "one");
+  gate.admit();
+  EXPECT_THAT(all_of(*mailbox), IsEmpty());
+  inner_room.admit();
+  EXPECT_THAT(all_of(*mailbox), ElementsAre("one"));
+}
+
+TEST_F(MailGateTest, RefusesChannelNamesThatTheNetworkRefuses) {
+  EXPECT_THROW(gate.open_mailbox(""), std::invalid_argument);
+  EXPECT_THROW(gate.open_mailbox(std::string(64, 'a')), std::invalid_argument);
+  EXPECT_THROW(gate.publish("", {}, Time{0}), std::invalid_argument);
+}
+
+}  // namespace

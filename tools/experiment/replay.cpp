@@ -1,0 +1,373 @@
+#include "tools/experiment/replay.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "bridges/lcm/run_journal.hpp"
+#include "bridges/lcm/sim_service.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/message_writer.hpp"
+#include "sim/bus/in_process_bus.hpp"
+#include "sim/bus/mail_gate.hpp"
+#include "sim/config/message_text.hpp"
+#include "tools/experiment/line_difference.hpp"
+#include "tools/experiment/progress.hpp"
+#include "tools/experiment/replay_messages.hpp"
+#include "tools/experiment/run_identity.hpp"
+#include "tools/experiment/runner.hpp"
+
+namespace tools {
+
+namespace {
+
+using bridges::RunJournal;
+using Letter = ReplayLog::Letter;
+
+/// A bus that nobody else is on.
+struct Line {
+  std::unique_ptr<sim::InProcessBus> network = std::make_unique<sim::InProcessBus>();
+  std::unique_ptr<sim::MailGate> gate = std::make_unique<sim::MailGate>(*network);
+};
+
+/// Ports that read what was read in the run.
+class SerialPorts {
+ public:
+  void add(const Letter& letter) { mail_.add(letter.step, letter.channel, letter.payload); }
+  sim::PortOpener opener() {
+    return [this](const std::string&, const std::string& path) { return std::make_unique<Port>(*this, path); };
+  }
+  void attach(const sim::World& world) { world_ = &world; }
+
+ private:
+  class Port final : public sim::BytePort {
+   public:
+    Port(SerialPorts& ports, std::string path) : ports_(ports), path_(std::move(path)) {}
+    sim::Bytes read() override {
+      return ports_.world_ != nullptr ? ports_.mail_.read(path_, ports_.world_->step_number()) : sim::Bytes{};
+    }
+    void write(std::span<const std::byte>) override {}
+    std::uint64_t dropped_bytes() const override { return 0; }
+
+   private:
+    SerialPorts& ports_;
+    std::string path_;
+  };
+
+  const sim::World* world_ = nullptr;
+  bridges::SerialMail mail_;
+};
+
+/// The world that is run: that of the log, or another one in its place.
+sim::LoadedWorld load(const ReplayLog& log, const ReplayOptions& options) {
+  sim::LoadOptions load;
+  load.sets = options.sets;
+  load.encode_message = shoal::encode_own_message;
+  if (!options.world.empty()) {
+    load.seed = log.info.seed;
+    return sim::load_world(options.world, load);
+  }
+  const std::vector<std::string> changed = changed_files(log.info.files);
+  if (!changed.empty()) {
+    std::string text = log.path + ": the run used files that are not as they were then:";
+    for (const std::string& file : changed) text += "\n  " + sim::printable(file);
+    throw std::runtime_error(text);
+  }
+  sim::LoadedWorld loaded = sim::load_world_text(log.info.resolved_config, log.path + ": sim.info", load);
+  loaded.config.name = log.info.world;
+  return loaded;
+}
+
+class Replay {
+ public:
+  explicit Replay(const ReplayOptions& options)
+      : options_(options),
+        log_(read_replay_log(options.log)),
+        loaded_(load(log_, options)),
+        messages_(log_),
+        main_(make_line()),
+        others_(make_others()),
+        world_(loaded_.config, *main_.gate, serial_.opener(),
+               [this](const std::string& name) -> sim::Bus& { return *others_.at(name).gate; }),
+        service_(*main_.gate, *main_.network, world_, control_, lockstep_,
+                 {sim::to_yaml(loaded_.resolved), version_text(), build_text(), log_.info.files}) {
+    check_times();
+    world_.use_threads(options.threads);
+    serial_.attach(world_);
+    for (const Letter& letter : log_.letters)
+      if (letter.bus == RunJournal::serial_bus) serial_.add(letter);
+  }
+
+  ReplayOutcome run() {
+    const auto begin = std::chrono::steady_clock::now();
+    outcome_.step_s = sim::to_seconds(world_.step_time());
+    const std::int64_t last = last_step();
+    Progress progress(static_cast<double>(last) * outcome_.step_s, options_.quiet);
+    hand_over(RunJournal::before_first_reports);
+    after_step();
+    try {
+      while (world_.step_number() < last && caught_signal() == 0) {
+        hand_over(world_.step_number());
+        for_each_line([](Line& line) { line.gate->admit(); });
+        world_.step();
+        after_step();
+        progress.update(world_.now(), messages_.equal(), false);
+      }
+    } catch (const sim::PhysicsFault& error) {
+      differ("the world", std::string("physics fault here: ") + error.what());
+    }
+    progress.clear();
+    messages_.finish(world_.step_number());
+    outcome_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    conclude();
+    return std::move(outcome_);
+  }
+
+ private:
+  Line make_line() {
+    Line line;
+    line.gate->set_watch([this](std::string_view channel, std::span<const std::byte> payload) {
+      messages_.published(channel, payload, world_.step_number());
+    });
+    return line;
+  }
+  std::map<std::string, Line> make_others() {
+    std::map<std::string, Line> others;
+    for (const sim::BusConfig& bus : loaded_.config.buses) others.emplace(bus.name, make_line());
+    return others;
+  }
+  template <typename Use>
+  void for_each_line(Use&& use) {
+    use(main_);
+    for (auto& [name, line] : others_) use(line);
+  }
+
+  void check_times() const {
+    if (world_.step_time().count() != log_.info.step_us)
+      throw std::runtime_error(
+          fmt::format("{}: its run has steps of {} us, the world here of {} us: there is nothing to "
+                      "compare",
+                      log_.path, log_.info.step_us, world_.step_time().count()));
+    if (world_.epoch_us() != log_.info.epoch_utime)
+      throw std::runtime_error(fmt::format("{}: its run has the epoch {}, the world here {}: all stamps would differ",
+                                           log_.path, log_.info.epoch_utime, world_.epoch_us()));
+    if (log_.proven_step && *log_.proven_step <= 0 && log_.usable_step() < log_.last_step)
+      throw std::runtime_error(log_.path + ": cannot be run again from the start: " + log_.holes.front());
+    if (log_.last_step == 0 && log_.hashes.empty())
+      throw std::runtime_error(log_.path + ": ends before the first step");
+  }
+
+  std::int64_t last_step() {
+    std::int64_t last = log_.usable_step();
+    if (options_.until_s) {
+      const double steps = std::floor(*options_.until_s / outcome_.step_s + 1e-9);
+      if (steps < static_cast<double>(last)) {
+        cut_ = true;
+        last = static_cast<std::int64_t>(steps);
+      }
+    }
+    return last;
+  }
+
+  /// What came to the world before this step.
+  void hand_over(std::int64_t step) {
+    for (; next_letter_ < log_.letters.size() && log_.letters[next_letter_].step <= step; ++next_letter_) {
+      const Letter& letter = log_.letters[next_letter_];
+      if (letter.bus == RunJournal::serial_bus) continue;
+      if (letter.bus.empty() && letter.channel == RunJournal::request_channel) {
+        obey(letter);
+        continue;
+      }
+      const auto other = letter.bus.empty() ? others_.end() : others_.find(letter.bus);
+      if (!letter.bus.empty() && other == others_.end()) {
+        note("the world here has no bus '" + sim::printable(sim::shortened(letter.bus)) +
+             "': its mail is not delivered");
+        continue;
+      }
+      sim::MailGate& gate = letter.bus.empty() ? *main_.gate : *other->second.gate;
+      gate.waiting().push_back({letter.channel, letter.payload});
+    }
+  }
+
+  void obey(const Letter& letter) {
+    try {
+      service_.obey_again(shoal::decode<shoal::sim_control_request_t>(letter.payload, shoal::Finite::any));
+    } catch (const shoal::MessageError& error) {
+      note(std::string("a request in the log cannot be read: ") + error.what());
+    } catch (const std::exception&) {
+      // It was refused then as well, or the state will tell.
+    }
+  }
+
+  void note(const std::string& text) {
+    auto& notes = outcome_.notes;
+    if (notes.size() < 20 && std::find(notes.begin(), notes.end(), text) == notes.end()) notes.push_back(text);
+  }
+
+  void after_step() {
+    service_.publish_step();
+    if (!outcome_.first && messages_.first() != nullptr) {
+      const ReplayMessages::Difference& first = *messages_.first();
+      differ(who(first.channel), first.what);
+    }
+    const auto logged = log_.hashes.find(world_.step_number());
+    if (logged != log_.hashes.end()) compare_hashes(logged->second);
+  }
+
+  void compare_hashes(const ReplayLog::Hashes& logged) {
+    ++outcome_.hashes;
+    if (logged.whole == world_.state_hash()) return;
+    if (!outcome_.first || outcome_.first->step == world_.step_number()) differ("the world", "its state hash differs");
+    compare_parts(logged);
+  }
+
+  void compare_parts(const ReplayLog::Hashes& logged) {
+    if (!parts_.empty()) return;  // later on nearly all differ
+    const auto compare = [&](const auto& world) {
+      if constexpr (requires { world.part_hashes(); }) {
+        std::map<std::string, std::uint64_t> here;
+        for (const auto& part : world.part_hashes()) here[part.part] = part.hash;
+        for (const sim::PartHash& part : logged.parts) {
+          const auto own = here.find(part.part);
+          if (own == here.end())
+            parts_.push_back(part.part + " (only in the log)");
+          else if (own->second != part.hash)
+            parts_.push_back(part.part);
+        }
+      }
+    };
+    compare(world_);
+    if (parts_.empty()) return;
+    parts_step_ = world_.step_number();
+    if (outcome_.first && outcome_.first->step == parts_step_)
+      outcome_.first->what.push_back("state that differs: " + fmt::format("{}", fmt::join(few(parts_), ", ")));
+  }
+
+  static std::vector<std::string> few(const std::vector<std::string>& all) {
+    constexpr std::size_t most = 12;
+    std::vector<std::string> some(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), most)));
+    if (all.size() > most) some.push_back(fmt::format("and {} more", all.size() - most));
+    return some;
+  }
+
+  void differ(const std::string& subject, const std::string& what) {
+    if (!outcome_.first) outcome_.first = ReplayOutcome::First{world_.step_number(), {}};
+    if (outcome_.first->step == world_.step_number()) outcome_.first->what.push_back(subject + ": " + what);
+  }
+
+  /// The device that reports on a channel, else the channel.
+  std::string who(const std::string& channel) const {
+    for (const auto& device : world_.devices())
+      if (device && device->report_channel() == channel) return device->full_name() + " (" + channel + ")";
+    return channel;
+  }
+
+  void conclude() {
+    outcome_.steps = world_.step_number();
+    outcome_.sim_time_s = sim::to_seconds(world_.now());
+    outcome_.messages = messages_.equal();
+    outcome_.missing_messages = messages_.missing();
+    if (!outcome_.first && messages_.first() != nullptr)
+      differ(who(messages_.first()->channel), messages_.first()->what);
+    outcome_.interrupted = caught_signal() != 0;
+    outcome_.complete = cut_ || (log_.usable_step() >= log_.last_step && !outcome_.interrupted);
+    if (outcome_.hashes + outcome_.messages == 0 && !outcome_.first)
+      throw std::runtime_error(log_.path + ": holds neither hashes nor messages to compare with");
+    tell_of_log();
+    if (outcome_.first) write_report();
+  }
+
+  void tell_of_log() {
+    for (const std::string& hole : log_.holes) note(hole);
+    if (!outcome_.complete && !log_.holes.empty())
+      note(
+          fmt::format("what came to the world after step {} is not all in the log, which goes on to step {}: nothing "
+                      "after step {} can be proved",
+                      log_.usable_step(), log_.last_step, log_.usable_step()));
+    if (outcome_.interrupted) note("interrupted");
+    if (log_.goes_back) note("the log holds several branches; only hashes are compared");
+    if (log_.first_step > 0) note(fmt::format("the log begins at step {}", log_.first_step));
+    if (log_.hashes.empty()) note("the log holds no hashes: only messages are compared");
+    if (outcome_.missing_messages > 0 && !(log_.own_stamps && outcome_.first))
+      note(fmt::format("{} messages that were published here are not in the log", outcome_.missing_messages));
+    for (const std::string& problem : log_.problems) note("the log: " + problem);
+  }
+
+  std::string at(std::int64_t step) const {
+    return fmt::format("step {} ({:.3f} s)", step, static_cast<double>(step) * outcome_.step_s);
+  }
+
+  void write_report() {
+    auto& report = outcome_.report;
+    const auto section = [&](const std::string& title, const std::vector<std::string>& lines) {
+      if (lines.empty()) return;
+      report.push_back(title + ":");
+      for (const std::string& line : lines) report.push_back("  " + line);
+    };
+    section("Versions (- in the log, + here)", line_difference(log_.info.versions, version_text()));
+    section("Machine (- in the log, + here)", line_difference(log_.info.build, build_text()));
+    section("World (- in the log, + here)", line_difference(log_.info.resolved_config, sim::to_yaml(loaded_.resolved)));
+    if (!parts_.empty()) section("State that differs at the first hash that does, " + at(parts_step_), few(parts_));
+    std::vector<std::string> lines;
+    for (const auto& [vehicle, distance] : messages_.distances())
+      lines.push_back(fmt::format("{}: from {} on, at most {:.6g} m at {}", vehicle, at(distance.first_step),
+                                  distance.largest_m, at(distance.largest_step)));
+    section("True positions", lines);
+    lines.clear();
+    std::vector<const ReplayMessages::Difference*> channels;
+    for (const auto& [channel, difference] : messages_.by_channel()) channels.push_back(&difference);
+    std::stable_sort(channels.begin(), channels.end(), [](const auto* a, const auto* b) { return a->step < b->step; });
+    for (const ReplayMessages::Difference* difference : channels)
+      lines.push_back(fmt::format("{}: {}: {}", at(difference->step), difference->channel, difference->what));
+    section(fmt::format("Channels, where each differs first ({} messages differ)", messages_.different()), lines);
+  }
+
+  const ReplayOptions& options_;
+  ReplayLog log_;
+  sim::LoadedWorld loaded_;
+  ReplayOutcome outcome_;
+  ReplayMessages messages_;
+  SerialPorts serial_;
+  Line main_;
+  std::map<std::string, Line> others_;
+  sim::RunControl control_;
+  sim::Lockstep lockstep_;
+  sim::World world_;
+  bridges::SimService service_;
+  std::size_t next_letter_ = 0;
+  bool cut_ = false;
+  std::vector<std::string> parts_;
+  std::int64_t parts_step_ = 0;
+};
+
+}  // namespace
+
+int ReplayOutcome::exit_code() const {
+  if (first) return 1;
+  return complete ? 0 : 4;
+}
+
+std::string ReplayOutcome::to_text() const {
+  std::string text;
+  if (first) {
+    text = fmt::format("differs first at step {} ({:.3f} s) of {}:\n", first->step,
+                       static_cast<double>(first->step) * step_s, steps);
+    for (const std::string& what : first->what) text += "  " + what + "\n";
+  } else {
+    text = fmt::format("equal for {} steps ({} hashes, {} messages)\n", steps, hashes, messages);
+  }
+  text += fmt::format("{:.3f} s in {:.2f} s: {:.1f} times real time\n", sim_time_s, wall_s,
+                      wall_s > 0 ? sim_time_s / wall_s : 0.0);
+  for (const std::string& note : notes) text += "note: " + note + "\n";
+  return text;
+}
+
+ReplayOutcome replay(const ReplayOptions& options) {
+  return std::make_unique<Replay>(options)->run();
+}
+
+}  // namespace tools

@@ -1,0 +1,187 @@
+#include "tools/experiment/replay_log.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "bridges/lcm/event_log.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/sim_hash_t.hpp"
+#include "shoal/sim_mail_t.hpp"
+#include "shoal/sim_state_t.hpp"
+
+namespace tools {
+
+namespace {
+
+constexpr std::size_t most_problems = 20;
+
+/// The big-endian number behind the fingerprint and `index` others.
+std::int64_t number_at(const sim::Bytes& payload, std::size_t index) {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < 8; ++i) value = value << 8 | std::to_integer<std::uint64_t>(payload[8 + 8 * index + i]);
+  return static_cast<std::int64_t>(value);
+}
+
+class Reader {
+ public:
+  explicit Reader(const std::string& path) : file_(path) { log_.path = path; }
+
+  ReplayLog read() {
+    while (const auto event = file_.next()) {
+      ++log_.events[event->channel];
+      try {
+        take(*event);
+      } catch (const shoal::MessageError& error) {
+        problem(fmt::format("byte {}: {}: {}", event->offset, event->channel, error.what()));
+      }
+    }
+    for (const std::string& text : file_.problems()) problem(text);
+    if (!informed_) fail_without_info();
+    if (log_.proven_step && *log_.proven_step > log_.last_step) log_.proven_step = log_.last_step;
+    return std::move(log_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const { throw std::runtime_error(log_.path + ": " + what); }
+
+  [[noreturn]] void fail_without_info() const {
+    if (log_.events.empty()) fail("holds no event that can be read");
+    if (log_.events.contains("sim.info"))
+      fail("its sim.info cannot be read: another version of Shoal wrote it, or it is damaged" +
+           (log_.problems.empty() ? std::string() : " (" + log_.problems.front() + ")"));
+    fail("holds no sim.info, which tells of the world: it is no log of a run, or covers less than 10 s of one");
+  }
+
+  void problem(const std::string& text) {
+    if (log_.problems.size() < most_problems) log_.problems.push_back(text);
+  }
+
+  void take(const bridges::LogEvent& event) {
+    if (event.channel == "sim.info") return take_info(event);
+    if (event.channel == "sim.mail") return take_mail(event);
+    if (event.channel == "sim.hash") return take_hash(event);
+    if (event.channel == "sim.state") take_state(event);
+  }
+
+  void take_state(const bridges::LogEvent& event) {
+    if (shoal::fingerprint(event.payload) != shoal::sim_state_t::getHash() || event.payload.size() < 24) return;
+    note_step(number_at(event.payload, 1));
+    if (event.utime != number_at(event.payload, 0)) log_.own_stamps = false;
+  }
+
+  void note_step(std::int64_t step) {
+    if (!std::exchange(stepped_, true)) log_.first_step = step;
+    if (step < log_.last_step) log_.goes_back = true;
+    log_.last_step = std::max(log_.last_step, step);
+  }
+
+  /// A stamp that is not that of its step is of another run, or of another epoch.
+  void check_stamp(const bridges::LogEvent& event, std::int64_t utime, std::int64_t step) const {
+    if (!informed_) return;
+    const shoal::sim_info_t& info = log_.info;
+    if (step < 0 || step > 1'000'000'000'000 || utime != info.epoch_utime + step * info.step_us)
+      fail(fmt::format("byte {}: {} is stamped {} at step {}, which is no time of this run (epoch {}, step {} us)",
+                       event.offset, event.channel, utime, step, info.epoch_utime, info.step_us));
+  }
+
+  void take_info(const bridges::LogEvent& event) {
+    auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
+    if (event.utime != info.utime) log_.own_stamps = false;
+    if (!informed_) {
+      if (info.step_us < 1) throw shoal::MessageError("step_us must be 1 or more, got " + std::to_string(info.step_us));
+      informed_ = true;
+      branch_ = info.branch;
+      last_info_step_ = info.step;
+      log_.info = std::move(info);
+      check_stamp(event, log_.info.utime, log_.info.step);
+      check_sequence(log_.info.mail_sequence, log_.info.step);
+      note_step(log_.info.step);
+      return;
+    }
+    const shoal::sim_info_t& first = log_.info;
+    const bool same_run = info.world == first.world && info.seed == first.seed && info.step_us == first.step_us &&
+                          info.epoch_utime == first.epoch_utime && info.resolved_config == first.resolved_config;
+    if (!same_run || (info.branch <= branch_ && info.step < last_info_step_))
+      fail(fmt::format("holds two runs: another begins at byte {} (world '{}', seed {}); cut it in two", event.offset,
+                       info.world, info.seed));
+    check_stamp(event, info.utime, info.step);
+    if (info.branch > branch_) begin_branch(info);
+    last_info_step_ = info.step;
+    check_sequence(info.mail_sequence, info.step);
+    note_step(info.step);
+  }
+
+  /// The run went back: what came later on the branch before is not part of this one.
+  void begin_branch(const shoal::sim_info_t& info) {
+    branch_ = info.branch;
+    if (log_.last_step > info.step) log_.goes_back = true;
+    std::erase_if(log_.letters, [&](const ReplayLog::Letter& letter) { return letter.step >= info.step; });
+    log_.hashes.erase(log_.hashes.upper_bound(info.step), log_.hashes.end());
+    log_.last_step = info.step;
+    mail_step_ = std::min(mail_step_, info.step);
+    next_sequence_ = info.mail_sequence;
+  }
+
+  /// `next`: the number of the first sim.mail that may still come.
+  void check_sequence(std::int64_t next, std::int64_t step) {
+    if (next <= next_sequence_) return;
+    const std::int64_t missing = next - next_sequence_;
+    log_.holes.push_back(
+        missing == 1 ? fmt::format("sim.mail {} (of a step from {} to {}) is missing", next_sequence_, mail_step_, step)
+                     : fmt::format("sim.mail {} to {} (of steps from {} to {}) are missing", next_sequence_, next - 1,
+                                   mail_step_, step));
+    if (!log_.proven_step) log_.proven_step = mail_step_;
+    next_sequence_ = next;
+  }
+
+  void take_mail(const bridges::LogEvent& event) {
+    auto mail = shoal::decode<shoal::sim_mail_t>(event.payload, shoal::Finite::any);
+    check_stamp(event, mail.utime, mail.step);
+    if (mail.branch != branch_ && informed_)
+      throw shoal::MessageError(fmt::format("is of branch {}, but the log is of branch {}", mail.branch, branch_));
+    if (mail.sequence < next_sequence_)
+      throw shoal::MessageError(fmt::format("number {} comes a second time", mail.sequence));
+    check_sequence(mail.sequence, mail.step);
+    next_sequence_ = mail.sequence + 1;
+    for (shoal::sim_letter_t& letter : mail.letter) {
+      if (letter.step > mail.step || (!log_.letters.empty() && letter.step < log_.letters.back().step))
+        throw shoal::MessageError(fmt::format("a letter of step {} is out of order", letter.step));
+      const auto* begin = reinterpret_cast<const std::byte*>(letter.data.data());
+      log_.letters.push_back({letter.step, std::move(letter.bus), std::move(letter.channel),
+                              sim::Bytes(begin, begin + letter.data.size())});
+    }
+    mail_step_ = mail.step;
+    note_step(mail.step);
+  }
+
+  void take_hash(const bridges::LogEvent& event) {
+    auto message = shoal::decode<shoal::sim_hash_t>(event.payload, shoal::Finite::any);
+    check_stamp(event, message.utime, message.step);
+    check_sequence(message.mail_sequence, message.step);
+    ReplayLog::Hashes& hashes = log_.hashes[message.step];
+    hashes.whole = static_cast<std::uint64_t>(message.hash);
+    hashes.parts.clear();
+    for (std::size_t i = 0; i < message.part.size(); ++i)
+      hashes.parts.push_back({std::move(message.part[i]), static_cast<std::uint64_t>(message.part_hash[i])});
+    note_step(message.step);
+  }
+
+  bridges::EventLogReader file_;
+  ReplayLog log_;
+  bool informed_ = false, stepped_ = false;
+  std::int32_t branch_ = 0;
+  std::int64_t last_info_step_ = 0;
+  std::int64_t next_sequence_ = 0;
+  std::int64_t mail_step_ = 0;  // of the last sim.mail
+};
+
+}  // namespace
+
+ReplayLog read_replay_log(const std::string& path) {
+  return Reader(path).read();
+}
+
+}  // namespace tools

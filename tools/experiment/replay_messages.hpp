@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "bridges/lcm/event_log.hpp"
+#include "tools/experiment/replay_log.hpp"
+
+namespace tools {
+
+/// Compares what a world publishes when it runs again with what its log holds: byte by byte, in order per channel.
+/// Messages that the log lacks are counted; in a record, where nothing is lost, they are differences.
+class ReplayMessages {
+ public:
+  struct Difference {
+    std::int64_t step = 0;
+    std::string channel;
+    std::string what;  ///< such as `velocity_mps[0] is 1.25 in the log and 1.26 here`
+  };
+  struct Distance {
+    double largest_m = 0;
+    std::int64_t largest_step = 0;
+    std::int64_t first_step = 0;
+  };
+
+  /// `log` must outlive this.
+  explicit ReplayMessages(const ReplayLog& log);
+
+  /// A message that was published at the end of `step` here.
+  void published(std::string_view channel, std::span<const std::byte> payload, std::int64_t step);
+  /// After the last step.
+  void finish(std::int64_t step);
+
+  std::uint64_t equal() const { return equal_; }
+  std::uint64_t different() const { return different_; }
+  /// Published here and not in the log.
+  std::uint64_t missing() const { return missing_; }
+  /// In order of discovery; null: none.
+  const Difference* first() const { return first_ ? &*first_ : nullptr; }
+  /// The first on each channel.
+  const std::map<std::string, Difference>& by_channel() const { return by_channel_; }
+  /// Of vehicles whose true positions differ, by name.
+  const std::map<std::string, Distance>& distances() const { return distances_; }
+
+ private:
+  struct Channel {
+    std::deque<sim::Bytes> queue;     // read from the log and not yet compared
+    std::uint64_t left = 0;           // in the log, also those in the queue
+    std::multiset<std::size_t> mail;  // hashes of what came from outside on it
+    bool published = false;
+  };
+
+  Channel& channel_of(std::string_view name);
+  /// Null: the log has no more of them.
+  const sim::Bytes* head(Channel& channel);
+  void pop(Channel& channel);
+  bool is_mail(Channel& channel, const sim::Bytes& payload);
+  void differ(std::string_view channel, std::int64_t step, const std::string& what);
+  void compare_states(const sim::Bytes& logged, std::span<const std::byte> here, std::int64_t step);
+
+  const ReplayLog& log_;
+  bridges::EventLogReader file_;
+  bool at_end_ = false;
+  std::map<std::string, Channel, std::less<>> channels_;
+  std::uint64_t equal_ = 0, different_ = 0, missing_ = 0;
+  std::optional<Difference> first_;
+  std::map<std::string, Difference> by_channel_;
+  std::map<std::string, Distance> distances_;
+};
+
+}  // namespace tools

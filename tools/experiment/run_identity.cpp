@@ -1,0 +1,83 @@
+#include "tools/experiment/run_identity.hpp"
+
+#include <gnu/libc-version.h>
+#include <spdlog/fmt/fmt.h>
+#include <sys/utsname.h>
+
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "sim/state_hash.hpp"
+
+namespace tools {
+
+namespace {
+
+const std::string no_hash(16, '-');
+
+std::string processor_class() {
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl")) return "x86-64-v4";
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return "x86-64-v3";
+  if (__builtin_cpu_supports("sse4.2")) return "x86-64-v2";
+  return "x86-64";
+#else
+  utsname name{};
+  return uname(&name) == 0 ? name.machine : "unknown";
+#endif
+}
+
+std::string hash_of_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return no_hash;
+  sim::StateHash hash;
+  std::vector<char> buffer(std::size_t{1} << 20);
+  while (in.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) || in.gcount() > 0)
+    hash.add_bytes(buffer.data(), static_cast<std::size_t>(in.gcount()));
+  return in.bad() ? no_hash : fmt::format("{:016x}", hash.value());
+}
+
+void find_files(const sim::ConfigNode& node, bool of_terrain, std::set<std::string>& paths) {
+  for (const sim::ConfigNode& item : node.items) find_files(item, of_terrain, paths);
+  for (const sim::ConfigNode::Entry& entry : node.entries) {
+    const bool names_file = entry.key == "mesh" || (of_terrain && entry.key == "file");
+    if (names_file && entry.value.scalar.find('/') != std::string::npos)
+      paths.insert(entry.value.scalar);
+    else
+      find_files(entry.value, of_terrain || entry.key == "terrain", paths);
+  }
+}
+
+}  // namespace
+
+std::string build_text() {
+  return processor_class() + ", glibc " + gnu_get_libc_version();
+}
+
+std::string files_text(const sim::ConfigNode& resolved) {
+  std::set<std::string> paths;
+  find_files(resolved, false, paths);
+  std::string text;
+  for (const std::string& path : paths) text += hash_of_file(path) + " " + path + "\n";
+  return text;
+}
+
+std::vector<std::string> changed_files(const std::string& text) {
+  std::vector<std::string> changes;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.size() < 18 || line[16] != ' ') continue;
+    const std::string hash = line.substr(0, 16), path = line.substr(17);
+    if (hash == no_hash) continue;
+    const std::string now = hash_of_file(path);
+    if (now == no_hash)
+      changes.push_back(path + ": is missing");
+    else if (now != hash)
+      changes.push_back(path + ": is another file than in the run");
+  }
+  return changes;
+}
+
+}  // namespace tools
