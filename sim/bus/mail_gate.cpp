@@ -143,6 +143,7 @@ void MailGate::drop_oldest(Channel& channel) {
 
 const std::vector<MailGate::Mail>& MailGate::admit() {
   collect();
+  if (order_) order_(waiting_);
   admitted_.clear();
   admitted_.swap(waiting_);
   if (order_) order_(admitted_);
