@@ -39,7 +39,8 @@ struct ReceiverConfig {
   void read(ParamReader& in);
 };
 
-/// Where sound goes into the water and comes out.  Owned by a device; in the channel while it exists.
+/// Where sound goes into the water and comes out.  Owned by a device; in the channel while it exists, which hashes and
+/// saves its state: the device does not visit it.
 class Transducer {
  public:
   /// What it sent and what became of what it listened to.
@@ -48,6 +49,9 @@ class Transducer {
     std::int64_t understood = 0, understood_bytes = 0;
     std::int64_t unsent = 0;  ///< asked for without power, silent by a fault, or out of the water
     std::array<std::int64_t, signal_losses> lost{};  ///< signals of kind message, by SignalLoss
+    void visit_state(StateArchive& archive) {
+      archive(sent, sent_bytes, understood, understood_bytes, unsent, lost);
+    }
   };
 
   /// Throws ConfigError at the device's place when the world has no water.
@@ -81,6 +85,9 @@ class Transducer {
 
  private:
   friend class AcousticChannel;
+  void visit_state(StateArchive& archive) {
+    archive(busy_until_, sending_until_, sending_, signals_, receiver_, counts_);
+  }
   void hash_state(StateHash& hash) const;
 
   AcousticListener& listener_;
@@ -103,7 +110,8 @@ class Transducer {
   mutable Decibels index_;
 };
 
-/// A sound that goes on and on: an engine, a pile driver, a jammer.  Owned by a device; in the channel while it exists.
+/// A sound that goes on and on: an engine, a pile driver, a jammer.  Owned by a device; in the channel while it exists,
+/// which hashes and saves its state: the device does not visit it.
 class ContinuousSound {
  public:
   /// Even over its band.  Throws ConfigError at the device's place when the world has no water.
@@ -120,6 +128,7 @@ class ContinuousSound {
 
  private:
   friend class AcousticChannel;
+  void visit_state(StateArchive& archive) { archive(on_, source_level_); }
 
   AcousticChannel& channel_;
   const Vehicle& vehicle_;

@@ -70,6 +70,14 @@ void DeviceFaults::update() {
   dropout_ = 1 - heard;
 }
 
+void DeviceFaults::visit_state(StateArchive& archive) {
+  archive(active_);
+  if (!archive.restoring()) return;
+  for (const FaultConfig& fault : active_)
+    if (fault.kind < FaultKind::stuck || fault.kind > FaultKind::dead) archive.fail("a fault of a kind that is none");
+  update();
+}
+
 void DeviceFaults::hash_state(StateHash& hash) const {
   hash.add(static_cast<std::uint64_t>(active_.size()));
   for (const FaultConfig& fault : active_) {

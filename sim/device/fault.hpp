@@ -34,6 +34,7 @@ struct FaultConfig {
 
   void read(ParamReader& in);
   bool operator==(const FaultConfig&) const = default;
+  void visit_state(StateArchive& archive) { archive(kind, quantity, bias, noise_factor, dropout, effectiveness); }
 };
 
 /// The faults of one device.  Of each kind (and quantity) there is at most one: the last one set.
@@ -50,6 +51,7 @@ class DeviceFaults {
   bool silent() const { return silent_; }
   double dropout() const { return dropout_; }
   double effectiveness() const { return effectiveness_; }
+  void visit_state(StateArchive& archive);
   void hash_state(StateHash& hash) const;
 
  private:

@@ -6,6 +6,7 @@
 
 #include "sim/math.hpp"
 #include "sim/random/random.hpp"
+#include "sim/state/state_archive.hpp"
 #include "sim/state_hash.hpp"
 #include "sim/time.hpp"
 
@@ -32,6 +33,8 @@ class GaussMarkov {
   /// Not back in time.
   void advance_to(Time now);
   const Vector3d& values() const { return values_; }
+  /// After restoring values() follow at the next advance_to().
+  void visit_state(StateArchive& archive) { archive(tick_, from_, to_); }
   void hash_state(StateHash& hash) const;
 
  private:

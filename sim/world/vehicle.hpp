@@ -23,6 +23,10 @@ struct VehicleSystems {
   bool metered = false;   ///< there is a battery to drain
   double drawn_J = 0;     ///< taken since the battery last looked
 
+  void visit_state(StateArchive& archive) {
+    archive(estopped, powered, drawn_J);
+    archive.unhashed(metered);  // as it was built
+  }
   void hash_state(StateHash& hash) const {
     hash.add(estopped);
     hash.add(powered);

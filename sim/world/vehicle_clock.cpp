@@ -19,11 +19,13 @@ struct VehicleClock::State {
   struct Node {
     Time at;
     double wander_s;
+    void visit_state(StateArchive& archive) { archive(at, wander_s); }
   };
   /// Of the correction: it holds after a time, and grows from there.
   struct Steer {
     Time after;
     double offset_s, rate;
+    void visit_state(StateArchive& archive) { archive(after, offset_s, rate); }
   };
 
   State(const ClockConfig& config_in, std::uint64_t seed, const std::string& vehicle, Time start_in)
@@ -213,6 +215,16 @@ double VehicleClock::estimated_std_s(Time now) const {
            2.5 * floor;
   }
   return std::sqrt(phase + rate * t_s * t_s + white * t_s + walk * std::pow(t_s, 3) / 3);
+}
+
+void VehicleClock::visit_state(StateArchive& archive) {
+  if (!state_) return;
+  State& s = *state_;
+  archive(s.oscillator, s.now, s.nodes, s.steers, s.forgot_steers, s.first_fix, s.last_fix);
+  archive(s.loop.time_constant_s, s.loop.step_above_s, s.loop.pps_std_s, s.loop.interval_s);
+  archive(s.learnt_rate, s.last_measured_s, s.rate_is_unknown, s.start);
+  if (archive.restoring() && (s.nodes.empty() || (s.forgot_steers && s.steers.empty())))
+    archive.fail("a clock without its past");
 }
 
 void VehicleClock::hash_state(StateHash& hash) const {
