@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bridges/lcm/lockstep_service.hpp"
+#include "bridges/lcm/time_machine.hpp"
 #include "bridges/lcm/visitors.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "sim/bus/bus.hpp"
@@ -36,6 +37,10 @@ class SimService {
   void serve_vehicles(sim::Bus& network);
   /// What changes the world is written down there.  It must outlive this.
   void use_journal(RunJournal& journal);
+  /// Serves snapshot, restore, rewind, until and where.  It must outlive this; null: nobody does.
+  void set_time_machine(TimeMachine* machine) { time_machine_ = machine; }
+  /// Whose vehicles there are.
+  void visit_state(sim::StateArchive& archive) { visitors_.visit_state(archive); }
   /// Publishes sim.info now, and not a second time at this step.
   void publish_info();
   /// Carries out a request that a journal wrote down.  Throws std::runtime_error that says why it was refused, as then.
@@ -82,6 +87,7 @@ class SimService {
   Info info_;
   Visitors visitors_;
   RunJournal* journal_ = nullptr;
+  TimeMachine* time_machine_ = nullptr;
   std::int64_t info_step_ = -1;  // of the last sim.info
   std::vector<Line> lines_;      // the world's first
   sim::Bytes buffer_;

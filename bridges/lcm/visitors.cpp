@@ -8,6 +8,7 @@
 #include "bridges/lcm/run_journal.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/state/state_archive.hpp"
 #include "sim/world/vehicle_loader.hpp"
 
 namespace bridges {
@@ -168,6 +169,19 @@ void Visitors::remove_those_of(const std::string& client) {
     owners_.erase(vehicle);
   }
   clients_.erase(client);
+}
+
+void Visitors::Client::visit_state(sim::StateArchive& archive) {
+  archive(timeout);
+  if (archive.restoring()) heard = Clock::now();
+}
+
+void Visitors::Owner::visit_state(sim::StateArchive& archive) {
+  archive(client, with_client);
+}
+
+void Visitors::visit_state(sim::StateArchive& archive) {
+  archive(owners_, clients_);
 }
 
 }  // namespace bridges

@@ -37,6 +37,8 @@ class Visitors {
   /// Removes the vehicles that came with this client and go with it.
   void remove_those_of(const std::string& client);
   bool has(const std::string& client) const { return clients_.contains(client); }
+  /// Whose vehicles there are.  When restoring, time-outs begin anew.
+  void visit_state(sim::StateArchive& archive);
   /// Told of every request that is about to change the world, whoever makes it, and of descriptions.
   void use_journal(RunJournal& journal) { journal_ = &journal; }
 
@@ -45,10 +47,12 @@ class Visitors {
   struct Client {
     Clock::time_point heard;
     std::chrono::duration<double> timeout{0};
+    void visit_state(sim::StateArchive& archive);
   };
   struct Owner {
     std::string client;
     bool with_client = false;
+    void visit_state(sim::StateArchive& archive);
   };
 
   void tell(shoal::sim_vehicle_t& message, bool present);

@@ -1,34 +1,52 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
-#include <string>
 
-#include "sim/bus/bus.hpp"
+#include "bridges/lcm/lockstep_service.hpp"
+#include "bridges/lcm/run_journal.hpp"
+#include "bridges/lcm/sim_service.hpp"
+#include "tools/experiment/run_buses.hpp"
 
 namespace tools {
 
-/// Something that came into the world from outside.
-struct Letter {
-  std::string bus;      ///< of `buses:`; empty: the world's
-  std::string channel;  ///< `sim.control`: a request that changed the world
-  sim::Bytes payload;
-};
-
-/// What came into a run from outside, step by step, and a way to let it come in again.
+/// What came into a run from outside since a step, and a way to let it come in again.
 class RunMail {
  public:
-  virtual ~RunMail() = default;
-  /// `listener` is told of every letter in the order in which they took effect, with the number of the step that was
-  /// over then.
-  using Listener = std::function<void(std::int64_t step, const Letter& letter)>;
-  virtual void set_listener(Listener listener) = 0;
-  /// While muted nothing goes out, what comes in is thrown away, and the listener is told of nothing.
-  virtual void set_muted(bool muted) = 0;
-  /// A letter takes effect again.
-  virtual void deliver(const Letter& letter) = 0;
-  /// All that was delivered is there: the step may be taken.
-  virtual void admit() = 0;
+  /// All must outlive this.
+  RunMail(RunBuses& buses, bridges::RunJournal& journal, bridges::SimService& service,
+          bridges::LockstepService& lockstep)
+      : buses_(buses), journal_(journal), service_(service), lockstep_(lockstep) {}
+
+  /// Keeps all that comes from now on.  `too_much` is called when it is more than so many bytes.
+  void keep(std::size_t most_bytes, std::function<void()> too_much);
+  std::size_t bytes() const { return bytes_; }
+  void forget_before(std::int64_t step);
+  /// What came at this step and later.
+  void forget_from(std::int64_t step);
+
+  /// Nothing goes out from here on, and what comes in is thrown away.
+  void begin_again(std::int64_t from_step);
+  /// What came after the reports of a step, up to the next, takes effect again.
+  void deliver(std::int64_t step);
+  void end_again();
+
+ private:
+  struct Kept {
+    std::int64_t step;
+    bridges::RunJournal::Letter letter;
+    std::size_t bytes() const;
+  };
+  void deliver(const bridges::RunJournal::Letter& letter);
+
+  RunBuses& buses_;
+  bridges::RunJournal& journal_;
+  bridges::SimService& service_;
+  bridges::LockstepService& lockstep_;
+  std::deque<Kept> kept_;
+  std::size_t bytes_ = 0;
+  std::size_t next_ = 0;  ///< to be delivered
 };
 
 }  // namespace tools

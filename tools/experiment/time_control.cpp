@@ -15,7 +15,6 @@ namespace tools {
 namespace {
 
 constexpr int most_files = 1000;
-constexpr std::size_t bytes_beside_payload = 100;
 constexpr const char* suffix = ".snapshot";
 
 /// One run of bytes that the ring can compare part by part, and back.  Its last bytes tell the three sizes.
@@ -68,7 +67,7 @@ TimeControl::TimeControl(sim::World& world, sim::RunControl& control, Scoring& s
       ring_(std::llround(options_.rewind_s * static_cast<double>(steps_per_second_)), options_.most_bytes) {
   service_.set_time_machine(this);
   if (options_.rewind_s > 0)
-    mail_.set_listener([this](std::int64_t step, const Letter& letter) { keep(step, letter); });
+    mail_.keep(options_.most_bytes, [this] { forget_all(); });
 }
 
 TimeControl::Saved TimeControl::save(History history) const {
@@ -103,25 +102,13 @@ void TimeControl::after_step() {
   const bool due = step % steps_per_second_ == 0 || ring_.size() == 0;
   if (!due) return;
   const Saved saved = save(History::length);
-  ring_.add(step, joined(saved.state, saved.scores, saved.owners), mail_bytes_);
-  forget_old_mail();
+  ring_.add(step, joined(saved.state, saved.scores, saved.owners), mail_.bytes());
+  mail_.forget_before(*ring_.oldest());
 }
 
-void TimeControl::forget_old_mail() {
-  while (!kept_.empty() && kept_.front().step < *ring_.oldest()) {
-    mail_bytes_ -= kept_.front().letter.payload.size() + bytes_beside_payload;
-    kept_.pop_front();
-  }
-}
-
-void TimeControl::keep(std::int64_t step, const Letter& letter) {
-  kept_.push_back({step, letter});
-  mail_bytes_ += letter.payload.size() + bytes_beside_payload;
-  if (mail_bytes_ <= options_.most_bytes) return;
-  // More mail since the last snapshots than there is room for: the way back begins anew.
+void TimeControl::forget_all() {
   ring_.forget_after(-1);
-  kept_.clear();
-  mail_bytes_ = 0;
+  mail_.forget_from(-1);
 }
 
 bool TimeControl::stop_when_there() {
@@ -200,21 +187,16 @@ std::string TimeControl::rewind(double seconds, bool run_on) {
              History::length);
         simulate_again(target);
         ring_.forget_after(target);
-        while (!kept_.empty() && kept_.back().step >= target) {
-          mail_bytes_ -= kept_.back().letter.payload.size() + bytes_beside_payload;
-          kept_.pop_back();
-        }
+        mail_.forget_from(target);
       },
       run_on, true);
   return place();
 }
 
 void TimeControl::simulate_again(std::int64_t to_step) {
-  const auto first = std::find_if(kept_.begin(), kept_.end(),
-                                  [&](const Kept& kept) { return kept.step >= world_.step_number(); });
-  for (auto kept = first; world_.step_number() < to_step;) {
-    for (; kept != kept_.end() && kept->step == world_.step_number(); ++kept) mail_.deliver(kept->letter);
-    mail_.admit();
+  mail_.begin_again(world_.step_number());
+  while (world_.step_number() < to_step) {
+    mail_.deliver(world_.step_number());
     world_.step();
     scoring_.after_step();
   }
@@ -223,7 +205,7 @@ void TimeControl::simulate_again(std::int64_t to_step) {
 void TimeControl::travel(const std::function<void()>& work, bool run_on, bool ours) {
   const Saved before = save(History::whole);
   if (hooks_.leaving) hooks_.leaving();
-  mail_.set_muted(true);
+  mail_.begin_again(world_.step_number());
   try {
     work();
   } catch (const std::exception& error) {
@@ -232,10 +214,10 @@ void TimeControl::travel(const std::function<void()>& work, bool run_on, bool ou
     } catch (const std::exception&) {
       broken_ = error.what();
     }
-    mail_.set_muted(false);
+    mail_.end_again();
     throw;
   }
-  mail_.set_muted(false);
+  mail_.end_again();
   ++control_.branch;
   control_.forget_until();
   control_.set_paused(!run_on);
@@ -299,9 +281,7 @@ std::string TimeControl::restore(const std::string& name, bool run_on) {
                              first_difference(snapshot.resolved_world, options_.resolved_world));
   travel([&] { load({snapshot.state, snapshot.scores, snapshot.owners}, History::whole); }, run_on, false);
   options_.scores_from_s = snapshot.from_s;
-  ring_.forget_after(-1);
-  kept_.clear();
-  mail_bytes_ = 0;
+  forget_all();
   after_step();
   return place();
 }

@@ -1,11 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "bridges/lcm/sim_service.hpp"
 #include "bridges/lcm/time_machine.hpp"
@@ -68,22 +67,17 @@ class TimeControl final : public bridges::TimeMachine {
   bool take_moved() { return std::exchange(moved_, false); }
   /// Why the world cannot go on.
   const std::string& broken() const { return broken_; }
-  std::size_t bytes() const { return ring_.bytes() + mail_bytes_; }
+  std::size_t bytes() const { return ring_.bytes() + mail_.bytes(); }
   std::optional<std::int64_t> oldest_step() const { return ring_.oldest(); }
 
  private:
-  struct Kept {
-    std::int64_t step;
-    Letter letter;
-  };
   struct Saved {
     sim::Bytes state, scores, owners;
   };
 
   Saved save(History history) const;
   void load(const Saved& saved, History history);
-  void keep(std::int64_t step, const Letter& letter);
-  void forget_old_mail();
+  void forget_all();
   void simulate_again(std::int64_t to_step);
   /// Carries out `work`, which moves the world; puts the world back when that fails.
   void travel(const std::function<void()>& work, bool run_on, bool ours);
@@ -98,8 +92,6 @@ class TimeControl final : public bridges::TimeMachine {
   Hooks hooks_;
   std::int64_t steps_per_second_;
   SnapshotRing ring_;
-  std::deque<Kept> kept_;
-  std::size_t mail_bytes_ = 0;
   int files_ = 0;
   bool moved_ = false;
   std::string broken_;
