@@ -5,7 +5,6 @@
 
 #include "sim/acoustics/signal.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/state_hash.hpp"
 
 namespace sim {
 
@@ -64,7 +63,6 @@ class SignalReceiver {
   std::int64_t drop();
   bool taking() const { return !taken_.empty(); }
   void visit_state(StateArchive& archive) { archive(present_, taken_); }
-  void hash_state(StateHash& hash) const;
 
  private:
   /// A signal that is taken, and what has come of it so far.

@@ -78,13 +78,4 @@ void DeviceFaults::visit_state(StateArchive& archive) {
   update();
 }
 
-void DeviceFaults::hash_state(StateHash& hash) const {
-  hash.add(static_cast<std::uint64_t>(active_.size()));
-  for (const FaultConfig& fault : active_) {
-    hash.add(static_cast<int>(fault.kind));
-    hash.add_bytes(reinterpret_cast<const std::byte*>(fault.quantity.data()), fault.quantity.size());
-    for (const double value : {fault.bias, fault.noise_factor, fault.dropout, fault.effectiveness}) hash.add(value);
-  }
-}
-
 }  // namespace sim

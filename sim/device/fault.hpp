@@ -52,7 +52,6 @@ class DeviceFaults {
   double dropout() const { return dropout_; }
   double effectiveness() const { return effectiveness_; }
   void visit_state(StateArchive& archive);
-  void hash_state(StateHash& hash) const;
 
  private:
   struct Quantity {

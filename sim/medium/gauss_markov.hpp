@@ -7,7 +7,6 @@
 #include "sim/math.hpp"
 #include "sim/random/random.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/state_hash.hpp"
 #include "sim/time.hpp"
 
 namespace sim {
@@ -35,7 +34,6 @@ class GaussMarkov {
   const Vector3d& values() const { return values_; }
   /// After restoring values() follow at the next advance_to().
   void visit_state(StateArchive& archive) { archive(tick_, from_, to_); }
-  void hash_state(StateHash& hash) const;
 
  private:
   Vector3d draw(std::int64_t tick);

@@ -21,7 +21,6 @@ class Wind {
   void visit_state(StateArchive& archive) {
     if (gusts_) archive(*gusts_);
   }
-  void hash_state(StateHash& hash) const;
 
  private:
   WindConfig config_;

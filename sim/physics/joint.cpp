@@ -5,6 +5,7 @@
 
 #include "sim/physics/ode_math.hpp"
 #include "sim/physics/physics_world.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace sim {
 namespace {
@@ -340,17 +341,27 @@ void Joint::move_world_side(const Pose& X_move_W) {
   if (load_) dJointSetFeedback(ode_.get(), &load_->feedback);
 }
 
-void Joint::hash_state(StateHash& hash) const {
-  for (int axis = 0; stops_were_set_ && axis < axes_; ++axis) {
-    hash.add(get_parameter(dParamLoStop, axis));
-    hash.add(get_parameter(dParamHiStop, axis));
-  }
+void Joint::visit_state(StateArchive& archive) {
+  archive.unhashed(stops_were_set_);
   for (int axis = 0; axis < axes_; ++axis) {
-    hash.add(position_[axis]);
-    hash.add(wrapped_[axis]);
-    hash.add(motor_velocity_[axis]);
-    hash.add(motor_max_force_[axis]);
+    double low = get_parameter(dParamLoStop, axis), high = get_parameter(dParamHiStop, axis);
+    if (stops_were_set_)
+      archive(low, high);
+    else
+      archive.unhashed(low, high);
+    archive(position_[axis], wrapped_[axis], motor_velocity_[axis], motor_max_force_[axis]);
+    if (!archive.restoring()) continue;
+    // ODE moves the one stop when the other would come to lie beyond it.
+    set_parameter(dParamLoStop, low, axis);
+    set_parameter(dParamHiStop, high, axis);
+    set_parameter(dParamLoStop, low, axis);
+    set_parameter(dParamVel, sign_ * motor_velocity_[axis], axis);
+    set_parameter(dParamFMax, motor_max_force_[axis], axis);
   }
+  bool measured = load_ != nullptr;
+  archive.unhashed(measured);
+  if (measured) measure_load();
+  if (load_) archive.unhashed(load_->added, load_->force_W_N, load_->torque_W_Nm, load_->effort);
 }
 
 }  // namespace sim

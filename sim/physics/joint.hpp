@@ -9,9 +9,10 @@
 
 #include "sim/math.hpp"
 #include "sim/physics/physics_config.hpp"
-#include "sim/state_hash.hpp"
 
 namespace sim {
+
+class StateArchive;
 
 struct JointDeleter {
   void operator()(dJointID joint) const { dJointDestroy(joint); }
@@ -52,7 +53,8 @@ class Joint {
   /// Of that, what motor, stops and add_effort applied about or along an axis, in the joint's sign.
   double effort(int axis = 0) const { return load_ ? load_->effort[axis] : 0; }
 
-  void hash_state(StateHash& hash) const;
+  /// Restoring needs a joint that was made, and moved by move_group, as the one that was saved.
+  void visit_state(StateArchive& archive);
 
  private:
   friend class PhysicsWorld;

@@ -124,10 +124,4 @@ void Oscillator::visit_state(StateArchive& archive) {
   for (double& part : flicker_) archive(part);
 }
 
-void Oscillator::hash_state(StateHash& hash) const {
-  for (const double number : {offset_s_, drift_, wander_s_, walk_}) hash.add(number);
-  hash.add(intervals_);
-  hash.add(std::span<const double>(flicker_));
-}
-
 }  // namespace sim

@@ -51,7 +51,6 @@ class Oscillator {
   /// `temperature_C`: of the water around; nothing: not in water.
   void advance(std::optional<double> temperature_C);
   void visit_state(StateArchive& archive);
-  void hash_state(StateHash& hash) const;
 
  private:
   ClockConfig config_;

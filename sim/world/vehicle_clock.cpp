@@ -227,23 +227,4 @@ void VehicleClock::visit_state(StateArchive& archive) {
     archive.fail("a clock without its past");
 }
 
-void VehicleClock::hash_state(StateHash& hash) const {
-  if (!state_) return;
-  const State& state = *state_;
-  state.oscillator.hash_state(hash);
-  hash.add(static_cast<std::int64_t>(state.now.count()));
-  hash.add(static_cast<std::int64_t>(state.nodes.back().at.count()));
-  for (const State::Steer& steer : state.steers) {
-    hash.add(static_cast<std::int64_t>(steer.after.count()));
-    hash.add(steer.offset_s);
-    hash.add(steer.rate);
-  }
-  hash.add(state.first_fix.has_value());
-  if (state.first_fix) hash.add(static_cast<std::int64_t>(state.first_fix->count()));
-  if (state.last_fix) hash.add(static_cast<std::int64_t>(state.last_fix->count()));
-  hash.add(state.learnt_rate);
-  hash.add(state.last_measured_s);
-  hash.add(state.rate_is_unknown);
-}
-
 }  // namespace sim

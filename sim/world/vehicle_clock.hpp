@@ -59,7 +59,6 @@ class VehicleClock {
   double estimated_std_s(Time now) const;
 
   void visit_state(StateArchive& archive);
-  void hash_state(StateHash& hash) const;
 
   static constexpr Time memory{60'000'000};
 

@@ -95,11 +95,16 @@ std::shared_ptr<const VehicleConfig> VehicleLoader::instance(const VehicleEntry&
   for (const ConfigNode::Entry& change : entry.overrides.entries)
     set_config_path(tree, change.key, change.value, change.place, diagnostics_);
   substitute_parameters(tree, parameters_of(entry, model, who, index), who, diagnostics_);
+  return read(std::move(tree), who);
+}
+
+std::shared_ptr<const VehicleConfig> VehicleLoader::read(ConfigNode tree, const std::string& who) const {
   auto config = std::make_shared<VehicleConfig>();
   ParamReader in(tree, who, diagnostics_);
   declare_names(in, tree);
   config->read(in);
   in.finish();
+  config->source = std::make_shared<const ConfigNode>(std::move(tree));
   return config;
 }
 

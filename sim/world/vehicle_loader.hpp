@@ -16,6 +16,8 @@ class VehicleLoader {
 
   /// The instances of an entry, fewer or none after errors.
   std::vector<VehicleInstance> load(const VehicleEntry& entry);
+  /// A vehicle from a tree without parameters, such as VehicleConfig::source.
+  std::shared_ptr<const VehicleConfig> read(ConfigNode tree, const std::string& who) const;
   /// Fills `file:` entries of the tree with what the files said.
   void resolve(ConfigNode& world_node) const;
 
