@@ -65,7 +65,7 @@ void SimService::publish_step() {
   shoal::utime_t clock;
   clock.utime = world_.epoch_us() + world_.now().count();
   publish(bus_, "sim.clock", clock);
-  for (std::size_t i = 1; i < lines_.size(); ++i) {
+  for (std::size_t i = 1; i < lines_.size() && !muted_; ++i) {
     publish(*lines_[i].network, "sim.clock", clock);
     lockstep_.post(static_cast<int>(i), "sim.clock", buffer_);
   }

@@ -50,10 +50,7 @@ double nees_of(const Eigen::Matrix3d& covariance_m2, const sim::Vector3d& error)
 class EstimateMetric final : public Metric {
  public:
   EstimateMetric(const sim::MetricConfig& config, const sim::World& world, const TruthHistory& truth)
-      : Metric(config),
-        world_(world),
-        truth_(truth),
-        mailbox_(vehicle().bus().open_mailbox(config.channel)) {}
+      : Metric(config), world_(world), truth_(truth), mailbox_(vehicle().bus().open_mailbox(config.channel)) {}
 
   void after_step() override {
     std::erase_if(early_, [this](const Early& early) { return compare(early.time, early.estimate); });

@@ -32,7 +32,8 @@ void Progress::update(sim::Time now, std::uint64_t messages, const sim::RunContr
 
 void Progress::show(const std::string& line) {
   if (terminal_) {
-    std::fprintf(stderr, "\r%s%*s", line.c_str(), static_cast<int>(width_ > line.size() ? width_ - line.size() : 0), "");
+    std::fprintf(stderr, "\r%s%*s", line.c_str(), static_cast<int>(width_ > line.size() ? width_ - line.size() : 0),
+                 "");
     width_ = line.size();
     shown_ = true;
   } else {

@@ -240,8 +240,7 @@ void Results::cut_tracks(sim::Time back_to) {
   if (std::fseek(tracks_, 0, SEEK_END) != 0) throw cannot_cut();
 }
 
-void Results::branch_off(const Summary& left, const Scoring& scoring, const sim::ConfigNode& resolved,
-                         sim::Time back_to) {
+void Results::keep_branch(const Summary& left, const Scoring& scoring, const sim::ConfigNode& resolved) {
   const std::string directory = directory_ + "/branch" + std::to_string(left.branch);
   write_summary(directory, left);
   write_metrics(directory, left);
@@ -252,7 +251,6 @@ void Results::branch_off(const Summary& left, const Scoring& scoring, const sim:
   std::filesystem::copy_file(directory_ + "/tracks.csv", directory + "/tracks.csv",
                              std::filesystem::copy_options::overwrite_existing, error);
   if (error) throw cannot_write(directory + "/tracks.csv", error.message());
-  cut_tracks(back_to);
 }
 
 void Results::close_tracks() {

@@ -29,7 +29,7 @@ class RunBuses {
   /// The world's bus, recorded, behind its gate.
   sim::Bus& outer() { return main_.outer(); }
   /// The world's bus without the record.
-  sim::Bus& network() { return *main_.network; }
+  sim::Bus& network(const std::string& name = {}) { return name.empty() ? *main_.network : *others_.at(name).network; }
   /// The bus of a name in `buses:`, recorded, behind its gate; empty: the world's.
   sim::Bus& of(const std::string& name) { return name.empty() ? main_.outer() : others_.at(name).outer(); }
   /// The gate of a bus; empty: the world's.

@@ -36,6 +36,7 @@ void RunMail::forget_from(std::int64_t step) {
 void RunMail::begin_again(std::int64_t from_step) {
   buses_.set_muted(true);
   journal_.mute(true);
+  service_.set_muted(true);
   lockstep_.suspend(true);
   next_ = 0;
   while (next_ < kept_.size() && kept_[next_].step < from_step) ++next_;
@@ -64,6 +65,7 @@ void RunMail::deliver(const bridges::RunJournal::Letter& letter) {
 
 void RunMail::end_again() {
   lockstep_.suspend(false);
+  service_.set_muted(false);
   journal_.mute(false);
   buses_.set_muted(false);
 }

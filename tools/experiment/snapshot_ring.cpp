@@ -75,9 +75,9 @@ sim::Bytes uncompressed(const sim::Bytes& bytes) {
   std::memcpy(&size, bytes.data(), sizeof size);
   sim::Bytes out(size);
   uLongf room = static_cast<uLongf>(size);
-  const int outcome =
-      uncompress(reinterpret_cast<Bytef*>(out.data()), &room, reinterpret_cast<const Bytef*>(bytes.data() + sizeof size),
-                 static_cast<uLong>(bytes.size() - sizeof size));
+  const int outcome = uncompress(reinterpret_cast<Bytef*>(out.data()), &room,
+                                 reinterpret_cast<const Bytef*>(bytes.data() + sizeof size),
+                                 static_cast<uLong>(bytes.size() - sizeof size));
   if (outcome != Z_OK || room != size) throw std::runtime_error("a snapshot in memory is damaged");
   return out;
 }

@@ -66,8 +66,7 @@ TimeControl::TimeControl(sim::World& world, sim::RunControl& control, Scoring& s
       steps_per_second_(std::max<std::int64_t>(1, std::llround(1e6 / static_cast<double>(world.step_time().count())))),
       ring_(std::llround(options_.rewind_s * static_cast<double>(steps_per_second_)), options_.most_bytes) {
   service_.set_time_machine(this);
-  if (options_.rewind_s > 0)
-    mail_.keep(options_.most_bytes, [this] { forget_all(); });
+  if (options_.rewind_s > 0) mail_.keep(options_.most_bytes, [this] { forget_all(); });
 }
 
 TimeControl::Saved TimeControl::save(History history) const {
@@ -87,6 +86,10 @@ TimeControl::Saved TimeControl::save(History history) const {
 
 void TimeControl::load(const Saved& saved, History history) {
   world_.restore(saved.state);
+  load_beside(saved, history);
+}
+
+void TimeControl::load_beside(const Saved& saved, History history) {
   auto scores = sim::StateArchive::restorer(saved.scores);
   scoring_.visit_state(scores, history);
   scores.end();
@@ -113,8 +116,8 @@ void TimeControl::forget_all() {
 
 bool TimeControl::stop_when_there() {
   const bool there = control_.until && world_.now() >= *control_.until;
-  const bool fired = !control_.until_event.empty() &&
-                     world_.event_firings(control_.until_event).value_or(0) > control_.until_firings;
+  const bool fired =
+      !control_.until_event.empty() && world_.event_firings(control_.until_event).value_or(0) > control_.until_firings;
   if (!there && !fired) return false;
   control_.forget_until();
   control_.set_paused(true);
@@ -198,6 +201,7 @@ void TimeControl::simulate_again(std::int64_t to_step) {
   while (world_.step_number() < to_step) {
     mail_.deliver(world_.step_number());
     world_.step();
+    service_.publish_step();  // metrics may count it; nobody else hears it
     scoring_.after_step();
   }
 }
@@ -225,6 +229,20 @@ void TimeControl::travel(const std::function<void()>& work, bool run_on, bool ou
   if (hooks_.arrived) hooks_.arrived(ours);
 }
 
+void TimeControl::go_on_from(const Snapshot& snapshot) {
+  if (snapshot.step_us != world_.step_time().count() || snapshot.epoch_us != world_.epoch_us())
+    throw std::runtime_error(fmt::format(
+        "the snapshot has a step of {} us and an epoch of {}, this world {} us and {}: they cannot be changed",
+        snapshot.step_us, snapshot.epoch_us, world_.step_time().count(), world_.epoch_us()));
+  world_.restore(snapshot.state);
+  options_.scores_from_s = snapshot.from_s;
+  try {
+    load_beside({{}, snapshot.scores, snapshot.owners}, History::whole);
+  } catch (const sim::SnapshotError&) {
+    throw std::runtime_error("the metrics of the snapshot are others than this world's: `metrics` cannot be changed");
+  }
+}
+
 Snapshot TimeControl::snapshot() const {
   Snapshot s;
   s.version = options_.version;
@@ -248,10 +266,10 @@ Snapshot TimeControl::snapshot() const {
 std::string TimeControl::path_of(const std::string& name) const {
   if (options_.directory.empty())
     throw std::runtime_error("this run has no directory for snapshots: see --snapshots and --results");
-  const bool good = !name.empty() && name.size() <= 100 && name.front() != '.' &&
-                    std::all_of(name.begin(), name.end(), [](char c) {
-                      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-' || c == '_';
-                    });
+  const bool good =
+      !name.empty() && name.size() <= 100 && name.front() != '.' && std::all_of(name.begin(), name.end(), [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-' || c == '_';
+      });
   if (!good)
     throw std::runtime_error(
         "a snapshot has a file name of 1 to 100 letters, digits, '.', '-' and '_', not beginning with '.', got '" +

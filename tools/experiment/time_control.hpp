@@ -34,7 +34,7 @@ class TimeControl final : public bridges::TimeMachine {
   };
   /// What the run does when the world goes elsewhere in time.
   struct Hooks {
-    std::function<void()> leaving;         ///< before: the branch is as it was left
+    std::function<void()> leaving;           ///< before: the branch is as it was left
     std::function<void(bool ours)> arrived;  ///< after; `ours`: at a step that this run has been at
   };
 
@@ -59,11 +59,15 @@ class TimeControl final : public bridges::TimeMachine {
   /// Goes on from a file in the directory of snapshots.
   std::string restore(const std::string& name, bool run_on);
 
+  /// Begins a run with a snapshot.  Throws std::runtime_error when it does not fit.
+  void go_on_from(const Snapshot& snapshot);
+  double scores_from_s() const { return options_.scores_from_s; }
   /// The world as it is.
   Snapshot snapshot() const;
   /// Where the world is: `step 2000, 20.00 s, branch 1`.
   std::string place() const;
   /// True once after each move in time.
+  bool has_moved() const { return moved_; }
   bool take_moved() { return std::exchange(moved_, false); }
   /// Why the world cannot go on.
   const std::string& broken() const { return broken_; }
@@ -77,6 +81,7 @@ class TimeControl final : public bridges::TimeMachine {
 
   Saved save(History history) const;
   void load(const Saved& saved, History history);
+  void load_beside(const Saved& saved, History history);
   void forget_all();
   void simulate_again(std::int64_t to_step);
   /// Carries out `work`, which moves the world; puts the world back when that fails.
