@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bridges/lcm/lockstep_summary.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/bus/mail_gate.hpp"
@@ -32,17 +33,6 @@ class LockstepTimeout : public std::runtime_error {
 enum class LockstepOutcome {
   done,
   stopped,  ///< `idle` said so, or the run is to end; the next call goes on with the same step
-};
-
-/// How a client took part in a run.
-struct LockstepSummary {
-  std::string client;
-  std::int64_t ticks = 0;
-  std::int64_t repeated_ticks = 0;     ///< sent again, as no answer came
-  std::int64_t messages_sent_again = 0;  ///< to the client, as it had not received them
-  std::int64_t messages_asked_for = 0;   ///< of the client, as they had not come here
-  std::int64_t timeouts = 0;
-  std::string ended;  ///< empty: it took part until the end
 };
 
 /// The lockstep on the bus: sends sim.tick, takes sim.ack, and asks and answers on sim.resend and sim.resent, so that

@@ -219,7 +219,7 @@ bool SimService::leave(const shoal::sim_control_request_t& request) {
 void SimService::obey_again(const shoal::sim_control_request_t& request) {
   const std::string& command = request.command;
   if (command == "spawn")
-    visitors_.spawn(request.client, request.text);
+    visitors_.spawn_again(request.client, request.text);
   else if (command == "remove")
     visitors_.remove(request.text);
   else if (command == "describe")

@@ -96,8 +96,15 @@ void Visitors::tell_changes() {
 }
 
 std::string Visitors::spawn(const std::string& client, const std::string& text) {
-  write_down(client, "spawn", text);
-  const sim::SpawnRequest request = sim::read_spawn_request(world_.config(), text);
+  if (journal_ != nullptr) write_down(client, "spawn", sim::self_contained_spawn(world_.config(), text));
+  return add(client, sim::read_spawn_request(world_.config(), text));
+}
+
+std::string Visitors::spawn_again(const std::string& client, const std::string& text) {
+  return add(client, sim::read_journalled_spawn(world_.config(), text));
+}
+
+std::string Visitors::add(const std::string& client, const sim::SpawnRequest& request) {
   if (request.with_client && client.empty())
     throw std::runtime_error("a vehicle that goes with its client needs a client name");
   const sim::Vehicle& vehicle = world_.add_vehicle(request.vehicle);

@@ -8,6 +8,10 @@
 #include "sim/bus/bus.hpp"
 #include "sim/world/world.hpp"
 
+namespace sim {
+struct SpawnRequest;
+}
+
 namespace bridges {
 
 class RunJournal;
@@ -21,6 +25,8 @@ class Visitors {
   /// Adds the vehicle that `text` describes (an entry of `vehicles:` in YAML); returns one line that names it, its
   /// channels and rates.  Throws sim::ConfigError, with the same lines as for files.
   std::string spawn(const std::string& client, const std::string& text);
+  /// The same with a text that a journal wrote down.
+  std::string spawn_again(const std::string& client, const std::string& text);
   /// A vehicle or an object.  Throws sim::WorldError.
   void remove(const std::string& name);
   /// Says the same as spawn() did.  Throws sim::WorldError.
@@ -57,6 +63,7 @@ class Visitors {
     void visit_state(sim::StateArchive& archive);
   };
 
+  std::string add(const std::string& client, const sim::SpawnRequest& request);
   void tell(shoal::sim_vehicle_t& message, bool present);
   void write_down(const std::string& client, const std::string& command, const std::string& text);
 

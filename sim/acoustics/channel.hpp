@@ -14,7 +14,7 @@
 #include "sim/medium/medium.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/random/random.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 #include "sim/world/event_queue.hpp"
 
 namespace sim {

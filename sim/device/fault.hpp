@@ -7,7 +7,7 @@
 
 #include "sim/config/param_reader.hpp"
 #include "sim/random/noise.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace sim {
 

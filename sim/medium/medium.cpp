@@ -111,7 +111,8 @@ double Medium::mean_slowness_spm(double z_m, double other_z_m) const {
 }
 
 void Medium::visit_state(StateArchive& archive) {
-  archive(now_);
+  const bool changes = has_water() || wind_;
+  changes ? archive(now_) : archive.unhashed(now_);
   if (current_) archive(*current_);
   if (wind_) archive(*wind_);
   if (archive.restoring()) advance_to(now_);

@@ -100,8 +100,6 @@ class StateArchive {
   }
   /// One for each section, in order.
   const std::vector<PartHash>& parts() const { return parts_; }
-  /// For classes that still have hash_state().
-  StateHash& part_hash() { return part_hash_; }
   std::vector<std::byte> take_bytes() { return std::move(output_); }
 
   /// That were not read yet, of the part or the snapshot.

@@ -7,7 +7,6 @@
 #include "sim/config/param_reader.hpp"
 #include "sim/random/random.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/state_hash.hpp"
 
 namespace sim {
 

@@ -86,6 +86,8 @@ std::unique_ptr<Metric> make_distance_metric(const sim::MetricConfig& config, co
 std::unique_ptr<Metric> make_link_metric(const sim::MetricConfig& config, const sim::World& world);
 /// mission_time, messages.
 std::unique_ptr<Metric> make_event_metric(const sim::MetricConfig& config, sim::World& world);
+/// lean.
+std::unique_ptr<Metric> make_lean_metric(const sim::MetricConfig& config, const sim::World& world);
 std::unique_ptr<Metric> make_collision_metric(const sim::MetricConfig& config, sim::World& world);
 
 }  // namespace tools

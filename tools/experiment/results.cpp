@@ -83,6 +83,15 @@ std::string Summary::to_json() const {
   json["processes"] = nlohmann::ordered_json::array();
   for (const Process& process : processes)
     json["processes"].push_back({{"name", process.name}, {"how", process.how}, {"sim_time_s", process.sim_time_s}});
+  if (!clients.empty()) json["clients"] = nlohmann::ordered_json::array();
+  for (const bridges::LockstepSummary& client : clients)
+    json["clients"].push_back({{"name", client.client},
+                               {"ticks", client.ticks},
+                               {"repeated_ticks", client.repeated_ticks},
+                               {"messages_sent_again", client.messages_sent_again},
+                               {"messages_asked_for", client.messages_asked_for},
+                               {"timeouts", client.timeouts},
+                               {"ended", client.ended.empty() ? "with the run" : client.ended}});
   for (const auto& [vehicle, record] : zones) {
     auto& entry = json["zones"][vehicle];
     entry["finish_s"] = record.finish_s ? nlohmann::ordered_json(*record.finish_s) : nlohmann::ordered_json();

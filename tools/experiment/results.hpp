@@ -10,6 +10,7 @@
 
 #include "sim/config/config_node.hpp"
 #include "sim/script/script.hpp"
+#include "bridges/lcm/lockstep_summary.hpp"
 #include "sim/world/world.hpp"
 #include "tools/experiment/link_counts.hpp"
 #include "tools/experiment/scoring.hpp"
@@ -38,6 +39,7 @@ struct Summary {
   std::map<std::string, double> metrics;
   std::vector<Scoring::Verdict> verdicts;
   std::vector<Process> processes;
+  std::vector<bridges::LockstepSummary> clients;  ///< that took part in the lockstep, by name
   std::map<std::string, sim::ZoneRecord> zones;  ///< by vehicle, when the world has zones with rules
   std::optional<LinkCounts> acoustics;           ///< of all modems under water, when there are any
   std::uint64_t serial_dropped_bytes = 0;        ///< that no program fetched from pseudo-terminals and FIFOs

@@ -43,12 +43,6 @@ RunBuses::Line RunBuses::open(const std::string& url, const RunOptions& options)
   return line;
 }
 
-std::vector<sim::Bus*> RunBuses::other_networks() {
-  std::vector<sim::Bus*> networks;
-  for (auto& [name, line] : others_) networks.push_back(line.network.get());
-  return networks;
-}
-
 std::string RunBuses::url(const std::string& name) const {
   const Line& line = name.empty() ? main_ : others_.at(name);
   return line.lcm ? line.lcm->url() : "";

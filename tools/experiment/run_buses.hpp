@@ -37,8 +37,6 @@ class RunBuses {
   /// The begin of a step: hands over what has come on every bus, the world's first, then by name, and tells of it.
   using Admitted = std::function<void(const std::string& bus, std::span<const sim::MailGate::Mail> mail)>;
   void admit(const Admitted& admitted);
-  /// Without their records, those that vehicles have to themselves.
-  std::vector<sim::Bus*> other_networks();
 
   bool over_lcm() const { return main_.lcm != nullptr; }
   /// LCM URL of a bus; empty when it is none.

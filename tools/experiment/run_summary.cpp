@@ -17,7 +17,7 @@ void note_signal(Summary& summary) {
 }  // namespace
 
 void Run::finish(Summary& summary) {
-  journal_.finish();
+  journal_.finish(summary.ended != "fault" && summary.ended != "error");
   if (alone_) {  // else it would end the other simulator's clients
     lockstep_.publish_end([this](std::chrono::milliseconds time) { buses_.wait(time); },
                           std::chrono::milliseconds(caught_signal() == 0 ? 1000 : 200));
@@ -55,6 +55,7 @@ void Run::add_figures(Summary& summary) {
   summary.metrics = scoring_.figures();
   summary.verdicts = scoring_.verdicts();
   summary.processes = programs_.ended();
+  summary.clients = lockstep_.summaries();
   summary.event = world_.ended();
   for (const auto& [vehicle, record] : world_.zone_records()) summary.zones[vehicle] = record;
   // Without the programs that a world names there is nothing to judge.

@@ -50,6 +50,8 @@ std::unique_ptr<Metric> Scoring::make(const sim::MetricConfig& config) {
     case sim::MetricType::mission_time:
     case sim::MetricType::messages:
       return make_event_metric(config, world_);
+    case sim::MetricType::lean:
+      return make_lean_metric(config, world_);
     case sim::MetricType::collisions:
       break;
   }
