@@ -3,7 +3,7 @@ include(CMakePackageConfigHelpers)
 set(package_dir lib/cmake/Shoal)
 set(types_dir ${PROJECT_SOURCE_DIR}/bridges/lcm/types)
 
-install(TARGETS shoal shoal-coop-rover shoal-coop-craft shoal-coop-auv shoal-coop-station RUNTIME DESTINATION bin)
+install(TARGETS shoal shoal-coop-rover shoal-coop-craft shoal-coop-auv shoal-coop-station shoal-balance RUNTIME DESTINATION bin)
 install(TARGETS generate_type_tables RUNTIME DESTINATION lib/shoal)
 install(TARGETS shoal_client ARCHIVE DESTINATION lib)
 install(FILES bridges/client/shoal/client.hpp DESTINATION include/shoal/shoal)

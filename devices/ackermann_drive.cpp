@@ -96,9 +96,10 @@ double AckermannDrive::power_W() const {
   return sum_W;
 }
 
-void AckermannDrive::hash_state(sim::StateHash& hash) const {
-  for (const double number : {target_mps_, target_steering_rad_, speed_mps_, steering_rad_}) hash.add(number);
-  hash.add(coasting_);
+void AckermannDrive::visit_state(sim::StateArchive& archive) {
+  archive(target_mps_, target_steering_rad_, speed_mps_, steering_rad_, coasting_);
+  archive.expect_count(wheels_.size(), "driven wheels");
+  for (DrivenWheel& wheel : wheels_) archive(wheel.motors);
 }
 
 void AckermannDrive::set_steering(double speed_mps, double steering_rad) {

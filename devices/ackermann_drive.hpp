@@ -42,7 +42,7 @@ class AckermannDrive final : public sim::Actuator {
   void make_safe(sim::SafeState safe) override;
   void change(const Params& params);
   double power_W() const override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   /// Speed of the middle of the rear axle, and the steering angle in the middle of the front axle.
   void set_steering(double speed_mps, double steering_rad);

@@ -227,25 +227,10 @@ void AcousticModem::measure(const sim::SenseContext&) {
   std::swap(received_, arrived_);
 }
 
-void AcousticModem::hash_state(sim::StateHash& hash) const {
-  hash.add(static_cast<std::uint64_t>(queue_.size()));
-  for (const Outgoing& message : queue_) {
-    hash.add(std::string_view(message.destination));
-    hash.add_bytes(message.data.data(), message.data.size());
-  }
-  for (const std::vector<Packet>* packets : {&arrived_, &received_}) {
-    hash.add(static_cast<std::uint64_t>(packets->size()));
-    for (const Packet& packet : *packets) {
-      hash.add(std::string_view(packet.source));
-      hash.add(std::string_view(packet.destination));
-      hash.add(static_cast<std::int64_t>(packet.sent_reading.count()));
-      hash.add(static_cast<std::int64_t>(packet.arrived.count()));
-      hash.add(static_cast<std::int64_t>(packet.arrived_reading.count()));
-      for (const double number : {packet.snr_dB, packet.level_dB, packet.closing_mps}) hash.add(number);
-      hash.add_bytes(packet.data.data(), packet.data.size());
-    }
-  }
-  if (serial_) serial_->hash_state(hash);
+void AcousticModem::visit_state(sim::StateArchive& archive) {
+  archive(queue_, arrived_, received_, now_);
+  archive.unhashed(dropped_);
+  if (serial_) archive(*serial_);
 }
 
 void AcousticModem::read_serial(sim::Time now) {

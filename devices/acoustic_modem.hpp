@@ -51,6 +51,9 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
     sim::Time arrived_reading{0};   ///< by the own clock
     double snr_dB = 0, level_dB = 0, closing_mps = 0;
     sim::Bytes data;
+    void visit_state(sim::StateArchive& archive) {
+      archive(source, destination, sent, arrived, sent_reading, arrived_reading, snr_dB, level_dB, closing_mps, data);
+    }
   };
 
   AcousticModem(const Params& params, const sim::DeviceContext& context);
@@ -67,7 +70,7 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
 
   void measure(const sim::SenseContext& context) override;
   void disturb(double, sim::Random&) override {}
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   /// How long the sound of a message of this size is.
   double duration_s(std::size_t bytes) const;
@@ -80,6 +83,7 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
   struct Outgoing {
     std::string destination;
     sim::Bytes data;
+    void visit_state(sim::StateArchive& archive) { archive(destination, data); }
   };
 
   bool listens_to(const sim::Signal& signal) const override;

@@ -69,9 +69,4 @@ void Lag::jump_to(double value) {
   rate_ = 0;
 }
 
-void Lag::hash_state(sim::StateHash& hash) const {
-  hash.add(value_);
-  hash.add(rate_);
-}
-
 }  // namespace devices

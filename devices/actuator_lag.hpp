@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sim/config/param_reader.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace devices {
 
@@ -25,7 +25,7 @@ class Lag {
   void jump_to(double value);
   double value() const { return value_; }
   double rate() const { return rate_; }  ///< of change, 1/s
-  void hash_state(sim::StateHash& hash) const;
+  void visit_state(sim::StateArchive& archive) { archive(value_, rate_); }
 
  private:
   void prepare(double step_s);

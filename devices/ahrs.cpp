@@ -50,15 +50,6 @@ void Ahrs::disturb(double dt_s, sim::Random& random) {
   accel_noise_.apply(std::span<double>(f_S_.data(), 3), dt_s, random);
 }
 
-void Ahrs::hash_state(sim::StateHash& hash) const {
-  strapdown_.hash_state(hash);
-  for (const sim::Noise* noise : {&tilt_noise_, &heading_noise_, &gyro_noise_, &accel_noise_}) noise->hash_state(hash);
-  hash.add(drifted_rad_);
-  for (const double part : {q_WS_.w(), q_WS_.x(), q_WS_.y(), q_WS_.z()}) hash.add(part);
-  hash.add(w_S_);
-  hash.add(f_S_);
-}
-
 void AhrsReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   const double nothing = std::numeric_limits<double>::quiet_NaN();
   const sim::Quaterniond& q = ahrs_.q_WS();

@@ -24,7 +24,9 @@ class Ahrs final : public sim::Sensor {
   void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override {
+    archive(drifted_rad_, strapdown_, tilt_noise_, heading_noise_, gyro_noise_, accel_noise_, q_WS_, w_S_, f_S_);
+  }
 
   const sim::Quaterniond& q_WS() const { return q_WS_; }
   const sim::Vector3d& angular_velocity_S_radps() const { return w_S_; }

@@ -234,17 +234,17 @@ bool Autopilot::needs_bottom() const {
   return std::any_of(points.begin(), points.end(), [](const Waypoint& point) { return point.altitude_m.has_value(); });
 }
 
-void Autopilot::hash_state(sim::StateHash& hash) const {
-  hash.add(static_cast<int>(mode_));
-  for (const double number : {wanted_.speed_mps, wanted_.heading_rad, wanted_.height_m}) hash.add(number);
-  hash_optional(hash, depth_wanted_m_);
-  hash_optional(hash, altitude_wanted_m_);
-  hash.add(wanted_.station_m.has_value());
-  if (wanted_.station_m) hash.add(sim::Vector3d(wanted_.station_m->x(), wanted_.station_m->y(), 0));
-  hash.add(limited_.thrusters);
-  hash.add(limited_.fins);
-  law_.hash_state(hash);
-  route_.hash_state(hash);
+void Autopilot::Reading::visit_state(sim::StateArchive& archive) {
+  archive(mode, speed_mps, heading_rad, depth_m, altitude_m, speed_error_mps, heading_error_rad, depth_error_m,
+          altitude_error_m, cross_track_m, distance_m, saturated);
+}
+
+void Autopilot::visit_state(sim::StateArchive& archive) {
+  archive(law_, route_, mode_, wanted_, depth_wanted_m_, altitude_wanted_m_, limited_, reading_);
+  if (!archive.restoring()) return;
+  if (mode_ < Mode::off || mode_ > Mode::station) archive.fail("an autopilot has no such mode");
+  if (mode_ == Mode::waypoints && route_.size() == 0) archive.fail("an autopilot follows a route without waypoints");
+  if (!depth_wanted_m_ && !altitude_wanted_m_) archive.fail("an autopilot holds neither depth nor altitude");
 }
 
 void AutopilotReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

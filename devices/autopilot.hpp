@@ -30,10 +30,11 @@ class Autopilot final : public sim::Sensor {
   /// What it is after, and how far from it.  NaN: does not apply.
   struct Reading {
     Mode mode = Mode::off;
-    double speed_mps, heading_rad, depth_m, altitude_m;
-    double speed_error_mps, heading_error_rad, depth_error_m, altitude_error_m;
-    double cross_track_m, distance_m;
+    double speed_mps = 0, heading_rad = 0, depth_m = 0, altitude_m = 0;
+    double speed_error_mps = 0, heading_error_rad = 0, depth_error_m = 0, altitude_error_m = 0;
+    double cross_track_m = 0, distance_m = 0;
     bool saturated = false;
+    void visit_state(sim::StateArchive& archive);
   };
 
   Autopilot(const Params& params, const sim::DeviceContext& context);
@@ -41,7 +42,7 @@ class Autopilot final : public sim::Sensor {
   void disturb(double, sim::Random&) override {}
   /// It is told to keep an altitude somewhere.
   bool needs_bottom() const override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
   const Reading& reading() const { return reading_; }
   const Route& route() const { return route_; }
 

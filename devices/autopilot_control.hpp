@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sim/config/param_reader.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace devices {
 
@@ -26,7 +26,7 @@ class AxisHold {
   /// for the actuators gave less than was asked for.
   double step(double error, double rate, double dt_s, bool frozen);
   void reset() { sum_ = 0; }
-  void hash_state(sim::StateHash& hash) const { hash.add(sum_); }
+  void visit_state(sim::StateArchive& archive) { archive(sum_); }
 
  private:
   HoldGains gains_;
@@ -40,7 +40,7 @@ class RateHold {
 
   double step(double error, double dt_s, bool frozen);
   void reset() { sum_ = 0; }
-  void hash_state(sim::StateHash& hash) const { hash.add(sum_); }
+  void visit_state(sim::StateArchive& archive) { archive(sum_); }
 
  private:
   double bandwidth_radps_;

@@ -1,6 +1,8 @@
 #include "devices/autopilot_route.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "sim/math.hpp"
 
@@ -23,11 +25,6 @@ void check_one_height(sim::ParamReader& in, const std::optional<double>& depth_m
 }
 
 }  // namespace
-
-void hash_optional(sim::StateHash& hash, const std::optional<double>& number) {
-  hash.add(number.has_value());
-  if (number) hash.add(*number);
-}
 
 void Waypoint::read(sim::ParamReader& in) {
   read_point(in, "at_m", p_W, "[east, north] in the world frame");
@@ -117,20 +114,11 @@ Aim Route::aim(const Eigen::Vector2d& p_W, double dt_s) {
   return aim;
 }
 
-void Route::hash_state(sim::StateHash& hash) const {
-  hash.add(static_cast<std::uint64_t>(points_.size()));
-  for (const Waypoint& point : points_) {
-    hash.add(point.p_W.x());
-    hash.add(point.p_W.y());
-    for (const std::optional<double>& number : {point.depth_m, point.altitude_m, point.speed_mps})
-      hash_optional(hash, number);
-  }
-  hash.add(static_cast<std::uint64_t>(to_));
-  hash.add(loop_);
-  hash.add(finished_);
-  hash.add(from_W_.x());
-  hash.add(from_W_.y());
-  hash.add(sum_m_);
+void Route::visit_state(sim::StateArchive& archive) {
+  archive(points_, loop_, finished_, to_, from_W_, sum_m_);
+  if (to_ >= std::max<std::size_t>(points_.size(), 1))
+    archive.fail("a route of " + std::to_string(points_.size()) + " waypoints cannot go to number " +
+                 std::to_string(to_));
 }
 
 }  // namespace devices

@@ -5,12 +5,9 @@
 #include <vector>
 
 #include "sim/config/param_reader.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace devices {
-
-/// Unset is another state than any number.
-void hash_optional(sim::StateHash& hash, const std::optional<double>& number);
 
 /// A point of a route in the world's horizontal plane.  What is unset stays as it was.
 struct Waypoint {
@@ -19,6 +16,7 @@ struct Waypoint {
   std::optional<double> altitude_m;  ///< over the bottom
   std::optional<double> speed_mps;   ///< through the water
   void read(sim::ParamReader& in);
+  void visit_state(sim::StateArchive& archive) { archive(p_W, depth_m, altitude_m, speed_mps); }
 };
 
 /// Parallel tracks over a rectangle.
@@ -70,7 +68,7 @@ class Route {
   const std::vector<Waypoint>& points() const { return points_; }
   bool loops() const { return loop_; }
   bool finished() const { return finished_; }
-  void hash_state(sim::StateHash& hash) const;
+  void visit_state(sim::StateArchive& archive);
 
  private:
   bool reached(const Eigen::Vector2d& p_W) const;

@@ -93,14 +93,6 @@ void Battery::change(const Params& params) {
   charge_noise_.change(params.charge_noise);
 }
 
-void Battery::hash_state(sim::StateHash& hash) const {
-  for (const double number :
-       {energy_J_, current_A_, reading_.voltage_V, reading_.current_A, reading_.charge, reading_.energy_J})
-    hash.add(number);
-  hash.add(reading_.empty);
-  for (const auto* noise : {&voltage_noise_, &current_noise_, &charge_noise_}) noise->hash_state(hash);
-}
-
 void BatteryReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   const Battery::Reading& reading = battery_.reading();
   shoal::battery_t message;

@@ -29,6 +29,7 @@ class Battery final : public sim::Sensor {
   struct Reading {
     double voltage_V = 0, current_A = 0, charge = 1, energy_J = 0;
     bool empty = false;
+    void visit_state(sim::StateArchive& archive) { archive(voltage_V, current_A, charge, energy_J, empty); }
   };
 
   Battery(const Params& params, const sim::DeviceContext& context);
@@ -38,7 +39,9 @@ class Battery final : public sim::Sensor {
   void disturb(double dt_s, sim::Random& random) override;
   /// Its charge stays the same share of the capacity.
   void change(const Params& params);
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override {
+    archive(voltage_noise_, current_noise_, charge_noise_, energy_J_, current_A_, reading_);
+  }
   const Reading& reading() const { return reading_; }
   double energy_J() const { return energy_J_; }
 

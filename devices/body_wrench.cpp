@@ -41,11 +41,6 @@ void BodyWrench::act(const sim::ActContext& context) {
   if (!torque_B.isZero(0)) body_.add_torque_W(body.R_WB * torque_B);
 }
 
-void BodyWrench::hash_state(sim::StateHash& hash) const {
-  for (const sim::Vector3d* v : {&wanted_force_N_, &wanted_torque_Nm_, &force_N_, &torque_Nm_})
-    for (int i = 0; i < 3; ++i) hash.add((*v)[i]);
-}
-
 void BodyWrenchController::receive(sim::Time, std::span<const std::byte> payload) {
   const auto command = shoal::decode<shoal::wrench_t>(payload, shoal::Finite::required);
   wrench_.set_wrench({command.force_N[0], command.force_N[1], command.force_N[2]},

@@ -23,7 +23,9 @@ class BodyWrench final : public sim::Actuator {
   /// stop: no force.
   void make_safe(sim::SafeState) override { set_wrench(sim::Vector3d::Zero(), sim::Vector3d::Zero()); }
   void change(const Params& params);
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override {
+    archive(wanted_force_N_, wanted_torque_Nm_, force_N_, torque_Nm_);
+  }
 
   /// In the device frame; each axis is cut to its limit.
   void set_wrench(const sim::Vector3d& force_N, const sim::Vector3d& torque_Nm);

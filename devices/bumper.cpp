@@ -97,19 +97,6 @@ void Bumper::change(const Params& params) {
   force_noise_.change(params.force_noise);
 }
 
-void Bumper::hash_state(sim::StateHash& hash) const {
-  for (const bool flag : {looked_, touching_, changed_, sampled_}) hash.add(flag);
-  for (const auto* places : {&pressed_, &places_})
-    for (const Place& place : *places) {
-      hash.add(std::string_view(place.part));
-      hash.add(std::string_view(place.other));
-      hash.add(place.position_V);
-      hash.add(place.normal_V);
-      hash.add(place.force_N);
-    }
-  force_noise_.hash_state(hash);
-}
-
 void BumperReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   if (!bumper_.is_news()) return;
   shoal::bumper_t message;

@@ -24,9 +24,10 @@ class Bumper final : public sim::Sensor {
   struct Place {
     std::string part;
     std::string other;
-    sim::Vector3d position_V;
-    sim::Vector3d normal_V;  ///< out of the other, into this vehicle
-    double force_N;
+    sim::Vector3d position_V = sim::Vector3d::Zero();
+    sim::Vector3d normal_V = sim::Vector3d::Zero();  ///< out of the other, into this vehicle
+    double force_N = 0;
+    void visit_state(sim::StateArchive& archive) { archive(part, other, position_V, normal_V, force_N); }
   };
 
   Bumper(const Params& params, const sim::DeviceContext& context);
@@ -37,7 +38,9 @@ class Bumper final : public sim::Sensor {
   void disturb(double dt_s, sim::Random& random) override;
   /// All but the parts.
   void change(const Params& params);
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override {
+    archive(force_noise_, looked_, pressed_, most_force_N_, touching_, changed_, sampled_, places_);
+  }
 
   bool touching() const { return touching_; }
   /// The reporter has something to say.

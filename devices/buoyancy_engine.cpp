@@ -65,11 +65,6 @@ void BuoyancyEngine::act(const sim::ActContext& context) {
   mount_.add_force_W(flow, {0, 0, weight_Npm3 * volume * share_under_water(flow.depth_m, height_m_)});
 }
 
-void BuoyancyEngine::hash_state(sim::StateHash& hash) const {
-  lag_.hash_state(hash);
-  hash.add(wanted_m3_);
-}
-
 SHOAL_ACTUATOR("buoyancy_engine", BuoyancyEngine, NumberController<BuoyancyEngine>);
 
 }  // namespace devices

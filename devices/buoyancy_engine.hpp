@@ -33,7 +33,7 @@ class BuoyancyEngine final : public sim::Actuator {
   void make_safe(sim::SafeState safe) override;
   double power_W() const override { return power_W_; }
   void change(const Params& params);
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override { archive(lag_, wanted_m3_, power_W_); }
 
   /// m^3 or a fraction, by `command`; beyond the limits it is cut.
   void set_command(double command);

@@ -219,6 +219,7 @@ std::int64_t Camera::rays() const {
 void Camera::measure(const sim::SenseContext& context) {
   for (; next_exposure_ < exposures(); ++next_exposure_) expose(next_exposure_, context.X_WS);
   next_exposure_ = 0;
+  image_digest_.renew();
   // The next one is no earlier than this; the next sweep knows.
   const double steps = config_.rate_hz > 0 ? 1 / (config_.rate_hz * sim::to_seconds(step_)) : 1;
   next_sample_ = context.now + step_ * std::max<std::int64_t>(1, static_cast<std::int64_t>(steps + 1e-9));
@@ -263,20 +264,23 @@ void Camera::disturb(double dt_s, sim::Random& random) {
   }
 }
 
-void Camera::hash_state(sim::StateHash& hash) const {
-  const auto add = [&hash](const auto& values) { hash.add_bytes(values.data(), values.size() * sizeof values[0]); };
-  add(levels_.data);
-  add(depth_m_.data);
-  add(frame_.labels.data);
+void Camera::visit_state(sim::StateArchive& archive) {
+  archive(noise_, places_, swept_at_, next_sample_, next_exposure_);
+  if (next_exposure_ < 0 || next_exposure_ > exposures())
+    archive.fail("the snapshot has an image after " + std::to_string(next_exposure_) + " exposures of " +
+                 std::to_string(exposures()));
+  const auto visit = [&archive](auto& image) {
+    archive.expect_count(image.data.size(), "values in an image");
+    archive.raw(image.data.data(), image.data.size() * sizeof image.data[0]);
+  };
   // The part of the next image that is there already.
-  hash.add(next_exposure_);
+  if (archive.restoring()) renderer_->clear(under_way_);
   if (next_exposure_ > 0) {
-    add(under_way_.light.data);
-    add(under_way_.depth_m.data);
-    add(under_way_.labels.data);
+    visit(under_way_.light);
+    visit(under_way_.depth_m);
+    visit(under_way_.labels);
   }
-  for (const Place& place : places_) hash.add(std::span<const double>(place.X_WS.matrix().data(), 16));
-  noise_.hash_state(hash);
+  image_digest_.visit(archive, levels_.data, depth_m_.data, frame_.labels.data);
 }
 
 std::string Camera::label_text() const {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "devices/reading_digest.hpp"
 #include "sim/camera/renderer.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/random/noise.hpp"
@@ -61,7 +62,7 @@ class Camera final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   std::int64_t rays() const override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   const Params& params() const { return params_; }
   /// What it sees and in which light, for pictures with its lens.
@@ -86,8 +87,9 @@ class Camera final : public sim::Sensor {
   void add_sensor_noise(sim::Random& random);
 
   struct Place {
-    sim::Time at;
-    sim::Pose X_WS;
+    sim::Time at{0};
+    sim::Pose X_WS = sim::Pose::Identity();
+    void visit_state(sim::StateArchive& archive) { archive(at, X_WS); }
   };
 
   sim::World& world_;
@@ -107,6 +109,7 @@ class Camera final : public sim::Sensor {
   float gain_ = 1;
   sim::Image8 levels_;
   sim::FloatImage depth_m_;
+  ReadingDigest image_digest_;  // of the last image
   std::vector<double> values_;  // what noise works on
 };
 

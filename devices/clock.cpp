@@ -24,11 +24,6 @@ void Clock::disturb(double, sim::Random&) {
   reading_.error_s = reading_.rate_error = std::numeric_limits<double>::quiet_NaN();
 }
 
-void Clock::hash_state(sim::StateHash& hash) const {
-  hash.add(reading_.disciplined);
-  for (const double number : {reading_.since_fix_s, reading_.estimated_std_s, last_error_s_}) hash.add(number);
-}
-
 void ClockReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   const Clock::Reading& reading = clock_.reading();
   shoal::clock_status_t message;

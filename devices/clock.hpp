@@ -20,12 +20,15 @@ class Clock final : public sim::Sensor {
     double estimated_std_s = 0;
     double error_s = 0;
     double rate_error = 0;  ///< mean since the last sample
+    void visit_state(sim::StateArchive& archive) {
+      archive(disciplined, since_fix_s, estimated_std_s, error_s, rate_error);
+    }
   };
 
   Clock(const Params& params, const sim::DeviceContext& context);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override { archive(reading_, last_error_s_); }
   const Reading& reading() const { return reading_; }
 
  private:

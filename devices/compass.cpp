@@ -93,15 +93,6 @@ void Compass::disturb(double dt_s, sim::Random& random) {
   reading_.heading_true_rad = compass_angle(heading_rad + params_.declination_correction_rad);
 }
 
-void Compass::hash_state(sim::StateHash& hash) const {
-  strapdown_.hash_state(hash);
-  tilt_filter_.hash_state(hash);
-  field_noise_.hash_state(hash);
-  heading_noise_.hash_state(hash);
-  hash.add(reading_.heading_rad);
-  hash.add(reading_.field_S_uT);
-}
-
 void CompassReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   const Compass::Reading& reading = compass_.reading();
   shoal::compass_t message;

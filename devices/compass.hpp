@@ -35,13 +35,16 @@ class Compass final : public sim::Sensor {
     double heading_rad = 0;       ///< from magnetic north, clockwise, [0, 2 pi)
     double heading_true_rad = 0;  ///< from true north; the measured one by the declination it was told
     sim::Vector3d field_S_uT = sim::Vector3d::Zero();
+    void visit_state(sim::StateArchive& archive) { archive(heading_rad, heading_true_rad, field_S_uT); }
   };
 
   Compass(const Params& params, const sim::DeviceContext& context);
   void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override {
+    archive(strapdown_, tilt_filter_, field_noise_, heading_noise_, reading_);
+  }
   const Reading& reading() const { return reading_; }
 
  private:

@@ -58,15 +58,6 @@ double Ctd::salinity_psu() const {
   return sim::practical_salinity_psu(reading_.conductivity_Spm, reading_.temperature_C, pressure_dbar());
 }
 
-void Ctd::hash_state(sim::StateHash& hash) const {
-  hash.add(reading_.valid);
-  for (const double number :
-       {reading_.conductivity_Spm, reading_.temperature_C, reading_.pressure_Pa, reading_.sound_speed_mps})
-    hash.add(number);
-  for (const sim::Noise* noise : {&conductivity_noise_, &temperature_noise_, &pressure_noise_, &sound_speed_noise_})
-    noise->hash_state(hash);
-}
-
 void CtdReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   const Ctd::Reading& reading = ctd_.reading();
   shoal::ctd_t message;

@@ -23,13 +23,18 @@ class Ctd final : public sim::Sensor {
   struct Reading {
     bool valid = false;  ///< in water
     double conductivity_Spm = 0, temperature_C = 0, pressure_Pa = 0, sound_speed_mps = 0;
+    void visit_state(sim::StateArchive& archive) {
+      archive(valid, conductivity_Spm, temperature_C, pressure_Pa, sound_speed_mps);
+    }
   };
 
   Ctd(const Params& params, const sim::DeviceContext& context);
   void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override {
+    archive(conductivity_noise_, temperature_noise_, pressure_noise_, sound_speed_noise_, reading_);
+  }
   const Reading& reading() const { return reading_; }
   double depth_m() const { return params_.depth.depth_m(reading_.pressure_Pa); }
   double salinity_psu() const;

@@ -207,17 +207,10 @@ void Dvl::disturb(double dt_s, sim::Random& random) {
   disturb_velocity(water_velocity_noise_, reading_.water_velocity_S);
 }
 
-void Dvl::hash_state(sim::StateHash& hash) const {
-  for (const Beam& beam : reading_.beams) {
-    for (const double number : {beam.range_m, beam.velocity_mps, beam.water_mps}) hash.add(number);
-    hash.add(beam.sees_bottom);
-    hash.add(beam.hears_water);
-  }
-  if (reading_.velocity_S) hash.add(*reading_.velocity_S);
-  if (reading_.water_velocity_S) hash.add(*reading_.water_velocity_S);
-  for (const sim::Noise* noise :
-       {&beam_noise_, &water_beam_noise_, &velocity_noise_, &water_velocity_noise_, &range_noise_})
-    noise->hash_state(hash);
+void Dvl::visit_state(sim::StateArchive& archive) {
+  archive(beam_noise_, water_beam_noise_, velocity_noise_, water_velocity_noise_, range_noise_);
+  // Out of the water the last values go on to scale the errors.
+  archive(sound_scale_, speed_mps_, reading_);
 }
 
 void DvlReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

@@ -45,11 +45,15 @@ class Dvl final : public sim::Sensor {
     double velocity_mps = 0;  ///< towards what it hits
     double water_mps = 0;     ///< towards the layer of water
     bool sees_bottom = false, hears_water = false;
+    void visit_state(sim::StateArchive& archive) {
+      archive(range_m, velocity_mps, water_mps, sees_bottom, hears_water);
+    }
   };
   struct Reading {
     std::array<Beam, dvl_beams> beams;
     std::optional<sim::Vector3d> velocity_S, water_velocity_S;
     double altitude_m = 0, fom_mps = 0;  ///< of a reading with velocity_S
+    void visit_state(sim::StateArchive& archive) { archive(beams, velocity_S, water_velocity_S, altitude_m, fom_mps); }
   };
 
   Dvl(const Params& params, const sim::DeviceContext& context);
@@ -57,7 +61,7 @@ class Dvl final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   std::int64_t rays() const override { return dvl_beams; }
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
   const Reading& reading() const { return reading_; }
 
  private:

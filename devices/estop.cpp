@@ -43,11 +43,6 @@ void EmergencyStop::set_engaged(bool engaged) {
   vehicle_.systems().estopped = engaged;
 }
 
-void EmergencyStop::hash_state(sim::StateHash& hash) const {
-  hash.add(touched_);
-  hash.add(engaged_);
-}
-
 void EmergencyStopReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   shoal::estop_t message;
   message.utime = out.utime(sampled_at);

@@ -27,7 +27,7 @@ class EmergencyStop final : public sim::Sensor {
   void act(const sim::ActContext& context);
   void measure(const sim::SenseContext& context) override;
   void disturb(double, sim::Random&) override {}
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override { archive(touched_, engaged_); }
   void set_engaged(bool engaged);
   bool engaged() const { return engaged_; }
 

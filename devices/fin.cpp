@@ -111,11 +111,6 @@ void Fin::act_as_published(const WaterFlow& flow, double angle_rad, double scale
   mount_.body().add_torque_W(body.R_WB * moment_B);
 }
 
-void Fin::hash_state(sim::StateHash& hash) const {
-  lag_.hash_state(hash);
-  hash.add(command_);
-}
-
 SHOAL_ACTUATOR("fin", Fin, NumberController<Fin>);
 
 }  // namespace devices

@@ -55,7 +55,7 @@ class Fin final : public sim::Actuator {
   /// stop: amidships; hold: where it is.
   void make_safe(sim::SafeState safe) override { command_ = safe == sim::SafeState::hold ? lag_.value() : 0; }
   void change(const Params& params);
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override { archive(lag_, command_); }
 
   /// Angle in rad; beyond the limit it is cut.
   void set_command(double angle_rad);

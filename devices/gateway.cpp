@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 
 #include "devices/named_vehicle.hpp"
 #include "shoal/gateway_state_t.hpp"
@@ -147,20 +148,13 @@ void Gateway::act(const sim::ActContext& context) {
   }
 }
 
-void Gateway::hash_state(sim::StateHash& hash) const {
-  hash.add(static_cast<std::uint64_t>(waiting_.size()));
-  for (const Message& message : waiting_) {
-    hash.add(static_cast<std::int64_t>(message.due.count()));
-    hash.add(static_cast<std::uint64_t>(message.from));
-    hash.add_bytes(message.data.data(), message.data.size());
-  }
-  hash.add(static_cast<std::uint64_t>(seen_.size()));
-  for (const Seen& seen : seen_) {
-    hash.add(static_cast<std::int64_t>(seen.at.count()));
-    hash.add_bytes(seen.data.data(), seen.data.size());
-  }
-  for (const Counts& counts : counting_)
-    for (const std::int64_t count : {counts.passed, counts.too_long, counts.repeated, counts.refused}) hash.add(count);
+void Gateway::visit_state(sim::StateArchive& archive) {
+  archive(waiting_, seen_, counting_, counts_);
+  if (!archive.restoring()) return;
+  for (const Message& message : waiting_)
+    if (message.from > 1) archive.fail("a gateway has no modem " + std::to_string(message.from));
+  // Something may arrive before the next act().
+  if (modems_[0] == nullptr) find_modems();
 }
 
 void GatewayReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

@@ -30,6 +30,7 @@ class Gateway final : public sim::Sensor {
   /// Per direction: from the first modem to the second, and back.
   struct Counts {
     std::int64_t passed = 0, too_long = 0, repeated = 0, refused = 0;
+    void visit_state(sim::StateArchive& archive) { archive(passed, too_long, repeated, refused); }
   };
 
   /// Throws ConfigError when `between` does not name two modems of the vehicle, or `destinations` no vehicles.
@@ -37,18 +38,20 @@ class Gateway final : public sim::Sensor {
   void act(const sim::ActContext& context);
   void measure(const sim::SenseContext&) override { counts_ = counting_; }
   void disturb(double, sim::Random&) override {}
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
   const std::array<Counts, 2>& counts() const { return counts_; }
 
  private:
   struct Message {
-    sim::Time due;
-    std::size_t from;  // 0 or 1
+    sim::Time due{0};
+    std::size_t from = 0;  // or 1
     sim::Bytes data;
+    void visit_state(sim::StateArchive& archive) { archive(due, from, data); }
   };
   struct Seen {
-    sim::Time at;
+    sim::Time at{0};
     sim::Bytes data;
+    void visit_state(sim::StateArchive& archive) { archive(at, data); }
   };
 
   void find_modems();

@@ -90,16 +90,6 @@ void Gps::discipline(sim::Random& random) {
   clock_.discipline(sampled_at_, clock_.error_s(sampled_at_) + jitter_s, loop);
 }
 
-void Gps::hash_state(sim::StateHash& hash) const {
-  hash.add(reading_.fix_quality);
-  hash.add(reading_.p_W);
-  hash.add(reading_.v_W);
-  if (denied_at_) hash.add(static_cast<std::int64_t>(denied_at_->count()));
-  horizontal_noise_.hash_state(hash);
-  vertical_noise_.hash_state(hash);
-  velocity_noise_.hash_state(hash);
-}
-
 double Gps::accuracy_m(const sim::NoiseParams& noise) {
   return std::sqrt(noise.gaussian_std * noise.gaussian_std + noise.gauss_markov_std * noise.gauss_markov_std +
                    noise.bias_std * noise.bias_std + noise.uniform_half_width * noise.uniform_half_width / 3);

@@ -33,13 +33,18 @@ class Gps final : public sim::Sensor {
     sim::GeodeticPosition position;
     sim::Vector3d p_W = sim::Vector3d::Zero();
     sim::Vector3d v_W = sim::Vector3d::Zero();
+    void visit_state(sim::StateArchive& archive) {
+      archive(fix_quality, position.latitude_deg, position.longitude_deg, position.height_m, p_W, v_W);
+    }
   };
 
   Gps(const Params& params, const sim::DeviceContext& context);
   void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override {
+    archive(horizontal_noise_, vertical_noise_, velocity_noise_, reading_, sampled_at_, denied_at_);
+  }
   const Reading& reading() const { return reading_; }
   const Params& params() const { return params_; }
   /// The standard deviation it claims, from its noise, m.

@@ -121,12 +121,4 @@ void HelmLaw::reset() {
   drift_sum_mps_.setZero();
 }
 
-void HelmLaw::hash_state(sim::StateHash& hash) const {
-  for (const AxisHold* hold : {&heading_, &depth_, &roll_, &pitch_, &east_, &north_}) hold->hash_state(hash);
-  speed_.hash_state(hash);
-  hash.add(climb_sum_rad_);
-  hash.add(drift_sum_mps_.x());
-  hash.add(drift_sum_mps_.y());
-}
-
 }  // namespace devices

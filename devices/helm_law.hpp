@@ -22,6 +22,7 @@ struct Setpoint {
   double heading_rad = 0;
   double height_m = 0;                         ///< of its frame in the world
   std::optional<Eigen::Vector2d> station_m{};  ///< to stay over; speed is not looked at then
+  void visit_state(sim::StateArchive& archive) { archive(speed_mps, heading_rad, height_m, station_m); }
 };
 
 /// What the actuators are asked for.
@@ -57,6 +58,7 @@ struct Limited {
   bool thrusters = false;
   bool fins = false;
   bool any() const { return thrusters || fins; }
+  void visit_state(sim::StateArchive& archive) { archive(thrusters, fins); }
 };
 
 /// From set values to forces and torques.
@@ -67,7 +69,9 @@ class HelmLaw {
   Demand step(const CraftMotion& motion, const Setpoint& wanted, double dt_s, const Limited& limited);
   /// Forgets the sums of errors.
   void reset();
-  void hash_state(sim::StateHash& hash) const;
+  void visit_state(sim::StateArchive& archive) {
+    archive(heading_, depth_, roll_, pitch_, east_, north_, speed_, climb_sum_rad_, drift_sum_mps_);
+  }
 
  private:
   sim::Vector3d stay_sideways(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s, bool frozen);

@@ -77,10 +77,6 @@ void ImagingSonar::disturb(double dt_s, sim::Random& random) {
   bins_.disturb(dt_s, random);
 }
 
-void ImagingSonar::hash_state(sim::StateHash& hash) const {
-  bins_.hash_state(hash);
-}
-
 void ImagingSonarReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   static thread_local shoal::sonar_image_t message;  // keeps its memory from ping to ping
   const SonarBins& picture = sonar_.picture();

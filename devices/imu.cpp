@@ -100,16 +100,6 @@ void Imu::disturb(double dt_s, sim::Random& random) {
   accel_errors_.apply(f_S_, dt_s, random);
 }
 
-void Imu::hash_state(sim::StateHash& hash) const {
-  strapdown_.hash_state(hash);
-  gyro_filter_.hash_state(hash);
-  accel_filter_.hash_state(hash);
-  gyro_errors_.hash_state(hash);
-  accel_errors_.hash_state(hash);
-  hash.add(w_S_);
-  hash.add(f_S_);
-}
-
 void ImuReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   shoal::imu_t message;
   message.utime = out.utime(sampled_at);

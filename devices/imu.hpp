@@ -24,7 +24,9 @@ class Imu final : public sim::Sensor {
   void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override {
+    archive(strapdown_, gyro_filter_, accel_filter_, gyro_errors_, accel_errors_, w_S_, f_S_);
+  }
 
   const sim::Vector3d& angular_velocity_S_radps() const { return w_S_; }
   const sim::Vector3d& specific_force_S_mps2() const { return f_S_; }

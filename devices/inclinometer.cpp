@@ -43,14 +43,6 @@ void Inclinometer::disturb(double dt_s, sim::Random& random) {
   reading_ = {angles_rad[0], angles_rad[1]};
 }
 
-void Inclinometer::hash_state(sim::StateHash& hash) const {
-  strapdown_.hash_state(hash);
-  filter_.hash_state(hash);
-  noise_.hash_state(hash);
-  hash.add(reading_.roll_rad);
-  hash.add(reading_.pitch_rad);
-}
-
 void InclinometerReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   shoal::inclination_t message;
   message.utime = out.utime(sampled_at);

@@ -10,6 +10,7 @@ namespace devices {
 struct Tilt {
   double roll_rad = 0;   ///< as in Rz(yaw) Ry(pitch) Rx(roll)
   double pitch_rad = 0;  ///< positive: the nose is down
+  void visit_state(sim::StateArchive& archive) { archive(roll_rad, pitch_rad); }
 };
 Tilt tilt_of(const sim::Vector3d& up_S);
 
@@ -29,7 +30,7 @@ class Inclinometer final : public sim::Sensor {
   void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override { archive(strapdown_, filter_, noise_, reading_); }
   const Tilt& reading() const { return reading_; }
 
  private:

@@ -78,11 +78,4 @@ void InertialErrors::apply(sim::Vector3d& value, double dt_s, sim::Random& rando
     for (int i = 0; i < 3; ++i) value[i] = params_.resolution * std::round(value[i] / params_.resolution);
 }
 
-void InertialErrors::hash_state(sim::StateHash& hash) const {
-  noise_.hash_state(hash);
-  hash.add(started_);
-  hash.add(gauss_markov_);
-  hash.add(walk_);
-}
-
 }  // namespace devices

@@ -42,7 +42,7 @@ class InertialErrors {
   /// What was drawn once keeps its direction and takes its new size.
   void change(const InertialParams& params, const sim::NoiseParams& noise);
   void apply(sim::Vector3d& value, double dt_s, sim::Random& random);
-  void hash_state(sim::StateHash& hash) const;
+  void visit_state(sim::StateArchive& archive) { archive(noise_, started_, gauss_markov_, walk_); }
 
   const sim::Matrix3d& matrix() const { return matrix_; }  ///< I + M
   const sim::Vector3d& turn_on_bias() const { return turn_on_bias_; }

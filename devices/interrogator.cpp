@@ -91,21 +91,8 @@ std::vector<Interrogator::Answer> Interrogator::take_answers() {
   return taken;
 }
 
-void Interrogator::hash_state(sim::StateHash& hash) const {
-  hash.add(number_);
-  hash.add(static_cast<std::int64_t>(pinged_.count()));
-  hash.add(static_cast<std::int64_t>(window_end_.count()));
-  for (const auto* names : {&asked_, &waiting_for_}) {
-    hash.add(static_cast<std::uint64_t>(names->size()));
-    for (const std::string& name : *names) hash.add(std::string_view(name));
-  }
-  for (const Answer& answer : answers_) {
-    hash.add(std::string_view(answer.transponder));
-    hash.add(static_cast<std::int64_t>(answer.begun.count()));
-    hash.add(answer.two_way_s);
-    hash.add(answer.way_m);
-    hash.add(answer.p_ST_S);
-  }
+void Interrogator::visit_state(sim::StateArchive& archive) {
+  archive(number_, pinged_, window_end_, asked_, waiting_for_, answers_);
 }
 
 }  // namespace devices

@@ -5,6 +5,7 @@
 
 #include "devices/acoustic_positioning.hpp"
 #include "sim/acoustics/transducer.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace devices {
 
@@ -30,6 +31,7 @@ class Interrogator final : public sim::AcousticListener {
     double two_way_s = 0;                          ///< of the sound there and back, without the turnaround
     double way_m = 0;                              ///< the mean of the ways there and back: the truth
     sim::Vector3d p_ST_S = sim::Vector3d::Zero();  ///< where it answered, from where and how the sensor was at `begun`
+    void visit_state(sim::StateArchive& archive) { archive(transponder, begun, two_way_s, way_m, p_ST_S); }
   };
 
   Interrogator(const InterrogatorParams& params, const sim::DeviceContext& context);
@@ -43,7 +45,8 @@ class Interrogator final : public sim::AcousticListener {
   const std::vector<std::string>& asked() const { return asked_; }
   /// What came since the last call, in the order of its arrival.
   std::vector<Answer> take_answers();
-  void hash_state(sim::StateHash& hash) const;
+  /// All but its transducer, which the acoustic channel knows.
+  void visit_state(sim::StateArchive& archive);
 
   bool listens_to(const sim::Signal& signal) const override;
   void heard(const sim::Reception& heard) override;

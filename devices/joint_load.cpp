@@ -47,13 +47,6 @@ void JointLoad::change(const Params& params) {
   torque_noise_.change(params.torque_noise);
 }
 
-void JointLoad::hash_state(sim::StateHash& hash) const {
-  hash.add(force_N_);
-  hash.add(torque_Nm_);
-  force_noise_.hash_state(hash);
-  torque_noise_.hash_state(hash);
-}
-
 void JointLoadReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   shoal::wrench_t message;
   message.utime = out.utime(sampled_at);

@@ -26,7 +26,7 @@ class JointLoad final : public sim::Sensor {
   void disturb(double dt_s, sim::Random& random) override;
   /// The errors and the frame; the joint stays.
   void change(const Params& params);
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override { archive(force_noise_, torque_noise_, force_N_, torque_Nm_); }
   /// In the frame that the parameters say.
   const sim::Vector3d& force_N() const { return force_N_; }
   const sim::Vector3d& torque_Nm() const { return torque_Nm_; }

@@ -26,10 +26,7 @@ class JointMotor final : public sim::Actuator {
   void make_safe(sim::SafeState safe) override;
   void change(const Params& params);
   double power_W() const override { return params_.power.of_motor(joint_, 0, params_.max_force); }
-  void hash_state(sim::StateHash& hash) const override {
-    hash.add(velocity_);
-    hash.add(coasting_);
-  }
+  void visit_state(sim::StateArchive& archive) override { archive(velocity_, coasting_); }
   /// Beyond the limit it is cut.
   void set_velocity(double velocity);
   double velocity() const { return velocity_; }

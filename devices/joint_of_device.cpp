@@ -24,6 +24,8 @@ void refuse(const sim::DeviceContext& context, const std::string& text) {
 
 sim::Joint& joint_with_axis(const sim::DeviceContext& context, const std::string& name, int axis) {
   sim::Joint& joint = context.joint(name);
+  if (joint.type() == "ball" && joint.axes() > 0)
+    refuse(context, what_it_is(joint, name) + "; a device of type joint_drive moves it");
   if (axis >= joint.axes())
     refuse(context,
            what_it_is(joint, name) + " and has no axis" + (joint.axes() > 0 ? " " + std::to_string(axis) : ""));

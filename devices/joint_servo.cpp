@@ -197,10 +197,9 @@ void JointServo::set_effort(double effort) {
   target_ = std::clamp(effort, -params_.max_effort, params_.max_effort);
 }
 
-void JointServo::hash_state(sim::StateHash& hash) const {
-  hash.add(static_cast<int>(mode_));
-  for (const double number : {target_, set_point_.position, set_point_.velocity, integral_, applied_}) hash.add(number);
-  hash.add(follows_);
+void JointServo::visit_state(sim::StateArchive& archive) {
+  archive(mode_, target_, set_point_, follows_, integral_, applied_);
+  if (mode_ < Mode::position || mode_ > Mode::coast) archive.fail("a servo has no such mode");
 }
 
 void JointServoController::receive(sim::Time, std::span<const std::byte> payload) {

@@ -18,6 +18,7 @@ class SetPoint {
     double velocity;
     double acceleration;  ///< may be infinite
   };
+  void visit_state(sim::StateArchive& archive) { archive(position, velocity); }
   /// One step towards a position.
   void approach(double target, const Limits& limits, double step_s);
   /// One step at a velocity, never beyond the positions given.
@@ -65,7 +66,7 @@ class JointServo final : public sim::Actuator {
   void make_safe(sim::SafeState safe) override;
   void change(const Params& params);
   double power_W() const override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   /// Beyond the limits it is cut.
   void set_position(double position);

@@ -1,6 +1,7 @@
 #include "devices/joint_state.hpp"
 
 #include "devices/joint_of_device.hpp"
+#include "devices/same_size.hpp"
 #include "shoal/joint_state_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/world/vehicle.hpp"
@@ -25,8 +26,10 @@ std::vector<JointState::Axis> axes_of(const JointState::Params& params, const si
   if (names.empty()) refuse(context, "the vehicle has no joint with an axis");
   std::vector<JointState::Axis> axes;
   for (const std::string& name : names) {
-    sim::Joint& joint = joint_with_axis(context, name, 0);
-    for (int axis = 0; axis < joint.axes(); ++axis) axes.push_back({axis == 0 ? name : name + "/1", &joint, axis});
+    sim::Joint& named = context.joint(name);
+    sim::Joint& joint = named.type() == "ball" && named.axes() > 0 ? named : joint_with_axis(context, name, 0);
+    for (int axis = 0; axis < joint.axes(); ++axis)
+      axes.push_back({axis == 0 ? name : name + "/" + std::to_string(axis), &joint, axis});
   }
   return axes;
 }
@@ -66,9 +69,9 @@ void JointState::change(const Params& params) {
   effort_noise_.change(params.effort_noise);
 }
 
-void JointState::hash_state(sim::StateHash& hash) const {
-  for (const auto* values : {&positions_, &velocities_, &efforts_}) hash.add(std::span<const double>(*values));
-  for (const auto* noise : {&position_noise_, &velocity_noise_, &effort_noise_}) noise->hash_state(hash);
+void JointState::visit_state(sim::StateArchive& archive) {
+  archive(position_noise_, velocity_noise_, effort_noise_);
+  for (auto* values : {&positions_, &velocities_, &efforts_}) visit_same_size(archive, *values, "axes of joints");
 }
 
 void JointStateReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

@@ -6,7 +6,8 @@
 
 namespace devices {
 
-/// Positions, velocities and efforts of joints.  A joint with two axes is listed twice: NAME and NAME/1.
+/// Positions, velocities and efforts of joints.  A joint with two axes is listed twice: NAME and NAME/1; a
+/// ball with a motor three times.
 class JointState final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Positions, velocities and efforts of the vehicle's joints.";
@@ -31,7 +32,7 @@ class JointState final : public sim::Sensor {
   void disturb(double dt_s, sim::Random& random) override;
   /// The errors; the joints stay.
   void change(const Params& params);
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   // In the joints' own signs; rad, rad/s, N m, or m, m/s, N of a slider.
   const std::vector<Axis>& axes() const { return axes_; }

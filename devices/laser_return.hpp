@@ -75,7 +75,7 @@ class LaserReceiver {
 
   /// Drops, noise and quantisation, in place.
   void disturb(LaserReturns& returns, double dt_s, sim::Random& random);
-  void hash_state(sim::StateHash& hash) const { noise_.hash_state(hash); }
+  void visit_state(sim::StateArchive& archive) { archive(noise_); }
 
  private:
   struct Echo {

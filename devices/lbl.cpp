@@ -73,17 +73,8 @@ void Lbl::disturb(double dt_s, sim::Random& random) {
   }
 }
 
-void Lbl::hash_state(sim::StateHash& hash) const {
-  interrogator_.hash_state(hash);
-  hash.add(asking_);
-  hash.add(static_cast<std::int64_t>(next_ping_.count()));
-  hash.add(since_ping_s_);
-  for (const Range& range : ranges_) {
-    hash.add(std::string_view(range.transponder));
-    hash.add(range.travel_time_s);
-    hash.add(range.range_m);
-  }
-  time_noise_.hash_state(hash);
+void Lbl::visit_state(sim::StateArchive& archive) {
+  archive(interrogator_, asking_, next_ping_, ranges_, since_ping_s_, time_noise_);
 }
 
 void LblReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

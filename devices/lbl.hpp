@@ -27,14 +27,15 @@ class Lbl final : public sim::Sensor {
   /// Of one transponder.
   struct Range {
     std::string transponder;
-    double travel_time_s, range_m;  ///< NaN: no answer
+    double travel_time_s = 0, range_m = 0;  ///< NaN: no answer
+    void visit_state(sim::StateArchive& archive) { archive(transponder, travel_time_s, range_m); }
   };
 
   Lbl(const Params& params, const sim::DeviceContext& context);
   void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
   /// Of the ping that is over with this sample; empty: none is, or nobody was asked.
   const std::vector<Range>& ranges() const { return ranges_; }
 

@@ -38,11 +38,8 @@ void Leak::disturb(double dt_s, sim::Random& random) {
   reading_l_ = std::max(reading_l_, 0.0);
 }
 
-void Leak::hash_state(sim::StateHash& hash) const {
-  hash.add(water_l_);
-  hash.add(burst_);
-  hash.add(reading_l_);
-  water_noise_.hash_state(hash);
+void Leak::visit_state(sim::StateArchive& archive) {
+  archive(water_l_, burst_, reading_l_, water_noise_);
 }
 
 void LeakReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

@@ -27,7 +27,7 @@ class Leak final : public sim::Sensor {
   void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
   double water_l() const { return reading_l_; }
   bool leak() const { return reading_l_ >= params_.alarm_l; }
 

@@ -40,6 +40,7 @@ void Lidar::change(const Params& params) {
   receiver_.change(params.laser);
   const auto beams = static_cast<std::size_t>(params.beams);
   returns_.assign(beams, params.laser.range_max_m);
+  digest_.renew();
   fan_.count = params.beams;
   fan_.range_max_m = params.laser.range_max_m;
   fan_.first_angle_rad = params.beams == 1 ? 0.0 : -0.5 * params.fov_rad;
@@ -60,6 +61,7 @@ void Lidar::change(const Params& params) {
 }
 
 void Lidar::measure(const sim::SenseContext& context) {
+  digest_.renew();
   if (rays_.empty())
     measure_axes(context);
   else
@@ -98,10 +100,9 @@ std::span<const double> Lidar::intensities() const {
   return params_.intensities ? std::span<const double>(returns_.intensities) : std::span<const double>();
 }
 
-void Lidar::hash_state(sim::StateHash& hash) const {
-  hash.add(std::span<const double>(returns_.ranges_m));
-  if (params_.intensities) hash.add(intensities());
-  receiver_.hash_state(hash);
+void Lidar::visit_state(sim::StateArchive& archive) {
+  digest_.visit(archive, returns_.ranges_m, intensities());
+  archive(receiver_);
 }
 
 void LidarReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "devices/laser_return.hpp"
+#include "devices/reading_digest.hpp"
 
 namespace devices {
 
@@ -27,7 +28,7 @@ class Lidar final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   std::int64_t rays() const override { return static_cast<std::int64_t>(hits_.size()); }
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   /// From right to left; range_max_m where nothing came back, and range_min_m where something is nearer.
   const std::vector<double>& ranges_m() const { return returns_.ranges_m; }
@@ -44,6 +45,7 @@ class Lidar final : public sim::Sensor {
   sim::Fan fan_;
   LaserReceiver receiver_;
   LaserReturns returns_;
+  ReadingDigest digest_;
   std::vector<sim::Vector3d> directions_S_;  ///< of the beams; of all their rays when several sample one
   std::vector<sim::Ray> rays_;
   std::vector<sim::RayHit> hits_;

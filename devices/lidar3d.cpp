@@ -74,6 +74,8 @@ void Lidar3d::change(const Params& params) {
   }
   returns_.assign(elevations_rad_.size() * static_cast<std::size_t>(params.columns), params.laser.range_max_m);
   turn_end_ = sim::Time{-1};  // begins again
+  next_column_ = 0;
+  digest_.renew();
 }
 
 sim::Vector3d Lidar3d::direction_S(int column, int ring) const {
@@ -95,6 +97,7 @@ void Lidar3d::begin_turn(const sim::SweepContext& context) {
     turn_length_ = config_.rate_hz > 0 ? sim::from_seconds(1 / config_.rate_hz) : context.now - context.from;
   turn_end_ = context.next_sample;
   next_column_ = 0;
+  digest_.renew();
   while (next_column_ < params_.columns && turn_end_ + offset(next_column_) <= context.from) ++next_column_;
   returns_.assign(returns_.size(), params_.laser.range_max_m);
 }
@@ -143,13 +146,28 @@ void Lidar3d::disturb(double dt_s, sim::Random& random) {
   receiver_.disturb(returns_, dt_s, random);
 }
 
-void Lidar3d::hash_state(sim::StateHash& hash) const {
-  hash.add(std::span<const double>(returns_.ranges_m));
-  hash.add(std::span<const double>(returns_.intensities));
-  hash.add(static_cast<std::int64_t>(turn_end_.count()));
-  hash.add(static_cast<std::int64_t>(turn_length_.count()));
-  hash.add(static_cast<std::int64_t>(next_column_));
-  receiver_.hash_state(hash);
+void Lidar3d::visit_state(sim::StateArchive& archive) {
+  archive(turn_end_, turn_length_, step_, next_column_, receiver_);
+  const bool possible =
+      next_column_ >= 0 && next_column_ <= params_.columns && turn_length_ >= sim::Time{0} && step_ >= sim::Time{0};
+  if (archive.restoring() && !possible) archive.fail("a turn of the laser's head that cannot be");
+  // A whole turn is out already.
+  if (next_column_ == params_.columns)
+    digest_.visit(archive, returns_.ranges_m, returns_.intensities, returns_.returned);
+  else
+    visit_begun_turn(archive);
+}
+
+void Lidar3d::visit_begun_turn(sim::StateArchive& archive) {
+  archive.expect_count(elevations_rad_.size(), "rings");
+  if (archive.restoring()) {
+    returns_.assign(returns_.size(), params_.laser.range_max_m);
+    digest_.renew();
+  }
+  const std::size_t passed = static_cast<std::size_t>(next_column_) * elevations_rad_.size();
+  archive.raw(returns_.ranges_m.data(), passed * sizeof(double));
+  archive.raw(returns_.intensities.data(), passed * sizeof(double));
+  archive.raw(returns_.returned.data(), passed);
 }
 
 void Lidar3dReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

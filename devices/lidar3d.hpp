@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "devices/laser_return.hpp"
+#include "devices/reading_digest.hpp"
 
 namespace devices {
 
@@ -33,7 +34,7 @@ class Lidar3d final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   std::int64_t rays() const override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   /// The last turn, column by column, ring by ring.
   const LaserReturns& returns() const { return returns_; }
@@ -44,6 +45,8 @@ class Lidar3d final : public sim::Sensor {
   sim::Time offset(int column) const;
 
  private:
+  /// The beams of the columns that have passed in this turn; the others are empty.
+  void visit_begun_turn(sim::StateArchive& archive);
   void begin_turn(const sim::SweepContext& context);
   /// Casts the columns [first, last).
   void cast_columns(const sim::SweepContext& context, int first, int last);
@@ -54,6 +57,7 @@ class Lidar3d final : public sim::Sensor {
   std::vector<double> elevations_rad_;
   std::vector<sim::Vector3d> ring_rays_;  ///< of azimuth 0: of each ring its beam, or all rays that sample it
   LaserReturns returns_;
+  ReadingDigest digest_;  ///< of a whole turn
   sim::Time turn_end_{-1};
   sim::Time turn_length_{0};
   sim::Time step_{0};  ///< of the last sweep, for rays()

@@ -195,17 +195,8 @@ void Micromodem::measure(const sim::SenseContext&) {
   saying_.clear();
 }
 
-void Micromodem::hash_state(sim::StateHash& hash) const {
-  protocol_.hash_state(hash);
-  lines_.hash_state(hash);
-  hash.add(off_);
-  hash.add(static_cast<std::uint64_t>(saying_.size()));
-  const auto add = [&](const Said& said) {
-    hash.add(static_cast<std::int64_t>(said.reading.count()));
-    hash.add(std::string_view(said.sentence));
-  };
-  for (const Said& said : saying_) add(said);
-  for (const Said& said : said_) add(said);
+void Micromodem::visit_state(sim::StateArchive& archive) {
+  archive(protocol_, lines_, off_, now_, saying_, said_);
 }
 
 void MicromodemReporter::report(sim::Time, sim::Publisher& out) const {

@@ -47,6 +47,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
     sim::Time at;       ///< true time
     sim::Time reading;  ///< by the vehicle's clock
     std::string sentence;
+    void visit_state(sim::StateArchive& archive) { archive(at, reading, sentence); }
   };
 
   /// Throws ConfigError when the world has no water, or `lbl` names no transponder of the world.
@@ -59,7 +60,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
 
   void measure(const sim::SenseContext& context) override;
   void disturb(double, sim::Random&) override {}
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   /// What it said since the last sample.
   const std::vector<Said>& said() const { return said_; }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/bus/bus.hpp"
+#include "sim/state/state_archive.hpp"
 #include "sim/time.hpp"
 
 namespace devices {
@@ -15,6 +16,7 @@ struct MicromodemPacket {
   struct Frame {
     bool ack = false;  ///< asks for an acknowledgement
     sim::Bytes data;
+    void visit_state(sim::StateArchive& archive) { archive(ack, data); }
   };
 
   Kind kind = Kind::mini;

@@ -335,46 +335,16 @@ void MicromodemProtocol::say_statistics(const MicromodemPacket& packet, const Mi
   side_.say(body);
 }
 
-void MicromodemProtocol::hash_state(sim::StateHash& hash) const {
-  settings_.hash_state(hash);
-  hash.add(clock_offset_us_);
-  hash.add(clock_set_);
-  hash.add(starting_);
-  hash.add(static_cast<std::uint64_t>(due_.size()));
-  for (const Due& due : due_) {
-    hash.add(static_cast<std::int64_t>(due.at.count()));
-    hash.add(std::string_view(due.body));
-  }
-  const auto add = [&](std::initializer_list<sim::Time> times) {
-    for (const sim::Time time : times) hash.add(static_cast<std::int64_t>(time.count()));
-  };
-  add({sending_until_, next_revision_});
-  for (const bool is_there : {cycle_.has_value(), expected_.has_value(), ping_.has_value(), beacon_ping_.has_value()})
-    hash.add(is_there);
-  if (cycle_) {
-    for (const int field : {cycle_->source, cycle_->destination, cycle_->rate, cycle_->frames}) hash.add(field);
-    hash.add(cycle_->ack);
-    hash.add(cycle_->announced);
-    for (const auto& frame : cycle_->gathered) {
-      hash.add(frame.ack);
-      hash.add_bytes(frame.data.data(), frame.data.size());
-    }
-    add({cycle_->deadline});
-  }
-  if (expected_) {
-    for (const int field : {expected_->source, expected_->destination, expected_->rate, expected_->frames})
-      hash.add(field);
-    add({expected_->deadline});
-  }
-  if (ping_) {
-    hash.add(ping_->destination);
-    add({ping_->sent, ping_->deadline});
-  }
-  if (!beacon_ping_) return;
-  add({beacon_ping_->sent, beacon_ping_->deadline});
-  hash.add(beacon_ping_->turnaround_s);
-  for (const bool wanted : beacon_ping_->wanted) hash.add(wanted);
-  for (const auto& answered : beacon_ping_->answered) add({answered.value_or(sim::Time{-1})});
+void MicromodemProtocol::visit_state(sim::StateArchive& archive) {
+  archive(settings_, clock_offset_us_, clock_set_, due_, sending_until_, next_revision_, starting_);
+  archive(cycle_, expected_, ping_, beacon_ping_);
+  archive.unhashed(errors_);
+}
+
+void MicromodemProtocol::Cycle::visit_state(sim::StateArchive& archive) {
+  archive(source, destination, rate, frames, ack, announced, gathered, deadline);
+  const bool known = rate >= 0 && static_cast<std::size_t>(rate) < micromodem_rates().size();
+  if (archive.restoring() && !known) archive.fail("no modem has the rate " + std::to_string(rate));
 }
 
 }  // namespace devices

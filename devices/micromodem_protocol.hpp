@@ -71,7 +71,7 @@ class MicromodemProtocol {
   const MicromodemSettings& settings() const { return settings_; }
   /// Sentences that were answered by an error.
   std::int64_t errors() const { return errors_; }
-  void hash_state(sim::StateHash& hash) const;
+  void visit_state(sim::StateArchive& archive);
 
  private:
   using Command = void (MicromodemProtocol::*)(const NmeaSentence&, sim::Time);
@@ -82,26 +82,31 @@ class MicromodemProtocol {
     bool announced = false;  ///< its cycle init was sent by another
     std::vector<MicromodemPacket::Frame> gathered;
     sim::Time deadline{0};
+    void visit_state(sim::StateArchive& archive);
   };
   /// A cycle whose data it expects.
   struct Expected {
     int source = 0, destination = 0, rate = 0, frames = 0;
     sim::Time deadline{0};
+    void visit_state(sim::StateArchive& archive) { archive(source, destination, rate, frames, deadline); }
   };
   /// A ping whose answer it expects.
   struct Ping {
     int destination = 0;
     sim::Time sent{0}, deadline{0};
+    void visit_state(sim::StateArchive& archive) { archive(destination, sent, deadline); }
   };
   struct BeaconPing {
     sim::Time sent{0}, deadline{0};
     double turnaround_s = 0;
     std::array<bool, micromodem_beacons> wanted{};
     std::array<std::optional<sim::Time>, micromodem_beacons> answered{};
+    void visit_state(sim::StateArchive& archive) { archive(sent, deadline, turnaround_s, wanted, answered); }
   };
   struct Due {
     sim::Time at;
     std::string body;
+    void visit_state(sim::StateArchive& archive) { archive(at, body); }
   };
 
   // micromodem_commands.cpp

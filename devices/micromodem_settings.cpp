@@ -85,8 +85,8 @@ MicromodemSettings::Outcome MicromodemSettings::set(const std::string& name, int
   return Outcome::done;
 }
 
-void MicromodemSettings::hash_state(sim::StateHash& hash) const {
-  for (const auto& [name, value] : values_) hash.add(value);
+void MicromodemSettings::visit_state(sim::StateArchive& archive) {
+  for (auto& [name, value] : values_) archive(value);
 }
 
 }  // namespace devices

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace devices {
 
@@ -22,7 +22,7 @@ class MicromodemSettings {
   enum class Outcome { done, unknown, out_of_range };
   Outcome set(const std::string& name, int value);
   const std::map<std::string, int>& all() const { return values_; }
-  void hash_state(sim::StateHash& hash) const;
+  void visit_state(sim::StateArchive& archive);
 
  private:
   std::map<std::string, int> values_;

@@ -38,6 +38,7 @@ class Modem final : public sim::Sensor, public MessageModem {
     sim::Time sent{0}, arrived{0};
     sim::Time sent_reading{0};  ///< by the clock of the sender
     sim::Bytes data;
+    void visit_state(sim::StateArchive& archive) { archive(source, destination, sent, arrived, sent_reading, data); }
   };
 
   Modem(const Params& params, const sim::DeviceContext& context);
@@ -53,7 +54,7 @@ class Modem final : public sim::Sensor, public MessageModem {
   void measure(const sim::SenseContext& context) override;
   void disturb(double, sim::Random&) override {}
   void arrive(sim::Time at, std::span<const std::byte> payload) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   /// What arrived since the last sample.
   const std::vector<Packet>& received() const { return received_; }
@@ -63,6 +64,7 @@ class Modem final : public sim::Sensor, public MessageModem {
   struct Outgoing {
     std::string destination;
     sim::Bytes data;
+    void visit_state(sim::StateArchive& archive) { archive(destination, data); }
   };
   class Network;
 

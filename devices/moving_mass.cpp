@@ -59,9 +59,8 @@ void MovingMass::act(const sim::ActContext& context) {
   body_.add_torque_W(offset_W.cross(sim::Vector3d(0, 0, -weight_N)));
 }
 
-void MovingMass::hash_state(sim::StateHash& hash) const {
-  lag_.hash_state(hash);
-  hash.add(wanted_);
+void MovingMass::visit_state(sim::StateArchive& archive) {
+  archive(lag_, wanted_);
 }
 
 SHOAL_ACTUATOR("moving_mass", MovingMass, NumberController<MovingMass>);

@@ -44,7 +44,7 @@ class MovingMass final : public sim::Actuator {
   /// hold: it stays where it is; stop: to 0.
   void make_safe(sim::SafeState safe) override;
   void change(const Params& params);
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   /// m or rad, by `motion`; beyond the limits it is cut.
   void set_command(double command);

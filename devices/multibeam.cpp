@@ -46,6 +46,7 @@ void Multibeam::change(const Params& params) {
   true_ranges_m_ = ranges_m_;
   strengths_dB_.assign(beams, 0);
   valid_.assign(beams, 0);
+  digest_.renew();
   make_rays();
 }
 
@@ -73,6 +74,7 @@ void Multibeam::make_rays() {
 }
 
 void Multibeam::measure(const sim::SenseContext& context) {
+  digest_.renew();
   receiver_.cast(context.world.scene(), context.X_WS, rays_S_);
   for (std::size_t beam = 0; beam < ranges_m_.size(); ++beam) detect(beam);
   true_ranges_m_ = ranges_m_;
@@ -133,11 +135,9 @@ void Multibeam::disturb(double dt_s, sim::Random& random) {
   }
 }
 
-void Multibeam::hash_state(sim::StateHash& hash) const {
-  hash.add(std::span<const double>(ranges_m_));
-  hash.add(std::span<const double>(strengths_dB_));
-  noise_.hash_state(hash);
-  strength_noise_.hash_state(hash);
+void Multibeam::visit_state(sim::StateArchive& archive) {
+  digest_.visit(archive, ranges_m_, strengths_dB_, valid_);
+  archive(receiver_, noise_, strength_noise_);
 }
 
 void MultibeamReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "devices/reading_digest.hpp"
 #include "devices/sonar_return.hpp"
 #include "sim/random/noise.hpp"
 
@@ -34,7 +35,7 @@ class Multibeam final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   std::int64_t rays() const override { return static_cast<std::int64_t>(rays_S_.size()); }
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   const std::vector<double>& angles_rad() const { return angles_rad_; }
   const std::vector<double>& ranges_m() const { return ranges_m_; }
@@ -54,6 +55,7 @@ class Multibeam final : public sim::Sensor {
   std::vector<SonarEcho> echoes_;
   std::vector<double> ranges_m_, true_ranges_m_, strengths_dB_;
   std::vector<std::uint8_t> valid_;
+  ReadingDigest digest_;
 };
 
 /// Publishes shoal.multibeam_t.

@@ -188,11 +188,9 @@ void NaiveDrive::set_controls(double thrust, double rudder, double elevator) {
   heading_target_rad_ = depth_target_m_ = std::numeric_limits<double>::quiet_NaN();
 }
 
-void NaiveDrive::hash_state(sim::StateHash& hash) const {
-  for (const double value : {speed_mps_, turn_radps_, climb_mps_, yaw_rad_, pitch_rad_, speed_target_mps_,
-                             heading_target_rad_, depth_target_m_, rudder_, elevator_})
-    hash.add(value);
-  hash.add(p_WB_);
+void NaiveDrive::visit_state(sim::StateArchive& archive) {
+  archive(speed_mps_, turn_radps_, climb_mps_, yaw_rad_, pitch_rad_, p_WB_, X_WB_, speed_target_mps_,
+          heading_target_rad_, depth_target_m_, rudder_, elevator_, left_the_current_);
 }
 
 void NaiveDriveController::receive(sim::Time, std::span<const std::byte> payload) {

@@ -38,7 +38,7 @@ class NaiveDrive final : public sim::Actuator {
   void change(const Params& params);
   void act(const sim::ActContext& context) override;
   void make_safe(sim::SafeState safe) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   /// NaN leaves a setpoint as it is.  In water a depth below 0 is 0.
   void set_helm(double speed_mps, double heading_rad, double depth_m);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/bus/bus.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace devices {
 
@@ -43,10 +43,7 @@ class NmeaLines {
   };
   /// Lines that have ended, the empty ones left out.
   std::vector<Line> add(std::span<const std::byte> bytes);
-  void hash_state(sim::StateHash& hash) const {
-    hash.add(std::string_view(line_));
-    hash.add(too_long_);
-  }
+  void visit_state(sim::StateArchive& archive) { archive(line_, too_long_); }
 
   /// Room for a frame of 256 bytes in hexadecimal digits.
   static constexpr std::size_t longest = 640;

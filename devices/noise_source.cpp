@@ -61,9 +61,8 @@ void NoiseSource::make_safe(sim::SafeState safe) {
   if (safe == sim::SafeState::stop) on_ = false;
 }
 
-void NoiseSource::hash_state(sim::StateHash& hash) const {
-  hash.add(on_);
-  hash.add(sounding());
+void NoiseSource::visit_state(sim::StateArchive& archive) {
+  archive(on_);  // what sounds now is the channel's
 }
 
 SHOAL_ACTUATOR("noise_source", NoiseSource, NumberController<NoiseSource>);

@@ -32,7 +32,7 @@ class NoiseSource final : public sim::Actuator, public sim::AcousticListener {
   void set_command(double value) { on_ = value != 0; }
   void act(const sim::ActContext& context) override;
   void make_safe(sim::SafeState safe) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
   bool sounding() const { return sound_ && sound_->on(); }
 
   bool listens_to(const sim::Signal&) const override { return false; }

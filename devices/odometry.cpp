@@ -70,14 +70,8 @@ void Odometry::disturb(double dt_s, sim::Random& random) {
   reading_ = reckoned_;
 }
 
-void Odometry::hash_state(sim::StateHash& hash) const {
-  for (const double number :
-       {reckoned_.x_m, reckoned_.y_m, reckoned_.theta_rad, believed_rad_[0], believed_rad_[1], truth_theta_rad_})
-    hash.add(number);
-  hash.add(std::span<const double>(wheel_rad_));
-  hash.add(reckoned_.left_ticks);
-  hash.add(reckoned_.right_ticks);
-  noise_.hash_state(hash);
+void Odometry::visit_state(sim::StateArchive& archive) {
+  archive(X_W0_, truth_theta_rad_, wheel_rad_, believed_rad_, reading_, reckoned_, noise_);
 }
 
 void OdometryReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

@@ -26,6 +26,9 @@ class Odometry final : public sim::Sensor {
     double x_m = 0, y_m = 0, theta_rad = 0;
     double forward_mps = 0, turn_radps = 0;
     std::int64_t left_ticks = 0, right_ticks = 0;
+    void visit_state(sim::StateArchive& archive) {
+      archive(x_m, y_m, theta_rad, forward_mps, turn_radps, left_ticks, right_ticks);
+    }
   };
 
   Odometry(const Params& params, const sim::DeviceContext& context);
@@ -33,7 +36,7 @@ class Odometry final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   /// The measurement: ticks counted and summed up.
   void disturb(double dt_s, sim::Random& random) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
   const Reading& reading() const { return reading_; }
 
  private:

@@ -34,11 +34,8 @@ void Pressure::disturb(double dt_s, sim::Random& random) {
   temperature_noise_.apply(temperature_C_, dt_s, random);
 }
 
-void Pressure::hash_state(sim::StateHash& hash) const {
-  hash.add(pressure_Pa_);
-  hash.add(temperature_C_);
-  pressure_noise_.hash_state(hash);
-  temperature_noise_.hash_state(hash);
+void Pressure::visit_state(sim::StateArchive& archive) {
+  archive(pressure_Pa_, temperature_C_, pressure_noise_, temperature_noise_);
 }
 
 void PressureReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

@@ -22,7 +22,7 @@ class Pressure final : public sim::Sensor {
   void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   double pressure_Pa() const { return pressure_Pa_; }
   double depth_m() const { return params_.depth.depth_m(pressure_Pa_); }

@@ -147,17 +147,17 @@ void RangeBeacon::disturb(double, sim::Random& random) {
     std::erase_if(sightings_, [&](const Sighting&) { return random.uniform() < params_.beacon_dropout; });
 }
 
-void RangeBeacon::hash_state(sim::StateHash& hash) const {
-  for (const Sighting& sighting : sightings_) {
-    hash.add_bytes(reinterpret_cast<const std::byte*>(sighting.beacon.data()), sighting.beacon.size());
-    for (const double number : {sighting.range_m, sighting.bearing_rad, sighting.elevation_rad}) hash.add(number);
+void RangeBeacon::visit_state(sim::StateArchive& archive) {
+  archive(sightings_);
+  std::vector<std::string> beacons;
+  for (const Errors& errors : errors_) beacons.push_back(errors.beacon);
+  archive(beacons);
+  if (archive.restoring()) {
+    errors_.clear();
+    for (const std::string& beacon : beacons) errors_of(beacon);
+    if (errors_.size() != beacons.size()) archive.fail("errors to one beacon are there twice");
   }
-  for (const Errors& errors : errors_) {
-    hash.add(errors.seen_at_s);
-    errors.range.hash_state(hash);
-    errors.bearing.hash_state(hash);
-    errors.elevation.hash_state(hash);
-  }
+  for (Errors& errors : errors_) archive(errors.range, errors.bearing, errors.elevation, errors.seen_at_s);
 }
 
 void RangeBeaconReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

@@ -38,6 +38,7 @@ class RangeBeacon final : public sim::Sensor {
   struct Sighting {
     std::string beacon;
     double range_m = 0, bearing_rad = 0, elevation_rad = 0;
+    void visit_state(sim::StateArchive& archive) { archive(beacon, range_m, bearing_rad, elevation_rad); }
   };
 
   RangeBeacon(const Params& params, const sim::DeviceContext& context);
@@ -48,7 +49,7 @@ class RangeBeacon final : public sim::Sensor {
   void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
   const std::vector<Sighting>& sightings() const { return sightings_; }
   const Params& params() const { return params_; }
 

@@ -57,9 +57,8 @@ void Sail::act(const sim::ActContext& context) {
   mount_.add_force_D(flow, {bound * force.x(), bound * force.y(), 0});
 }
 
-void Sail::hash_state(sim::StateHash& hash) const {
-  lag_.hash_state(hash);
-  hash.add(wanted_rad_);
+void Sail::visit_state(sim::StateArchive& archive) {
+  archive(lag_, wanted_rad_);
 }
 
 SHOAL_ACTUATOR("sail", Sail, NumberController<Sail>);

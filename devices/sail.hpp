@@ -41,7 +41,7 @@ class Sail final : public sim::Actuator {
   /// stop: the sheet is let out; hold: it stays as it is.
   void make_safe(sim::SafeState safe) override;
   void change(const Params& params);
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   /// Angle of the sheet in rad; cut to 0 and the limit.
   void set_command(double sheet_rad);

@@ -7,7 +7,7 @@
 #include "sim/bus/byte_port.hpp"
 #include "sim/config/param_reader.hpp"
 #include "sim/device/device_registry.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace devices {
 
@@ -54,10 +54,8 @@ class SerialMessages {
   /// What has come since the last call.  A message that is too long has max_bytes + 1 bytes.
   std::vector<sim::Bytes> take(std::size_t max_bytes);
   void write(sim::Bytes data);
-  void hash_state(sim::StateHash& hash) const {
-    hash.add_bytes(line_.data(), line_.size());
-    hash.add(cut_);
-  }
+  /// What has come of a line that has not ended.  What is in the port itself is beyond the simulator.
+  void visit_state(sim::StateArchive& archive) { archive(line_, cut_); }
 
  private:
   SerialPort port_;

@@ -73,8 +73,8 @@ void SideScan::disturb(double dt_s, sim::Random& random) {
   bins_.disturb(dt_s, random);
 }
 
-void SideScan::hash_state(sim::StateHash& hash) const {
-  bins_.hash_state(hash);
+void SideScan::visit_state(sim::StateArchive& archive) {
+  archive(receiver_, bins_);
 }
 
 void SideScanReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

@@ -85,12 +85,8 @@ void RangeSonar::disturb(double dt_s, sim::Random& random) {
   if (!valid_ || strength_dB_ - receiver_.gain_dB(truth_m) < params_.detection.threshold_dB) miss();
 }
 
-void RangeSonar::hash_state(sim::StateHash& hash) const {
-  hash.add(range_m_);
-  hash.add(strength_dB_);
-  hash.add(valid_);
-  noise_.hash_state(hash);
-  strength_noise_.hash_state(hash);
+void RangeSonar::visit_state(sim::StateArchive& archive) {
+  archive(range_m_, strength_dB_, valid_, receiver_, noise_, strength_noise_);
 }
 
 void RangeSonarReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

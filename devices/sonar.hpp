@@ -28,7 +28,7 @@ class RangeSonar : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   std::int64_t rays() const override { return static_cast<std::int64_t>(rays_S_.size()); }
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   double range_m() const { return range_m_; }
   double strength_dB() const { return strength_dB_; }

@@ -50,6 +50,7 @@ void SonarBins::change(const SonarPictureParams& params, const SonarParams& sona
 
 void SonarBins::begin(const SonarReceiver& receiver) {
   std::fill(power_uPa2_.begin(), power_uPa2_.end(), 0.0);
+  digest_.renew();
   range_scale_ = receiver.range_scale();
   pulse_m_ = receiver.pulse_m() * range_scale_;
 }
@@ -98,9 +99,9 @@ void SonarBins::quantize() {
   }
 }
 
-void SonarBins::hash_state(sim::StateHash& hash) const {
-  hash.add_bytes(pixels_.data(), pixels_.size());
-  level_noise_.hash_state(hash);
+void SonarBins::visit_state(sim::StateArchive& archive) {
+  archive(level_noise_);
+  digest_.visit(archive, pixels_);
 }
 
 }  // namespace devices

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "devices/reading_digest.hpp"
 #include "devices/sonar_return.hpp"
 #include "sim/random/noise.hpp"
 
@@ -38,7 +39,8 @@ class SonarBins {
   int beams() const { return beams_; }
   const SonarPictureParams& params() const { return params_; }
   const std::vector<std::uint8_t>& pixels() const { return pixels_; }
-  void hash_state(sim::StateHash& hash) const;
+  /// The picture of the last ping is out already: its hash.
+  void visit_state(sim::StateArchive& archive);
 
  private:
   void quantize();
@@ -51,6 +53,7 @@ class SonarBins {
   std::vector<double> power_uPa2_, levels_dB_;
   std::vector<double> gains_dB_;  ///< of each bin
   std::vector<std::uint8_t> pixels_;
+  ReadingDigest digest_;  // of pixels_
 };
 
 }  // namespace devices

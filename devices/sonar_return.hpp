@@ -84,6 +84,8 @@ class SonarReceiver {
   double pulse_m() const { return sound_speed_mps_ * params_.pulse_s / 2; }
   /// What a true range is multiplied by when times become ranges: assumed over true speed of sound.
   double range_scale() const { return range_scale_; }
+  /// What the medium was like where it last worked: that counts while it is on the wrong side of the surface.
+  void visit_state(sim::StateArchive& archive) { archive(sound_speed_mps_, absorption_dBpm_, range_scale_); }
 
  private:
   /// Whether it works in the medium where it is; takes over what the medium is like there.

@@ -37,11 +37,6 @@ const sim::Vector3d& LowPass::apply(const sim::Vector3d& x, double dt_s) {
   return y_;
 }
 
-void LowPass::hash_state(sim::StateHash& hash) const {
-  hash.add(started_);
-  hash.add(y_);
-}
-
 Strapdown::Strapdown(const sim::DeviceContext& context) : body_(context.body) {}
 
 void Strapdown::measure(const sim::SenseContext& context) {
@@ -61,14 +56,6 @@ void Strapdown::measure(const sim::SenseContext& context) {
   q_WS_ = q_WS;
   v_WS_W_ = context.v_WS_W;
   started_ = true;
-}
-
-void Strapdown::hash_state(sim::StateHash& hash) const {
-  hash.add(started_);
-  for (const double part : {q_WS_.w(), q_WS_.x(), q_WS_.y(), q_WS_.z()}) hash.add(part);
-  hash.add(v_WS_W_);
-  hash.add(w_WS_S_);
-  hash.add(f_S_);
 }
 
 }  // namespace devices

@@ -17,7 +17,7 @@ class LowPass {
   explicit LowPass(double time_constant_s) : time_constant_s_(time_constant_s) {}
   void change(double time_constant_s);
   const sim::Vector3d& apply(const sim::Vector3d& x, double dt_s);
-  void hash_state(sim::StateHash& hash) const;
+  void visit_state(sim::StateArchive& archive) { archive(started_, y_); }
 
  private:
   double time_constant_s_;
@@ -37,7 +37,7 @@ class Strapdown {
   /// Takes the means since the last call.  The first call has no interval: angular velocity of the moment, and the
   /// specific force of a sensor that is not accelerated.
   void measure(const sim::SenseContext& context);
-  void hash_state(sim::StateHash& hash) const;
+  void visit_state(sim::StateArchive& archive) { archive(started_, q_WS_, v_WS_W_, w_WS_S_, f_S_); }
 
   /// Mean angular velocity: the rotation vector from the last attitude to this one by dt.  Its integral is the
   /// attitude exactly, as long as the sensor turns less than half a turn in a sample.

@@ -1,5 +1,6 @@
 #include "devices/swarm_position.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "shoal/message_codec.hpp"
@@ -57,12 +58,16 @@ SwarmPosition::Errors& SwarmPosition::errors_of(const Sighting& sighting) {
   if (number >= errors_index_.size()) errors_index_.resize(number + 1, -1);
   if (errors_index_[number] >= 0) return errors_[static_cast<std::size_t>(errors_index_[number])];
   errors_index_[number] = static_cast<int>(errors_.size());
-  const auto noise = [&](const sim::NoiseParams& params, const char* what, const sim::NoiseFault& fault) {
-    return sim::Noise(params, 3, sim::Random(seed_, full_name_ + what + sighting.name), &fault);
-  };
-  errors_.push_back({sighting.vehicle, noise(params_.relative_noise, "#relative/", relative_fault_),
-                     noise(params_.absolute_noise, "#absolute/", absolute_fault_), now_s_});
+  errors_.push_back(new_errors(sighting.vehicle, sighting.name));
   return errors_.back();
+}
+
+SwarmPosition::Errors SwarmPosition::new_errors(int vehicle, const std::string& name) const {
+  const auto noise = [&](const sim::NoiseParams& params, const char* what, const sim::NoiseFault& fault) {
+    return sim::Noise(params, 3, sim::Random(seed_, full_name_ + what + name), &fault);
+  };
+  return {vehicle, noise(params_.relative_noise, "#relative/", relative_fault_),
+          noise(params_.absolute_noise, "#absolute/", absolute_fault_), now_s_};
 }
 
 void SwarmPosition::disturb(double, sim::Random& random) {
@@ -75,18 +80,26 @@ void SwarmPosition::disturb(double, sim::Random& random) {
   }
 }
 
-void SwarmPosition::hash_state(sim::StateHash& hash) const {
-  for (const Sighting& sighting : sightings_) {
-    hash.add(sighting.vehicle);
-    hash.add(sighting.p_SV_S);
-    hash.add(sighting.p_WV);
+void SwarmPosition::visit_state(sim::StateArchive& archive) {
+  archive(sightings_, errors_index_);
+  std::vector<int> seen;
+  for (const Errors& errors : errors_) seen.push_back(errors.vehicle);
+  archive(seen);
+  if (archive.restoring()) make_errors_of(seen, archive);
+  for (Errors& errors : errors_) archive(errors.relative, errors.absolute, errors.seen_at_s);
+}
+
+/// What is in them follows; that they have begun otherwise makes no difference then.
+void SwarmPosition::make_errors_of(const std::vector<int>& seen, const sim::StateArchive& archive) {
+  errors_.clear();
+  for (const int vehicle : seen) {
+    const auto number = static_cast<std::size_t>(vehicle);
+    if (vehicle < 0 || number >= errors_index_.size() || errors_index_[number] != static_cast<int>(errors_.size()))
+      archive.fail("errors to a vehicle that was not seen");
+    errors_.push_back(new_errors(vehicle, ""));
   }
-  for (const Errors& errors : errors_) {
-    hash.add(errors.vehicle);
-    hash.add(errors.seen_at_s);
-    errors.relative.hash_state(hash);
-    errors.absolute.hash_state(hash);
-  }
+  const auto known = std::count_if(errors_index_.begin(), errors_index_.end(), [](int index) { return index >= 0; });
+  if (static_cast<std::size_t>(known) != errors_.size()) archive.fail("a vehicle was seen that has no errors");
 }
 
 void SwarmPositionReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

@@ -27,12 +27,13 @@ class SwarmPosition final : public sim::Sensor {
     std::string name;
     sim::Vector3d p_SV_S = sim::Vector3d::Zero();  ///< from the sensor, in the sensor's frame
     sim::Vector3d p_WV = sim::Vector3d::Zero();
+    void visit_state(sim::StateArchive& archive) { archive(vehicle, name, p_SV_S, p_WV); }
   };
 
   SwarmPosition(const Params& params, const sim::DeviceContext& context);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
   /// In the order of the vehicles in the world.
   const std::vector<Sighting>& sightings() const { return sightings_; }
   bool absolute() const { return params_.absolute; }
@@ -45,6 +46,8 @@ class SwarmPosition final : public sim::Sensor {
   };
   bool visible(const sim::SenseContext& context, const sim::Vehicle& other) const;
   Errors& errors_of(const Sighting& sighting);
+  Errors new_errors(int vehicle, const std::string& name) const;
+  void make_errors_of(const std::vector<int>& seen, const sim::StateArchive& archive);
 
   Params params_;
   std::uint32_t categories_ = ~0u;

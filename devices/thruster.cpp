@@ -164,10 +164,8 @@ void Thruster::act(const sim::ActContext& context) {
   }
 }
 
-void Thruster::hash_state(sim::StateHash& hash) const {
-  lag_.hash_state(hash);
-  hash.add(command_);
-  hash.add(thrust_N_);
+void Thruster::visit_state(sim::StateArchive& archive) {
+  archive(lag_, command_, thrust_N_, power_W_);
 }
 
 SHOAL_ACTUATOR("thruster", Thruster, NumberController<Thruster>);

@@ -60,7 +60,7 @@ class Thruster final : public sim::Actuator {
   void make_safe(sim::SafeState) override { command_ = 0; }
   double power_W() const override { return power_W_; }
   void change(const Params& params);
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   /// In the unit of `command`; beyond the limits it is cut.
   void set_command(double command);

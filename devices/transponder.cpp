@@ -61,10 +61,9 @@ void Transponder::heard(const sim::Reception& heard) {
   transducer_.transmit(std::move(answer), at);
 }
 
-void Transponder::hash_state(sim::StateHash& hash) const {
-  hash.add(answers_);
-  hash.add(answer_Hz_);
-  hash.add(std::string_view(asked_by_));
+void Transponder::visit_state(sim::StateArchive& archive) {
+  archive(answers_, answer_Hz_, asked_by_);
+  if (archive.restoring() && !(answer_Hz_ > 0)) archive.fail("a transponder's frequency must be above 0");
 }
 
 void TransponderReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

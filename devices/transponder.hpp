@@ -35,7 +35,7 @@ class Transponder final : public sim::Sensor, public sim::AcousticListener {
 
   void measure(const sim::SenseContext&) override {}
   void disturb(double, sim::Random&) override {}
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
   bool listens_to(const sim::Signal& signal) const override;
   void heard(const sim::Reception& heard) override;
 

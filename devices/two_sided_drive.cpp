@@ -34,11 +34,8 @@ double TwoSidedDrive::power_W() const {
   return left_.power_W(params_.power, params_.max_torque_Nm) + right_.power_W(params_.power, params_.max_torque_Nm);
 }
 
-void TwoSidedDrive::hash_state(sim::StateHash& hash) const {
-  for (const double radps :
-       {left_.target_radps(), right_.target_radps(), left_.current_radps(), right_.current_radps()})
-    hash.add(radps);
-  hash.add(coasting_);
+void TwoSidedDrive::visit_state(sim::StateArchive& archive) {
+  archive(left_, right_, coasting_);
 }
 
 void TwoSidedDrive::change_drive(const Params& params) {

@@ -28,7 +28,7 @@ class TwoSidedDrive : public sim::Actuator {
   /// stop: the wheels brake; coast: they turn freely.
   void make_safe(sim::SafeState safe) override;
   double power_W() const override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
 
   void set_wheel_speeds(double left_radps, double right_radps);
   /// Where a side cannot turn as fast as asked, both are slowed so that the curvature stays.

@@ -70,15 +70,8 @@ void Usbl::disturb(double dt_s, sim::Random& random) {
     std::erase_if(fixes_, [&](const Fix&) { return random.uniform() < params_.answer_dropout; });
 }
 
-void Usbl::hash_state(sim::StateHash& hash) const {
-  interrogator_.hash_state(hash);
-  hash.add(static_cast<std::int64_t>(next_ping_.count()));
-  hash.add(since_fix_s_);
-  for (const Fix& fix : fixes_) {
-    hash.add(std::string_view(fix.target));
-    for (const double number : {fix.travel_time_s, fix.range_m, fix.azimuth_rad, fix.elevation_rad}) hash.add(number);
-  }
-  for (const sim::Noise* noise : {&range_noise_, &azimuth_noise_, &elevation_noise_}) noise->hash_state(hash);
+void Usbl::visit_state(sim::StateArchive& archive) {
+  archive(interrogator_, next_ping_, fixes_, since_fix_s_, range_noise_, azimuth_noise_, elevation_noise_);
 }
 
 void UsblReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

@@ -32,13 +32,16 @@ class Usbl final : public sim::Sensor {
     std::string target;
     double travel_time_s = 0, range_m = 0, azimuth_rad = 0, elevation_rad = 0;
     sim::Vector3d position_S() const;
+    void visit_state(sim::StateArchive& archive) {
+      archive(target, travel_time_s, range_m, azimuth_rad, elevation_rad);
+    }
   };
 
   Usbl(const Params& params, const sim::DeviceContext& context);
   void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
   const std::vector<Fix>& fixes() const { return fixes_; }
 
  private:

@@ -46,10 +46,8 @@ void WaterSpeed::disturb(double dt_s, sim::Random& random) {
   if (!valid_) speed_mps_ = 0;
 }
 
-void WaterSpeed::hash_state(sim::StateHash& hash) const {
-  hash.add(speed_mps_);
-  hash.add(valid_);
-  speed_noise_.hash_state(hash);
+void WaterSpeed::visit_state(sim::StateArchive& archive) {
+  archive(speed_mps_, valid_, speed_noise_);
 }
 
 void WaterSpeedReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

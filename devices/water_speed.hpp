@@ -24,7 +24,7 @@ class WaterSpeed final : public sim::Sensor {
   void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
   double speed_mps() const { return speed_mps_; }
   bool valid() const { return valid_; }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "devices/joint_of_device.hpp"
+#include "devices/same_size.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/wheel_encoder_t.hpp"
 
@@ -97,11 +98,10 @@ void WheelEncoder::change(const Params& params) {
   noise_.change(params.noise);
 }
 
-void WheelEncoder::hash_state(sim::StateHash& hash) const {
-  for (const auto* values : {&angles_rad_, &believed_rad_, &rates_radps_}) hash.add(std::span<const double>(*values));
-  for (const auto* counts : {&passed_, &counted_, &ticks_})
-    for (const std::int64_t count : *counts) hash.add(count);
-  noise_.hash_state(hash);
+void WheelEncoder::visit_state(sim::StateArchive& archive) {
+  for (auto* angles : {&angles_rad_, &believed_rad_, &rates_radps_}) visit_same_size(archive, *angles, "wheels");
+  for (auto* counts : {&passed_, &counted_, &ticks_}) visit_same_size(archive, *counts, "wheels");
+  archive(noise_);
 }
 
 void WheelEncoderReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

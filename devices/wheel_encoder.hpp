@@ -31,7 +31,7 @@ class WheelEncoder final : public sim::Sensor {
   void disturb(double dt_s, sim::Random& random) override;
   /// The errors; joints and ticks stay.
   void change(const Params& params);
-  void hash_state(sim::StateHash& hash) const override;
+  void visit_state(sim::StateArchive& archive) override;
   const std::vector<Wheel>& wheels() const { return wheels_; }
   const std::vector<std::int64_t>& ticks() const { return ticks_; }
   const std::vector<double>& rates_radps() const { return rates_radps_; }

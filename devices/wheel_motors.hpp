@@ -22,6 +22,7 @@ class WheelMotors {
   double target_radps() const { return target_radps_; }
   double current_radps() const { return current_radps_; }
   double power_W(const MotorPower& power, double max_torque_Nm) const;
+  void visit_state(sim::StateArchive& archive) { archive(target_radps_, current_radps_); }
 
  private:
   struct Wheel {

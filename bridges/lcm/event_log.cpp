@@ -35,15 +35,20 @@ EventLogReader::EventLogReader(const std::string& path) : file_(std::fopen(path.
 }
 
 std::optional<LogEvent> EventLogReader::next() {
+  LogEvent event;
+  if (!next(event)) return std::nullopt;
+  return event;
+}
+
+bool EventLogReader::next(LogEvent& event) {
   const auto report = [this](std::uint64_t offset, const std::string& what) {
     if (problems_.size() < max_problems) problems_.push_back("byte " + std::to_string(offset) + ": " + what);
   };
-  LogEvent event;
   while (at_ < file_bytes_) {
     const std::uint64_t start = at_;
     switch (read_event(event)) {
       case Outcome::event:
-        return event;
+        return true;
       case Outcome::garbage:
         find_sync();
         report(start, std::to_string(at_ - start) + " bytes that are no event were skipped");
@@ -57,13 +62,13 @@ std::optional<LogEvent> EventLogReader::next() {
         break;
     }
   }
-  return std::nullopt;
+  return false;
 }
 
 EventLogReader::Outcome EventLogReader::read_event(LogEvent& event) {
   std::array<unsigned char, header_bytes> header;
   const std::uint64_t left = file_bytes_ - at_;
-  const std::size_t got = std::fread(header.data(), 1, std::min<std::uint64_t>(header_bytes, left), file_.get());
+  const std::size_t got = fread_unlocked(header.data(), 1, std::min<std::uint64_t>(header_bytes, left), file_.get());
   if (got >= 4 && big_endian<std::uint32_t>(header.data()) != sync_word) return Outcome::garbage;
   if (got < header_bytes) return Outcome::truncated;
   const auto channel_bytes = static_cast<std::int32_t>(big_endian<std::uint32_t>(&header[20]));
@@ -76,8 +81,8 @@ EventLogReader::Outcome EventLogReader::read_event(LogEvent& event) {
   event.offset = at_;
   event.channel.resize(static_cast<std::size_t>(channel_bytes));
   event.payload.resize(static_cast<std::size_t>(data_bytes));
-  if (std::fread(event.channel.data(), 1, event.channel.size(), file_.get()) != event.channel.size() ||
-      std::fread(event.payload.data(), 1, event.payload.size(), file_.get()) != event.payload.size())
+  if (fread_unlocked(event.channel.data(), 1, event.channel.size(), file_.get()) != event.channel.size() ||
+      fread_unlocked(event.payload.data(), 1, event.payload.size(), file_.get()) != event.payload.size())
     return Outcome::truncated;
   at_ += header_bytes + body;
   return Outcome::event;

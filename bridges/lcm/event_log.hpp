@@ -29,6 +29,8 @@ class EventLogReader {
 
   /// In the order of the file.  Empty at the end.
   std::optional<LogEvent> next();
+  /// The same into an event whose memory is used again.  False at the end.
+  bool next(LogEvent& event);
   /// So far, such as `byte 4711: 28 bytes that are no event were skipped`.
   const std::vector<std::string>& problems() const { return problems_; }
   std::uint64_t file_bytes() const { return file_bytes_; }

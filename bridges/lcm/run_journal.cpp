@@ -105,10 +105,10 @@ void RunJournal::after_step() {
   if (every_steps_ > 0 && world_->step_number() % every_steps_ == 0) publish_hash();
 }
 
-void RunJournal::finish() {
+void RunJournal::finish(bool step_is_whole) {
   if (muted_ || world_ == nullptr) return;
   if (!waiting_.empty()) publish_mail();
-  if (every_steps_ > 0 && started_ && last_hash_step_ != world_->step_number()) publish_hash();
+  if (step_is_whole && every_steps_ > 0 && started_ && last_hash_step_ != world_->step_number()) publish_hash();
 }
 
 void RunJournal::begin_branch(std::int32_t branch, std::int64_t next_sequence) {

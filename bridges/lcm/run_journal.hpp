@@ -68,8 +68,8 @@ class RunJournal {
 
   /// After each step: publishes what came to it, and a hash when one is due.
   void after_step();
-  /// Publishes what is left, and a last hash.  Safe to call twice.
-  void finish();
+  /// Publishes what is left, and a last hash unless the last step broke off half-way.  Safe to call twice.
+  void finish(bool step_is_whole = true);
 
   /// While a part of a run is worked out again nothing is published or written down, and serial ports give what is in
   /// serial_mail() and drop what is written to them.

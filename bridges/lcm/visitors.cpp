@@ -8,6 +8,7 @@
 #include "bridges/lcm/run_journal.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/state/state_archive.hpp"
 #include "sim/world/vehicle_loader.hpp"
 
 namespace bridges {
@@ -56,7 +57,8 @@ void Visitors::tell(shoal::sim_vehicle_t& message, bool present) {
   message.utime = world_.epoch_us() + world_.now().count();
   message.present = present;
   const auto owner = owners_.find(message.vehicle);
-  message.client = owner == owners_.end() ? "" : owner->second.client;
+  // Whose it was is not known any more when time went back behind its coming.
+  if (owner != owners_.end() || present) message.client = owner == owners_.end() ? "" : owner->second.client;
   shoal::encode_into(message, buffer_);
   bus_.publish("sim.vehicle", buffer_, world_.now());
 }
@@ -74,7 +76,7 @@ void Visitors::write_down(const std::string& client, const std::string& command,
 }
 
 void Visitors::tell_changes() {
-  if (generation_ == world_.generation()) return;
+  if (muted_ || generation_ == world_.generation()) return;
   generation_ = world_.generation();
   for (auto known = known_.begin(); known != known_.end();) {
     if (world_.find_vehicle(known->first) != nullptr) {
@@ -94,8 +96,15 @@ void Visitors::tell_changes() {
 }
 
 std::string Visitors::spawn(const std::string& client, const std::string& text) {
-  write_down(client, "spawn", text);
-  const sim::SpawnRequest request = sim::read_spawn_request(world_.config(), text);
+  if (journal_ != nullptr) write_down(client, "spawn", sim::self_contained_spawn(world_.config(), text));
+  return add(client, sim::read_spawn_request(world_.config(), text));
+}
+
+std::string Visitors::spawn_again(const std::string& client, const std::string& text) {
+  return add(client, sim::read_journalled_spawn(world_.config(), text));
+}
+
+std::string Visitors::add(const std::string& client, const sim::SpawnRequest& request) {
   if (request.with_client && client.empty())
     throw std::runtime_error("a vehicle that goes with its client needs a client name");
   const sim::Vehicle& vehicle = world_.add_vehicle(request.vehicle);
@@ -107,6 +116,7 @@ std::string Visitors::spawn(const std::string& client, const std::string& text) 
   }
   spdlog::info("client '{}' brought vehicle '{}' at {:.3f} s", sim::printable(sim::shortened(client)), vehicle.name(),
                sim::to_seconds(world_.now()));
+  if (muted_) return {};
   tell_changes();
   return in_words(known_.at(vehicle.name()));
 }
@@ -168,6 +178,20 @@ void Visitors::remove_those_of(const std::string& client) {
     owners_.erase(vehicle);
   }
   clients_.erase(client);
+}
+
+void Visitors::Client::visit_state(sim::StateArchive& archive) {
+  archive(timeout);
+  if (archive.restoring()) heard = Clock::now();
+}
+
+void Visitors::Owner::visit_state(sim::StateArchive& archive) {
+  archive(client, with_client);
+}
+
+void Visitors::visit_state(sim::StateArchive& archive) {
+  archive(owners_, clients_);
+  if (archive.restoring()) generation_ = ~std::uint64_t{0};  // whatever came or went is told of
 }
 
 }  // namespace bridges

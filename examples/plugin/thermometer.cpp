@@ -30,10 +30,7 @@ class Thermometer final : public sim::Sensor {
     temperature_degc_ = params_.origin_degc + params_.slope_degcpm.dot(context.X_WS.translation());
   }
   void disturb(double dt_s, sim::Random& random) override { noise_.apply(temperature_degc_, dt_s, random); }
-  void hash_state(sim::StateHash& hash) const override {
-    hash.add(temperature_degc_);
-    noise_.hash_state(hash);
-  }
+  void visit_state(sim::StateArchive& archive) override { archive(noise_, temperature_degc_); }
 
   double temperature_degc() const { return temperature_degc_; }
 

@@ -270,32 +270,4 @@ void AcousticChannel::approach(int number, Time due) {
   schedule(std::max(flight.begun, due), begin_event, number);
 }
 
-void AcousticChannel::hash_state(StateHash& hash) const {
-  if (transducers_.empty()) return;
-  for (const Transducer* transducer : transducers_)
-    if (transducer != nullptr) transducer->hash_state(hash);
-  for (const ContinuousSound* sound : sounds_) {
-    hash.add(sound->on_);
-    hash.add(sound->source_level_.dB());
-  }
-  for (const auto& sending : sendings_) {
-    hash.add(sending->sequence);
-    hash.add(static_cast<std::int64_t>(sending->sent.count()));
-    hash.add(sending->p_W);
-    hash.add(sending->cut);
-    hash.add_bytes(sending->signal.payload.data(), sending->signal.payload.size());
-  }
-  for (const Flight& flight : flights_) {
-    hash.add(flight.sending);
-    hash.add(static_cast<std::int64_t>(flight.begun.count()));
-    hash.add(static_cast<std::int64_t>(flight.ended.count()));
-    hash.add(flight.to != nullptr ? flight.to->number() : -1);
-    hash.add(flight.travel_time_s);
-    hash.add(flight.level.dB());
-    hash.add(static_cast<int>(flight.loss));
-    hash.add(flight.present);
-    hash.add(flight.noticed);
-  }
-}
-
 }  // namespace sim

@@ -14,7 +14,7 @@
 #include "sim/medium/medium.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/random/random.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 #include "sim/world/event_queue.hpp"
 
 namespace sim {
@@ -49,7 +49,8 @@ class AcousticChannel {
   const Propagation& propagation() const { return propagation_; }
   /// Receptions, heard or not, since the start: what the work grows with.
   std::int64_t flights() const { return flights_made_; }
-  void hash_state(StateHash& hash) const;
+  /// With the transducers and continuous sounds, whose devices do not.
+  void visit_state(StateArchive& archive);
 
  private:
   friend class Transducer;
@@ -68,8 +69,9 @@ class AcousticChannel {
     Vector3d p_W = Vector3d::Zero(), v_W = Vector3d::Zero();
     Matrix3d R_WS = Matrix3d::Identity();
     DirectivityConfig directivity;
-    bool cut = false;  // the sender left the water, or lost its power
-    int users = 0;     // flights and events that still need it
+    bool cut = false;                         // the sender left the water, or lost its power
+    int users = 0;                            // flights and events that still need it
+    void visit_state(StateArchive& archive);  // but for `from`
   };
   /// A signal on its way to one receiver.
   struct Flight {
@@ -82,6 +84,7 @@ class AcousticChannel {
     Decibels level{0}, snr{0};
     SignalLoss loss = SignalLoss::none;
     bool listened = false, present = false, noticed = false, delayed = false;
+    void visit_state(StateArchive& archive);  // but for `to`
   };
 
   int join(Transducer& transducer);
@@ -114,6 +117,8 @@ class AcousticChannel {
   /// Its draws when a signal begins, and when it ends.
   Random stream(const Transducer& to, const Sending& sending, bool at_end) const;
   void schedule(Time due, EventKind kind, int item);
+  void visit_transducer(StateArchive& archive, Transducer*& transducer);
+  void check_numbers(const StateArchive& archive) const;
   int new_sending();
   int new_flight();
   void release(int sending);

@@ -35,6 +35,10 @@ class Decibels {
   /// So many times the same gain, such as dB per bounce by bounces.
   friend constexpr Decibels operator*(double times, Decibels each) { return Decibels(times * each.dB_); }
   friend constexpr auto operator<=>(Decibels a, Decibels b) = default;
+  template <typename Archive>
+  void visit_state(Archive& archive) {
+    archive(dB_);
+  }
 
  private:
   double dB_ = 0;
@@ -58,6 +62,10 @@ class PowerRatio {
   friend constexpr PowerRatio operator/(PowerRatio a, PowerRatio b) { return PowerRatio(a.linear_ / b.linear_); }
   friend constexpr PowerRatio operator*(double times, PowerRatio each) { return PowerRatio(times * each.linear_); }
   friend constexpr auto operator<=>(PowerRatio a, PowerRatio b) = default;
+  template <typename Archive>
+  void visit_state(Archive& archive) {
+    archive(linear_);
+  }
 
  private:
   double linear_ = 0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/math.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace sim {
 
@@ -18,12 +19,14 @@ class Neighbourhood {
   /// `reach_m`: about how far queries will look.
   void build(std::span<const Member> members, double reach_m);
   /// Numbers of all members no farther from the place than this in the plane, in rising order; perhaps some more.
+  void visit_state(StateArchive& archive) { archive(cell_m_, entries_); }
   void near(const Vector3d& p_W, double reach_m, std::vector<int>& numbers) const;
 
  private:
   struct Entry {
     std::int64_t row, column;
     int number;
+    void visit_state(StateArchive& archive) { archive(row, column, number); }
   };
   std::int64_t cell(double coordinate_m) const;
 

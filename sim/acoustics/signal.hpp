@@ -33,6 +33,12 @@ struct Signal {
   std::string network;        ///< listeners of another network do not understand it
   std::string code;           ///< the listener's own: a frame type, who is asked
   Bytes payload;              ///< the listener's own
+
+  template <typename Archive>
+  void visit_state(Archive& archive) {
+    archive(kind, source_level, centre_Hz, bandwidth_Hz, duration, modulation, bit_rate_bps, bits, coding_gain_dB,
+            network, code, payload);
+  }
 };
 
 /// Why a signal was not understood where it was heard.

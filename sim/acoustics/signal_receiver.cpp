@@ -117,18 +117,4 @@ std::int64_t SignalReceiver::drop() {
   return flight;
 }
 
-void SignalReceiver::hash_state(StateHash& hash) const {
-  hash.add(static_cast<std::uint64_t>(present_.size()));
-  for (const PresentSound& sound : present_) {
-    hash.add(sound.flight);
-    hash.add(sound.power.linear());
-  }
-  for (const Taken& taken : taken_) {
-    hash.add(taken.signal.sound.flight);
-    hash.add(static_cast<std::int64_t>(taken.counted_until.count()));
-    hash.add(taken.log_success);
-    hash.add(taken.log_success_alone);
-  }
-}
-
 }  // namespace sim

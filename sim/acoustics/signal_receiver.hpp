@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "sim/acoustics/signal.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace sim {
 
@@ -14,6 +14,7 @@ struct PresentSound {
   double centre_Hz = 0, bandwidth_Hz = 0;
   PowerRatio power{0};  ///< re 1 uPa^2, in its own band
   Time ended{0};        ///< it is known when it will
+  void visit_state(StateArchive& archive) { archive(flight, centre_Hz, bandwidth_Hz, power, ended); }
 };
 
 /// What a receiver needs to know of a signal that it tries to take.
@@ -26,6 +27,9 @@ struct TakenSignal {
   std::int64_t bits = 0;
   double coding_gain_dB = 0;
   Time begun{0}, ended{0};
+  void visit_state(StateArchive& archive) {
+    archive(sound, noise, disturbing, modulation, bit_rate_bps, bits, coding_gain_dB, begun, ended);
+  }
 };
 
 /// The receiver of a transducer: which of the sounds that overlap it takes, and how well it comes through.  It takes
@@ -58,7 +62,7 @@ class SignalReceiver {
   /// Lets go of the last signal that is taken; its flight, or -1 when there was none.
   std::int64_t drop();
   bool taking() const { return !taken_.empty(); }
-  void hash_state(StateHash& hash) const;
+  void visit_state(StateArchive& archive) { archive(present_, taken_); }
 
  private:
   /// A signal that is taken, and what has come of it so far.
@@ -67,6 +71,9 @@ class SignalReceiver {
     Time counted_until{0};
     double log_success = 0, log_success_alone = 0;
     PowerRatio worst_sinr{0};
+    void visit_state(StateArchive& archive) {
+      archive(signal, counted_until, log_success, log_success_alone, worst_sinr);
+    }
   };
 
   /// Of all sounds but one, in its band, that last beyond a time.

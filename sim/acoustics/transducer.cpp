@@ -85,17 +85,6 @@ Decibels Transducer::noise_reduction(double frequency_Hz) const {
   return index_;
 }
 
-void Transducer::hash_state(StateHash& hash) const {
-  hash.add(static_cast<std::int64_t>(busy_until_.count()));
-  hash.add(static_cast<std::int64_t>(sending_until_.count()));
-  hash.add(signals_);
-  receiver_.hash_state(hash);
-  for (const std::int64_t count :
-       {counts_.sent, counts_.sent_bytes, counts_.understood, counts_.understood_bytes, counts_.unsent})
-    hash.add(count);
-  for (const std::int64_t count : counts_.lost) hash.add(count);
-}
-
 ContinuousSound::ContinuousSound(Decibels source_level, double centre_Hz, double bandwidth_Hz,
                                  const DeviceContext& context)
     : channel_(channel_of(context)),

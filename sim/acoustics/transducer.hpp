@@ -14,7 +14,6 @@ namespace sim {
 class AcousticChannel;
 class Body;
 class DeviceFaults;
-class StateHash;
 class Vehicle;
 struct DeviceContext;
 
@@ -39,7 +38,8 @@ struct ReceiverConfig {
   void read(ParamReader& in);
 };
 
-/// Where sound goes into the water and comes out.  Owned by a device; in the channel while it exists.
+/// Where sound goes into the water and comes out.  Owned by a device; in the channel while it exists, which hashes and
+/// saves its state: the device does not visit it.
 class Transducer {
  public:
   /// What it sent and what became of what it listened to.
@@ -48,6 +48,7 @@ class Transducer {
     std::int64_t understood = 0, understood_bytes = 0;
     std::int64_t unsent = 0;  ///< asked for without power, silent by a fault, or out of the water
     std::array<std::int64_t, signal_losses> lost{};  ///< signals of kind message, by SignalLoss
+    void visit_state(StateArchive& archive) { archive(sent, sent_bytes, understood, understood_bytes, unsent, lost); }
   };
 
   /// Throws ConfigError at the device's place when the world has no water.
@@ -78,10 +79,12 @@ class Transducer {
   /// By how much noise from all sides is less through its directivity: the directivity index.
   Decibels noise_reduction(double frequency_Hz) const;
   const Counts& counts() const { return counts_; }
+  void visit_state(StateArchive& archive) {
+    archive(busy_until_, sending_until_, sending_, signals_, receiver_, counts_);
+  }
 
  private:
   friend class AcousticChannel;
-  void hash_state(StateHash& hash) const;
 
   AcousticListener& listener_;
   ReceiverConfig config_;
@@ -103,7 +106,8 @@ class Transducer {
   mutable Decibels index_;
 };
 
-/// A sound that goes on and on: an engine, a pile driver, a jammer.  Owned by a device; in the channel while it exists.
+/// A sound that goes on and on: an engine, a pile driver, a jammer.  Owned by a device; in the channel while it exists,
+/// which hashes and saves its state: the device does not visit it.
 class ContinuousSound {
  public:
   /// Even over its band.  Throws ConfigError at the device's place when the world has no water.
@@ -117,6 +121,7 @@ class ContinuousSound {
   bool on() const { return on_; }
   /// Re 1 uPa at 1 m, over its band.
   void set_level(Decibels source_level);
+  void visit_state(StateArchive& archive) { archive(on_, source_level_); }
 
  private:
   friend class AcousticChannel;

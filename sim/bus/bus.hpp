@@ -20,6 +20,11 @@ struct Message {
   std::string channel;
   Bytes payload;
   bool from_outside = false;  ///< came over the network, not from this process
+
+  template <typename Archive>
+  void visit_state(Archive& archive) {
+    archive(channel, payload, from_outside);
+  }
 };
 
 /// What one subscriber has not yet read.  Bounded: when full, the oldest message is dropped and counted.
@@ -32,6 +37,13 @@ class Mailbox {
   /// From now on `flag` becomes true whenever a message has come, so that who reads thousands of mailboxes need not
   /// look into those that are empty.  Who reads lowers it first, then takes all there is.  For one flag.
   virtual void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) = 0;
+  /// What waits, oldest first, for a snapshot.  A mailbox that only the network fills need not tell.
+  virtual std::vector<Message> unread() const { return {}; }
+  /// Takes the place of what waits.
+  virtual void set_unread(std::vector<Message> /*messages*/) {
+    while (take()) {
+    }
+  }
 };
 
 struct BusCounts {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -46,6 +47,12 @@ class InProcessBus::QueueMailbox final : public Mailbox {
   void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) override {
     if (!queue_->messages.empty()) flag->store(true, std::memory_order_relaxed);
     queue_->flag = std::move(flag);
+  }
+
+  std::vector<Message> unread() const override { return {queue_->messages.begin(), queue_->messages.end()}; }
+  void set_unread(std::vector<Message> messages) override {
+    queue_->messages.assign(std::make_move_iterator(messages.begin()), std::make_move_iterator(messages.end()));
+    if (queue_->flag && !queue_->messages.empty()) queue_->flag->store(true, std::memory_order_relaxed);
   }
 
  private:

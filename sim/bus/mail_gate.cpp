@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <iterator>
 #include <utility>
 
 namespace sim {
@@ -35,6 +36,11 @@ class MailGate::GateMailbox final : public Mailbox {
   void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) override {
     if (!messages_.empty()) flag->store(true, std::memory_order_relaxed);
     flag_ = std::move(flag);
+  }
+  std::vector<Message> unread() const override { return {messages_.begin(), messages_.end()}; }
+  void set_unread(std::vector<Message> messages) override {
+    messages_.assign(std::make_move_iterator(messages.begin()), std::make_move_iterator(messages.end()));
+    if (flag_ && !messages_.empty()) flag_->store(true, std::memory_order_relaxed);
   }
 
   /// False: the oldest had to make room.

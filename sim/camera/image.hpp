@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim/state/state_archive.hpp"
+
 namespace sim {
 
 /// Images larger than this are refused, in files and of cameras.
@@ -27,6 +29,12 @@ struct Image {
   }
   T* at(int column, int row) { return data.data() + offset(column, row); }
   const T* at(int column, int row) const { return data.data() + offset(column, row); }
+
+  void visit_state(StateArchive& archive) {
+    archive(width, height, channels, data);
+    if (archive.restoring() && (width < 0 || height < 0 || channels < 0 || data.size() != size()))
+      archive.fail("an image that has not as many values as pixels");
+  }
 
  private:
   std::size_t offset(int column, int row) const {

@@ -30,6 +30,7 @@ struct Frame {
   FloatImage light;
   FloatImage depth_m;
   Image16 labels;
+  void visit_state(StateArchive& archive) { archive(light, depth_m, labels); }
 };
 
 /// Makes images of a world, ray by ray: Lambert's law under a sun with shadows and a sky, a Blinn-Phong highlight.

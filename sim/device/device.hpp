@@ -19,13 +19,6 @@ class Vehicle;
 class VehicleClock;
 class World;
 
-/// For devices that can be hashed and not yet be saved.
-template <typename Model>
-void visit_by_hash(const Model& model, StateArchive& archive) {
-  if (!archive.hashing()) archive.fail("this device cannot be saved");
-  model.hash_state(archive.part_hash());
-}
-
 /// Where and when a sensor samples.
 struct SenseContext {
   const World& world;
@@ -69,8 +62,7 @@ class Sensor {
   /// Something sent to this device at a simulated time arrives, see World::schedule_arrival.
   virtual void arrive(Time /*at*/, std::span<const std::byte> /*payload*/) {}
   /// The reading and everything that outlasts a sample.
-  virtual void visit_state(StateArchive& archive) { visit_by_hash(*this, archive); }
-  virtual void hash_state(StateHash& /*hash*/) const {}
+  virtual void visit_state(StateArchive& archive) = 0;
 };
 
 /// Takes the messages a reporter makes.  The channel is the framework's business.
@@ -136,8 +128,8 @@ class Actuator : public VisitedInSteps {
   virtual void make_safe(SafeState safe) = 0;
   /// What it takes from the battery now, beside the device's `power_W`.
   virtual double power_W() const { return 0; }
-  virtual void visit_state(StateArchive& archive) { visit_by_hash(*this, archive); }
-  virtual void hash_state(StateHash& /*hash*/) const {}
+  /// Everything that outlasts a step, as Sensor::visit_state.
+  virtual void visit_state(StateArchive& archive) = 0;
 };
 
 /// Takes messages and sets the actuator.

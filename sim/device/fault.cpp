@@ -70,13 +70,12 @@ void DeviceFaults::update() {
   dropout_ = 1 - heard;
 }
 
-void DeviceFaults::hash_state(StateHash& hash) const {
-  hash.add(static_cast<std::uint64_t>(active_.size()));
-  for (const FaultConfig& fault : active_) {
-    hash.add(static_cast<int>(fault.kind));
-    hash.add_bytes(reinterpret_cast<const std::byte*>(fault.quantity.data()), fault.quantity.size());
-    for (const double value : {fault.bias, fault.noise_factor, fault.dropout, fault.effectiveness}) hash.add(value);
-  }
+void DeviceFaults::visit_state(StateArchive& archive) {
+  archive(active_);
+  if (!archive.restoring()) return;
+  for (const FaultConfig& fault : active_)
+    if (fault.kind < FaultKind::stuck || fault.kind > FaultKind::dead) archive.fail("a fault of a kind that is none");
+  update();
 }
 
 }  // namespace sim

@@ -7,7 +7,7 @@
 
 #include "sim/config/param_reader.hpp"
 #include "sim/random/noise.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace sim {
 
@@ -34,6 +34,7 @@ struct FaultConfig {
 
   void read(ParamReader& in);
   bool operator==(const FaultConfig&) const = default;
+  void visit_state(StateArchive& archive) { archive(kind, quantity, bias, noise_factor, dropout, effectiveness); }
 };
 
 /// The faults of one device.  Of each kind (and quantity) there is at most one: the last one set.
@@ -50,7 +51,7 @@ class DeviceFaults {
   bool silent() const { return silent_; }
   double dropout() const { return dropout_; }
   double effectiveness() const { return effectiveness_; }
-  void hash_state(StateHash& hash) const;
+  void visit_state(StateArchive& archive);
 
  private:
   struct Quantity {

@@ -180,4 +180,12 @@ void Hydrodynamics::step_crafts() {
   }
 }
 
+void Hydrodynamics::visit_state(StateArchive& archive) {
+  archive.expect_count(wetted_.size(), "bodies in the water");
+  for (Wetted& wetted : wetted_)
+    archive.unhashed(around_[static_cast<std::size_t>(wetted.body->number())].water, wetted.left_the_current);
+  archive.expect_count(crafts_.size(), "bodies with coefficients");
+  for (CoefficientBody& craft : crafts_) archive.unhashed(craft.stiffness_told);
+}
+
 }  // namespace sim

@@ -43,6 +43,9 @@ class Hydrodynamics {
   /// What was found about bodies since the last call; each is one line.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
+  /// The water that bodies in the air had around them last, and what was told already.
+  void visit_state(StateArchive& archive);
+
  private:
   struct CoefficientBody {
     Body* body;

@@ -116,8 +116,4 @@ double Current::tide_m(const std::vector<TideConfig>& tides, Time at) {
   return height_m;
 }
 
-void Current::hash_state(StateHash& hash) const {
-  for (const Wandering& part : wandering_) part.errors.hash_state(hash);
-}
-
 }  // namespace sim

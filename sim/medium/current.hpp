@@ -27,7 +27,10 @@ class Current {
   bool known(double x_m, double y_m) const;
   /// Of the tides over the still surface.
   static double tide_m(const std::vector<TideConfig>& tides, Time at);
-  void hash_state(StateHash& hash) const;
+  /// After restoring the flow follows at the next advance_to().
+  void visit_state(StateArchive& archive) {
+    for (Wandering& part : wandering_) archive(part.errors);
+  }
 
  private:
   /// A speed and a direction that wander, as a velocity.

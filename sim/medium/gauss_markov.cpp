@@ -34,10 +34,4 @@ void GaussMarkov::advance_to(Time now) {
   values_ = from_ + (to_ - from_) * share;
 }
 
-void GaussMarkov::hash_state(StateHash& hash) const {
-  hash.add(tick_);
-  hash.add(from_);
-  hash.add(to_);
-}
-
 }  // namespace sim

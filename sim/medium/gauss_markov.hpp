@@ -6,7 +6,7 @@
 
 #include "sim/math.hpp"
 #include "sim/random/random.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 #include "sim/time.hpp"
 
 namespace sim {
@@ -32,7 +32,8 @@ class GaussMarkov {
   /// Not back in time.
   void advance_to(Time now);
   const Vector3d& values() const { return values_; }
-  void hash_state(StateHash& hash) const;
+  /// After restoring values() follow at the next advance_to().
+  void visit_state(StateArchive& archive) { archive(tick_, from_, to_); }
 
  private:
   Vector3d draw(std::int64_t tick);

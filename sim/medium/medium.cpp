@@ -110,11 +110,12 @@ double Medium::mean_slowness_spm(double z_m, double other_z_m) const {
   return has_water() ? column_->mean_slowness_spm(still_m_ - z_m, still_m_ - other_z_m) : 1 / sound_in_air_mps;
 }
 
-void Medium::hash_state(StateHash& hash) const {
-  if (!has_water() && !wind_) return;
-  hash.add(static_cast<std::int64_t>(now_.count()));
-  if (current_) current_->hash_state(hash);
-  if (wind_) wind_->hash_state(hash);
+void Medium::visit_state(StateArchive& archive) {
+  const bool changes = has_water() || wind_;
+  changes ? archive(now_) : archive.unhashed(now_);
+  if (current_) archive(*current_);
+  if (wind_) archive(*wind_);
+  if (archive.restoring()) advance_to(now_);
 }
 
 }  // namespace sim

@@ -9,7 +9,7 @@
 #include "sim/medium/water_column.hpp"
 #include "sim/medium/waves.hpp"
 #include "sim/medium/wind.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 #include "sim/time.hpp"
 
 namespace sim {
@@ -20,6 +20,7 @@ struct LocalWater {
   double density_kgpm3 = 0;                    ///< of the water; 0 in a world without
   Vector3d velocity_W = Vector3d::Zero();      ///< current and waves, m/s
   Vector3d acceleration_W = Vector3d::Zero();  ///< of the water in waves, m/s^2; a current's is left out
+  void visit_state(StateArchive& archive) { archive(surface_m, density_kgpm3, velocity_W, acceleration_W); }
 };
 
 /// What surrounds the bodies of a world: water below the surface, air over it.  World frame, east-north-up.  The models
@@ -72,7 +73,7 @@ class Medium {
   /// the surface; of the air in a world without water.
   double mean_slowness_spm(double z_m, double other_z_m) const;
 
-  void hash_state(StateHash& hash) const;
+  void visit_state(StateArchive& archive);
 
  private:
   MediumConfig config_;

@@ -41,8 +41,4 @@ Vector3d Wind::velocity_W(double height_m) const {
   return factor * mean_W_ + gust_W_;
 }
 
-void Wind::hash_state(StateHash& hash) const {
-  if (gusts_) gusts_->hash_state(hash);
-}
-
 }  // namespace sim

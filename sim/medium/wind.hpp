@@ -17,7 +17,10 @@ class Wind {
   void advance_to(Time now);
   /// m/s in the world, at a height over the still water (over z = 0 in a world without).
   Vector3d velocity_W(double height_m) const;
-  void hash_state(StateHash& hash) const;
+  /// After restoring the gust follows at the next advance_to().
+  void visit_state(StateArchive& archive) {
+    if (gusts_) archive(*gusts_);
+  }
 
  private:
   WindConfig config_;

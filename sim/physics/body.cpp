@@ -1,10 +1,12 @@
 #include "sim/physics/body.hpp"
 
+#include <algorithm>
 #include <cassert>
 
 #include "sim/physics/ode_math.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/scene/ode_scene.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace sim {
 
@@ -143,16 +145,47 @@ void Body::set_gravity(bool on) {
   if (free()) dBodySetGravityMode(ode_.get(), on);
 }
 
-void Body::hash_state(StateHash& hash) const {
+// ODE's setters normalize the quaternion, which is not idempotent: a restored world would go on from other bits.  So
+// they are written where ODE has them; dBodySetPosition then tells ODE that geoms moved.
+void Body::visit_state(StateArchive& archive) {
   if (fixed()) {
-    hash.add(std::span<const double>(seat_X_WB_.data(), 16));
+    Pose X_WB = seat_X_WB_;
+    archive(X_WB);
+    if (archive.restoring() && X_WB.matrix() != seat_X_WB_.matrix()) set_pose(X_WB);
     return;
   }
-  hash.add(std::span<const double>(p_WC_, 3));
-  hash.add(std::span<const double>(dBodyGetQuaternion(ode_.get()), 4));
-  hash.add(std::span<const double>(R_WB_, 12));
-  hash.add(std::span<const double>(v_WC_W_, 3));
-  hash.add(std::span<const double>(w_WB_W_, 3));
+  struct {
+    double p_WC[3], q_WB[4], R_WB[12], v_WC_W[3], w_WB_W[3];
+  } motion;
+  struct {
+    double force_N[3], torque_Nm[3];
+    Pose::MatrixType seat_X_WB;
+    bool enabled, move_is_due;
+  } rest = {};
+  const auto each = [&](const auto& copy) {
+    copy(motion.p_WC, p_WC_, 3);
+    copy(motion.q_WB, dBodyGetQuaternion(ode_.get()), 4);
+    copy(motion.R_WB, R_WB_, 12);
+    copy(motion.v_WC_W, v_WC_W_, 3);
+    copy(motion.w_WB_W, w_WB_W_, 3);
+  };
+  each([](double* to, const dReal* from, int count) { std::copy_n(from, count, to); });
+  archive.raw(&motion, sizeof motion);
+  std::copy_n(dBodyGetForce(ode_.get()), 3, rest.force_N);
+  std::copy_n(dBodyGetTorque(ode_.get()), 3, rest.torque_Nm);
+  rest.seat_X_WB = seat_X_WB_.matrix();
+  rest.enabled = dBodyIsEnabled(ode_.get());
+  rest.move_is_due = move_is_due_;
+  archive.unhashed(rest.force_N, rest.torque_Nm, rest.enabled, rest.move_is_due);
+  if (kinematic()) archive.unhashed(rest.seat_X_WB);
+  if (!archive.restoring()) return;
+  each([](const double* from, const dReal* to, int count) { std::copy_n(from, count, const_cast<dReal*>(to)); });
+  dBodySetPosition(ode_.get(), motion.p_WC[0], motion.p_WC[1], motion.p_WC[2]);
+  dBodySetForce(ode_.get(), rest.force_N[0], rest.force_N[1], rest.force_N[2]);
+  dBodySetTorque(ode_.get(), rest.torque_Nm[0], rest.torque_Nm[1], rest.torque_Nm[2]);
+  rest.enabled ? dBodyEnable(ode_.get()) : dBodyDisable(ode_.get());
+  seat_X_WB_.matrix() = rest.seat_X_WB;
+  move_is_due_ = rest.move_is_due;
 }
 
 void Body::place_fixed_geoms() {

@@ -8,11 +8,11 @@
 
 #include "sim/math.hpp"
 #include "sim/physics/motion.hpp"
-#include "sim/state_hash.hpp"
 #include "sim/step_memory.hpp"
 
 namespace sim {
 
+class StateArchive;
 struct SceneMoves;
 
 struct BodyDeleter {
@@ -74,7 +74,7 @@ class Body : public VisitedInSteps {
   void set_gravity(bool on);
   void set_gyroscopic(bool on) { gyroscopic_ = on; }
 
-  void hash_state(StateHash& hash) const;
+  void visit_state(StateArchive& archive);
 
  private:
   friend class PhysicsWorld;

@@ -11,6 +11,10 @@ struct ContactReport {
   Vector3d normal_W = Vector3d::Zero();  ///< out of parts[1], into parts[0]
   double depth_m = 0;
   Vector3d force_W_N = Vector3d::Zero();  ///< on parts[0]: normal force and friction
+  template <typename Archive>
+  void visit_state(Archive& archive) {
+    archive(parts, position_W, normal_W, depth_m, force_W_N);
+  }
 };
 
 }  // namespace sim

@@ -1,10 +1,12 @@
 #include "sim/physics/joint.hpp"
 
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "sim/physics/ode_math.hpp"
 #include "sim/physics/physics_world.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace sim {
 namespace {
@@ -18,8 +20,10 @@ dJointType kind_of(const std::string& type) {
   throw std::invalid_argument("unknown type of joint '" + type + "'");
 }
 
-int axes_of(dJointType kind) {
+int axes_of(dJointType kind, bool ball_motor) {
   switch (kind) {
+    case dJointTypeBall:
+      return ball_motor ? 3 : 0;
     case dJointTypeHinge:
     case dJointTypeSlider:
       return 1;
@@ -29,6 +33,17 @@ int axes_of(dJointType kind) {
     default:
       return 0;
   }
+}
+
+/// All axes of a ball are configured alike.
+const JointAxisConfig& axis_config(const JointConfig& config, int axis) {
+  return axis == 0 || config.type == "ball" ? config.axis1 : config.axis2;
+}
+
+/// Where its axes are: ODE does not measure that of a motor with axes of ours, and needs it for the stops.
+void tell_ball_angles(dJointID motor, double sign, std::span<const double> position) {
+  for (int axis = 0; motor != nullptr && axis < dJointGetAMotorNumAxes(motor); ++axis)
+    dJointSetAMotorAngle(motor, axis, sign * position[static_cast<std::size_t>(axis)]);
 }
 
 /// ODE's frame of a body, at its centre of mass.
@@ -48,7 +63,7 @@ void set_ode_pose(dBodyID body, const Vector3d& p_WC, const dQuaternion q_WC) {
 
 Joint::Joint(dWorldID world, std::string name, const JointConfig& config, dBodyID first, dBodyID second,
              const Pose& X_WV)
-    : name_(std::move(name)), type_(config.type), kind_(kind_of(config.type)), axes_(axes_of(kind_)) {
+    : name_(std::move(name)), type_(config.type), kind_(kind_of(config.type)), axes_(axes_of(kind_, config.motor)) {
   // ODE gets the moving body first: with the world first it would turn some signs around, but not all.
   sign_ = first != nullptr && second != nullptr ? -1 : 1;
   if (first == nullptr) std::swap(first, second);
@@ -57,8 +72,7 @@ Joint::Joint(dWorldID world, std::string name, const JointConfig& config, dBodyI
   const Pose X_WC = ode_pose(loaded_);
   p_CA_C_ = X_WC.inverse() * (X_WV * config.anchor_m);
   if (second == nullptr) world_side_ = std::make_unique<WorldSide>(WorldSide{config, X_WV, X_WC});
-  if (axes_ > 0) configure_axis(config.axis1, 0);
-  if (axes_ > 1) configure_axis(config.axis2, 1);
+  for (int axis = 0; axis < axes_; ++axis) configure_axis(axis_config(config, axis), axis);
   for (int axis = 0; axis < axes_; ++axis) wrapped_[axis] = wrapped_position(axis);
 }
 
@@ -75,6 +89,7 @@ void Joint::create(dWorldID world, const JointConfig& config, const Pose& X_WV, 
     dJointSetFixed(attach(dJointCreateFixed(world, nullptr)));
   } else if (kind_ == dJointTypeBall) {
     dJointSetBallAnchor(attach(dJointCreateBall(world, nullptr)), anchor.x(), anchor.y(), anchor.z());
+    if (config.motor) create_ball_motor(world, X_WV, first, second);
   } else if (kind_ == dJointTypeHinge) {
     const dJointID joint = attach(dJointCreateHinge(world, nullptr));
     dJointSetHingeAnchor(joint, anchor.x(), anchor.y(), anchor.z());
@@ -92,6 +107,32 @@ void Joint::create(dWorldID world, const JointConfig& config, const Pose& X_WV, 
     dJointSetUniversalAxis1(joint, axis1.x(), axis1.y(), axis1.z());
     dJointSetUniversalAxis2(joint, axis2.x(), axis2.y(), axis2.z());
   }
+}
+
+/// An angular motor whose axes the first body takes along; ODE cannot measure its angles, so each step tells it.
+void Joint::create_ball_motor(dWorldID world, const Pose& X_WV, dBodyID first, dBodyID second) {
+  const dJointID motor = dJointCreateAMotor(world, nullptr);
+  ball_motor_.reset(motor);
+  dJointAttach(motor, first, second);
+  dJointSetAMotorMode(motor, dAMotorUser);
+  dJointSetAMotorNumAxes(motor, most_axes);
+  const int of_first_body = second != nullptr ? 1 : 0;
+  for (int axis = 0; axis < most_axes; ++axis) {
+    const Vector3d along = X_WV.linear().col(axis);
+    dJointSetAMotorAxis(motor, axis, of_first_body, along.x(), along.y(), along.z());
+  }
+  const Matrix3d R_WF = second != nullptr ? Matrix3d(ode_pose(first).linear()) : Matrix3d(Matrix3d::Identity());
+  R_F_axes_ = R_WF.transpose() * X_WV.linear();
+  R_FS_ = R_WF.transpose() * ode_pose(second != nullptr ? second : first).linear();
+}
+
+/// How the second body has turned on the first since the joint was made: axis times angle, along the ball's axes.
+Vector3d Joint::rotation_of_ball() const {
+  const dBodyID first = dJointGetBody(ode_.get(), 0), second = dJointGetBody(ode_.get(), 1);
+  const Matrix3d R_WF = second != nullptr ? Matrix3d(ode_pose(first).linear()) : Matrix3d(Matrix3d::Identity());
+  const Matrix3d R_WS = ode_pose(second != nullptr ? second : first).linear();
+  const Eigen::AngleAxisd turned(Matrix3d(R_WF.transpose() * R_WS * R_FS_.transpose()));
+  return R_F_axes_.transpose() * (turned.angle() * turned.axis());
 }
 
 void Joint::configure_axis(const JointAxisConfig& config, int axis) {
@@ -138,6 +179,9 @@ void Joint::set_parameter(int parameter, double value, int axis) {
       return dJointSetHinge2Param(ode_.get(), parameter, value);
     case dJointTypeUniversal:
       return dJointSetUniversalParam(ode_.get(), parameter, value);
+    case dJointTypeBall:
+      if (ball_motor_) dJointSetAMotorParam(ball_motor_.get(), parameter, value);
+      return;
     default:
       return;
   }
@@ -146,7 +190,7 @@ void Joint::set_parameter(int parameter, double value, int axis) {
 int Joint::max_rows() const {
   switch (kind_) {
     case dJointTypeBall:
-      return 3;
+      return ball_motor_ ? 6 : 3;
     default:
       return 6;
   }
@@ -162,6 +206,13 @@ double Joint::velocity(int axis) const {
       return sign_ * (axis == 0 ? dJointGetHinge2Angle1Rate(ode_.get()) : dJointGetHinge2Angle2Rate(ode_.get()));
     case dJointTypeUniversal:
       return sign_ * (axis == 0 ? dJointGetUniversalAngle1Rate(ode_.get()) : dJointGetUniversalAngle2Rate(ode_.get()));
+    case dJointTypeBall: {
+      if (!ball_motor_) return 0;
+      const dBodyID first = dJointGetBody(ode_.get(), 0), second = dJointGetBody(ode_.get(), 1);
+      Vector3d w_W = to_eigen(dBodyGetAngularVel(first));
+      if (second != nullptr) w_W -= to_eigen(dBodyGetAngularVel(second));
+      return sign_ * w_W.dot(axis_W(axis));
+    }
     default:
       return 0;
   }
@@ -177,6 +228,8 @@ double Joint::wrapped_position(int axis) const {
       return axis == 0 ? sign_ * dJointGetHinge2Angle1(ode_.get()) : 0;
     case dJointTypeUniversal:
       return sign_ * (axis == 0 ? dJointGetUniversalAngle1(ode_.get()) : dJointGetUniversalAngle2(ode_.get()));
+    case dJointTypeBall:
+      return position_[axis];
     default:
       return 0;
   }
@@ -185,6 +238,12 @@ double Joint::wrapped_position(int axis) const {
 void Joint::update_position(double step_s) {
   if (kind_ == dJointTypeSlider) {
     position_[0] = wrapped_position(0);
+    return;
+  }
+  if (kind_ == dJointTypeBall) {
+    const Vector3d rotation = rotation_of_ball();
+    for (int axis = 0; axis < axes_; ++axis) position_[axis] = rotation[axis];
+    tell_ball_angles(ball_motor_.get(), sign_, position_);
     return;
   }
   for (int axis = 0; axis < axes_; ++axis) {
@@ -226,6 +285,9 @@ void Joint::add_effort(double effort, int axis) {
       return dJointAddHinge2Torques(ode_.get(), torque1, torque2);
     case dJointTypeUniversal:
       return dJointAddUniversalTorques(ode_.get(), torque1, torque2);
+    case dJointTypeBall:
+      if (ball_motor_) dJointAddAMotorTorques(ball_motor_.get(), torque1, torque2, axis == 2 ? sign_ * effort : 0);
+      return;
     default:
       return;
   }
@@ -242,6 +304,8 @@ double Joint::get_parameter(int parameter, int axis) const {
       return dJointGetHinge2Param(ode_.get(), parameter);
     case dJointTypeUniversal:
       return dJointGetUniversalParam(ode_.get(), parameter);
+    case dJointTypeBall:
+      return ball_motor_ ? dJointGetAMotorParam(ball_motor_.get(), parameter) : 0;
     default:
       return 0;
   }
@@ -257,14 +321,21 @@ Vector3d Joint::axis_W(int axis) const {
     axis == 0 ? dJointGetHinge2Axis1(ode_.get(), out) : dJointGetHinge2Axis2(ode_.get(), out);
   else if (kind_ == dJointTypeUniversal)
     axis == 0 ? dJointGetUniversalAxis1(ode_.get(), out) : dJointGetUniversalAxis2(ode_.get(), out);
+  else if (ball_motor_)
+    dJointGetAMotorAxis(ball_motor_.get(), axis, out);
   return to_eigen(out);
 }
 
 void Joint::measure_load() {
   if (load_) return;
   load_ = std::make_unique<Load>();
-  dJointSetFeedback(ode_.get(), &load_->feedback);
+  ask_for_load();
   measured_joints_->push_back(this);
+}
+
+void Joint::ask_for_load() {
+  dJointSetFeedback(ode_.get(), &load_->feedback);
+  if (ball_motor_) dJointSetFeedback(ball_motor_.get(), &load_->motor_feedback);
 }
 
 void Joint::note_before_step() {
@@ -300,12 +371,17 @@ void Joint::note_load() {
   const bool first = world_side_ != nullptr;
   load.force_W_N = to_eigen(first ? load.feedback.f1 : load.feedback.f2);
   load.torque_W_Nm = to_eigen(first ? load.feedback.t1 : load.feedback.t2) - load.p_CA_W.cross(load.force_W_N);
+  if (ball_motor_) load.torque_W_Nm += to_eigen(first ? load.motor_feedback.t1 : load.motor_feedback.t2);
   for (int axis = 0; axis < axes_; ++axis) {
     const Vector3d beside_W = load.beside[axis] * load.axis_W[axis];
     if (kind_ == dJointTypeSlider) load.force_W_N += beside_W;
     load.torque_W_Nm += kind_ == dJointTypeSlider ? Vector3d(load.p_AM_W.cross(beside_W)) : beside_W;
   }
   const Vector3d& along = kind_ == dJointTypeSlider ? load.force_W_N : load.torque_W_Nm;
+  if (kind_ == dJointTypeBall) {
+    for (int axis = 0; axis < axes_; ++axis) load.effort[axis] = along.dot(load.axis_W[axis]);
+    return;
+  }
   const Vector3d &a = load.axis_W[0], &b = load.axis_W[1];
   load.effort[0] = axes_ > 0 ? along.dot(a) : 0;
   if (axes_ < 2) return;
@@ -323,7 +399,7 @@ void Joint::move_world_side(const Pose& X_move_W) {
   side.X_WV = X_move_W * side.X_WV;
   side.X_WC = X_move_W * side.X_WC;
   constexpr int kept[] = {dParamLoStop, dParamHiStop, dParamVel, dParamFMax};
-  double values[2][4] = {};
+  double values[most_axes][4] = {};
   for (int axis = 0; axis < axes_; ++axis)
     for (int i = 0; i < 4; ++i) values[axis][i] = get_parameter(kept[i], axis);
   const Vector3d p_now = to_eigen(dBodyGetPosition(loaded_));
@@ -334,23 +410,34 @@ void Joint::move_world_side(const Pose& X_move_W) {
   create(dBodyGetWorld(loaded_), side.config, side.X_WV, loaded_, nullptr);
   set_ode_pose(loaded_, p_now, q_now);
   for (int axis = 0; axis < axes_; ++axis) {
-    configure_axis(axis == 0 ? side.config.axis1 : side.config.axis2, axis);
+    configure_axis(axis_config(side.config, axis), axis);
     for (int i = 0; i < 4; ++i) set_parameter(kept[i], values[axis][i], axis);
   }
-  if (load_) dJointSetFeedback(ode_.get(), &load_->feedback);
+  if (load_) ask_for_load();
 }
 
-void Joint::hash_state(StateHash& hash) const {
-  for (int axis = 0; stops_were_set_ && axis < axes_; ++axis) {
-    hash.add(get_parameter(dParamLoStop, axis));
-    hash.add(get_parameter(dParamHiStop, axis));
-  }
+void Joint::visit_state(StateArchive& archive) {
+  archive.unhashed(stops_were_set_);
   for (int axis = 0; axis < axes_; ++axis) {
-    hash.add(position_[axis]);
-    hash.add(wrapped_[axis]);
-    hash.add(motor_velocity_[axis]);
-    hash.add(motor_max_force_[axis]);
+    double low = get_parameter(dParamLoStop, axis), high = get_parameter(dParamHiStop, axis);
+    if (stops_were_set_)
+      archive(low, high);
+    else
+      archive.unhashed(low, high);
+    archive(position_[axis], wrapped_[axis], motor_velocity_[axis], motor_max_force_[axis]);
+    if (!archive.restoring()) continue;
+    // ODE moves the one stop when the other would come to lie beyond it.
+    set_parameter(dParamLoStop, low, axis);
+    set_parameter(dParamHiStop, high, axis);
+    set_parameter(dParamLoStop, low, axis);
+    set_parameter(dParamVel, sign_ * motor_velocity_[axis], axis);
+    set_parameter(dParamFMax, motor_max_force_[axis], axis);
   }
+  if (archive.restoring()) tell_ball_angles(ball_motor_.get(), sign_, position_);
+  bool measured = load_ != nullptr;
+  archive.unhashed(measured);
+  if (measured) measure_load();
+  if (load_) archive.unhashed(load_->added, load_->force_W_N, load_->torque_W_Nm, load_->effort);
 }
 
 }  // namespace sim

@@ -9,16 +9,18 @@
 
 #include "sim/math.hpp"
 #include "sim/physics/physics_config.hpp"
-#include "sim/state_hash.hpp"
 
 namespace sim {
+
+class StateArchive;
 
 struct JointDeleter {
   void operator()(dJointID joint) const { dJointDestroy(joint); }
 };
 using JointHandle = std::unique_ptr<dxJoint, JointDeleter>;
 
-/// One ODE joint.  Axis 0 is the first (or only) axis, axis 1 the second of hinge2 and universal.
+/// One ODE joint.  Axis 0 is the first (or only) axis, axis 1 the second of hinge2 and universal.  A ball with a motor
+/// has three: x, y and z of the vehicle's frame when the joint was made; the first body takes them along.
 ///
 /// Signs: a joint counts how its second body moves relative to its first, right-handed about (or along) the axis: a
 /// wheel that is the second body, with axis +y, rolls forward at positive speed.  A joint to the world or to a fixed
@@ -27,10 +29,11 @@ class Joint {
  public:
   const std::string& name() const { return name_; }  ///< such as `rover1/left`
   const std::string& type() const { return type_; }
-  int axes() const { return axes_; }  ///< 0 fixed and ball, 1 hinge and slider, 2 hinge2 and universal
+  /// 0 fixed, and ball without a motor; 1 hinge and slider; 2 hinge2 and universal; 3 ball with a motor.
+  int axes() const { return axes_; }
 
   /// Angle since the joint was made, not wrapped (rad), or position of a slider (m).  Hinge2's second axis is a
-  /// free wheel: its angle is summed from its rate.
+  /// free wheel: its angle is summed from its rate.  Of a ball: components of the rotation vector, of up to pi.
   double position(int axis = 0) const { return position_[axis]; }
   double velocity(int axis = 0) const;
   void set_motor(double velocity, double max_force, int axis = 0);
@@ -52,21 +55,24 @@ class Joint {
   /// Of that, what motor, stops and add_effort applied about or along an axis, in the joint's sign.
   double effort(int axis = 0) const { return load_ ? load_->effort[axis] : 0; }
 
-  void hash_state(StateHash& hash) const;
+  /// Restoring needs a joint that was made, and moved by move_group, as the one that was saved.
+  void visit_state(StateArchive& archive);
 
  private:
   friend class PhysicsWorld;
+  static constexpr int most_axes = 3;
   struct Load {
     dJointFeedback feedback = {};
+    dJointFeedback motor_feedback = {};  // of a ball's motor
     // At the start of the step: the load acts at the poses that the bodies have then.
     Vector3d p_CA_W = Vector3d::Zero();  // from the centre of mass of the loaded body to the anchor
     Vector3d p_AM_W = Vector3d::Zero();  // to where ODE lets the added force of a slider act
-    Vector3d axis_W[2] = {Vector3d::Zero(), Vector3d::Zero()};
-    double added[2] = {0, 0};   // by add_effort
-    double beside[2] = {0, 0};  // not by the solver's rows: added, and a motor at a stop
+    Vector3d axis_W[most_axes] = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
+    double added[most_axes] = {};   // by add_effort
+    double beside[most_axes] = {};  // not by the solver's rows: added, and a motor at a stop
     Vector3d force_W_N = Vector3d::Zero();
     Vector3d torque_W_Nm = Vector3d::Zero();
-    double effort[2] = {0, 0};
+    double effort[most_axes] = {};
   };
   /// Of a joint to the world: how it was made, so that it can be made again elsewhere.
   struct WorldSide {
@@ -77,6 +83,8 @@ class Joint {
   /// Attaches at the poses the bodies have now.  `second` null: the world.
   Joint(dWorldID world, std::string name, const JointConfig& config, dBodyID first, dBodyID second, const Pose& X_WV);
   void create(dWorldID world, const JointConfig& config, const Pose& X_WV, dBodyID first, dBodyID second);
+  void create_ball_motor(dWorldID world, const Pose& X_WV, dBodyID first, dBodyID second);
+  Vector3d rotation_of_ball() const;
   void configure_axis(const JointAxisConfig& config, int axis);
   void place_stops(std::optional<double> low, std::optional<double> high, int axis);
   void set_parameter(int parameter, double value, int axis);
@@ -84,6 +92,7 @@ class Joint {
   double wrapped_position(int axis) const;
   double get_parameter(int parameter, int axis) const;
   Vector3d axis_W(int axis) const;
+  void ask_for_load();
   void note_before_step();
   void note_load();
   double motor_at_stop(int axis) const;
@@ -93,13 +102,16 @@ class Joint {
   std::string name_;
   std::string type_;
   JointHandle ode_;
+  JointHandle ball_motor_;                    // ODE's angular motor
+  Matrix3d R_F_axes_ = Matrix3d::Identity();  // the ball's axes in the frame of its first body (or the world)
+  Matrix3d R_FS_ = Matrix3d::Identity();      // of its second body, when the joint was made
   dJointType kind_ = dJointTypeHinge;
   int axes_ = 0;
   double sign_ = 1;  // ODE counts the first body relative to the second
-  double position_[2] = {0, 0};
-  double wrapped_[2] = {0, 0};
-  double motor_velocity_[2] = {0, 0};
-  double motor_max_force_[2] = {0, 0};
+  double position_[most_axes] = {};
+  double wrapped_[most_axes] = {};
+  double motor_velocity_[most_axes] = {};
+  double motor_max_force_[most_axes] = {};
   bool stops_were_set_ = false;
   dBodyID loaded_ = nullptr;                        // whose load is measured
   Vector3d p_CA_C_ = Vector3d::Zero();              // the anchor in ODE's frame of the loaded body

@@ -210,6 +210,9 @@ void JointConfig::read(ParamReader& in) {
   in.read("anchor_m", anchor_m, any_number(), "point of the joint in the frame of the vehicle");
   axis1.read(in);
   in.read("axis2", axis2, "second axis of hinge2 (the wheel's) and universal: the same keys");
+  in.read("motor", motor, "ball: it has motor and stops about x, y and z of the vehicle's frame; others have theirs");
+  if (!in.describing() && motor && type != "ball")
+    in.error("motor", "'motor' is for a ball; the axes of a " + type + " have theirs without it");
   if (!in.describing()) check_axes(in, *this);
 }
 

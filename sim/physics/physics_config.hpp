@@ -113,8 +113,9 @@ struct JointConfig {
   std::string type = "hinge";            ///< fixed, ball, hinge, hinge2, universal, slider
   std::vector<std::string> bodies;       ///< two names; the second may be `world`
   Vector3d anchor_m = Vector3d::Zero();  ///< in the vehicle frame
-  JointAxisConfig axis1;
-  JointAxisConfig axis2;  ///< hinge2 and universal
+  JointAxisConfig axis1;                 ///< of a ball with a motor: of all its axes
+  JointAxisConfig axis2;                 ///< hinge2 and universal
+  bool motor = false;                    ///< ball: it has one, about x, y and z of the vehicle frame
 
   void read(ParamReader& in);
 };

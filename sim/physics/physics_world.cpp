@@ -7,6 +7,7 @@
 
 #include "sim/physics/ode_math.hpp"
 #include "sim/physics/physics_world_impl.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace sim {
 
@@ -25,6 +26,13 @@ unsigned long step_seed(std::uint64_t seed, std::int64_t step_number) {
 PhysicsWorld::PhysicsWorld(const PhysicsConfig& config, const std::vector<MaterialConfig>& materials,
                            const std::vector<ContactConfig>& contacts, const std::vector<std::string>& categories,
                            std::uint64_t seed) {
+  start_again(config, materials, contacts, categories, seed);
+}
+
+void PhysicsWorld::start_again(const PhysicsConfig& config, const std::vector<MaterialConfig>& materials,
+                               const std::vector<ContactConfig>& contacts, const std::vector<std::string>& categories,
+                               std::uint64_t seed) {
+  forget();
   start_ode();
   impl_ = std::make_unique<Impl>(config, ContactTable(materials, contacts), seed);
   add_categories(categories);
@@ -43,10 +51,35 @@ PhysicsWorld::PhysicsWorld(const PhysicsConfig& config, const std::vector<Materi
 }
 
 PhysicsWorld::~PhysicsWorld() {
-  if (!impl_ || !impl_->broken) return;
+  forget();
+}
+
+void PhysicsWorld::forget() {
+  if (!impl_ || !impl_->broken) return impl_.reset();
   // A world that was left in mid-step trips ODE's asserts when it is destroyed.  It stays, where leak checkers see it.
   static std::vector<Impl*> left_behind;
   left_behind.push_back(impl_.release());
+}
+
+bool PhysicsWorld::anchored(int group) const {
+  const std::vector<int>& joints = impl_->group(group).joints;
+  return std::any_of(joints.begin(), joints.end(), [&](int number) {
+    return impl_->joints[static_cast<std::size_t>(number)]->world_side_ != nullptr;
+  });
+}
+
+void PhysicsWorld::visit_state(StateArchive& archive) {
+  double gravity = gravity_mps2();
+  archive(gravity);
+  if (archive.restoring()) {
+    if (!std::isfinite(gravity)) archive.fail("gravity that is not finite");
+    set_gravity(gravity);
+    ++impl_->moves.moving;
+  }
+  archive.unhashed(impl_->contact_reports, impl_->counts, impl_->quick_steps);
+  const auto known = [&](int part) { return part >= 0 && part < static_cast<int>(impl_->parts.size()); };
+  for (const ContactReport& contact : impl_->contact_reports)
+    if (!known(contact.parts[0]) || !known(contact.parts[1])) archive.fail("a contact of a part that is not there");
 }
 
 void PhysicsWorld::add_surfaces(const std::vector<MaterialConfig>& materials,
@@ -259,16 +292,6 @@ std::uint32_t PhysicsWorld::Impl::category_bits(const std::vector<std::string>& 
   std::uint32_t bits = 0;
   for (const std::string& name : names) bits |= category_bit(name);
   return bits;
-}
-
-void PhysicsWorld::hash_state(StateHash& hash) const {
-  constexpr int removed = -1;
-  const auto add_all = [&](const auto& all) {
-    for (const auto& each : all) each ? each->hash_state(hash) : hash.add(removed);
-  };
-  add_all(impl_->bodies);
-  add_all(impl_->joints);
-  if (impl_->gravity_mps2 != impl_->config.gravity_mps2) hash.add(impl_->gravity_mps2);
 }
 
 }  // namespace sim

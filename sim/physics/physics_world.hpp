@@ -17,9 +17,10 @@
 #include "sim/physics/motion.hpp"
 #include "sim/physics/physics_config.hpp"
 #include "sim/scene/scene.hpp"
-#include "sim/state_hash.hpp"
 
 namespace sim {
+
+class StateArchive;
 
 /// A body became NaN or flew off, or ODE gave up.  The world cannot be stepped any further.
 class PhysicsFault : public std::runtime_error {
@@ -44,6 +45,10 @@ struct StepCounts {
   int contacts = 0;
   int largest_island_rows = 0;
   bool quick = false;  ///< QuickStep was used
+  template <typename Archive>
+  void visit_state(Archive& archive) {
+    archive(contacts, largest_island_rows, quick);
+  }
 };
 
 /// Rigid bodies, joints and contacts, stepped by ODE.  Knows no vehicle and no device: a vehicle or an object is a
@@ -130,10 +135,17 @@ class PhysicsWorld {
   /// Bit of a category name.  Throws std::out_of_range.
   std::uint32_t category_bit(const std::string& name) const;
   double step_s() const;
-  /// Bodies in order: position, rotation, velocities; joints: positions and motor targets.  Gravity, when it was set.
-  void hash_state(StateHash& hash) const;
+  /// A joint of the group holds on to the world.
+  bool anchored(int group) const;
+  /// What is neither a body's nor a joint's: gravity, contacts of the last step, counts.
+  void visit_state(StateArchive& archive);
+  /// Becomes another world of the same place in memory.  What was in it is gone.
+  void start_again(const PhysicsConfig& config, const std::vector<MaterialConfig>& materials,
+                   const std::vector<ContactConfig>& contacts, const std::vector<std::string>& categories,
+                   std::uint64_t seed);
 
  private:
+  void forget();
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -98,13 +98,4 @@ void Noise::advance(double dt_s, Random& random) {
   started_ = true;
 }
 
-void Noise::hash_state(StateHash& hash) const {
-  hash.add(started_);
-  for (const Slow& slow : slow_) {
-    hash.add(slow.bias);
-    hash.add(slow.walk);
-    hash.add(slow.gauss_markov);
-  }
-}
-
 }  // namespace sim

@@ -7,7 +7,6 @@
 #include "sim/config/param_reader.hpp"
 #include "sim/random/random.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/state_hash.hpp"
 
 namespace sim {
 
@@ -59,7 +58,6 @@ class Noise {
     archive.expect_count(slow_.size(), "slow errors of a quantity");
     for (Slow& slow : slow_) archive(slow.bias, slow.walk, slow.gauss_markov);
   }
-  void hash_state(StateHash& hash) const;
 
  private:
   struct Slow {

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "sim/state/state_archive.hpp"
+
 namespace sim {
 
 /// 64-bit FNV-1a of a text: the same on every machine.
@@ -27,6 +29,9 @@ class Random {
   double gaussian();
   /// Uniform integer in [0, n).  n > 0.
   std::uint32_t integer_below(std::uint32_t n);
+
+  /// Where it is within a step.  Who begins a step before each draw need not visit it.
+  void visit_state(StateArchive& archive) { archive(counter_, block_, used_); }
 
  private:
   void refill();

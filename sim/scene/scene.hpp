@@ -38,6 +38,10 @@ struct RayHit {
   int material = 0;                      ///< number in PhysicsWorld::material(), where the ray hit the part
 
   bool hit() const { return part >= 0; }
+  template <typename Archive>
+  void visit_state(Archive& archive) {
+    archive(range_m, normal_W, part, material);
+  }
 };
 
 /// Rays in the xy-plane of the sensor frame S, the first at `first_angle_rad` from +x, counter-clockwise about +z.

@@ -149,11 +149,4 @@ void Actor::step(World& world, Time now) {
   body_->move_to(X_WB_, to_seconds(world.step_time()));
 }
 
-void Actor::hash_state(StateHash& hash) const {
-  hash.add(static_cast<std::int64_t>(since_.count()));
-  hash.add(from_);
-  hash.add(direction_);
-  hash.add(moving_);
-}
-
 }  // namespace sim

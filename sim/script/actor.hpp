@@ -5,7 +5,7 @@
 
 #include "sim/config/param_reader.hpp"
 #include "sim/script/path.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 #include "sim/time.hpp"
 
 namespace sim {
@@ -56,7 +56,7 @@ class Actor {
   void place(World& world);
   /// Moves its object so that it is in its place at the end of the step that begins now.
   void step(World& world, Time now);
-  void hash_state(StateHash& hash) const;
+  void visit_state(StateArchive& archive) { archive(since_, from_, direction_, moving_, X_WB_); }
 
  private:
   void find_body(World& world);

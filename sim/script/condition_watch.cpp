@@ -30,9 +30,7 @@ class VehicleWatch : public ConditionWatch {
     return count;
   }
 
-  void hash_state(StateHash& hash) const final {
-    for (const State state : states_) hash.add(static_cast<int>(state));
-  }
+  void visit_state(StateArchive& archive) final { archive(states_); }
 
  protected:
   enum State : signed char { unknown, no, yes };
@@ -82,7 +80,11 @@ class MessageWatch final : public ConditionWatch {
     while (mailbox_->take()) ++count;
     return count;
   }
-  void hash_state(StateHash&) const override {}  // what is in the mailbox is outside of the world
+  void visit_state(StateArchive& archive) override {
+    std::vector<Message> unread = mailbox_->unread();
+    archive.unhashed(unread);
+    if (archive.restoring()) mailbox_->set_unread(std::move(unread));
+  }
 
  private:
   std::unique_ptr<Mailbox> mailbox_;

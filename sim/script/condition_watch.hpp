@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "sim/script/event_config.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace sim {
 
@@ -16,7 +16,7 @@ class ConditionWatch {
   virtual ~ConditionWatch() = default;
   /// How often it became true since the last call; called once in each step.
   virtual int count_new(World& world) = 0;
-  virtual void hash_state(StateHash& hash) const = 0;
+  virtual void visit_state(StateArchive& archive) = 0;
 };
 
 /// Null when there is nothing to watch: no condition, or one of another event.

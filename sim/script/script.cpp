@@ -182,22 +182,22 @@ void Script::run_now(const ConfigNode& action, Diagnostics& diagnostics) {
   carry_out(actions, {"", live_random_, &diagnostics, 0});
 }
 
-void Script::hash_state(StateHash& hash) const {
-  for (const Actor& actor : actors_) actor.hash_state(hash);
+void Script::EventState::visit_state(StateArchive& archive) {
+  archive(fired, planned);
+  archive.unhashed(next, random, random_step, told_of_cut);
+}
+
+void Script::visit_state(StateArchive& archive) {
+  for (Actor& actor : actors_) archive(actor);
   for (std::size_t i = 0; i < events_.size(); ++i) {
-    hash.add(events_[i].fired);
-    hash.add(events_[i].planned);
-    if (watches_[i]) watches_[i]->hash_state(hash);
+    archive(events_[i]);
+    if (watches_[i]) archive(*watches_[i]);
   }
-  for (const auto& [due, event] : delayed_) {
-    hash.add(static_cast<std::int64_t>(due.first.count()));
-    hash.add(static_cast<std::uint64_t>(event));
-  }
-  for (const auto& [name, record] : records_) {
-    hash.add(std::string_view(name));
-    hash.add(record.finish_s.value_or(-1.0));
-    hash.add(record.speeding_steps);
-  }
+  archive(delayed_, records_);
+  archive.unhashed(next_delayed_, live_random_, live_random_step_, log_lines_);
+  if (!archive.restoring()) return;
+  for (const auto& [due, event] : delayed_)
+    if (event >= events_.size()) archive.fail("a delayed event that is not there");
 }
 
 }  // namespace sim

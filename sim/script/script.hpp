@@ -20,6 +20,7 @@ struct ZoneRecord {
   std::optional<double> finish_s;   ///< when it first was in a finish zone
   std::int64_t speeding_steps = 0;  ///< steps above the limit of a zone it was in
   double speeding_s = 0;
+  void visit_state(StateArchive& archive) { archive(finish_s, speeding_steps, speeding_s); }
 };
 
 /// Zones, actors and events of a world: stage 4 of a step, at the time of the step's start.
@@ -37,7 +38,7 @@ class Script {
   const std::map<std::string, ZoneRecord>& zone_records() const { return records_; }
   /// The world file has none of it.
   bool empty() const;
-  void hash_state(StateHash& hash) const;
+  void visit_state(StateArchive& archive);
 
  private:
   struct EventState {
@@ -53,6 +54,7 @@ class Script {
     std::optional<Time> next;        ///< the next of its times
     std::vector<int> fired_by_this;  ///< events that wait for this one
     bool told_of_cut = false;
+    void visit_state(StateArchive& archive);
   };
   /// Where the failures of an action go, and its random choices come from.
   struct Doing {

@@ -29,12 +29,7 @@ class TouchWatch final : public ConditionWatch {
     return static_cast<int>(count);
   }
 
-  void hash_state(StateHash& hash) const override {
-    for (const auto& [a, b] : touching_) {
-      hash.add(a);
-      hash.add(b);
-    }
-  }
+  void visit_state(StateArchive& archive) override { archive(touching_); }
 
  private:
   void choose_groups(World& world) {

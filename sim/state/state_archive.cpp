@@ -12,12 +12,13 @@ constexpr std::size_t most_name_bytes = 300;
 
 void StateArchive::section(std::string_view name) {
   end_part();
-  part_ = name;
   if (hashing()) {
+    if (keeps_parts_) part_ = name;
     part_hash_ = StateHash();
-    in_part_ = true;
+    in_part_ = had_parts_ = true;
     return;
   }
+  part_ = name;
   std::string text(name);
   visit(text);
   std::uint64_t length = 0;  // known at the end of the part
@@ -48,7 +49,7 @@ void StateArchive::end_part() {
   if (!in_part_) return;
   in_part_ = false;
   if (hashing()) {
-    parts_.push_back({part_, part_hash_.value()});
+    if (keeps_parts_) parts_.push_back({part_, part_hash_.value()});
     total_.add(part_hash_.value());
   } else if (saving()) {
     const std::uint64_t length = output_.size() - part_begin_;

@@ -9,6 +9,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -47,8 +48,19 @@ class StateArchive {
  public:
   /// Hashes; result in hash() and parts().
   static StateArchive hasher() { return StateArchive(Purpose::hash); }
+  /// The same without parts(), for who wants to know hash() only.
+  static StateArchive quick_hasher() {
+    StateArchive archive(Purpose::hash);
+    archive.keeps_parts_ = false;
+    return archive;
+  }
   /// Saves; result in take_bytes().
-  static StateArchive saver() { return StateArchive(Purpose::save); }
+  /// `about_bytes`: how much there may be, so that memory is asked for once.
+  static StateArchive saver(std::size_t about_bytes = 0) {
+    StateArchive archive(Purpose::save);
+    archive.output_.reserve(about_bytes);
+    return archive;
+  }
   /// Restores from bytes that outlive the archive.
   static StateArchive restorer(std::span<const std::byte> bytes) {
     StateArchive archive(Purpose::restore);
@@ -83,14 +95,15 @@ class StateArchive {
   /// Of all parts, and of what was visited outside of them.
   std::uint64_t hash() const {
     StateHash all = total_;
-    if (in_part_ || parts_.empty()) all.add(part_hash_.value());
+    if (in_part_ || !had_parts_) all.add(part_hash_.value());
     return all.value();
   }
   /// One for each section, in order.
   const std::vector<PartHash>& parts() const { return parts_; }
-  /// For classes that still have hash_state().
-  StateHash& part_hash() { return part_hash_; }
   std::vector<std::byte> take_bytes() { return std::move(output_); }
+
+  /// That were not read yet, of the part or the snapshot.
+  std::size_t bytes_left() const { return left(); }
 
   /// Bits as they are.
   void raw(void* data, std::size_t size) {
@@ -128,6 +141,15 @@ class StateArchive {
   }
   template <typename T>
   void scalar(T& value) {
+    if constexpr (std::is_same_v<T, bool>) {
+      if (restoring()) {
+        unsigned char byte = 0;
+        raw(&byte, 1);
+        if (byte > 1) fail("a flag that is neither true nor false");
+        value = byte == 1;
+        return;
+      }
+    }
     if (purpose_ != Purpose::hash) {
       raw(&value, sizeof value);
       return;
@@ -204,6 +226,20 @@ class StateArchive {
     }
     if (there) visit(*value);
   }
+  template <typename T, typename Less>
+  void visit_class(std::set<T, Less>& values) {
+    const std::size_t size = count(values.size(), 1);
+    if (!restoring()) {
+      for (T value : values) visit(value);
+      return;
+    }
+    values.clear();
+    for (std::size_t i = 0; i < size; ++i) {
+      T value{};
+      visit(value);
+      values.insert(std::move(value));
+    }
+  }
   template <typename Key, typename T, typename Less>
   void visit_class(std::map<Key, T, Less>& values) {
     const std::size_t size = count(values.size(), 1);
@@ -237,6 +273,8 @@ class StateArchive {
 
   Purpose purpose_;
   StateHash total_, part_hash_;
+  bool keeps_parts_ = true;
+  bool had_parts_ = false;
   std::vector<PartHash> parts_;
   std::string part_ = "the begin";
   std::vector<std::byte> output_;

@@ -6,6 +6,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_journal.hpp"
 
 namespace sim {
 
@@ -80,6 +81,12 @@ NamedDevice device_of(const WorldConfig& world, const std::string& full_name) {
 }
 
 bool World::change_device(const std::string& full_name, const ConfigNode& values, Diagnostics& diagnostics) {
+  const bool changed = apply_change(full_name, values, diagnostics);
+  if (changed) journal_->device_changed(full_name, values);
+  return changed;
+}
+
+bool World::apply_change(const std::string& full_name, const ConfigNode& values, Diagnostics& diagnostics) {
   MountedDevice* device = find_device(full_name);
   const std::string who = "device '" + shortened(printable(full_name)) + "'";
   if (device == nullptr) {

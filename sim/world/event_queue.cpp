@@ -7,6 +7,10 @@ namespace sim {
 
 void EventQueue::schedule(Event event) {
   event.sequence = next_sequence_++;
+  insert(std::move(event));
+}
+
+void EventQueue::insert(Event event) {
   if (free_slots_.empty()) {
     free_slots_.push_back(events_.size());
     events_.emplace_back();
@@ -54,23 +58,31 @@ void EventQueue::forget_device(int device) {
   if (std::erase_if(heap_, of_device) > 0) std::make_heap(heap_.begin(), heap_.end(), Later());
 }
 
-void EventQueue::hash_state(StateHash& hash) const {
-  // The heap's layout depends on its history; the order of delivery is what counts.
-  std::vector<const Event*> ordered;
+/// The heap's layout depends on its history; the order of delivery is what counts.
+void EventQueue::visit_state(StateArchive& archive) {
+  archive.unhashed(reached_, next_sequence_);
+  if (archive.restoring()) {
+    std::vector<Event> events;
+    archive(events);
+    heap_.clear();
+    slices_.clear();
+    events_.clear();
+    free_slots_.clear();
+    size_ = 0;
+    for (Event& event : events) insert(std::move(event));
+    return;
+  }
+  std::vector<Event*> ordered;
+  ordered.reserve(size_);
   for (const Key& key : heap_) ordered.push_back(&events_[key.slot]);
   for (const auto& [slice, keys] : slices_)
     for (const Key& key : keys) ordered.push_back(&events_[key.slot]);
   std::sort(ordered.begin(), ordered.end(), [](const Event* a, const Event* b) {
     return std::tie(a->due, a->sequence) < std::tie(b->due, b->sequence);
   });
-  hash.add(static_cast<std::uint64_t>(ordered.size()));
-  for (const Event* event : ordered) {
-    hash.add(static_cast<std::int64_t>(event->due.count()));
-    hash.add(event->device);
-    hash.add(event->kind);
-    hash.add(static_cast<std::int64_t>(event->stamp.count()));
-    hash.add_bytes(event->payload.data(), event->payload.size());
-  }
+  auto size = static_cast<std::uint64_t>(ordered.size());  // as archive(std::vector<Event>) has it
+  archive(size);
+  for (Event* event : ordered) archive(*event);
 }
 
 }  // namespace sim

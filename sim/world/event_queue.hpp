@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/bus/bus.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 #include "sim/time.hpp"
 
 namespace sim {
@@ -21,6 +21,11 @@ struct Event {
   int kind = 0;                ///< the receiver's own
   Time stamp{0};               ///< the receiver's own
   Bytes payload;
+
+  void visit_state(StateArchive& archive) {
+    archive(due, device, kind, stamp, payload);
+    archive.unhashed(sequence);
+  }
 };
 
 /// Events in the order of (due, sequence).
@@ -32,9 +37,10 @@ class EventQueue {
   /// Drops what waits for a device that goes.
   void forget_device(int device);
   std::size_t size() const { return size_; }
-  void hash_state(StateHash& hash) const;
+  void visit_state(StateArchive& archive);
 
  private:
+  void insert(Event event);
   /// What is moved about; the events stay where they are.
   struct Key {
     Time due;

@@ -134,8 +134,9 @@ bool load_plugins(ConfigNode& root, const LoadOptions& options, Diagnostics& dia
   return diagnostics.lines().size() == before;
 }
 
-/// The resolved world may be written anywhere: files of meshes and terrain are named by their whole path.
-void make_paths_absolute(ConfigNode& node, bool of_terrain = false) {
+}  // namespace
+
+void make_paths_absolute(ConfigNode& node, bool of_terrain) {
   for (ConfigNode& item : node.items) make_paths_absolute(item);
   for (ConfigNode::Entry& entry : node.entries) {
     const bool path_key = entry.key == "mesh" || (of_terrain && entry.key == "file");
@@ -148,6 +149,8 @@ void make_paths_absolute(ConfigNode& node, bool of_terrain = false) {
     if (!error) entry.value.scalar = path.lexically_normal().string();
   }
 }
+
+namespace {
 
 /// Says once that coefficients do nothing here.
 void warn_of_missing_water(const WorldConfig& world) {

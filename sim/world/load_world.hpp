@@ -28,4 +28,7 @@ LoadedWorld load_world_text(const std::string& text, const std::string& file_nam
 /// The same from a tree, whose errors are at the places that its nodes know.
 LoadedWorld load_world_tree(ConfigNode root, const std::string& file_name, const LoadOptions& options = {});
 
+/// Names files of meshes and terrain by their whole path, so that the tree may be written anywhere.
+void make_paths_absolute(ConfigNode& node, bool of_terrain = false);
+
 }  // namespace sim

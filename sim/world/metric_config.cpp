@@ -51,6 +51,7 @@ const std::vector<MetricKind>& metric_kinds() {
       {"mission_time", MetricType::mission_time, {}, {"when", "vehicle", "position_m", "radius_m"}, {"time_s"}},
       {"collisions", MetricType::collisions, {}, {"vehicle", "with", "from_s"}, {"count", "first_s"}},
       {"messages", MetricType::messages, {"channel"}, {"vehicle", "from_s"}, {"count", "bytes", "first_s"}},
+      {"lean", MetricType::lean, {"vehicle"}, {"from_s"}, {"mean_deg", "rms_deg", "max_deg", "fell_s"}},
   };
   return kinds;
 }

@@ -21,17 +21,18 @@ enum class MetricType {
   mission_time,     ///< when something became true for the first time
   collisions,       ///< contacts that began
   messages,         ///< how many came on a channel
+  lean,             ///< how far a vehicle leans
 };
 
 /// One entry of `metrics:`; gives figures that score the run.
 struct MetricConfig {
   std::string name;
   MetricType type = MetricType::position_error;
-  std::string vehicle;  ///< whose truth counts; empty, where that is allowed: all
-  std::string channel;  ///< of the estimate (shoal.pose_t or shoal.estimate_t), or whose messages are counted
-  double from_s = 0;    ///< what comes before this time does not count
-  int dimensions = 2;   ///< of an error: 2: horizontal, 3
-  std::string device;   ///< modem of the vehicle; empty: all of them
+  std::string vehicle;          ///< whose truth counts; empty, where that is allowed: all
+  std::string channel;          ///< of the estimate (shoal.pose_t or shoal.estimate_t), or whose messages are counted
+  double from_s = 0;            ///< what comes before this time does not count
+  int dimensions = 2;           ///< of an error: 2: horizontal, 3
+  std::string device;           ///< modem of the vehicle; empty: all of them
   std::string metric, against;  ///< bytes_per_metre: position errors with and without the help of messages
   Condition when;               ///< mission_time; kind none: the vehicle is within radius_m of position_m
   Vector3d position_m = Vector3d::Zero();

@@ -289,18 +289,15 @@ void MountedDevice::change(const DeviceConfig& changed, Time now) {
   plan_schedule();
 }
 
-void MountedDevice::hash_state(StateHash& hash) const {
-  hash.add(samples_planned_);
-  hash.add(next_sample_step_);
-  hash.add(static_cast<std::int64_t>(last_sample_.count()));
-  hash.add(static_cast<std::int64_t>(acting_->last_command.count()));
-  hash.add(acting_->safe);
-  faults_.hash_state(hash);
-  if (frozen_)
-    for (const Bytes& payload : *frozen_) hash.add_bytes(payload.data(), payload.size());
-  if (X_WS_before_) hash.add(std::span<const double>(X_WS_before_->matrix().data(), 16));
-  if (built_.sensor) built_.sensor->hash_state(hash);
-  if (built_.actuator) built_.actuator->hash_state(hash);
+void MountedDevice::visit_state(StateArchive& archive) {
+  archive(samples_planned_, next_sample_step_, last_sample_, X_WS_before_, faults_, frozen_, frozen_utime_);
+  archive(acting_->last_command, acting_->safe);
+  if (archive.restoring()) {
+    acting_->effectiveness = faults_.effectiveness();
+    acting_->stuck = faults_.stuck();
+  }
+  if (built_.sensor) built_.sensor->visit_state(archive);
+  if (built_.actuator) built_.actuator->visit_state(archive);
 }
 
 }  // namespace sim

@@ -96,7 +96,7 @@ class MountedDevice {
   /// For tests and tools.
   const Sensor* sensor() const { return built_.sensor.get(); }
   const Actuator* actuator() const { return built_.actuator.get(); }
-  void hash_state(StateHash& hash) const;
+  void visit_state(StateArchive& archive);
 
  private:
   enum EventKind { report_event, command_event, arrival_event };

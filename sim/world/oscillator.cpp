@@ -118,10 +118,10 @@ void Oscillator::advance(std::optional<double> temperature_C) {
   wander_s_ += std::clamp(gained_s, -most_rate * dt_s, most_rate * dt_s);
 }
 
-void Oscillator::hash_state(StateHash& hash) const {
-  for (const double number : {offset_s_, drift_, wander_s_, walk_}) hash.add(number);
-  hash.add(intervals_);
-  hash.add(std::span<const double>(flicker_));
+void Oscillator::visit_state(StateArchive& archive) {
+  archive(offset_s_, drift_, intervals_, wander_s_, walk_);
+  archive.expect_count(flicker_.size(), "parts of the flicker noise of a clock");
+  for (double& part : flicker_) archive(part);
 }
 
 }  // namespace sim

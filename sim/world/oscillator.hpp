@@ -6,7 +6,7 @@
 
 #include "sim/config/param_reader.hpp"
 #include "sim/random/random.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace sim {
 
@@ -49,7 +49,7 @@ class Oscillator {
   /// The next interval of `update_s`, exact but for the flicker processes, which are integrated by the trapezoid.
   /// `temperature_C`: of the water around; nothing: not in water.
   void advance(std::optional<double> temperature_C);
-  void hash_state(StateHash& hash) const;
+  void visit_state(StateArchive& archive);
 
  private:
   ClockConfig config_;

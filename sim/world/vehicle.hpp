@@ -8,7 +8,6 @@
 #include "sim/math.hpp"
 #include "sim/physics/body.hpp"
 #include "sim/physics/joint.hpp"
-#include "sim/state_hash.hpp"
 #include "sim/world/vehicle_clock.hpp"
 #include "sim/world/vehicle_config.hpp"
 
@@ -23,10 +22,9 @@ struct VehicleSystems {
   bool metered = false;   ///< there is a battery to drain
   double drawn_J = 0;     ///< taken since the battery last looked
 
-  void hash_state(StateHash& hash) const {
-    hash.add(estopped);
-    hash.add(powered);
-    hash.add(drawn_J);
+  void visit_state(StateArchive& archive) {
+    archive(estopped, powered, drawn_J);
+    archive.unhashed(metered);  // as it was built
   }
 };
 
@@ -63,6 +61,13 @@ class Vehicle {
   const VehicleClock& clock() const { return clock_; }
   /// Before its devices are added: they hold on to it.
   void start_clock(std::uint64_t seed, Time now) { clock_ = VehicleClock(config_->clock, seed, name_, now); }
+
+  /// Its bodies, joints, systems and clock; devices are parts of their own.
+  void visit_state(StateArchive& archive) {
+    for (const auto& [name, body] : bodies_) body->visit_state(archive);
+    for (const auto& [name, joint] : joints_) joint->visit_state(archive);
+    archive(systems_, clock_);
+  }
 
   void add_body(const std::string& name, Body& body) { bodies_.emplace_back(name, &body); }
   void add_joint(const std::string& name, Joint& joint) { joints_.emplace_back(name, &joint); }

@@ -19,11 +19,13 @@ struct VehicleClock::State {
   struct Node {
     Time at;
     double wander_s;
+    void visit_state(StateArchive& archive) { archive(at, wander_s); }
   };
   /// Of the correction: it holds after a time, and grows from there.
   struct Steer {
     Time after;
     double offset_s, rate;
+    void visit_state(StateArchive& archive) { archive(after, offset_s, rate); }
   };
 
   State(const ClockConfig& config_in, std::uint64_t seed, const std::string& vehicle, Time start_in)
@@ -215,23 +217,14 @@ double VehicleClock::estimated_std_s(Time now) const {
   return std::sqrt(phase + rate * t_s * t_s + white * t_s + walk * std::pow(t_s, 3) / 3);
 }
 
-void VehicleClock::hash_state(StateHash& hash) const {
+void VehicleClock::visit_state(StateArchive& archive) {
   if (!state_) return;
-  const State& state = *state_;
-  state.oscillator.hash_state(hash);
-  hash.add(static_cast<std::int64_t>(state.now.count()));
-  hash.add(static_cast<std::int64_t>(state.nodes.back().at.count()));
-  for (const State::Steer& steer : state.steers) {
-    hash.add(static_cast<std::int64_t>(steer.after.count()));
-    hash.add(steer.offset_s);
-    hash.add(steer.rate);
-  }
-  hash.add(state.first_fix.has_value());
-  if (state.first_fix) hash.add(static_cast<std::int64_t>(state.first_fix->count()));
-  if (state.last_fix) hash.add(static_cast<std::int64_t>(state.last_fix->count()));
-  hash.add(state.learnt_rate);
-  hash.add(state.last_measured_s);
-  hash.add(state.rate_is_unknown);
+  State& s = *state_;
+  archive(s.oscillator, s.now, s.nodes, s.steers, s.forgot_steers, s.first_fix, s.last_fix);
+  archive(s.loop.time_constant_s, s.loop.step_above_s, s.loop.pps_std_s, s.loop.interval_s);
+  archive(s.learnt_rate, s.last_measured_s, s.rate_is_unknown, s.start);
+  if (archive.restoring() && (s.nodes.empty() || (s.forgot_steers && s.steers.empty())))
+    archive.fail("a clock without its past");
 }
 
 }  // namespace sim

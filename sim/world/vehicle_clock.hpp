@@ -58,7 +58,7 @@ class VehicleClock {
   /// fix; see docs/clocks.md for the equation.  0 of a perfect clock.
   double estimated_std_s(Time now) const;
 
-  void hash_state(StateHash& hash) const;
+  void visit_state(StateArchive& archive);
 
   static constexpr Time memory{60'000'000};
 

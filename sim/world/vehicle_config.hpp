@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct VehicleConfig {
   std::vector<BodyConfig> bodies;  ///< the first one carries the vehicle frame
   std::vector<JointConfig> joints;
   std::vector<DeviceConfig> devices;
+  std::shared_ptr<const ConfigNode> source;  ///< what it was read from, parameters put in; null: made by hand
 
   void read(ParamReader& in);
   /// Makes its bodies and parts known to what names them.

@@ -5,6 +5,7 @@
 
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
+#include "sim/world/load_world.hpp"
 
 namespace sim {
 
@@ -95,11 +96,16 @@ std::shared_ptr<const VehicleConfig> VehicleLoader::instance(const VehicleEntry&
   for (const ConfigNode::Entry& change : entry.overrides.entries)
     set_config_path(tree, change.key, change.value, change.place, diagnostics_);
   substitute_parameters(tree, parameters_of(entry, model, who, index), who, diagnostics_);
+  return read(std::move(tree), who);
+}
+
+std::shared_ptr<const VehicleConfig> VehicleLoader::read(ConfigNode tree, const std::string& who) const {
   auto config = std::make_shared<VehicleConfig>();
   ParamReader in(tree, who, diagnostics_);
   declare_names(in, tree);
   config->read(in);
   in.finish();
+  config->source = std::make_shared<const ConfigNode>(std::move(tree));
   return config;
 }
 
@@ -177,11 +183,14 @@ struct SpawnEntry {
   }
 };
 
-void check_spawn(const SpawnEntry& entry, Diagnostics& diagnostics) {
+enum class Origin { stranger, journal };
+
+void check_spawn(const SpawnEntry& entry, Origin origin, Diagnostics& diagnostics) {
   const VehicleEntry& vehicle = entry.vehicle;
   const std::string who = "vehicle '" + vehicle.name + "'";
-  for (const ConfigNode* node : {&vehicle.model, &vehicle.parameters, &vehicle.overrides})
-    check_untrusted(*node, who, diagnostics);
+  if (origin == Origin::stranger)
+    for (const ConfigNode* node : {&vehicle.model, &vehicle.parameters, &vehicle.overrides})
+      check_untrusted(*node, who, diagnostics);
   if (vehicle.count != 1) diagnostics.error(vehicle.place, who, "'count' must be 1: vehicles are spawned one by one");
   const bool bare = vehicle.file.find('/') == std::string::npos && !vehicle.file.starts_with(".");
   if (!bare) diagnostics.error(vehicle.place, who, "'file' must be a bare file name, got '" + vehicle.file + "'");
@@ -210,8 +219,9 @@ ConfigNode parse_untrusted(const std::string& text, const std::string& from) {
   return node;
 }
 
-SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& text) {
-  const ConfigNode node = parse_untrusted(text, "spawn");
+namespace {
+
+SpawnRequest read_spawn(const WorldConfig& world, const ConfigNode& node, Origin origin) {
   Diagnostics diagnostics;
   SpawnEntry entry;
   ParamReader in(node, "", diagnostics);
@@ -219,13 +229,46 @@ SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& tex
   entry.read(in);
   in.finish();
   diagnostics.throw_if_any();
-  check_spawn(entry, diagnostics);
+  check_spawn(entry, origin, diagnostics);
   diagnostics.throw_if_any();
   // Vehicle files are looked up from the world's file, not from the working directory.
   entry.vehicle.beside.file = intern_file_name(world.file);
   std::vector<VehicleInstance> instances = VehicleLoader(world, diagnostics).load(entry.vehicle);
   diagnostics.throw_if_any();
   return {std::move(instances.front()), entry.with_client, entry.alive_timeout_s};
+}
+
+}  // namespace
+
+SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& text) {
+  return read_spawn(world, parse_untrusted(text, "spawn"), Origin::stranger);
+}
+
+SpawnRequest read_journalled_spawn(const WorldConfig& world, const std::string& text) {
+  Diagnostics diagnostics;
+  const ConfigNode node = parse_config_text(text, "spawn", diagnostics);
+  diagnostics.throw_if_any();
+  return read_spawn(world, node, Origin::journal);
+}
+
+std::string self_contained_spawn(const WorldConfig& world, const std::string& text) {
+  try {
+    ConfigNode node = parse_untrusted(text, "spawn");
+    for (ConfigNode::Entry& entry : node.entries) {
+      if (entry.key != "file" || entry.value.scalar.find('/') != std::string::npos) continue;
+      const std::string path = find_file(entry.value.scalar, {intern_file_name(world.file), 0, 0});
+      if (path.empty()) return text;
+      Diagnostics diagnostics;
+      ConfigNode model = load_config_file(path, diagnostics);
+      diagnostics.throw_if_any();
+      make_paths_absolute(model);
+      entry.key = "model";
+      entry.value = std::move(model);
+      return to_yaml(node);
+    }
+  } catch (const ConfigError&) {  // it will be refused
+  }
+  return text;
 }
 
 }  // namespace sim

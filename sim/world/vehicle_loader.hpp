@@ -16,6 +16,8 @@ class VehicleLoader {
 
   /// The instances of an entry, fewer or none after errors.
   std::vector<VehicleInstance> load(const VehicleEntry& entry);
+  /// A vehicle from a tree without parameters, such as VehicleConfig::source.
+  std::shared_ptr<const VehicleConfig> read(ConfigNode tree, const std::string& who) const;
   /// Fills `file:` entries of the tree with what the files said.
   void resolve(ConfigNode& world_node) const;
 
@@ -47,6 +49,12 @@ struct SpawnRequest {
 /// beside the world file or in ../vehicles by their bare names, but no other file, and no serial port.  Throws
 /// ConfigError, with places such as `spawn:3:7`.
 SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& text);
+/// The same for what self_contained_spawn() made of a request that was checked then.
+SpawnRequest read_journalled_spawn(const WorldConfig& world, const std::string& text);
+/// The request with its vehicle file in it, so that it can be carried out where that file is not.  As it is when the
+/// file cannot be read or the request is wrong.
+std::string self_contained_spawn(const WorldConfig& world, const std::string& text);
+
 
 /// A stranger may not reach for files or ports: reports keys such as `mesh` and `serial`.
 void check_untrusted(const ConfigNode& node, const std::string& who, Diagnostics& diagnostics);

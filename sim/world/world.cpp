@@ -9,6 +9,7 @@
 #include "sim/script/script.hpp"
 #include "sim/world/bottom_check.hpp"
 #include "sim/world/notice.hpp"
+#include "sim/world/world_journal.hpp"
 
 namespace sim {
 
@@ -25,19 +26,27 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
       physics_(std::make_unique<PhysicsWorld>(config.physics, config.materials, config.contacts, config.categories,
                                               static_cast<std::uint64_t>(config.run.seed))),
       medium_(config.medium, config.physics.gravity_mps2, static_cast<std::uint64_t>(config.run.seed)),
-      hydrodynamics_(medium_, config.physics.gravity_mps2, config.physics.step_s),
-      acoustics_(std::make_unique<AcousticChannel>(
-          config.acoustics,
-          AcousticSurroundings{medium_, *physics_, events_, static_cast<std::uint64_t>(config.run.seed)})) {
-  hydrodynamics_.set_complain([this](const std::string& who, const std::string& text) { notice(*this, who, text); });
-  known_materials_.insert("default");
-  for (const MaterialConfig& material : config.materials) known_materials_.insert(material.name);
-  known_contacts_ = config.contacts;
-  add_objects();
-  for (const VehicleInstance& instance : config.vehicles) build_vehicle(instance);
+      journal_(std::make_unique<WorldJournal>(*this)) {
+  StateArchive start = StateArchive::saver();
+  start(medium_);
+  medium_at_start_ = start.take_bytes();
+  build();
   for (const std::string& warning : physics_->ground_warnings()) spdlog::warn("{}", warning);
-  for (const std::string& warning : hydrodynamics_.take_warnings()) spdlog::warn("{}", warning);
+  for (const std::string& warning : hydrodynamics_->take_warnings()) spdlog::warn("{}", warning);
   for (const std::string& warning : bottom_warnings(*this)) spdlog::warn("{}", warning);
+}
+
+/// All that is in the world file; physics and medium are as they begin.
+void World::build() {
+  hydrodynamics_.emplace(medium_, config_.physics.gravity_mps2, config_.physics.step_s);
+  hydrodynamics_->set_complain([this](const std::string& who, const std::string& text) { notice(*this, who, text); });
+  acoustics_ =
+      std::make_unique<AcousticChannel>(config_.acoustics, AcousticSurroundings{medium_, *physics_, events_, seed()});
+  known_materials_ = {"default"};
+  for (const MaterialConfig& material : config_.materials) known_materials_.insert(material.name);
+  known_contacts_ = config_.contacts;
+  add_objects();
+  for (const VehicleInstance& instance : config_.vehicles) build_vehicle(instance);
   sort_devices();
   script_ = std::make_unique<Script>(*this);
 }
@@ -69,9 +78,9 @@ const WorldObject& World::build_object(const ObjectConfig& config, const std::st
   const Motion motion = config.kinematic ? Motion::kinematic : config.fixed ? Motion::fixed : Motion::free;
   try {
     object.body = &physics_->add_body(object.group, body, X_WE, motion);
-    if (motion == Motion::free) hydrodynamics_.add_body(*object.body, body);
+    if (motion == Motion::free) hydrodynamics_->add_body(*object.body, body);
   } catch (...) {
-    hydrodynamics_.remove_group(object.group);
+    hydrodynamics_->remove_group(object.group);
     physics_->remove_group(object.group);
     throw;
   }
@@ -103,7 +112,7 @@ void World::build_parts_of(Vehicle& vehicle, const VehicleInstance& instance) {
     Body& built =
         physics_->add_body(vehicle.group(), body, instance.X_WV, body.kinematic ? Motion::kinematic : Motion::free);
     vehicle.add_body(body.name, built);
-    if (!body.kinematic) hydrodynamics_.add_body(built, body);
+    if (!body.kinematic) hydrodynamics_->add_body(built, body);
   }
   for (const JointConfig& joint : config.joints) {
     Body* second = joint.bodies[1] == "world" ? nullptr : &vehicle.body(joint.bodies[1]);
@@ -146,12 +155,14 @@ void World::sort_devices() {
 }
 
 void World::step() {
+  if (!script_) throw SnapshotError("the world was lost when a snapshot was restored");
+  in_step_ = true;
   for (const Listening& listening : listening_)
     if (listening.mail->load(std::memory_order_relaxed) && listening.mail->exchange(false, std::memory_order_acquire))
       listening.device->take_mail(now(), step_number_);
-  hydrodynamics_.begin_step();
+  hydrodynamics_->begin_step();
   for (Acting* acting : acting_) acting->act(now(), step_s_);
-  hydrodynamics_.step(physics_->gravity_mps2());
+  hydrodynamics_->step(physics_->gravity_mps2());
   script_->step();
   physics_->step(step_number_);
   ++step_number_;
@@ -159,6 +170,7 @@ void World::step() {
   advance_clocks();
   run_due_events();
   sense();
+  in_step_ = false;
 }
 
 /// Between physics and what is due: what is stamped in this step is stamped by the clocks as they stand at its end.
@@ -279,21 +291,6 @@ void World::run_action(const ConfigNode& action) {
   Diagnostics diagnostics;
   script_->run_now(action, diagnostics);
   diagnostics.throw_if_any();
-}
-
-std::uint64_t World::state_hash() const {
-  StateHash hash;
-  hash.add(step_number_);
-  physics_->hash_state(hash);
-  medium_.hash_state(hash);
-  for (const auto& vehicle : vehicles_) vehicle->systems().hash_state(hash);
-  for (const Vehicle* vehicle : clocked_) vehicle->clock().hash_state(hash);
-  for (const auto& device : devices_)
-    if (device) device->hash_state(hash);
-  events_.hash_state(hash);
-  acoustics_->hash_state(hash);
-  if (!script_->empty()) script_->hash_state(hash);
-  return hash.value();
 }
 
 }  // namespace sim

@@ -33,10 +33,12 @@ using BusFinder = std::function<Bus&(const std::string& name)>;
 struct WorldCounts {
   std::int64_t samples = 0;
   std::int64_t bad_messages = 0;
+  void visit_state(StateArchive& archive) { archive(samples, bad_messages); }
 };
 
 class AcousticChannel;
 class Script;
+class WorldJournal;
 struct ZoneRecord;
 
 /// A thing without devices, as built.
@@ -52,6 +54,7 @@ struct WorldObject {
 struct EndOfRun {
   std::string text;
   bool passed = true;
+  void visit_state(StateArchive& archive) { archive(text, passed); }
 };
 
 /// Something that cannot be done to the world as it is now.  what() is one line that says who, rule and value.
@@ -89,7 +92,7 @@ class World {
   const Scene& scene() const { return physics_->scene(); }
   /// Water and air at the time of the world: in stages 1 to 5 that of the start of the step, then that of its end.
   const Medium& medium() const { return medium_; }
-  const Hydrodynamics& hydrodynamics() const { return hydrodynamics_; }
+  const Hydrodynamics& hydrodynamics() const { return *hydrodynamics_; }
   /// What carries sound between transducers.
   AcousticChannel& acoustics() { return *acoustics_; }
   const AcousticChannel& acoustics() const { return *acoustics_; }
@@ -155,10 +158,30 @@ class World {
   /// By vehicle, when the world has zones with a speed limit or a finish.
   const std::map<std::string, ZoneRecord>& zone_records() const;
   const WorldCounts& counts() const { return counts_; }
-  /// A hash over bodies, joints, devices, their random streams and the event queue.
+
+  /// A hash over all that is state: bodies, joints, devices, clocks, medium, events, sound under way, script.
   std::uint64_t state_hash() const;
+  /// The same by part, in an order that does not change: `world`, `medium`, vehicles such as `auv1`, devices such as
+  /// `auv1/dvl`, `objects`, `events`, `acoustics`, `script`.
+  std::vector<PartHash> part_hashes() const;
+  /// All of the state between two steps, and what has come, gone and been changed since the start.  Throws
+  /// SnapshotError when a vehicle or object was added that was not read from YAML.
+  Bytes snapshot() const;
+  /// Goes to a snapshot of a world of the same configuration, of this one or of another process, and on from there
+  /// with the same bits.  When vehicles, objects or the parameters of devices are not those of the snapshot, the world
+  /// is built anew in place: references to vehicles, bodies, devices and scene are then void, and generation() has
+  /// grown; those to World and PhysicsWorld hold.  Throws SnapshotError when it does not fit; the world is then as
+  /// before, or where that is not possible as well the error says so.
+  void restore(std::span<const std::byte> snapshot);
 
  private:
+  friend class WorldJournal;
+  void build();
+  void take_all_apart();
+  void build_again();
+  void visit_state(StateArchive& archive);
+  void visit_mail(StateArchive& archive);
+  void restore_state(std::span<const std::byte> snapshot);
   void add_objects();
   const WorldObject& build_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE);
   Vehicle& build_vehicle(const VehicleInstance& instance);
@@ -167,6 +190,10 @@ class World {
   void add_device(Vehicle& vehicle, const DeviceConfig& config);
   void remove_device(MountedDevice& device);
   void take_apart(Vehicle& vehicle);
+  void take_apart(const WorldObject& object);
+  void bring_surfaces(const VehicleConfig& config);
+  const WorldObject& place_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE);
+  bool apply_change(const std::string& full_name, const ConfigNode& values, Diagnostics& diagnostics);
   Vehicle& vehicle_named(const std::string& name) const;
   const WorldObject& object_named(const std::string& name) const;
   MountedDevice& device_named(const std::string& name) const;
@@ -187,6 +214,7 @@ class World {
   std::int64_t step_us_;
   double step_s_;
   std::int64_t step_number_ = 0;
+  bool in_step_ = false;  ///< also after a step that threw
   Geodesy geodesy_;
   EventQueue events_;
   DeviceHost host_;
@@ -196,7 +224,7 @@ class World {
   std::map<std::type_index, std::shared_ptr<void>> shared_;
   std::unique_ptr<PhysicsWorld> physics_;
   Medium medium_;
-  Hydrodynamics hydrodynamics_;
+  std::optional<Hydrodynamics> hydrodynamics_;
   std::unique_ptr<AcousticChannel> acoustics_;
   std::vector<std::unique_ptr<Vehicle>> vehicles_;
   std::map<std::string, Vehicle*, std::less<>> vehicles_by_name_;
@@ -236,6 +264,9 @@ class World {
   std::vector<Casting> casting_;
   std::unique_ptr<ThreadPool> threads_;  // null: one thread
   std::unique_ptr<Script> script_;
+  std::unique_ptr<WorldJournal> journal_;
+  Bytes medium_at_start_;
+  mutable std::size_t last_snapshot_bytes_ = 0;
 };
 
 }  // namespace sim

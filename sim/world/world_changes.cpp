@@ -8,6 +8,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/world/bottom_check.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_journal.hpp"
 
 // What changes a world while it runs.
 
@@ -105,6 +106,15 @@ void World::check_place_is_free(Vehicle& vehicle, const SourcePlace& place) {
                          " m deep in '" + other + "'");
 }
 
+void World::bring_surfaces(const VehicleConfig& config) {
+  physics_->add_categories(config.categories);
+  physics_->add_surfaces(config.materials, config.contacts);
+  for (const MaterialConfig& material : config.materials) known_materials_.insert(material.name);
+  for (const ContactConfig& contact : config.contacts)
+    if (std::find(known_contacts_.begin(), known_contacts_.end(), contact) == known_contacts_.end())
+      known_contacts_.push_back(contact);
+}
+
 const Vehicle& World::add_vehicle(const VehicleInstance& instance) {
   check_new_vehicle(instance);
   check_new_surfaces(instance);
@@ -113,14 +123,17 @@ const Vehicle& World::add_vehicle(const VehicleInstance& instance) {
   } catch (const std::length_error& error) {
     throw_config_error(instance.place, "vehicle " + quoted(instance.name), error.what());
   }
-  physics_->add_surfaces(instance.config->materials, instance.config->contacts);
-  for (const MaterialConfig& material : instance.config->materials) known_materials_.insert(material.name);
-  for (const ContactConfig& contact : instance.config->contacts)
-    if (std::find(known_contacts_.begin(), known_contacts_.end(), contact) == known_contacts_.end())
-      known_contacts_.push_back(contact);
-  Vehicle& vehicle = build_vehicle(instance);
-  check_place_is_free(vehicle, instance.place);
-  for (const std::string& warning : hydrodynamics_.take_warnings()) spdlog::warn("{}", warning);
+  bring_surfaces(*instance.config);
+  const int number = next_vehicle_number_;
+  try {
+    check_place_is_free(build_vehicle(instance), instance.place);
+  } catch (...) {
+    journal_->vehicle_failed(instance);
+    throw;
+  }
+  journal_->vehicle_came(instance, number);
+  const Vehicle& vehicle = *vehicles_.back();
+  for (const std::string& warning : hydrodynamics_->take_warnings()) spdlog::warn("{}", warning);
   for (const std::string& warning : bottom_warnings(*this, vehicle)) spdlog::warn("{}", warning);
   sort_devices();
   return vehicle;
@@ -135,13 +148,16 @@ void World::check_removable(const std::string& name) const {
 
 void World::remove_vehicle(const std::string& name) {
   check_removable(name);
-  take_apart(vehicle_named(name));
+  Vehicle& vehicle = vehicle_named(name);
+  const std::string own_name = vehicle.name();  // the caller's may be that of the vehicle
+  take_apart(vehicle);
+  journal_->vehicle_went(own_name);
   sort_devices();
 }
 
 void World::take_apart(Vehicle& vehicle) {
   for (MountedDevice* device : vehicle.devices()) remove_device(*device);
-  hydrodynamics_.remove_group(vehicle.group());
+  hydrodynamics_->remove_group(vehicle.group());
   physics_->remove_group(vehicle.group());
   ++generation_;
   vehicles_by_name_.erase(vehicle.name());
@@ -159,7 +175,9 @@ void World::remove_device(MountedDevice& device) {
 
 void World::move_vehicle(const std::string& name, const Pose& X_WV) {
   const Vehicle& vehicle = vehicle_named(name);
-  physics_->move_group(vehicle.group(), X_WV * vehicle.X_WV().inverse());
+  const Pose X_move_W = X_WV * vehicle.X_WV().inverse();
+  physics_->move_group(vehicle.group(), X_move_W);
+  if (physics_->anchored(vehicle.group())) journal_->anchored_vehicle_moved(name, X_move_W);
   acoustics_->forget_places();
 }
 
@@ -168,6 +186,13 @@ const WorldObject& World::add_object(const ObjectConfig& config, const std::stri
   check_new_name(name, config.place, who);
   check_limit("objects", objects_.size() + 1, config_.limits.objects, config.place, who);
   check_limit("parts in an object", config.parts.size(), config_.limits.parts, config.place, who);
+  const std::int64_t number = next_object_number_;
+  const WorldObject& object = place_object(config, name, X_WE);
+  journal_->object_came(config, name, X_WE, number);
+  return object;
+}
+
+const WorldObject& World::place_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE) {
   // What an actor leads along must be kinematic, also when something else of its name comes.
   const bool led = std::any_of(config_.actors.begin(), config_.actors.end(),
                                [&](const ActorConfig& actor) { return actor.object == name; });
@@ -175,7 +200,7 @@ const WorldObject& World::add_object(const ObjectConfig& config, const std::stri
   const bool has_plane = std::any_of(config.parts.begin(), config.parts.end(),
                                      [](const PartConfig& part) { return part.shape == "plane"; });
   if (config.fixed || has_plane)
-    throw_config_error(config.place, who, "an actor moves it: it cannot be fixed or a plane");
+    throw_config_error(config.place, "object " + quoted(name), "an actor moves it: it cannot be fixed or a plane");
   ObjectConfig kinematic = config;
   kinematic.kinematic = true;
   return build_object(kinematic, name, X_WE);
@@ -183,7 +208,13 @@ const WorldObject& World::add_object(const ObjectConfig& config, const std::stri
 
 void World::remove_object(const std::string& name) {
   const WorldObject& object = object_named(name);
-  hydrodynamics_.remove_group(object.group);
+  const std::string own_name = object.name;  // the caller's may be that of the object
+  take_apart(object);
+  journal_->object_went(own_name);
+}
+
+void World::take_apart(const WorldObject& object) {
+  hydrodynamics_->remove_group(object.group);
   physics_->remove_group(object.group);
   ++generation_;
   objects_.erase(object.name);

@@ -42,7 +42,10 @@ void refuse_reserved(ParamReader& in, const std::string& name) {
 }  // namespace
 
 void ObjectConfig::read(ParamReader& in) {
-  if (in.node() != nullptr) place = in.node()->place;
+  if (in.node() != nullptr) {
+    place = in.node()->place;
+    source = std::make_shared<const ConfigNode>(*in.node());
+  }
   in.require("name");
   in.read_name("name", name, "name of the object, unique in the world");
   refuse_reserved(in, name);

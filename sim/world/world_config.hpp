@@ -55,6 +55,7 @@ struct ObjectConfig {
   int count = 1;
   PlacementConfig placement;
   std::vector<PartConfig> parts;
+  std::shared_ptr<const ConfigNode> source;  ///< what it was read from; null: made by hand
   SourcePlace place;
   void read(ParamReader& in);
 };

@@ -39,9 +39,9 @@ TEST(Route, APointWithADepthIsAnotherStateThanOneWithAnAltitude) {
   const auto hash_of = [](const devices::Waypoint& point) {
     devices::Route route({10, 0, 3});
     route.start({point}, false, {0, 0});
-    sim::StateHash hash;
-    route.hash_state(hash);
-    return hash.value();
+    sim::StateArchive archive = sim::StateArchive::hasher();
+    archive(route);
+    return archive.hash();
   };
   devices::Waypoint deep = at(100, 0), high = at(100, 0);
   deep.depth_m = 5;

@@ -100,9 +100,10 @@ TEST(Gateway, TheHashKnowsWhatHasPassed) {
     test::TestWorld test(ship_buoy_auv());
     test.send("ship.radio.cmd", test::bytes_to(text));
     test.run_for(5);  // it has passed, and the sound is gone
-    sim::StateHash hash;
-    test::device_of<devices::Gateway>(test, "buoy/gate").hash_state(hash);
-    return hash.value();
+    devices::Gateway gate = test::device_of<devices::Gateway>(test, "buoy/gate");
+    sim::StateArchive archive = sim::StateArchive::hasher();
+    archive(gate);
+    return archive.hash();
   };
   EXPECT_NE(hash_after("one"), hash_after("two"));
   EXPECT_EQ(hash_after("one"), hash_after("one"));

@@ -177,9 +177,9 @@ TEST(MicromodemProtocol, TheHashKnowsWhatItIsAbout) {
   const auto hash_after = [](const std::vector<std::string>& lines) {
     Modem modem;
     for (const auto& line : lines) modem.host(line);
-    sim::StateHash hash;
-    modem.protocol.hash_state(hash);
-    return hash.value();
+    auto archive = sim::StateArchive::hasher();
+    archive(modem.protocol);
+    return archive.hash();
   };
   const std::vector<std::vector<std::string>> all{{},
                                                   {"$CCCYC,0,1,2,2,0,3"},

@@ -211,12 +211,19 @@ class Replay {
 
   void after_step() {
     service_.publish_step();
-    if (!outcome_.first && messages_.first() != nullptr) {
-      const ReplayMessages::Difference& first = *messages_.first();
-      differ(who(first.channel), first.what);
-    }
+    if (!outcome_.first) tell_first_messages();
     const auto logged = log_.hashes.find(world_.step_number());
     if (logged != log_.hashes.end()) compare_hashes(logged->second);
+  }
+
+  /// All that differ by now differ since this step.
+  void tell_first_messages() {
+    constexpr std::size_t most = 8;
+    if (messages_.first() == nullptr) return;
+    differ(who(messages_.first()->channel), messages_.first()->what);
+    for (const auto& [channel, difference] : messages_.by_channel())
+      if (channel != messages_.first()->channel && outcome_.first->what.size() < most)
+        differ(who(channel), difference.what);
   }
 
   void compare_hashes(const ReplayLog::Hashes& logged) {
@@ -272,8 +279,7 @@ class Replay {
     outcome_.sim_time_s = sim::to_seconds(world_.now());
     outcome_.messages = messages_.equal();
     outcome_.missing_messages = messages_.missing();
-    if (!outcome_.first && messages_.first() != nullptr)
-      differ(who(messages_.first()->channel), messages_.first()->what);
+    if (!outcome_.first) tell_first_messages();
     outcome_.interrupted = caught_signal() != 0;
     outcome_.complete = cut_ || (log_.usable_step() >= log_.last_step && !outcome_.interrupted);
     if (outcome_.hashes + outcome_.messages == 0 && !outcome_.first)

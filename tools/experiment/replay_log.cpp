@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <unordered_map>
 #include <utility>
 
 #include "bridges/lcm/event_log.hpp"
@@ -30,14 +31,17 @@ class Reader {
   explicit Reader(const std::string& path) : file_(path) { log_.path = path; }
 
   ReplayLog read() {
-    while (const auto event = file_.next()) {
-      ++log_.events[event->channel];
+    std::unordered_map<std::string, std::uint64_t> events;  // copied into order below
+    bridges::LogEvent event;
+    while (file_.next(event)) {
+      ++events[event.channel];
       try {
-        take(*event);
+        take(event);
       } catch (const shoal::MessageError& error) {
-        problem(fmt::format("byte {}: {}: {}", event->offset, event->channel, error.what()));
+        problem(fmt::format("byte {}: {}: {}", event.offset, event.channel, error.what()));
       }
     }
+    log_.events.insert(events.begin(), events.end());
     for (const std::string& text : file_.problems()) problem(text);
     if (!informed_) fail_without_info();
     if (log_.proven_step && *log_.proven_step > log_.last_step) log_.proven_step = log_.last_step;
@@ -60,6 +64,7 @@ class Reader {
   }
 
   void take(const bridges::LogEvent& event) {
+    if (!event.channel.starts_with("sim.")) return;
     if (event.channel == "sim.info") return take_info(event);
     if (event.channel == "sim.mail") return take_mail(event);
     if (event.channel == "sim.hash") return take_hash(event);
@@ -68,7 +73,9 @@ class Reader {
 
   void take_state(const bridges::LogEvent& event) {
     if (shoal::fingerprint(event.payload) != shoal::sim_state_t::getHash() || event.payload.size() < 24) return;
-    note_step(number_at(event.payload, 1));
+    const std::int64_t step = number_at(event.payload, 1);
+    if (!informed_ || !is_time_of(step, number_at(event.payload, 0))) return;  // of somebody else
+    note_step(step);
     if (event.utime != number_at(event.payload, 0)) log_.own_stamps = false;
   }
 
@@ -78,11 +85,18 @@ class Reader {
     log_.last_step = std::max(log_.last_step, step);
   }
 
+  bool is_time_of(std::int64_t step, std::int64_t utime) const {
+    if (step < 0 || step > 1'000'000'000'000) return false;
+    // Without signs: the numbers are a stranger's, and may overflow.
+    const std::uint64_t since = static_cast<std::uint64_t>(step) * static_cast<std::uint64_t>(log_.info.step_us);
+    return static_cast<std::uint64_t>(utime) == static_cast<std::uint64_t>(log_.info.epoch_utime) + since;
+  }
+
   /// A stamp that is not that of its step is of another run, or of another epoch.
   void check_stamp(const bridges::LogEvent& event, std::int64_t utime, std::int64_t step) const {
     if (!informed_) return;
     const shoal::sim_info_t& info = log_.info;
-    if (step < 0 || step > 1'000'000'000'000 || utime != info.epoch_utime + step * info.step_us)
+    if (!is_time_of(step, utime))
       fail(fmt::format("byte {}: {} is stamped {} at step {}, which is no time of this run (epoch {}, step {} us)",
                        event.offset, event.channel, utime, step, info.epoch_utime, info.step_us));
   }
@@ -91,10 +105,10 @@ class Reader {
     auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
     if (event.utime != info.utime) log_.own_stamps = false;
     if (!informed_) {
-      if (info.step_us < 1) throw shoal::MessageError("step_us must be 1 or more, got " + std::to_string(info.step_us));
+      if (info.step_us < 1 || info.step_us > 10'000'000)
+        throw shoal::MessageError("step_us must be from 1 to 10000000, got " + std::to_string(info.step_us));
       informed_ = true;
       branch_ = info.branch;
-      last_info_step_ = info.step;
       log_.info = std::move(info);
       check_stamp(event, log_.info.utime, log_.info.step);
       check_sequence(log_.info.mail_sequence, log_.info.step);
@@ -104,12 +118,11 @@ class Reader {
     const shoal::sim_info_t& first = log_.info;
     const bool same_run = info.world == first.world && info.seed == first.seed && info.step_us == first.step_us &&
                           info.epoch_utime == first.epoch_utime && info.resolved_config == first.resolved_config;
-    if (!same_run || (info.branch <= branch_ && info.step < last_info_step_))
+    if (!same_run || (info.branch <= branch_ && info.step < log_.last_step))
       fail(fmt::format("holds two runs: another begins at byte {} (world '{}', seed {}); cut it in two", event.offset,
                        info.world, info.seed));
     check_stamp(event, info.utime, info.step);
     if (info.branch > branch_) begin_branch(info);
-    last_info_step_ = info.step;
     check_sequence(info.mail_sequence, info.step);
     note_step(info.step);
   }
@@ -173,7 +186,6 @@ class Reader {
   ReplayLog log_;
   bool informed_ = false, stepped_ = false;
   std::int32_t branch_ = 0;
-  std::int64_t last_info_step_ = 0;
   std::int64_t next_sequence_ = 0;
   std::int64_t mail_step_ = 0;  // of the last sim.mail
 };

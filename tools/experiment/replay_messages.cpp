@@ -19,9 +19,10 @@ namespace {
 
 /// Those of the run itself: another run has others.
 bool is_of_the_run(std::string_view channel) {
-  static constexpr std::array<std::string_view, 9> names{"sim.ack",  "sim.control", "sim.control.reply", "sim.hash",
-                                                         "sim.info", "sim.mail",    "sim.resend",        "sim.resent",
-                                                         "sim.tick"};
+  if (!channel.starts_with("sim.")) return false;
+  static constexpr std::array<std::string_view, 9> names{"sim.ack",    "sim.control", "sim.control.reply",
+                                                         "sim.hash",   "sim.info",    "sim.mail",
+                                                         "sim.resend", "sim.resent",  "sim.tick"};
   return std::find(names.begin(), names.end(), channel) != names.end();
 }
 
@@ -95,35 +96,40 @@ std::string difference_of(const shoal::MessageSchema* schema, std::span<const st
 
 ReplayMessages::ReplayMessages(const ReplayLog& log) : log_(log), file_(log.path) {
   for (const auto& [name, count] : log.events)
-    if (!is_of_the_run(name)) channels_[name].left = count;
+    if (!is_of_the_run(name)) add(name).left = count;
   for (const ReplayLog::Letter& letter : log.letters) {
-    const auto known = channels_.find(letter.channel);
-    if (known != channels_.end()) known->second.mail.insert(hash_of(letter.payload));
+    if (Channel* channel = find(letter.channel)) channel->mail.insert(hash_of(letter.payload));
   }
 }
 
-ReplayMessages::Channel& ReplayMessages::channel_of(std::string_view name) {
-  const auto known = channels_.find(name);
-  return known != channels_.end() ? known->second : channels_[std::string(name)];
+ReplayMessages::Channel& ReplayMessages::add(std::string_view name) {
+  const auto known = channels_.try_emplace(std::string(name)).first;
+  by_name_.emplace(known->first, &known->second);
+  return known->second;
 }
 
 const sim::Bytes* ReplayMessages::head(Channel& channel) {
   if (channel.left == 0) return nullptr;
+  if (current_ == &channel) return &event_.payload;
   while (channel.queue.empty() && !at_end_) {
-    auto event = file_.next();
-    if (!event) {
+    if (current_ != nullptr) current_->queue.push_back(event_.payload);
+    current_ = nullptr;
+    if (!file_.next(event_)) {
       at_end_ = true;
       break;
     }
-    const auto known = channels_.find(event->channel);
-    if (known != channels_.end()) known->second.queue.push_back(std::move(event->payload));
+    current_ = find(event_.channel);
+    if (current_ == &channel) return &event_.payload;
   }
   return channel.queue.empty() ? nullptr : &channel.queue.front();
 }
 
 void ReplayMessages::pop(Channel& channel) {
-  channel.queue.pop_front();
   --channel.left;
+  if (current_ == &channel)
+    current_ = nullptr;
+  else
+    channel.queue.pop_front();
 }
 
 bool ReplayMessages::is_mail(Channel& channel, const sim::Bytes& payload) {
@@ -136,7 +142,8 @@ bool ReplayMessages::is_mail(Channel& channel, const sim::Bytes& payload) {
 
 void ReplayMessages::published(std::string_view name, std::span<const std::byte> payload, std::int64_t step) {
   if (log_.goes_back || is_of_the_run(name)) return;
-  Channel& channel = channel_of(name);
+  Channel* known = find(name);
+  Channel& channel = known != nullptr ? *known : add(name);
   channel.published = true;
   while (const sim::Bytes* logged = head(channel)) {
     if (same(*logged, payload)) {

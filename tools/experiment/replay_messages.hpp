@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 
 #include "bridges/lcm/event_log.hpp"
 #include "tools/experiment/replay_log.hpp"
@@ -56,7 +57,11 @@ class ReplayMessages {
     bool published = false;
   };
 
-  Channel& channel_of(std::string_view name);
+  Channel* find(std::string_view name) const {
+    const auto known = by_name_.find(name);
+    return known == by_name_.end() ? nullptr : known->second;
+  }
+  Channel& add(std::string_view name);
   /// Null: the log has no more of them.
   const sim::Bytes* head(Channel& channel);
   void pop(Channel& channel);
@@ -67,7 +72,10 @@ class ReplayMessages {
   const ReplayLog& log_;
   bridges::EventLogReader file_;
   bool at_end_ = false;
+  bridges::LogEvent event_;     // the last one that was read
+  Channel* current_ = nullptr;  // whose event it is while it is not yet compared; null: it is, or nobody's
   std::map<std::string, Channel, std::less<>> channels_;
+  std::unordered_map<std::string_view, Channel*> by_name_;  // asked, never iterated
   std::uint64_t equal_ = 0, different_ = 0, missing_ = 0;
   std::optional<Difference> first_;
   std::map<std::string, Difference> by_channel_;

@@ -50,6 +50,8 @@ std::unique_ptr<Metric> Scoring::make(const sim::MetricConfig& config) {
     case sim::MetricType::mission_time:
     case sim::MetricType::messages:
       return make_event_metric(config, world_);
+    case sim::MetricType::lean:
+      return make_lean_metric(config, world_);
     case sim::MetricType::collisions:
       break;
   }
@@ -67,6 +69,17 @@ Figures Scoring::figures() const {
     for (const auto& metric : metrics_)
       if (metric->needs_others() == needs_others) metric->add_figures(figures);
   return figures;
+}
+
+void Scoring::visit_state(sim::StateArchive& archive, History history) {
+  for (const auto& [vehicle, truth] : truths_) {
+    archive.section("truth of " + vehicle);
+    archive(*truth);
+  }
+  for (const auto& metric : metrics_) {
+    archive.section("metric " + metric->config().name);
+    metric->visit_state(archive, history);
+  }
 }
 
 std::vector<Scoring::Verdict> Scoring::verdicts() const {

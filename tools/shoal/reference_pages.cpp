@@ -88,6 +88,8 @@ std::string messages_page() {
                      "| `sim.clock` | `shoal.utime_t` | simulated time |\n"
                      "| `sim.state` | `shoal.sim_state_t` | true poses of all vehicles |\n"
                      "| `sim.info` | `shoal.sim_info_t` | world, seed, resolved configuration, versions |\n"
+                     "| `sim.mail` | `shoal.sim_mail_t` | what came to the world from outside |\n"
+                     "| `sim.hash` | `shoal.sim_hash_t` | hashes of the state |\n"
                      "| `sim.control` | `shoal.sim_control_request_t` | requests to the simulator |\n"
                      "| `sim.control.reply` | `shoal.sim_control_reply_t` | their answers |\n"
                      "| `sim.tick` | `shoal.sim_tick_t` | lockstep: the world waits for the named clients |\n"

@@ -34,7 +34,11 @@ class Hydrophone final : public sim::Sensor, public sim::AcousticListener {
 
   void measure(const sim::SenseContext&) override {}
   void disturb(double, sim::Random&) override {}
-  void hash_state(sim::StateHash& hash) const override { hash.add(static_cast<std::uint64_t>(heard_.size())); }
+  void visit_state(sim::StateArchive& archive) override {
+    auto count = static_cast<std::uint64_t>(heard_.size());
+    archive(count);
+    if (archive.restoring()) heard_.resize(count);
+  }
   bool listens_to(const sim::Signal& signal) const override { return signal.kind != sim::Signal::Kind::noise; }
   void heard(const sim::Reception& r) override {
     heard_.push_back(

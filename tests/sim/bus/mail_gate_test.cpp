@@ -207,6 +207,21 @@ TEST_F(MailGateTest, WhoWatchesSeesAllThatIsPublishedHere) {
   EXPECT_EQ(seen.size(), 2u);
 }
 
+TEST_F(MailGateTest, WhatIsUnreadCanBeSavedAndPutBack) {
+  const auto mailbox = gate.open_mailbox("a");
+  const auto flag = std::make_shared<std::atomic<bool>>(false);
+  mailbox->raise_on_arrival(flag);
+  from_here("a", "one");
+  from_here("a", "two");
+  const auto saved = mailbox->unread();
+  EXPECT_THAT(all_of(*mailbox), ElementsAre("one", "two"));
+  from_here("a", "three");
+  *flag = false;
+  mailbox->set_unread(saved);
+  EXPECT_TRUE(*flag);
+  EXPECT_THAT(all_of(*mailbox), ElementsAre("one", "two"));
+}
+
 TEST_F(MailGateTest, AGateInFrontOfAGateWorks) {
   MailGate inner_room(static_cast<sim::Bus&>(gate));
   const auto mailbox = inner_room.open_mailbox("a");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/sim/physics/small_worlds.hpp"
+#include "tests/state_hash_of.hpp"
 
 namespace {
 
@@ -40,9 +41,7 @@ std::vector<std::uint64_t> hashes(PhysicsWorld& world, int steps) {
   std::vector<std::uint64_t> out;
   for (int i = 0; i < steps; ++i) {
     world.step(i);
-    sim::StateHash hash;
-    world.hash_state(hash);
-    out.push_back(hash.value());
+    out.push_back(test::state_hash_of(world));
   }
   return out;
 }
@@ -128,9 +127,7 @@ TEST(QuickFallback, LeavesTheOtherIslandsToTheExactSolver) {
           translation(0, 9, 0.2495 + 0.4995 * i));
     for (int i = 0; i < 20; ++i) world->step(i);
     EXPECT_EQ(world->quick_steps(), with_stack ? 20 : 0);
-    sim::StateHash hash;
-    sliding.hash_state(hash);
-    return hash.value();
+    return test::state_hash_of(sliding);
   };
   EXPECT_EQ(slide(true), slide(false));
 }

@@ -209,6 +209,48 @@ TEST(BallJoint, KeepsThePointTogetherAndLeavesTheRotationFree) {
   EXPECT_GT(rig.arm->w_WB_W().norm(), 0.1);
 }
 
+TEST(BallJoint, ItsMotorTurnsTheSecondBodyAboutTheAxesOfTheFirst) {
+  for (const bool to_fixed : {false, true}) {
+    JointConfig config = joint("shoulder", "ball", {1, 0, 0});
+    config.motor = true;
+    Pair rig(config, to_fixed);
+    ASSERT_EQ(rig.joint->axes(), 3);
+    for (int axis = 0; axis < 3; ++axis) rig.joint->set_motor(axis == 1 ? 0.5 : 0, 1000, axis);
+    rig.run(100);
+    EXPECT_NEAR(rig.joint->velocity(1), 0.5, 1e-3);
+    EXPECT_NEAR(rig.joint->position(1), 0.5, 5e-3);
+    EXPECT_NEAR(rig.joint->position(0), 0, 1e-3);
+    EXPECT_GT(rig.arm->w_WB_W().y(), 0.49);
+    rig.joint->set_stops(-0.1, 0.2, 1);
+    rig.run(100);
+    EXPECT_NEAR(rig.joint->position(1), 0.2, 1e-6);
+    rig.joint->set_motor(0, 0, 1);
+    rig.joint->set_stops(std::nullopt, std::nullopt, 1);
+    rig.joint->add_effort(0.01, 1);
+    rig.run(1);
+    EXPECT_NEAR(rig.joint->velocity(1), 0.01 * 0.01 / (1 * 0.2 * 0.2 / 6), 1e-3);  // torque * step / inertia
+  }
+}
+
+TEST(BallJoint, ABodyThatIsMovedTakesItsTurnedBallAlong) {
+  PhysicsConfig config = weightless();
+  const auto world = make_world(config);
+  const int group = world->add_group("rig");
+  sim::Body& arm = world->add_body(group, body("arm", {box({0.2, 0.2, 0.2}, 1)}, {1, 0, 0}), Pose::Identity());
+  JointConfig ball = joint("shoulder", "ball", {1, 0, 0});
+  ball.motor = true;
+  sim::Joint& shoulder = world->add_joint(group, ball, arm, nullptr, Pose::Identity());
+  world->close_group(group);
+  for (int axis = 0; axis < 3; ++axis) shoulder.set_motor(axis == 2 ? 0.5 : 0, 1000, axis);
+  for (int i = 0; i < 100; ++i) world->step(i);
+  world->move_group(group, sim::make_pose({5, 6, 7}, {0.3, -0.2, 1}), false);
+  for (int axis = 0; axis < 3; ++axis) shoulder.set_motor(0, 1000, axis);
+  for (int i = 100; i < 200; ++i) world->step(i);
+  EXPECT_NEAR(shoulder.position(2), 0.5, 6e-3);
+  EXPECT_NEAR(shoulder.position(0), 0, 1e-6);
+  EXPECT_NEAR(arm.w_WB_W().norm(), 0, 1e-6);
+}
+
 TEST(UniversalJoint, EachAxisHasItsMotor) {
   JointConfig config = joint("cardan", "universal", {1, 0, 0}, Vector3d::UnitY());
   config.axis2.axis = Vector3d::UnitZ();

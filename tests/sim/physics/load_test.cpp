@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/sim/physics/small_worlds.hpp"
+#include "tests/state_hash_of.hpp"
 
 namespace {
 
@@ -108,9 +109,7 @@ TEST(ContactReport, WatchingAndMeasuringDoNotChangeTheRun) {
         if (watch) rover.left->measure_load();
       }
       run(*world, 300);
-      sim::StateHash state;
-      world->hash_state(state);
-      return state.value();
+      return test::state_hash_of(*world);
     };
     EXPECT_EQ(hash(true), hash(false)) << solver;
   }

@@ -6,15 +6,14 @@
 #include <vector>
 
 #include "tests/sim/physics/small_worlds.hpp"
+#include "tests/state_hash_of.hpp"
 
 namespace {
 
 using namespace small_worlds;
 
 std::uint64_t hash_of(const PhysicsWorld& world) {
-  sim::StateHash hash;
-  world.hash_state(hash);
-  return hash.value();
+  return test::state_hash_of(world);
 }
 
 /// What a ray along +x at height z hits.

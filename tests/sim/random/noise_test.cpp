@@ -1,4 +1,5 @@
 #include "sim/random/noise.hpp"
+#include "tests/state_hash_of.hpp"
 
 #include <gtest/gtest.h>
 
@@ -246,11 +247,7 @@ TEST(Noise, TheHashSeesTheSlowState) {
   params.random_walk_std = 1;
   Random random(1, "hash");
   Noise noise(params, 1, Random(1, "bias"));
-  const auto hash_of = [&noise] {
-    sim::StateHash hash;
-    noise.hash_state(hash);
-    return hash.value();
-  };
+  const auto hash_of = [&noise] { return test::state_hash_of(noise); };
   double value = 0;
   noise.apply(value, 0, random);
   const std::uint64_t before = hash_of();

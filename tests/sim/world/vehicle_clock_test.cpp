@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/random/allan.hpp"
+#include "tests/state_hash_of.hpp"
 
 namespace {
 
@@ -18,9 +19,7 @@ VehicleClock made(const sim::ClockConfig& config, std::uint64_t seed = 1) {
 }
 
 std::uint64_t hash_of(const VehicleClock& clock) {
-  sim::StateHash hash;
-  clock.hash_state(hash);
-  return hash.value();
+  return test::state_hash_of(clock);
 }
 
 /// Mean frequency errors over intervals of `dt_s`.

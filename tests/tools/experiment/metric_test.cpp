@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 #include "shoal/estimate_t.hpp"
@@ -351,6 +352,29 @@ TEST(Delivery, CountsWhatModemsSentAndWhatTheOthersHeard) {
   EXPECT_EQ(figures.at("all.ratio"), figures.at("all.received") / (figures.at("all.received") + lost));
 }
 
+/// A box that turns about its y axis at 1 rad/s, its nose going down, without gravity.
+TEST(Lean, TellsMeanSpreadAndFallOfASteadyTurn) {
+  test::TestWorld test(test::box_world(
+      "        - {name: clock, type: clock}\n", "{step_s: 0.001, gravity_mps2: 0}",
+      "metrics:\n  - {name: all, type: lean, vehicle: r1}\n  - {name: late, type: lean, vehicle: r1, from_s: 5}\n"));
+  tools::Scoring scoring(test.world);
+  sim::Body& body = *test.world.find_vehicle("r1")->bodies().front().second;
+  body.set_velocity_W({0, 0, 0}, {0, 1, 0});
+  for (int step = 0; step < 1000; ++step) {
+    test.world.step();
+    scoring.after_step();
+  }
+  const auto figures = scoring.figures();
+  constexpr double degrees = 180 / std::numbers::pi;
+  // Leans from 0 to 1 rad, evenly: the mean is 1/2, the spread 1 / sqrt(12); 0.1 %: the steps, and a turn in steps.
+  EXPECT_NEAR(figures.at("all.mean_deg"), 0.5 * degrees, 1e-3 * degrees);
+  EXPECT_NEAR(figures.at("all.rms_deg"), degrees / std::sqrt(12), 1e-3 * degrees);
+  EXPECT_NEAR(figures.at("all.max_deg"), degrees, 1e-3 * degrees);
+  EXPECT_NEAR(figures.at("all.fell_s"), std::numbers::pi / 4, 2e-3);
+  for (const char* figure : {"mean_deg", "rms_deg", "max_deg", "fell_s"})
+    EXPECT_TRUE(std::isnan(figures.at(std::string("late.") + figure))) << figure;
+}
+
 TEST(BytesPerMetre, NeedsAnErrorThatBecameSmaller) {
   const std::string metrics =
       "  - {name: with, vehicle: r1, channel: est}\n"
@@ -383,7 +407,8 @@ TEST(Figures, OfAMetricAreThoseThatItsTypeNames) {
       "  - {name: f, type: bytes_per_metre, metric: a, against: b}\n"
       "  - {name: g, type: mission_time, when: any faster than 1}\n"
       "  - {name: h, type: collisions}\n"
-      "  - {name: i, type: messages, channel: hello}\n");
+      "  - {name: i, type: messages, channel: hello}\n"
+      "  - {name: j, type: lean, vehicle: r1}\n");
   std::vector<std::string> named, given;
   for (const sim::MetricConfig& metric : world.test.world.config().metrics)
     for (const std::string& figure : metric.figures()) named.push_back(figure);

@@ -1,0 +1,177 @@
+#include <algorithm>
+
+#include "sim/acoustics/channel.hpp"
+#include "sim/script/script.hpp"
+#include "sim/world/world.hpp"
+#include "sim/world/world_journal.hpp"
+
+// The state of a world: hashed, saved, restored.
+
+namespace sim {
+
+namespace {
+
+/// Grows when the order or the meaning of what a snapshot holds changes.
+constexpr std::uint32_t state_version = 1;
+
+}  // namespace
+
+void World::visit_state(StateArchive& archive) {
+  archive.section("world");
+  archive(step_number_, ended_);
+  archive.unhashed(next_vehicle_number_, next_object_number_, counts_, complaints_);
+  physics_->visit_state(archive);
+  archive.section("medium");
+  archive(medium_, *hydrodynamics_);
+  for (const auto& vehicle : vehicles_) {
+    archive.section(vehicle->name());
+    archive(*vehicle);
+    for (MountedDevice* device : vehicle->devices()) {
+      archive.section(device->full_name());
+      archive(*device);
+    }
+  }
+  archive.section("objects");
+  for (auto& [name, object] : objects_) archive(*object.body);
+  archive.section("events");
+  archive(events_);
+  archive.section("acoustics");
+  archive(*acoustics_);
+  archive.section("script");
+  archive(*script_);
+  if (!archive.hashing()) {
+    archive.section("mail");
+    visit_mail(archive);
+  }
+  archive.end();
+}
+
+/// What the world itself has sent to its devices in the step that ended.
+void World::visit_mail(StateArchive& archive) {
+  std::map<int, std::vector<Message>> mail;
+  for (const auto& device : devices_) {
+    if (!device || !device->mailbox() || archive.restoring()) continue;
+    if (std::vector<Message> unread = device->mailbox()->unread(); !unread.empty())
+      mail[device->number()] = std::move(unread);
+  }
+  archive(mail);
+  if (!archive.restoring()) return;
+  for (const auto& device : devices_)
+    if (device && device->mailbox()) device->mailbox()->set_unread(std::move(mail[device->number()]));
+}
+
+std::uint64_t World::state_hash() const {
+  StateArchive archive = StateArchive::quick_hasher();
+  const_cast<World*>(this)->visit_state(archive);  // hashing changes nothing
+  return archive.hash();
+}
+
+std::vector<PartHash> World::part_hashes() const {
+  StateArchive archive = StateArchive::hasher();
+  const_cast<World*>(this)->visit_state(archive);
+  return archive.parts();
+}
+
+namespace {
+
+/// What says which world a snapshot is of.
+struct SnapshotHead {
+  std::uint32_t version = state_version;
+  std::uint64_t seed = 0;
+  std::int64_t step_us = 0;
+  Bytes journal;
+  void visit_state(StateArchive& archive) { archive(version, seed, step_us, journal); }
+};
+
+}  // namespace
+
+Bytes World::snapshot() const {
+  if (!script_) throw SnapshotError("the world was lost when a snapshot was restored");
+  if (in_step_) throw SnapshotError("the last step of the world was not ended: there is nothing to go on from");
+  if (!journal_->gap().empty()) throw SnapshotError("this world cannot be saved: " + journal_->gap());
+  StateArchive archive = StateArchive::saver(last_snapshot_bytes_ + last_snapshot_bytes_ / 8);
+  archive.section("make");
+  SnapshotHead head{state_version, seed(), step_us_, journal_->bytes()};
+  archive(head);
+  const_cast<World*>(this)->visit_state(archive);  // saving changes nothing
+  Bytes bytes = archive.take_bytes();
+  last_snapshot_bytes_ = bytes.size();
+  return bytes;
+}
+
+void World::restore(std::span<const std::byte> snapshot) {
+  std::optional<Bytes> before;
+  if (script_ && !in_step_ && journal_->gap().empty()) before = this->snapshot();
+  try {
+    restore_state(snapshot);
+  } catch (const std::exception& error) {
+    std::string what = error.what();
+    try {
+      if (!before) throw SnapshotError("it was broken before");
+      restore_state(*before);
+    } catch (const std::exception& again) {
+      script_.reset();
+      what += std::string("; and the world as it was is lost: ") + again.what();
+    }
+    throw SnapshotError(what);
+  }
+}
+
+void World::restore_state(std::span<const std::byte> snapshot) {
+  StateArchive archive = StateArchive::restorer(snapshot);
+  archive.section("make");
+  SnapshotHead head;
+  archive(head);
+  if (head.version != state_version)
+    archive.fail("its state is of version " + std::to_string(head.version) + ", this program's of " +
+                 std::to_string(state_version));
+  if (head.seed != seed() || head.step_us != step_us_)
+    archive.fail("it is of another world: seed " + std::to_string(head.seed) + ", step " +
+                 std::to_string(head.step_us) + " us; this one has seed " + std::to_string(seed()) + ", step " +
+                 std::to_string(step_us_) + " us");
+  const bool same_make = head.journal == journal_->bytes() && journal_->gap().empty();
+  if (!same_make || !script_ || in_step_) {
+    build_again();
+    journal_->replay(head.journal);
+  }
+  visit_state(archive);
+  sort_devices();
+  in_step_ = false;
+}
+
+/// Devices before what they hold on to, as at the end of the world.
+void World::take_all_apart() {
+  script_.reset();
+  due_.clear();
+  casting_.clear();
+  listening_.clear();
+  acting_.clear();
+  sensing_.clear();
+  clocked_.clear();
+  devices_.clear();
+  vehicles_by_name_.clear();
+  vehicles_.clear();
+  objects_.clear();
+  channels_.clear();
+  acoustics_.reset();
+  hydrodynamics_.reset();
+  free_numbers_.clear();
+  shared_.clear();
+  events_ = {};
+  ended_.reset();
+  next_vehicle_number_ = 0;
+  next_object_number_ = 0;
+  step_number_ = 0;
+}
+
+/// The world as it was at its start.
+void World::build_again() {
+  take_all_apart();
+  physics_->start_again(config_.physics, config_.materials, config_.contacts, config_.categories, seed());
+  StateArchive start = StateArchive::restorer(medium_at_start_);
+  start(medium_);
+  build();
+  ++generation_;
+}
+
+}  // namespace sim

@@ -1,0 +1,88 @@
+// What it costs to save a world, to go back to it, and to hash it; per body and as a whole.
+#include <benchmark/benchmark.h>
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "tools/experiment/scale_scene.hpp"
+
+namespace {
+
+/// A world of so many rovers (three bodies, two joints, six devices each) that has run for a while.
+tools::ScaleScene& scene_of(int robots) {
+  static std::map<int, std::unique_ptr<tools::ScaleScene>> scenes;
+  std::unique_ptr<tools::ScaleScene>& scene = scenes[robots];
+  if (!scene) {
+    scene = std::make_unique<tools::ScaleScene>(robots);
+    scene->run_for(2);
+  }
+  return *scene;
+}
+
+int bodies_of(const sim::World& world) {
+  int count = 0;
+  for (const auto& body : world.physics().bodies()) count += body && !body->fixed();
+  return count;
+}
+
+void count_bodies(benchmark::State& state, const sim::World& world) {
+  state.counters["bodies"] = bodies_of(world);
+  state.counters["us_per_body"] = benchmark::Counter(static_cast<double>(state.iterations()) * bodies_of(world) * 1e-6,
+                                                     benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void Snapshot(benchmark::State& state) {
+  const sim::World& world = scene_of(static_cast<int>(state.range(0))).world();
+  std::size_t bytes = 0;
+  for (auto _ : state) {
+    const sim::Bytes snapshot = world.snapshot();
+    bytes = snapshot.size();
+    benchmark::DoNotOptimize(snapshot.data());
+  }
+  state.counters["bytes"] = static_cast<double>(bytes);
+  count_bodies(state, world);
+}
+BENCHMARK(Snapshot)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMicrosecond);
+
+/// In the world that went on, which saves itself first, so that it can stay as it is when the snapshot does not fit.
+void Restore(benchmark::State& state) {
+  sim::World& world = scene_of(static_cast<int>(state.range(0))).world();
+  const sim::Bytes snapshot = world.snapshot();
+  for (auto _ : state) world.restore(snapshot);
+  count_bodies(state, world);
+}
+BENCHMARK(Restore)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMicrosecond);
+
+void Hash(benchmark::State& state) {
+  const sim::World& world = scene_of(static_cast<int>(state.range(0))).world();
+  for (auto _ : state) benchmark::DoNotOptimize(world.state_hash());
+  count_bodies(state, world);
+}
+BENCHMARK(Hash)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMicrosecond);
+
+void HashByPart(benchmark::State& state) {
+  const sim::World& world = scene_of(static_cast<int>(state.range(0))).world();
+  for (auto _ : state) benchmark::DoNotOptimize(world.part_hashes().size());
+  count_bodies(state, world);
+}
+BENCHMARK(HashByPart)->Arg(10)->Arg(1000)->Unit(benchmark::kMicrosecond);
+
+/// Boxes and nothing else: what a body costs by itself.
+void SnapshotOfBoxes(benchmark::State& state) {
+  const std::string text = "shoal: 1\nobjects:\n  - {name: box, count: " + std::to_string(state.range(0)) +
+                           ", placement: {pattern: grid}, parts: [{shape: box, mass_kg: 1}]}\n";
+  const sim::LoadedWorld loaded = sim::load_world_text(text, "boxes.yaml");
+  sim::InProcessBus bus;
+  sim::World world(loaded.config, bus);
+  for (int i = 0; i < 10; ++i) world.step();
+  std::size_t bytes = 0;
+  for (auto _ : state) bytes = world.snapshot().size();
+  state.counters["bytes"] = static_cast<double>(bytes);
+  count_bodies(state, world);
+}
+BENCHMARK(SnapshotOfBoxes)->Arg(10)->Arg(1000)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();

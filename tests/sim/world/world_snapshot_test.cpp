@@ -1,0 +1,276 @@
+#include <gmock/gmock.h>
+
+#include "sim/world/vehicle_loader.hpp"
+#include "tests/devices/state_fixture.hpp"
+
+namespace {
+
+using test::SavedRun;
+using test::TappedWorld;
+using testing::HasSubstr;
+
+/// Boxes that fall onto each other, rovers, an actor, events: things that come and go while it runs.
+const char* const busy_world = R"(
+shoal: 1
+physics: {step_s: 0.005}
+materials: [{name: rubber}]
+contacts: [{between: [rubber, any], friction: 0.8}]
+run: {seed: 5}
+medium: {wind: {speed_mps: 3, gusts: {}}}
+objects:
+  - {name: ground, fixed: true, parts: [{shape: plane}]}
+  - {name: gate, position_m: [6, 0, 0.5], parts: [{shape: box, size_m: [0.2, 2, 1]}]}
+  - {name: crate, position_m: [0, 4, 0.3], count: 5, placement: {pattern: line, spacing_m: 0.3},
+     parts: [{shape: box, size_m: [0.4, 0.4, 0.4], mass_kg: 2}]}
+  - {name: late, present: false, position_m: [2, 3, 1], parts: [{shape: sphere, radius_m: 0.2, mass_kg: 1}]}
+actors: [{name: porter, object: gate, points: [[6, 0, 0.5], [6, 3, 0.5]], ends: bounce, speed_mps: 0.7}]
+zones: [{name: dock, shape: box, position_m: [0, 0, 0], size_m: [3, 3, 3], finish: true, speed_limit_mps: 0.1}]
+vehicles:
+  - name: rover
+    count: 2
+    position_m: [0, -2, 0]
+    placement: {pattern: line, spacing_m: 2}
+    model: &model
+      shoal: 1
+      vehicle: cart
+      clock: {preset: tcxo, update_s: 0.1}
+      bodies:
+        - {name: hull, position_m: [0, 0, 0.2], parts: [{shape: box, size_m: [0.6, 0.4, 0.2], mass_kg: 5}]}
+        - {name: left, position_m: [0, 0.3, 0.1], parts: [{shape: sphere, radius_m: 0.1, mass_kg: 0.5, material: rubber}]}
+        - {name: right, position_m: [0, -0.3, 0.1], parts: [{shape: sphere, radius_m: 0.1, mass_kg: 0.5, material: rubber}]}
+      joints:
+        - {name: left, type: hinge, bodies: [hull, left], anchor_m: [0, 0.3, 0.1], axis: [0, 1, 0],
+           motor_velocity: 4, motor_max_force: 3}
+        - {name: right, type: hinge, bodies: [hull, right], anchor_m: [0, -0.3, 0.1], axis: [0, 1, 0],
+           motor_velocity: 3, motor_max_force: 3}
+      devices:
+        - {name: imu, type: imu, rate_hz: 50, gyro_noise: {gaussian_std: 0.01, random_walk_std: 0.01}, latency_s: 0.02,
+           jitter_s: 0.01}
+        - {name: lidar, type: lidar, rate_hz: 10, beams: 20, range_std_m: 0.01}
+        - {name: bumper, type: bumper, rate_hz: 20}
+events:
+  - {name: rain, every: 0.4, jitter_s: 0.1, probability: 0.7,
+     do: [{add: late, position_m: [0, 0, 2], area_m: [4, 4, 0]}, {move: crate1, position_m: [0, 0, 1], area_m: [2, 2, 1]}]}
+  - {name: sun, when: event rain fires, delay_s: 0.25, do: [{remove: late}]}
+  - {name: knock, when: any touches crate2, do: [{log: knock}]}
+)";
+
+sim::VehicleInstance visitor(const sim::World& world, const std::string& name, double x_m) {
+  const std::string yaml = "{name: " + name + ", position_m: [" + std::to_string(x_m) + R"(, -6, 0], model: {shoal: 1,
+    vehicle: guest, materials: [{name: felt}], contacts: [{between: [felt, any], friction: 0.2}],
+    bodies: [{name: hull, position_m: [0, 0, 0.2], parts: [{shape: box, size_m: [0.3, 0.3, 0.3], mass_kg: 1, material: felt}]}],
+    devices: [{name: imu, type: imu, rate_hz: 20, accel_noise: {bias_std: 0.1, gaussian_std: 0.1}},
+              {name: pose, type: inclinometer, rate_hz: 10}]}})";
+  return sim::read_spawn_request(world.config(), yaml).vehicle;
+}
+
+std::string error_of(sim::World& world, std::span<const std::byte> snapshot) {
+  try {
+    world.restore(snapshot);
+    return {};
+  } catch (const sim::SnapshotError& error) {
+    return error.what();
+  }
+}
+
+TEST(WorldSnapshot, AWorldGoesOnThoughThingsComeAndGo) {
+  SavedRun(busy_world).expect_restored_worlds_go_on_alike({0, 1, 150, 399}, 300);
+}
+
+TEST(WorldSnapshot, VisitorsFaultsMovesAndChangesComeBack) {
+  const auto meddle = [](TappedWorld& test, int step) {
+    sim::World& world = test.world;
+    const auto change = [&](const std::string& device, const std::string& values) {
+      sim::Diagnostics diagnostics;
+      ASSERT_TRUE(world.change_device(device, sim::parse_config_text(values, "change", diagnostics), diagnostics));
+    };
+    if (step == 20) world.add_vehicle(visitor(world, "guest", 0));
+    if (step == 40) world.add_vehicle(visitor(world, "other", 1));
+    if (step == 50) EXPECT_THROW(world.add_vehicle(visitor(world, "taken", 1)), sim::ConfigError);
+    if (step == 60) change("rover1/imu", "{rate_hz: 25, gyro_noise: {gaussian_std: 0.5}}");
+    if (step == 80) world.remove_vehicle("guest");
+    if (step == 90) world.add_vehicle(visitor(world, "third", -1));
+    if (step == 100) world.move_vehicle("rover2", sim::make_pose({3, -3, 0.5}, {0, 0, 1}));
+    sim::FaultConfig fault;
+    fault.kind = sim::FaultKind::stuck;
+    if (step == 110) world.set_fault("rover1/lidar", fault);
+    if (step == 120) world.remove_vehicle("rover1");
+    if (step == 130) change("third/pose", "{rate_hz: 40}");
+    if (step == 140) world.physics().set_gravity(1.6);
+  };
+  SavedRun(busy_world, meddle).expect_restored_worlds_go_on_alike({10, 45, 55, 75, 95, 115, 125, 145, 170}, 100);
+}
+
+/// Each comes and goes often, alone or while others are there; values are changed again and again.
+TEST(WorldSnapshot, WhatLeavesNoTraceIsNotKept) {
+  TappedWorld test(busy_world);
+  const auto bytes_after = [&](int rounds) {
+    for (int i = 0; i < rounds; ++i) {
+      test.world.add_vehicle(visitor(test.world, "guest", 0));
+      test.world.step();
+      test.world.add_vehicle(visitor(test.world, "other", 2));
+      test.world.step();
+      EXPECT_THROW(test.world.add_vehicle(visitor(test.world, "taken", 2)), sim::ConfigError);
+      sim::Diagnostics diagnostics;
+      const std::string values = "{rate_hz: " + std::to_string(10 + i % 2) + "}";
+      test.world.change_device("rover1/imu", sim::parse_config_text(values, "change", diagnostics), diagnostics);
+      test.world.remove_vehicle("other");
+      test.world.remove_vehicle("guest");
+      test.world.remove_object("crate3");
+      test.world.add_object(test.world.config().objects[2], "crate3", sim::make_pose({9, 9, 1}, {0, 0, 0}));
+      test.world.step();
+    }
+    return test.world.snapshot().size();
+  };
+  const auto few = static_cast<double>(bytes_after(2));
+  // Reports under way and contacts come and go.
+  EXPECT_NEAR(static_cast<double>(bytes_after(20)), few, 2000);
+  TappedWorld fresh(busy_world);
+  const sim::Bytes snapshot = test.world.snapshot();
+  fresh.world.restore(snapshot);
+  EXPECT_EQ(fresh.world.snapshot(), snapshot);
+  for (int i = 0; i < 100; ++i) {
+    if (i == 10) {  // numbers of devices are those of the original
+      test.world.add_vehicle(visitor(test.world, "last", 0));
+      fresh.world.add_vehicle(visitor(fresh.world, "last", 0));
+    }
+    test.world.step();
+    fresh.world.step();
+    ASSERT_EQ(fresh.world.state_hash(), test.world.state_hash()) << i;
+  }
+}
+
+/// A mast that is joined to the world, and is put elsewhere.
+TEST(WorldSnapshot, JointsToTheWorldThatWereMovedComeBack) {
+  const std::string yaml = R"(
+shoal: 1
+physics: {step_s: 0.002}
+vehicles:
+  - name: mast
+    model:
+      shoal: 1
+      vehicle: mast
+      bodies:
+        - {name: boom, position_m: [0.5, 0, 1], parts: [{shape: box, size_m: [1, 0.1, 0.1], mass_kg: 2}]}
+        - {name: tip, position_m: [1.2, 0, 1], parts: [{shape: box, size_m: [0.4, 0.1, 0.1], mass_kg: 1}]}
+      joints:
+        - {name: foot, type: hinge, bodies: [boom, world], anchor_m: [0, 0, 1], axis: [0, 1, 0], low_stop: -1.4}
+        - {name: wrist, type: hinge, bodies: [boom, tip], anchor_m: [1, 0, 1], axis: [0, 1, 0]}
+      devices:
+        - {name: foot, type: joint_state, joints: [foot, wrist], rate_hz: 100}
+)";
+  const auto move = [](TappedWorld& test, int step) {
+    if (step == 100) test.world.move_vehicle("mast", sim::make_pose({3, 4, 0}, {0, 0, 0.7}));
+    if (step == 300) test.world.move_vehicle("mast", sim::make_pose({-3, 1, 0.2}, {0.2, 0, 2}));
+  };
+  SavedRun(yaml, move).expect_restored_worlds_go_on_alike({50, 150, 350}, 300);
+}
+
+/// What the world sends in its last step waits in mailboxes when the snapshot is taken.
+TEST(WorldSnapshot, MailOnItsWayWithinTheWorldIsKept) {
+  const std::string yaml = R"(
+shoal: 1
+physics: {step_s: 0.01}
+objects: [{name: ball, position_m: [0, 0, 100], parts: [{shape: sphere, radius_m: 0.1, mass_kg: 1}]}]
+events:
+  - {name: ask, every: 0.05, do: [{publish: bell, type: shoal.twist_command_t, value: {}}]}
+  - {name: hear, when: message on bell, do: [{move: ball, position_m: [0, 0, 10], area_m: [4, 4, 4]}]}
+)";
+  std::vector<int> each;
+  for (int step = 20; step < 30; ++step) each.push_back(step);
+  SavedRun(yaml).expect_restored_worlds_go_on_alike(each, 20);
+}
+
+class DamagedSnapshot : public testing::Test {
+ protected:
+  DamagedSnapshot() {
+    for (int i = 0; i < 30; ++i) world().step();
+    world().add_vehicle(visitor(world(), "guest", 0));
+    for (int i = 0; i < 30; ++i) world().step();
+    good = world().snapshot();
+  }
+  sim::World& world() { return test.world; }
+
+  TappedWorld test{busy_world};
+  sim::Bytes good;
+};
+
+TEST_F(DamagedSnapshot, LeavesTheWorldAsItWasWhenItIsCutOff) {
+  const std::uint64_t before = world().state_hash();
+  sim::Random random(1, "cut");
+  random.begin_step(0);
+  for (int i = 0; i < 60; ++i) {
+    const std::size_t size = random.integer_below(static_cast<std::uint32_t>(good.size()));
+    EXPECT_NE(error_of(world(), std::span(good).first(size)), "") << size << " of " << good.size();
+    ASSERT_EQ(world().state_hash(), before) << size << " of " << good.size();
+  }
+  EXPECT_EQ(error_of(world(), good), "");
+}
+
+TEST_F(DamagedSnapshot, IsRefusedOrTheWorldGoesOnWhenBitsAreFlipped) {
+  sim::Random random(1, "flip");
+  random.begin_step(0);
+  int refused = 0;
+  for (int i = 0; i < 60; ++i) {
+    sim::Bytes bad = good;
+    bad[random.integer_below(static_cast<std::uint32_t>(bad.size()))] ^=
+        static_cast<std::byte>(1 << random.integer_below(8));
+    refused += !error_of(world(), bad).empty();
+    try {
+      for (int step = 0; step < 3; ++step) world().step();
+    } catch (const sim::PhysicsFault&) {  // a number that was made huge
+    }
+    ASSERT_EQ(error_of(world(), good), "");
+    ASSERT_EQ(world().snapshot(), good);
+  }
+  EXPECT_GT(refused, 0);
+}
+
+TEST_F(DamagedSnapshot, OfAnotherWorldIsRefused) {
+  std::string other = busy_world;
+  other.replace(other.find("seed: 5"), 7, "seed: 6");
+  TappedWorld of_other_seed(other);
+  EXPECT_THAT(error_of(of_other_seed.world, good), HasSubstr("it is of another world: seed 5, step 5000 us"));
+  other = busy_world;
+  other.replace(other.find("name: bumper, type: bumper"), 12, "name: buffer");
+  TappedWorld of_other_devices(other);
+  const std::uint64_t before = of_other_devices.world.state_hash();
+  EXPECT_EQ(error_of(of_other_devices.world, good),
+            "the snapshot has 'rover1/bumper' where this world has 'rover1/buffer'");
+  EXPECT_EQ(of_other_devices.world.state_hash(), before);
+}
+
+TEST(WorldSnapshot, AWorldWhosePhysicsBrokeDownGoesBack) {
+  TappedWorld test(busy_world);
+  for (int i = 0; i < 20; ++i) test.world.step();
+  const sim::Bytes good = test.world.snapshot();
+  const std::uint64_t hash = test.world.state_hash();
+  test.world.vehicles().front()->body("hull").set_velocity_W({1e5, 0, 0}, {0, 0, 0});
+  EXPECT_THROW(for (int i = 0; i < 3; ++i) test.world.step(), sim::PhysicsFault);
+  EXPECT_THROW(test.world.snapshot(), sim::SnapshotError);
+  test.world.restore(good);
+  EXPECT_EQ(test.world.state_hash(), hash);
+  for (int i = 0; i < 20; ++i) test.world.step();
+}
+
+TEST(WorldSnapshot, PartsHaveHashesInAnOrderThatStays) {
+  TappedWorld test(busy_world);
+  std::vector<std::string> names;
+  for (const sim::PartHash& part : test.world.part_hashes()) names.push_back(part.part);
+  EXPECT_EQ(names, (std::vector<std::string>{"world", "medium", "rover1", "rover1/imu", "rover1/lidar", "rover1/bumper",
+                                             "rover2", "rover2/imu", "rover2/lidar", "rover2/bumper", "objects",
+                                             "events", "acoustics", "script"}));
+}
+
+TEST(WorldSnapshot, ThePartThatDiffersIsToldByItsHash) {
+  TappedWorld one(busy_world), other(busy_world);
+  sim::FaultConfig fault;
+  fault.kind = sim::FaultKind::silent;
+  other.world.set_fault("rover2/lidar", fault);
+  const auto a = one.world.part_hashes(), b = other.world.part_hashes();
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i] == b[i], a[i].part != "rover2/lidar") << a[i].part;
+  EXPECT_NE(one.world.state_hash(), other.world.state_hash());
+}
+
+}  // namespace

@@ -1,0 +1,59 @@
+#include <gmock/gmock.h>
+
+#include "tests/system/shoal_program.hpp"
+
+namespace {
+
+using system_test::built;
+using system_test::Ended;
+using system_test::run_shoal;
+using system_test::ScratchFolder;
+using system_test::source;
+using testing::HasSubstr;
+
+Ended run_segway(std::vector<std::string> more) {
+  std::vector<std::string> arguments{"run", source("worlds/segway.yaml"), "--launch", "--lcm-url",
+                                     system_test::own_url(0)};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return run_shoal(std::move(arguments), std::chrono::minutes(4));
+}
+
+TEST(SegwayRun, AnotherProcessBalancesItForTenMinutesOnCommand) {
+  const Ended ended = run_segway({"--duration", "600"});
+  EXPECT_EQ(ended.exit_code, 0) << ended.output << ended.errors;  // the rules of the world: up, and on its way
+}
+
+TEST(SegwayRun, FallsWhenItIsTooLate) {
+  const Ended ended = run_segway({"--duration", "20", "--set", "vehicles.segway1.actuator_latency_s=0.12"});
+  EXPECT_EQ(ended.exit_code, 1);
+  EXPECT_THAT(ended.output + ended.errors, HasSubstr("lean.max_deg"));
+}
+
+TEST(SegwayRun, IsTheSameAtAnySpeed) {
+  const auto hash = [](const std::string& speed) {
+    return system_test::state_hash_in(run_segway({"--duration", "6", "--speed", speed}));
+  };
+  const std::string fast = hash("max");
+  EXPECT_EQ(fast.size(), 16u) << fast;
+  EXPECT_EQ(fast, hash("4"));
+}
+
+TEST(SegwayRun, ItsProgramSaysWhatIsWrongWithItsOptions) {
+  const std::pair<std::vector<std::string>, const char*> mistakes[] = {
+      {{}, "--name is required"},
+      {{"--name", "s", "--speeds", "1"}, "'1' must be TIME:SPEED or TIME:SPEED:TURN"},
+      {{"--name", "s", "--speeds", "1:x"}, "'x' in '1:x' is not a number"},
+      {{"--name", "s", "--speeds", "2:1;1:0"}, "the times must grow"},
+      {{"--name", "s", "--kp", "nan"}, "--kp: value nan not in range"},
+      {{"--name", "s", "--period", "0"}, "--period"},
+  };
+  for (const auto& [options, says] : mistakes) {
+    std::vector<std::string> arguments{built("shoal-balance")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    system_test::Program program(std::move(arguments));
+    EXPECT_EQ(program.wait(), 2) << says;
+    EXPECT_THAT(program.errors(), HasSubstr(says));
+  }
+}
+
+}  // namespace

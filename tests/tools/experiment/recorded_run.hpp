@@ -1,0 +1,106 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bridges/lcm/event_log.hpp"
+#include "bridges/lcm/recording_bus.hpp"
+#include "bridges/lcm/run_journal.hpp"
+#include "bridges/lcm/sim_service.hpp"
+#include "shoal/message_codec.hpp"
+#include "tests/devices/port_fixture.hpp"
+#include "tools/experiment/run_identity.hpp"
+#include "tools/experiment/runner.hpp"
+
+namespace test {
+
+/// A run in this process that is recorded as `shoal run --record` does, with clients that the test plays.
+class RecordedRun {
+ public:
+  RecordedRun(const std::string& yaml, const std::string& log)
+      : loaded(sim::load_world_text(yaml, "worlds/test.yaml", LoadedTestWorld::with_messages({}))),
+        recorder(network, log, loaded.config.epoch_us),
+        gate(recorder),
+        journal(gate),
+        world(loaded.config, gate, journal.wrap([this](const std::string&, const std::string& path) {
+          ends[path] = std::make_shared<PortEnd>();
+          return std::make_unique<FakePort>(ends[path]);
+        })),
+        service(gate, network, world, control, lockstep,
+                {sim::to_yaml(loaded.resolved), tools::version_text(), tools::build_text(),
+                 tools::files_text(loaded.resolved)}) {
+    journal.attach(world);
+    service.use_journal(journal);
+    service.publish_info();
+  }
+
+  /// `clients` act before each step; then requests are obeyed.
+  void run(std::int64_t steps, const std::function<void(std::int64_t step)>& clients = {}) {
+    service.handle_requests();
+    journal.start();
+    service.publish_step();
+    journal.after_step();
+    for (std::int64_t i = 0; i < steps; ++i) {
+      if (clients) clients(world.step_number());
+      service.handle_requests();
+      recorder.set_time(world.now());
+      journal.admitted("", gate.admit());
+      world.step();
+      service.publish_step();
+      journal.after_step();
+    }
+    journal.finish();
+    recorder.close();
+  }
+
+  template <typename Message>
+  void send(const std::string& channel, const Message& message) {
+    network.publish(channel, shoal::encode(message), world.now());
+  }
+  void request(const std::string& command, const std::string& text) {
+    shoal::sim_control_request_t request{};
+    request.client = "pilot";
+    request.command = command;
+    request.text = text;
+    send("sim.control", request);
+  }
+
+  std::map<std::string, std::shared_ptr<PortEnd>> ends;
+  sim::LoadedWorld loaded;
+  sim::InProcessBus network;
+  bridges::RecordingBus recorder;
+  sim::MailGate gate;
+  bridges::RunJournal journal;
+  sim::RunControl control;
+  sim::Lockstep lockstep;
+  sim::World world;
+  bridges::SimService service;
+};
+
+/// Copies a log without the events that `leave_out` names.
+inline void copy_log(const std::string& from, const std::string& to,
+                     const std::function<bool(const bridges::LogEvent&)>& leave_out) {
+  bridges::EventLogReader in(from);
+  std::string bytes;
+  const auto add = [&bytes](std::uint64_t value, int size) {
+    for (int i = size - 1; i >= 0; --i) bytes += static_cast<char>(value >> (8 * i) & 0xff);
+  };
+  while (const auto event = in.next()) {
+    if (leave_out(*event)) continue;
+    add(0xEDA1DA01, 4);
+    add(static_cast<std::uint64_t>(event->number), 8);
+    add(static_cast<std::uint64_t>(event->utime), 8);
+    add(event->channel.size(), 4);
+    add(event->payload.size(), 4);
+    bytes += event->channel;
+    bytes.append(reinterpret_cast<const char*>(event->payload.data()), event->payload.size());
+  }
+  std::FILE* out = std::fopen(to.c_str(), "wb");
+  std::fwrite(bytes.data(), 1, bytes.size(), out);
+  std::fclose(out);
+}
+
+}  // namespace test

@@ -1,0 +1,303 @@
+#include "tools/experiment/replay.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "shoal/sim_mail_t.hpp"
+#include "shoal/twist_command_t.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/tools/experiment/recorded_run.hpp"
+
+// A log of a run is enough to run it again, and to find where it differs.
+
+namespace {
+
+using test::RecordedRun;
+using test_support::ScratchFolder;
+using testing::AnyOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using tools::replay;
+using tools::ReplayOptions;
+using tools::ReplayOutcome;
+
+constexpr std::int64_t steps = 300;
+
+/// One rover with a noisy IMU and a wall before it; steps of 0.01 s, a hash every 50.
+std::string rover_world(const std::string& more = "") {
+  return "shoal: 1\nname: testing ground\nrun: {seed: 3, hash_every_steps: 50}\nphysics: {step_s: 0.01}\n"
+         "objects:\n  - {name: ground, fixed: true, parts: [{shape: plane}]}\n"
+         "  - {name: crate, position_m: [3, 0, 0.5], parts: [{shape: box, mass_kg: 5}]}\n"
+         "vehicles:\n  - {name: r1, file: rover.yaml}\n" +
+         more;
+}
+
+shoal::twist_command_t forward(double mps) {
+  shoal::twist_command_t command{};
+  command.forward_mps = mps;
+  return command;
+}
+
+class ReplayTest : public testing::Test {
+ protected:
+  /// A client drives: ten messages a second.
+  void record(const std::string& yaml, const std::function<void(RecordedRun&, std::int64_t)>& more = {}) {
+    RecordedRun run(yaml, log);
+    run.run(steps, [&](std::int64_t step) {
+      if (step % 10 == 0) run.send("r1.drive.cmd", forward(0.5 + 0.001 * static_cast<double>(step)));
+      if (more) more(run, step);
+    });
+    state_hash = run.world.state_hash();
+  }
+
+  ReplayOutcome again(const std::vector<std::string>& sets = {}) const {
+    ReplayOptions options;
+    options.log = log;
+    options.sets = sets;
+    options.quiet = true;
+    options.threads = 1;
+    return replay(options);
+  }
+
+  std::string error() const {
+    try {
+      again();
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  ScratchFolder folder;
+  std::string log = folder.file("run.lcm");
+  std::uint64_t state_hash = 0;
+};
+
+TEST_F(ReplayTest, ARunWithAClientIsEqualWithoutIt) {
+  record(rover_world());
+  const ReplayOutcome outcome = again();
+  EXPECT_EQ(outcome.exit_code(), 0);
+  EXPECT_EQ(outcome.steps, steps);
+  EXPECT_EQ(outcome.hashes, 7u);           // steps 0, 50, ... 300
+  EXPECT_GT(outcome.messages, 60u + 30u);  // 20 Hz of odometry, 10 Hz of lidar and more
+  EXPECT_EQ(outcome.missing_messages, 0u);
+  EXPECT_THAT(outcome.notes, IsEmpty());
+  EXPECT_THAT(outcome.to_text(), HasSubstr("equal for 300 steps (7 hashes, "));
+}
+
+TEST_F(ReplayTest, TheMailIsNeeded) {
+  record(rover_world());
+  const std::string whole = log;
+  log = folder.file("without.lcm");
+  test::copy_log(whole, log, [](const auto& event) { return event.channel == "sim.mail"; });
+  EXPECT_THAT(error(), HasSubstr("cannot be run again from the start: sim.mail 0"));
+}
+
+TEST_F(ReplayTest, RequestsThatChangeTheWorldAreObeyedAtTheSameSteps) {
+  record(rover_world(), [](RecordedRun& run, std::int64_t step) {
+    if (step == 40) run.request("spawn", "{name: guest, file: rover_small.yaml, position_m: [0, 3, 0]}");
+    if (step == 60) run.request("do", "{fault: r1/lidar, kind: silent}");
+    if (step == 60) run.request("spawn", "{name: guest, file: rover_small.yaml}");  // is refused
+    if (step == 70) run.send("guest.drive.cmd", forward(1));
+    if (step == 80) run.request("describe", "guest");
+    if (step == 201) run.request("remove", "guest");
+    if (step == 202) run.request("remove", "crate");
+  });
+  const ReplayOutcome outcome = again();
+  EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
+  EXPECT_EQ(outcome.steps, steps);
+}
+
+TEST_F(ReplayTest, VehicleFilesAreInTheLog) {
+  RecordedRun run(rover_world(), log);
+  run.request("spawn", "{name: guest, file: rover_small.yaml, position_m: [0, 3, 0]}");
+  run.run(100);
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.file(""));
+  const ReplayOutcome outcome = again();
+  std::filesystem::current_path(before);
+  EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
+}
+
+TEST_F(ReplayTest, BytesOfSerialPortsAreReadAgain) {
+  const std::string box =
+      ", model: {shoal: 1, vehicle: box, bodies: [{name: b, position_m: [0, 0, 0.2], parts: [{shape: box, "
+      "mass_kg: 5}]}], devices: [{name: modem, type: modem, network: n, range_m: 100, serial: {path: "
+      "\"/nowhere/{vehicle}\"}}]}}\n";
+  RecordedRun run(
+      rover_world("  - {name: a, position_m: [0, 5, 0]" + box + "  - {name: b, position_m: [0, 9, 0]" + box), log);
+  run.run(200, [&](std::int64_t step) {
+    if (step == 20) run.ends["/nowhere/a"]->to_world = "hello\npart ";
+    if (step == 50) run.ends["/nowhere/a"]->to_world = "of a line\n";
+  });
+  EXPECT_EQ(run.ends["/nowhere/b"]->from_world, "hello\npart of a line\n");
+  const ReplayOutcome outcome = again();
+  EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
+  test::copy_log(log, folder.file("quiet.lcm"), [](const auto& event) { return event.channel == "sim.mail"; });
+  log = folder.file("quiet.lcm");
+  EXPECT_THAT(error(), HasSubstr("sim.mail 0"));
+}
+
+TEST_F(ReplayTest, APlantedDifferenceIsFoundWithStepVehicleAndQuantity) {
+  record(rover_world());
+  const ReplayOutcome seed = again({"run.seed=4"});
+  EXPECT_EQ(seed.exit_code(), 1);
+  ASSERT_TRUE(seed.first);
+  EXPECT_LE(seed.first->step, 50);
+  EXPECT_THAT(seed.to_text(), AllOf(HasSubstr("differs first at step "), HasSubstr("in the log and")));
+  EXPECT_THAT(seed.report, testing::Contains(HasSubstr("seed: 4")));
+
+  const ReplayOutcome mass = again({"objects.crate.parts.1.mass_kg=6"});
+  EXPECT_EQ(mass.exit_code(), 1);
+  EXPECT_THAT(mass.report, testing::Contains(HasSubstr("mass_kg: 6")));
+}
+
+TEST_F(ReplayTest, OneNoisierSensorIsFoundByItsName) {
+  record(rover_world());
+  const ReplayOutcome outcome = again({"vehicles.r1.devices.odometry.noise.gaussian_std=0.5"});
+  EXPECT_EQ(outcome.exit_code(), 1);
+  ASSERT_TRUE(outcome.first);
+  EXPECT_THAT(outcome.to_text(), HasSubstr("r1/odometry (r1.odometry): "));
+}
+
+TEST_F(ReplayTest, ALetterThatIsMissingEndsTheProof) {
+  record(rover_world());
+  const std::string whole = log;
+  log = folder.file("hole.lcm");
+  test::copy_log(whole, log, [](const bridges::LogEvent& event) {
+    if (event.channel != "sim.mail") return false;
+    const auto mail = shoal::decode<shoal::sim_mail_t>(event.payload, shoal::Finite::any);
+    return mail.sequence == 12 || mail.sequence == 13;
+  });
+  const ReplayOutcome outcome = again();
+  EXPECT_EQ(outcome.exit_code(), 4);
+  EXPECT_FALSE(outcome.first) << outcome.to_text();
+  // Mail 11 was admitted in the step from 110 to 111.
+  EXPECT_EQ(outcome.steps, 111);
+  EXPECT_THAT(outcome.to_text(), AllOf(HasSubstr("equal for 111 steps"), HasSubstr("sim.mail 12 to 13"),
+                                       HasSubstr("nothing after step 111 can be proved")));
+}
+
+TEST_F(ReplayTest, MessagesThatALoggerLostAreCountedOnly) {
+  record(rover_world());
+  const std::string whole = log;
+  log = folder.file("lossy.lcm");
+  int odometry = 0;
+  test::copy_log(whole, log,
+                 [&](const bridges::LogEvent& event) { return event.channel == "r1.odometry" && ++odometry % 5 == 2; });
+  // lcm-logger stamps by the wall clock: in a record of our own nothing can be lost.
+  EXPECT_EQ(again().exit_code(), 1);
+  std::string bytes;
+  {
+    std::ifstream in(log, std::ios::binary);
+    bytes.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  bytes[4 + 8 + 7] ^= 1;  // the stamp of the first event
+  std::ofstream(log, std::ios::binary) << bytes;
+  const ReplayOutcome outcome = again();
+  EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
+  EXPECT_GT(outcome.missing_messages, 5u);
+  EXPECT_THAT(outcome.to_text(), HasSubstr("messages that were published here are not in the log"));
+}
+
+TEST_F(ReplayTest, ALogThatIsCutOffIsEqualAsFarAsItGoes) {
+  record(rover_world());
+  std::filesystem::resize_file(log, std::filesystem::file_size(log) * 2 / 3);
+  const ReplayOutcome outcome = again();
+  EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
+  EXPECT_LT(outcome.steps, steps);
+  EXPECT_GT(outcome.steps, steps / 3);
+}
+
+TEST_F(ReplayTest, ARunThatAFaultEndedIsEqualUpToIt) {
+  // Free fall: 5 m/s are reached after 0.51 s.
+  RecordedRun run(
+      "shoal: 1\nphysics: {max_speed_mps: 5, step_s: 0.01}\nvehicles:\n  - name: stone\n    position_m: [0, 0, 100]\n"
+      "    model: {shoal: 1, bodies: [{name: body, parts: [{shape: sphere, mass_kg: 1}]}]}\n",
+      log);
+  EXPECT_THROW(run.run(steps), sim::PhysicsFault);
+  run.journal.finish(false);
+  run.recorder.close();
+  const ReplayOutcome outcome = again();
+  EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
+  EXPECT_THAT(outcome.steps, AllOf(testing::Ge(40), testing::Le(51)));
+}
+
+TEST_F(ReplayTest, UntilEndsEarlier) {
+  record(rover_world());
+  ReplayOptions options;
+  options.log = log;
+  options.until_s = 1.2;
+  options.quiet = true;
+  const ReplayOutcome outcome = replay(options);
+  EXPECT_EQ(outcome.steps, 120);
+  EXPECT_EQ(outcome.exit_code(), 0);
+}
+
+TEST_F(ReplayTest, RefusesWhatIsNoLogOfARun) {
+  EXPECT_THAT(error(), HasSubstr("No such file"));
+  std::ofstream(log) << "this is text";
+  EXPECT_THAT(error(), HasSubstr("holds no event that can be read"));
+  std::filesystem::remove(log);
+  record(rover_world());
+  const std::string whole = log;
+  log = folder.file("other.lcm");
+  test::copy_log(whole, log, [](const auto& event) { return event.channel.starts_with("sim."); });
+  EXPECT_THAT(error(), HasSubstr("holds no sim.info"));
+}
+
+TEST_F(ReplayTest, RefusesTwoRunsInOneLog) {
+  record(rover_world());
+  std::ifstream in(log, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  std::ofstream(log, std::ios::binary | std::ios::app) << bytes;
+  EXPECT_THAT(error(), HasSubstr("holds two runs"));
+}
+
+TEST_F(ReplayTest, HostileMessagesAreToldOfAndPassedOver) {
+  record(rover_world());
+  const std::string whole = log;
+  log = folder.file("hostile.lcm");
+  bridges::EventLogReader reader(whole);
+  bridges::RecordingBus out(std::make_unique<sim::InProcessBus>(), log, 0);
+  for (int i = 0; const auto event = reader.next(); ++i) {
+    out.publish(event->channel, event->payload, sim::Time(event->utime));
+    if (i == 20) out.publish("sim.mail", shoal::encode(forward(1)), sim::Time(event->utime));
+    if (i == 21) out.publish("sim.hash", sim::Bytes(3), sim::Time(event->utime));
+  }
+  out.close();
+  const ReplayOutcome outcome = again();
+  EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
+  EXPECT_THAT(outcome.to_text(), AllOf(HasSubstr("sim.mail: "), HasSubstr("sim.hash: ")));
+}
+
+TEST_F(ReplayTest, AWorldWithAnotherStepCannotBeCompared) {
+  record(rover_world());
+  try {
+    again({"physics.step_s=0.005"});
+    FAIL() << "was compared";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("steps of 10000 us"));
+  }
+}
+
+TEST_F(ReplayTest, AMeshThatIsAnotherOneIsTold) {
+  const std::string mesh = folder.file("plate.obj");
+  std::ofstream(mesh) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  const std::string world = rover_world(
+      "  - {name: stone, position_m: [9, 9, 1], model: {shoal: 1, bodies: [{name: b, parts: [{shape: mesh, "
+      "mesh: \"" +
+      mesh + "\", mass_kg: 4}]}]}}\n");
+  record(world);
+  EXPECT_EQ(again().exit_code(), 0);
+  std::ofstream(mesh, std::ios::app) << "# changed\n";
+  EXPECT_THAT(error(), HasSubstr("plate.obj: is another file than in the run"));
+  std::filesystem::remove(mesh);
+  EXPECT_THAT(error(), HasSubstr("plate.obj: is missing"));
+}
+
+}  // namespace
