@@ -233,7 +233,9 @@ TEST(LockstepService, ALeaveWaitsForTheAcknowledgementBeforeIt) {
   ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
   bool left = false;
   s.synchronize([&] {
-    if (!left) EXPECT_TRUE(s.is_undecided("leave", "pilot", "{session: 5}"));
+    if (!left) {
+      EXPECT_TRUE(s.is_undecided("leave", "pilot", "{session: 5}"));
+    }
     s.acknowledge(0, "pilot", 5, 1);
     left = true;
   });
