@@ -1,5 +1,5 @@
-// What lockstep costs: the time from a tick to the last answer, for 1 and 10 clients, beside a bare LCM ping-pong of the
-// same sizes in the same run; and how fast a small world runs with 10 clients at 100 Hz.
+// What lockstep costs: the time from a tick to the last answer, for 1 and 10 clients, beside a bare LCM ping-pong of
+// the same sizes in the same run; and how fast a small world runs with 10 clients at 100 Hz.
 //   lockstep_bench [STEPS]
 #include <sys/wait.h>
 #include <unistd.h>
@@ -32,7 +32,9 @@ struct Times {
 
 Times quantiles(std::vector<double> times_us) {
   std::sort(times_us.begin(), times_us.end());
-  const auto at = [&](double q) { return times_us[static_cast<std::size_t>(q * (static_cast<double>(times_us.size()) - 1))]; };
+  const auto at = [&](double q) {
+    return times_us[static_cast<std::size_t>(q * (static_cast<double>(times_us.size()) - 1))];
+  };
   return {at(0.5), at(0.99)};
 }
 
@@ -144,9 +146,10 @@ int main(int argc, char** argv) {
   std::printf("bare LCM ping-pong      p50 %7.1f us   p99 %7.1f us\n", bare.p50_us, bare.p99_us);
   for (const int clients : {1, 10}) {
     const Cost cost = lockstep(on, clients, steps);
-    std::printf("barrier, %2d client%s     p50 %7.1f us   p99 %7.1f us   per client p50 %6.1f us   ratio to ping-pong %.2f   "
-                "%.0f times real time at 100 Hz\n",
-                clients, clients == 1 ? " " : "s", cost.barrier.p50_us, cost.barrier.p99_us,
-                cost.barrier.p50_us / clients, cost.barrier.p50_us / clients / bare.p50_us, cost.real_time_factor);
+    std::printf(
+        "barrier, %2d client%s     p50 %7.1f us   p99 %7.1f us   per client p50 %6.1f us   ratio to ping-pong %.2f   "
+        "%.0f times real time at 100 Hz\n",
+        clients, clients == 1 ? " " : "s", cost.barrier.p50_us, cost.barrier.p99_us, cost.barrier.p50_us / clients,
+        cost.barrier.p50_us / clients / bare.p50_us, cost.real_time_factor);
   }
 }

@@ -56,8 +56,7 @@ struct Service : lcm_test::ServedWorld {
     test.send("sim.ack", ack);
   }
   /// `while_waiting` is called each time that the world waits for somebody.
-  bridges::LockstepOutcome synchronize(
-      const std::function<void()>& while_waiting = [] {}) {
+  bridges::LockstepOutcome synchronize(const std::function<void()>& while_waiting = [] {}) {
     return lockstep.synchronize([&](std::chrono::milliseconds) { while_waiting(); },
                                 [&] {
                                   service.handle_requests();
