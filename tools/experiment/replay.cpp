@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 
+#include "bridges/lcm/lockstep_service.hpp"
 #include "bridges/lcm/run_journal.hpp"
 #include "bridges/lcm/sim_service.hpp"
 #include "shoal/message_codec.hpp"
@@ -341,8 +342,8 @@ class Replay {
   Line main_;
   std::map<std::string, Line> others_;
   sim::RunControl control_;
-  sim::Lockstep lockstep_;
   sim::World world_;
+  bridges::LockstepService lockstep_{world_, control_};  // nobody joins
   bridges::SimService service_;
   std::size_t next_letter_ = 0;
   bool cut_ = false;
