@@ -157,7 +157,8 @@ class Replay {
       throw std::runtime_error(fmt::format("{}: its run has the epoch {}, the world here {}: all stamps would differ",
                                            log_.path, log_.info.epoch_utime, world_.epoch_us()));
     if (log_.proven_step && *log_.proven_step <= 0 && log_.usable_step() < log_.last_step)
-      throw std::runtime_error(log_.path + ": cannot be run again from the start: " + log_.holes.front());
+      throw std::runtime_error(log_.path + ": cannot be run again from the start: " + log_.holes.front() +
+                               "; the log begins later than the run, or the run began with a snapshot");
     if (log_.last_step == 0 && log_.hashes.empty())
       throw std::runtime_error(log_.path + ": ends before the first step");
   }
