@@ -116,7 +116,7 @@ class Replay {
         for_each_line([](Line& line) { line.gate->admit(); });
         world_.step();
         after_step();
-        progress.update(world_.now(), messages_.equal(), false);
+        progress.update(world_.now(), messages_.equal(), control_, false);
       }
     } catch (const sim::PhysicsFault& error) {
       differ("the world", std::string("physics fault here: ") + error.what());
