@@ -50,6 +50,10 @@ Client::End end_of(bridges::LockstepClient::End end) {
       return Client::End::last_tick;
     case bridges::LockstepClient::End::stopped:
       return Client::End::stopped;
+    case bridges::LockstepClient::End::rewound:
+      return Client::End::rewound;
+    case bridges::LockstepClient::End::dropped:
+      return Client::End::dropped;
     case bridges::LockstepClient::End::silence:
       break;
   }
@@ -62,7 +66,7 @@ Client::Client(const std::string& name, const std::string& lcm_url)
     : connection_(with_own_errors([&] { return std::make_unique<Connection>(name, lcm_url); })) {}
 
 Client::~Client() {
-  if (!connection_->joined || connection_->end == End::last_tick) return;
+  if (!connection_->joined || connection_->end == End::last_tick || connection_->end == End::dropped) return;
   try {
     connection_->lcm.leave();
   } catch (const std::exception&) {
@@ -93,7 +97,15 @@ void Client::publish_bytes(std::string_view channel, std::span<const std::byte> 
 }
 
 void Client::join(double period_s, std::chrono::milliseconds timeout) {
-  with_own_errors([&] { connection_->lcm.join(period_s, timeout); });
+  JoinOptions options;
+  options.timeout = timeout;
+  join(period_s, options);
+}
+
+void Client::join(double period_s, const JoinOptions& options) {
+  with_own_errors([&] {
+    connection_->lcm.join(period_s, options.timeout, {options.on_timeout, options.timeout_s});
+  });
   connection_->end = End::none;
   connection_->unanswered.reset();
   connection_->joined = true;
@@ -126,7 +138,7 @@ void Client::Connection::follow_clock(std::int64_t new_period_us) {
 
 std::optional<std::int64_t> Client::next_tick() {
   // After silence somebody may come yet.
-  if (connection_->end == End::last_tick || connection_->end == End::stopped) return std::nullopt;
+  if (connection_->end != End::none && connection_->end != End::silence) return std::nullopt;
   if (connection_->joined) return with_own_errors([&] { return connection_->next_joined_tick(); });
   if (connection_->period_us == 0) throw std::logic_error("shoal::Client: join() or follow() comes before next_tick()");
   return with_own_errors([&] { return connection_->next_free_tick(); });
@@ -180,8 +192,24 @@ void Client::set_silence_limit(std::chrono::milliseconds limit) {
   connection_->lcm.set_silence_limit(limit);
 }
 
-const Client::Counts& Client::counts() const {
-  return connection_->counts;
+const std::string& Client::reason() const {
+  return connection_->lcm.reason();
+}
+
+void Client::on_rewind(std::function<void(std::int64_t utime)> handler) {
+  connection_->lcm.on_rewind(
+      [handler = std::move(handler)](const shoal::sim_tick_t& tick) { handler(tick.utime); });
+}
+
+std::int32_t Client::branch() const {
+  return connection_->lcm.branch();
+}
+
+Client::Counts Client::counts() const {
+  Counts counts = connection_->counts;
+  counts.asked_for = connection_->lcm.counts().asked_for;
+  counts.repeated = connection_->lcm.counts().repeated;
+  return counts;
 }
 
 }  // namespace shoal

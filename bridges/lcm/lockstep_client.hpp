@@ -7,11 +7,16 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "bridges/lcm/lcm_listener.hpp"
+#include "shoal/sim_resend_t.hpp"
+#include "shoal/sim_resent_t.hpp"
 #include "shoal/sim_tick_t.hpp"
 
 namespace bridges {
@@ -27,59 +32,156 @@ namespace bridges {
 ///       client.acknowledge(tick);
 ///     }
 ///
-/// The world waits between a tick and its acknowledgement.  Payloads that are no valid ticks or replies are
-/// ignored; a handler that decodes with shoal::decode() should catch shoal::MessageError, which else leaves
-/// next_tick().
+/// The world waits between a tick and its acknowledgement.  Messages are held until the tick that names them, and are
+/// then handled in the order of that list; those that are missing are asked for.  So a client does the same whatever
+/// the network loses, repeats or puts in another order; docs/lockstep.md has the protocol.  Payloads that are no valid
+/// ticks or replies are ignored; a handler that decodes with shoal::decode() should catch shoal::MessageError, which
+/// else leaves next_tick().
 class LockstepClient {
  public:
   using Handler = std::function<void(std::span<const std::byte>)>;
-  enum class End { none, last_tick, stopped, silence };
+  enum class End {
+    none,
+    last_tick,
+    stopped,
+    silence,
+    rewound,  ///< the world went back, and on_rewind() was not called before
+    dropped,  ///< the world went on without this client; see reason()
+  };
+  struct JoinOptions {
+    std::string on_timeout;  ///< wait, pause, continue, end; empty: the world's choice
+    double timeout_s = 0;    ///< wall time; 0: the world's
+  };
+  struct Counts {
+    std::uint64_t asked_for = 0;  ///< messages that came only after they were asked for
+    std::uint64_t repeated = 0;   ///< messages that came again, and were dropped
+    std::uint64_t unnamed = 0;    ///< messages that no tick named: of senders the simulator does not hear
+  };
 
   /// Throws BusError when LCM cannot be used.
   LockstepClient(const std::string& url, std::string name);
 
   /// Also from a handler, which then sees the messages after its own.
   void subscribe(const std::string& channel, Handler handler);
-  /// At once, so it is out before the acknowledgement that follows.  Throws BusError when LCM refuses it.
+  /// At once, so it is out before the acknowledgement that follows; between an acknowledgement and the next tick it
+  /// waits for that tick.  Throws BusError when LCM refuses it.
   void publish(std::string_view channel, std::span<const std::byte> payload);
   /// Asks for a tick every `period_s` of simulated time.  Throws BusError with the simulator's text when it
   /// refuses, when it does not answer in time, and when stop() is called.
-  void join(double period_s, std::chrono::milliseconds timeout);
-  /// Calls the handlers in the order of arrival until a tick names this client.  False at the end of the run
-  /// (its last tick is acknowledged here), when stop() was called, or after `silence_limit` without any
-  /// message.
+  void join(double period_s, std::chrono::milliseconds timeout, const JoinOptions& options);
+  void join(double period_s, std::chrono::milliseconds timeout) { join(period_s, timeout, JoinOptions{}); }
+  /// Waits for the tick of this client, and for all messages that it names, and calls their handlers.  False at the
+  /// end of the run (its last tick is acknowledged here), when stop() was called, after `silence_limit` without any
+  /// message, and for what End says.
   bool next_tick(shoal::sim_tick_t& tick);
   void acknowledge(const shoal::sim_tick_t& tick);
-  /// Tells the simulator not to wait for this client any more; does not wait for the answer.
+  /// Acknowledges the tick that is open, and tells the simulator not to wait for this client any more.  Waits for a
+  /// moment until it knows.
   void leave();
   /// Calls the handlers of the next message, whatever it is: for who does not take part in the lockstep.  False when
   /// stop() was called, or after `silence_limit`.
-  bool handle_message() { return next_handled().has_value(); }
+  bool handle_message();
+  /// `handler` is called when the world went back, before the messages of the first tick there.
+  void on_rewind(std::function<void(const shoal::sim_tick_t&)> handler) { rewound_ = std::move(handler); }
+  std::int32_t branch() const { return branch_; }
   /// From a signal handler or another thread.
   void stop() { stop_ = true; }
   /// Why next_tick() or handle_message() returned false.
   End end() const { return end_; }
+  /// The simulator's words, when it dropped this client.
+  const std::string& reason() const { return reason_; }
+  const Counts& counts() const { return counts_; }
   /// Zero: wait for ever.
   void set_silence_limit(std::chrono::milliseconds limit) { silence_limit_ = limit; }
 
  private:
+  using Clock = std::chrono::steady_clock;
+  /// A message that came, and that no tick named yet.
+  struct Held {
+    std::uint32_t crc;
+    sim::Bytes payload;
+    int ticks = 0;  ///< that did not name it
+  };
+  /// A channel whose messages ticks name.
+  struct Channel {
+    std::string name;
+    std::deque<Held> held;
+  };
+  /// A message that the tick names.
+  struct Named {
+    std::size_t channel;
+    std::uint32_t crc;
+    bool there = false;
+    sim::Bytes payload;
+  };
+  struct Published {
+    std::string channel;
+    std::uint32_t crc;
+    sim::Bytes payload;
+  };
+  /// The tick that this client waits to have all messages of.
+  struct Incomplete {
+    shoal::sim_tick_t tick;
+    std::int64_t sequence;
+    std::vector<Named> messages;
+    Clock::time_point ask_at;
+    std::chrono::milliseconds interval;
+  };
+
   /// Waits in slices, so that stop() is seen.
-  std::optional<Received> wait(std::chrono::steady_clock::time_point deadline);
-  /// The next message, after its handlers were called.
-  std::optional<Received> next_handled();
-  /// A tick for us that is new.
-  std::optional<shoal::sim_tick_t> as_new_tick(const Received& message);
-  void request(const std::string& command, std::int32_t id, double value);
+  std::optional<Received> wait(Clock::time_point deadline, bool heed_stop = true);
+  /// Sends a request until it is answered; gives the text.  Throws BusError.
+  void request(const std::string& command, double value, const std::string& text, Clock::time_point deadline,
+               bool heed_stop);
+  void send_request(const std::string& command, std::int32_t id, double value, const std::string& text);
+  void ask_to_join(Clock::time_point deadline);
+  std::string terms() const;
+  void call_handlers(const std::string& channel, std::span<const std::byte> payload);
+
+  void take(Received message);
+  void take_tick(std::span<const std::byte> payload);
+  void take_reply(std::span<const std::byte> payload);
+  void take_question(std::span<const std::byte> payload);
+  void take_bundle(std::span<const std::byte> payload);
+  void begin_tick(shoal::sim_tick_t tick, const shoal::sim_due_t& due);
+  bool rewind(const shoal::sim_tick_t& tick);
+  bool has_all();
+  void ask_when_due();
+  void handle_tick();
+  void handle_unnamed();
+  void remember(std::size_t channel, std::uint32_t crc);
+  void send(std::string_view channel, std::span<const std::byte> payload);
+  void send_ack();
 
   LcmListener lcm_;
   std::string name_;
+  std::int64_t session_;
+  double period_s_ = 0;
+  JoinOptions options_;
   // Handlers may subscribe: a deque grows without moving the one that is called.
   std::map<std::string, std::deque<Handler>, std::less<>> handlers_;
-  std::deque<Received> early_;  // came while joining
-  std::int32_t request_id_ = 0;
-  std::optional<std::int64_t> acknowledged_utime_;
+  std::vector<Channel> receives_;
+  std::map<std::string, std::size_t, std::less<>> receives_at_;
+  std::size_t receives_told_ = 0;  // so many of them the simulator knows
+  bool joined_ = false;
+  std::int32_t request_id_ = 0, join_id_ = 0;
+  std::optional<std::int32_t> answered_id_;
+  std::string refusal_;  // of the request; empty: granted
+
+  std::optional<Incomplete> incomplete_;
+  std::int64_t sequence_ = 0;  // of the last tick that was handled
+  shoal::sim_tick_t tick_;
+  bool open_ = false;  // handled, and not acknowledged
+  std::vector<Published> published_, sent_, delayed_;  // since the tick; with the last acknowledgement; before the next
+  std::set<std::pair<std::size_t, std::uint32_t>> recent_;  // handled a short time ago
+  std::deque<std::pair<std::size_t, std::uint32_t>> recent_order_;
+  std::function<void(const shoal::sim_tick_t&)> rewound_;
+  std::int32_t branch_ = 0;
+
   std::atomic<bool> stop_ = false;
   End end_ = End::none;
+  std::string reason_;
+  Counts counts_;
   std::chrono::milliseconds silence_limit_{30'000};
   static_assert(std::atomic<bool>::is_always_lock_free, "stop() is called from signal handlers");
 };

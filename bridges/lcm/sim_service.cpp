@@ -7,11 +7,9 @@
 
 #include "bridges/lcm/run_journal.hpp"
 #include "shoal/message_codec.hpp"
-#include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_control_reply_t.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "shoal/sim_state_t.hpp"
-#include "shoal/sim_tick_t.hpp"
 #include "shoal/utime_t.hpp"
 #include "sim/config/message_text.hpp"
 
@@ -20,19 +18,11 @@ namespace bridges {
 namespace {
 
 constexpr double info_rate_hz = 0.1;
-/// Loss is rare on one machine; a tick or its answer that was lost is asked for again.
-constexpr std::chrono::milliseconds resend_after{250};
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
-  return text;
-}
 
 }  // namespace
 
 SimService::SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim::RunControl& control,
-                       sim::Lockstep& lockstep, Info info)
+                       LockstepService& lockstep, Info info)
     : bus_(bus),
       network_(network),
       world_(world),
@@ -41,10 +31,11 @@ SimService::SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim:
       info_(std::move(info)),
       visitors_(world, bus) {
   serve_vehicles(network);
+  lockstep.set_on_heard([this](const std::string& client) { visitors_.heard_of(client); });
 }
 
 void SimService::serve_vehicles(sim::Bus& network) {
-  lines_.push_back({&network, network.open_mailbox("sim.control"), network.open_mailbox("sim.ack")});
+  lines_.push_back({&network, network.open_mailbox("sim.control")});
 }
 
 void SimService::use_journal(RunJournal& journal) {
@@ -74,7 +65,10 @@ void SimService::publish_step() {
   shoal::utime_t clock;
   clock.utime = world_.epoch_us() + world_.now().count();
   publish(bus_, "sim.clock", clock);
-  for (std::size_t i = 1; i < lines_.size(); ++i) publish(*lines_[i].network, "sim.clock", clock);
+  for (std::size_t i = 1; i < lines_.size() && !muted_; ++i) {
+    publish(*lines_[i].network, "sim.clock", clock);
+    lockstep_.post(static_cast<int>(i), "sim.clock", buffer_);
+  }
   publish_state();
 }
 
@@ -124,19 +118,6 @@ void SimService::publish_state() {
   publish(bus_, "sim.state", state);
 }
 
-void SimService::publish_tick(const std::vector<std::string>& clients, bool last) {
-  shoal::sim_tick_t tick;
-  tick.utime = world_.epoch_us() + world_.now().count();
-  tick.step = world_.step_number();
-  tick.last = last;
-  tick.count = static_cast<std::int32_t>(clients.size());
-  tick.client = clients;
-  for (const Line& line : lines_) {
-    publish(*line.network, "sim.tick", tick);
-    line.network->end_of_step();
-  }
-}
-
 bool SimService::hears_another_simulator(const Wait& wait) {
   const auto clock = network_.open_mailbox("sim.clock");
   const auto tick = network_.open_mailbox("sim.tick");
@@ -146,10 +127,6 @@ bool SimService::hears_another_simulator(const Wait& wait) {
     wait(std::chrono::milliseconds(50));
   }
   return false;
-}
-
-void SimService::publish_end() {
-  publish_tick({}, true);
 }
 
 void SimService::complain(const std::string& text) {
@@ -187,7 +164,9 @@ void SimService::answer(Line& line, const shoal::sim_control_request_t& request)
     const bool of_lockstep = request.command == "join" || request.command == "leave" || request.command == "alive";
     if (&line != &lines_.front() && !of_lockstep)
       throw std::runtime_error("only alive, join and leave are served on a vehicle's bus");
-    reply.text = obey(request);
+    const std::optional<std::string> text = obey(line, request);
+    if (!text) return;
+    reply.text = *text;
   } catch (const std::exception& error) {  // whatever it is, it is the request's fault, and the run goes on
     reply.ok = false;
     reply.text = sim::shortened(error.what(), 4000);
@@ -197,12 +176,12 @@ void SimService::answer(Line& line, const shoal::sim_control_request_t& request)
   line.network->end_of_step();
 }
 
-std::string SimService::obey(const shoal::sim_control_request_t& request) {
+std::optional<std::string> SimService::obey(Line& line, const shoal::sim_control_request_t& request) {
   const std::string& command = request.command;
+  if (time_machine_ != nullptr)
+    if (auto text = time_machine_->obey(command, request.text, request.value)) return text;
   if (command == "pause" || command == "resume") {
-    control_.paused = command == "pause";
-    control_.single_steps = 0;
-    ++control_.changes;
+    control_.set_paused(command == "pause");
   } else if (command == "step") {
     if (!(request.value >= 1 && request.value <= 1e9)) throw std::runtime_error("'step' needs a value from 1 to 1e9");
     control_.paused = true;
@@ -212,11 +191,9 @@ std::string SimService::obey(const shoal::sim_control_request_t& request) {
   } else if (command == "quit") {
     control_.quit = true;
   } else if (command == "join") {
-    join(request);
+    if (!lockstep_.join(static_cast<int>(&line - lines_.data()), request)) return std::nullopt;
   } else if (command == "leave") {
-    if (!lockstep_.leave(request.client) && !visitors_.has(request.client))
-      throw std::runtime_error("no client of the name '" + sim::shortened(request.client) + "' has joined");
-    visitors_.remove_those_of(request.client);
+    if (!leave(request)) return std::nullopt;
   } else if (command == "spawn") {
     return visitors_.spawn(request.client, request.text);
   } else if (command == "remove") {
@@ -227,10 +204,16 @@ std::string SimService::obey(const shoal::sim_control_request_t& request) {
     visitors_.act(request.text);
   } else if (command != "alive") {
     throw std::runtime_error("unknown command '" + sim::shortened(sim::printable(command)) +
-                             "'; known commands: alive, describe, do, join, leave, pause, quit, remove, resume, "
-                             "spawn, speed, step");
+                             "'; known commands: alive, describe, do, join, leave, pause, quit, remove, "
+                             "restore, resume, rewind, snapshot, spawn, speed, step, until, where");
   }
-  return {};
+  return "";
+}
+
+bool SimService::leave(const shoal::sim_control_request_t& request) {
+  if ((lockstep_.has(request.client) || !visitors_.has(request.client)) && !lockstep_.leave(request)) return false;
+  visitors_.remove_those_of(request.client);
+  return true;
 }
 
 void SimService::obey_again(const shoal::sim_control_request_t& request) {
@@ -248,75 +231,14 @@ void SimService::obey_again(const shoal::sim_control_request_t& request) {
 }
 
 void SimService::client_gone(const std::string& client) {
-  lockstep_.leave(client);
+  lockstep_.client_gone(client);
   visitors_.remove_those_of(client);
 }
 
 void SimService::set_speed(double speed) {
   if (speed != 0 && !(speed >= 1e-3 && speed <= 1e6))
     throw std::runtime_error("'speed' must be 0 (as fast as possible) or from 0.001 to 1e6");
-  control_.speed = speed;
-  ++control_.changes;
-}
-
-void SimService::join(const shoal::sim_control_request_t& request) {
-  if (request.client.empty() || request.client.size() > 60)
-    throw std::runtime_error("'join' needs a client name of 1 to 60 characters");
-  const double steps = request.value * 1e6 / static_cast<double>(world_.step_time().count());
-  if (!(steps > 0.5 && steps < 1e12))
-    throw std::runtime_error("'join' needs a period of at least one step, in seconds");
-  const auto period_steps = static_cast<std::int64_t>(std::llround(steps));
-  if (std::abs(steps - static_cast<double>(period_steps)) > 1e-6)
-    throw std::runtime_error("'join' needs a period that is a multiple of the step of " +
-                             std::to_string(sim::to_seconds(world_.step_time())) + " s");
-  lockstep_.join(request.client, period_steps, world_.step_number());
-}
-
-void SimService::take_acknowledgements() {
-  for (Line& line : lines_)
-    while (const auto message = line.acknowledgements->take()) take_acknowledgement(*message);
-}
-
-void SimService::take_acknowledgement(const sim::Message& message) {
-  try {
-    const auto ack = shoal::decode<shoal::sim_ack_t>(message.payload, shoal::Finite::any);
-    if (ack.step > world_.step_number())
-      throw shoal::MessageError("client '" + sim::shortened(ack.client) + "' acknowledges step " +
-                                std::to_string(ack.step) + ", which is still to come");
-    lockstep_.acknowledge(ack.client, ack.step);
-    visitors_.heard_of(ack.client);
-  } catch (const std::runtime_error& error) {
-    complain(std::string("sim.ack: ") + error.what());
-  }
-}
-
-void SimService::synchronize(double timeout_s, const Wait& wait, const std::function<bool()>& idle) {
-  using Clock = std::chrono::steady_clock;
-  const std::int64_t step = world_.step_number();
-  take_acknowledgements();  // also what nobody waits for: it is checked, and does not pile up
-  if (lockstep_.missing(step).empty()) return;
-  std::vector<std::string> asked;
-  const Clock::time_point begin = Clock::now();
-  Clock::time_point sent = begin;
-  while (true) {
-    take_acknowledgements();
-    const std::vector<std::string> missing = lockstep_.missing(step);
-    if (missing.empty()) return;
-    handle_requests();
-    if (control_.quit || !idle()) return;
-    const Clock::time_point now = Clock::now();
-    if (now - begin > std::chrono::duration<double>(timeout_s))
-      throw LockstepTimeout("lockstep: no acknowledgement from " + joined(missing) + " for step " +
-                            std::to_string(step) + " within " + std::to_string(timeout_s) + " s");
-    // Who joins while the world waits is asked too.
-    const bool newcomer = !std::includes(asked.begin(), asked.end(), missing.begin(), missing.end());
-    if (newcomer || now - sent > resend_after) {
-      publish_tick(missing, false);
-      asked = missing;
-      sent = now;
-    }
-    wait(std::chrono::milliseconds(20));
-  }
+  control_.set_speed(speed);
 }
 
 }  // namespace bridges

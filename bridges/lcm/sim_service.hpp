@@ -3,27 +3,22 @@
 #include <chrono>
 #include <functional>
 #include <memory>
-#include <stdexcept>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "bridges/lcm/lockstep_service.hpp"
+#include "bridges/lcm/time_machine.hpp"
 #include "bridges/lcm/visitors.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "sim/bus/bus.hpp"
-#include "sim/run/lockstep.hpp"
 #include "sim/run/run_control.hpp"
 #include "sim/world/world.hpp"
 
 namespace bridges {
 
-/// A lockstep client did not answer in time.
-class LockstepTimeout : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// The simulator's own channels: publishes sim.info, sim.clock, sim.state and sim.tick, answers requests on
-/// sim.control, and takes acknowledgements on sim.ack.  Speaks through any Bus.
+/// The simulator's own channels: publishes sim.info, sim.clock and sim.state, and answers requests on sim.control.
+/// Speaks through any Bus.
 class SimService {
  public:
   struct Info {
@@ -34,14 +29,25 @@ class SimService {
   };
 
   /// `network`: the bus under `bus`; the handshake goes there directly, so that records leave it out.
-  SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim::RunControl& control, sim::Lockstep& lockstep,
+  SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim::RunControl& control, LockstepService& lockstep,
              Info info);
 
-  /// A bus that vehicles have to themselves: there the service gives the time and keeps lockstep (sim.clock, sim.tick,
-  /// sim.ack, and join, leave and alive on sim.control), and nothing else.
+  /// A bus that vehicles have to themselves: there the service gives the time on sim.clock, answers join, leave and
+  /// alive on sim.control, and nothing else.  In the order in which the lockstep knows them.
   void serve_vehicles(sim::Bus& network);
   /// What changes the world is written down there.  It must outlive this.
   void use_journal(RunJournal& journal);
+  /// Serves snapshot, restore, rewind, until and where.  It must outlive this; null: nobody does.
+  void set_time_machine(TimeMachine* machine) { time_machine_ = machine; }
+  /// Whose vehicles there are.
+  void visit_state(sim::StateArchive& archive) { visitors_.visit_state(archive); }
+  /// While muted only the world's bus is published on, and nobody is told of vehicles that come and go.
+  void set_muted(bool muted) {
+    muted_ = muted;
+    visitors_.set_muted(muted);
+  }
+  /// Tells of vehicles that came or went.
+  void tell_changes() { visitors_.tell_changes(); }
   /// Publishes sim.info now, and not a second time at this step.
   void publish_info();
   /// Carries out a request that a journal wrote down.  Throws std::runtime_error that says why it was refused, as then.
@@ -52,37 +58,28 @@ class SimService {
   void handle_requests();
   /// A client is gone: it leaves the lockstep, and the vehicles that came with it go.
   void client_gone(const std::string& client);
-  /// Tells clients that the run is over.
-  void publish_end();
 
-  /// Waits for messages up to the given time, or returns earlier.
-  using Wait = std::function<void(std::chrono::milliseconds)>;
+  using Wait = LockstepService::Wait;
   /// Listens for 0.3 s of wall time, before anything is published: two simulators that answer the same clients would
   /// spoil each other's runs.
   bool hears_another_simulator(const Wait& wait);
-  /// Step 8 of a step: ticks the clients that are due and waits for their acknowledgements.  `idle` is called
-  /// while waiting; false ends the wait.  Throws LockstepTimeout after `timeout_s` of wall time without an
-  /// answer.
-  void synchronize(double timeout_s, const Wait& wait, const std::function<bool()>& idle);
-  /// Bad requests and acknowledgements so far.
+  /// Bad requests so far.
   std::int64_t bad_messages() const { return bad_messages_; }
 
  private:
   /// Where clients may be.
   struct Line {
     sim::Bus* network;
-    std::unique_ptr<sim::Mailbox> requests, acknowledgements;
+    std::unique_ptr<sim::Mailbox> requests;
   };
 
   void publish_state();
-  void publish_tick(const std::vector<std::string>& clients, bool last);
-  void take_acknowledgements();
-  void take_acknowledgement(const sim::Message& message);
   void handle_request(Line& line, const sim::Message& message);
   void answer(Line& line, const shoal::sim_control_request_t& request);
-  /// What came of it.  Throws std::runtime_error that says why it was refused.
-  std::string obey(const shoal::sim_control_request_t& request);
-  void join(const shoal::sim_control_request_t& request);
+  /// What came of it; nothing: it is not decided yet, and not answered.  Throws std::runtime_error that says why it was
+  /// refused.
+  std::optional<std::string> obey(Line& line, const shoal::sim_control_request_t& request);
+  bool leave(const shoal::sim_control_request_t& request);
   void set_speed(double speed);
   void complain(const std::string& text);
   bool due(double rate_hz) const;
@@ -93,10 +90,12 @@ class SimService {
   sim::Bus& network_;
   sim::World& world_;
   sim::RunControl& control_;
-  sim::Lockstep& lockstep_;
+  LockstepService& lockstep_;
   Info info_;
   Visitors visitors_;
   RunJournal* journal_ = nullptr;
+  TimeMachine* time_machine_ = nullptr;
+  bool muted_ = false;
   std::int64_t info_step_ = -1;  // of the last sim.info
   std::vector<Line> lines_;      // the world's first
   sim::Bytes buffer_;

@@ -9,13 +9,12 @@ import math
 import struct
 import sys
 
-import lcm
 import shoal
 
+from lockstep_client import LockstepClient
 from marine_ekf import MarineEkf, turned
 
 PERIOD_S = 0.5
-SILENCE_MS = 600_000
 WEEK_MS = 7 * 24 * 3600 * 1000
 NEWEST_S = 3
 OLDEST_MS = 60 * 1000
@@ -124,59 +123,11 @@ class CoopAuv:
         return message
 
 
-class Lockstep:
-    """Joins, and calls `decide` at each tick; see docs/howto_attach_autonomy.md."""
-
-    def __init__(self, name, period_s):
-        self.lc = lcm.LCM()
-        self.name, self.period_s = name, period_s
-        self.joined = self.over = False
-        self.done_step = -1
-        self.decide = lambda utime: None
-        self.lc.subscribe("sim\\.control\\.reply", self.on_reply)
-        self.lc.subscribe("sim\\.tick", self.on_tick)
-
-    def subscribe(self, channel, message, handler):
-        self.lc.subscribe(channel.replace(".", "\\."), lambda _, data: handler(message.decode(data)))
-
-    def publish(self, channel, message):
-        self.lc.publish(channel, message.encode())
-
-    def run(self):
-        while not self.joined:
-            request = shoal.sim_control_request_t()
-            request.id, request.client, request.command, request.value = 1, self.name, "join", self.period_s
-            self.publish("sim.control", request)
-            self.lc.handle_timeout(200)
-        while not self.over:
-            if not self.lc.handle_timeout(SILENCE_MS):
-                raise SystemExit("the simulator fell silent")
-
-    def on_reply(self, channel, data):
-        reply = shoal.sim_control_reply_t.decode(data)
-        if reply.client == self.name and reply.id == 1:
-            if not reply.ok:
-                raise SystemExit(reply.text)
-            self.joined = True
-
-    def on_tick(self, channel, data):
-        tick = shoal.sim_tick_t.decode(data)
-        if tick.last:
-            self.over = True
-        elif self.name in tick.client:
-            if tick.step > self.done_step:
-                self.done_step = tick.step
-                self.decide(tick.utime)
-            ack = shoal.sim_ack_t()
-            ack.utime, ack.step, ack.client = tick.utime, tick.step, self.name
-            self.publish("sim.ack", ack)
-
-
 def attach(options):
-    """The navigator of a vehicle, and its place in the lockstep, which Lockstep.run() takes."""
+    """The navigator of a vehicle, and its place in the lockstep, which LockstepClient.run() takes."""
     name = options.name
     auv = CoopAuv(options.sound_speed, options.heading_noise)
-    bus = Lockstep(name + "_python", PERIOD_S)
+    bus = LockstepClient(name + "_python", PERIOD_S)
     bus.subscribe(name + ".ahrs", shoal.ins_t, auv.on_ahrs)
     bus.subscribe(name + ".compass", shoal.compass_t, auv.on_compass)
     bus.subscribe(name + ".pressure", shoal.pressure_t, auv.on_pressure)

@@ -1,55 +1,167 @@
 #include "sim/run/lockstep.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+
+#include "sim/bus/crc32.hpp"
+#include "sim/config/message_text.hpp"
+#include "sim/config/param_reader.hpp"
+#include "sim/world/vehicle_loader.hpp"
 
 namespace sim {
 
-void Lockstep::join(const std::string& client, std::int64_t period_steps, std::int64_t step) {
-  if (Client* known = find(client)) {
-    if (known->period_steps == period_steps) return;  // a request that was sent twice moves no tick
-    known->period_steps = period_steps;
-    known->joined = step;
-    known->acknowledged = -1;
-    return;
+void LockstepTerms::read(ParamReader& in) {
+  in.read("session", session, between(0, 9e18), "random number of the client, its own at each start; 0: none");
+  in.read("receives", receives, "channels of which it must have every message");
+  in.read_choice("on_timeout", on_timeout, {"wait", "pause", "continue", "end"}, "when it does not answer in timeout_s");
+  in.read("timeout_s", timeout_s, between(0.001, 1e6), "wall time to wait for its acknowledgement");
+  agreed = agreed || in.has("on_timeout");
+  if (receives.size() > 10'000) in.error("receives", "'receives' may name at most 10000 channels");
+  if (!receives.empty() && session == 0) in.error("receives", "'receives' needs a 'session' other than 0");
+  for (const std::string& channel : receives)
+    if (channel.empty() || channel.size() > Bus::max_channel_length)
+      in.error("receives", "'receives': a channel has 1 to 63 characters, got '" + shortened(channel) + "'");
+}
+
+OnTimeout LockstepTerms::policy() const {
+  if (on_timeout == "wait") return OnTimeout::wait;
+  if (on_timeout == "pause") return OnTimeout::pause;
+  return on_timeout == "continue" ? OnTimeout::go_on : OnTimeout::end_run;
+}
+
+LockstepTerms read_lockstep_terms(const std::string& text, const LockstepTerms& defaults) {
+  LockstepTerms terms = defaults;
+  if (text.empty()) return terms;
+  const ConfigNode node = parse_untrusted(text, "join");
+  Diagnostics diagnostics;
+  ParamReader in(node, "", diagnostics);
+  terms.read(in);
+  in.finish();
+  diagnostics.throw_if_any();
+  return terms;
+}
+
+void Lockstep::join(const std::string& client, const LockstepTerms& terms, std::int64_t period_steps, std::int64_t step,
+                    int line) {
+  LockstepMember* known = find(client);
+  if (known != nullptr && known->terms.session == terms.session && known->line == line) {
+    const std::vector<std::string>& before = known->terms.receives;
+    if (before.size() > terms.receives.size() || !std::equal(before.begin(), before.end(), terms.receives.begin()))
+      throw std::invalid_argument("the channels of 'receives' must stay in their places; new ones come at the end");
+    known->terms = terms;
+    if (known->period_steps != period_steps) {  // a request that was sent twice moves no tick
+      known->period_steps = period_steps;
+      known->joined = step;
+      known->answered = true;
+      if (terms.session == 0) known->asked = -1;
+    }
+  } else {
+    LockstepMember& member = members_[client];
+    member = LockstepMember{};
+    member.name = client;
+    member.line = line;
+    member.terms = terms;
+    member.period_steps = period_steps;
+    member.joined = step;
   }
-  const auto at = std::lower_bound(clients_.begin(), clients_.end(), client,
-                                   [](const Client& each, const std::string& name) { return each.name < name; });
-  clients_.insert(at, {client, period_steps, step, -1});
+  index_receivers();
 }
 
 bool Lockstep::leave(const std::string& client) {
-  return std::erase_if(clients_, [&](const Client& each) { return each.name == client; }) > 0;
+  const bool known = members_.erase(client) > 0;
+  if (known) index_receivers();
+  return known;
 }
 
-bool Lockstep::has(const std::string& client) const {
-  return const_cast<Lockstep*>(this)->find(client) != nullptr;
+LockstepMember* Lockstep::find(std::string_view client) {
+  const auto found = members_.find(client);
+  return found == members_.end() ? nullptr : &found->second;
 }
 
-std::vector<std::string> Lockstep::due(std::int64_t step) const {
-  std::vector<std::string> names;
-  for (const Client& client : clients_)
-    if (client.due(step)) names.push_back(client.name);
-  return names;
+void Lockstep::index_receivers() {
+  receivers_.clear();
+  for (auto& [name, member] : members_)
+    for (std::size_t i = 0; i < member.terms.receives.size(); ++i)
+      receivers_[member.terms.receives[i]].push_back({&member, static_cast<std::int32_t>(i)});
 }
 
-bool Lockstep::acknowledge(const std::string& client, std::int64_t step) {
-  Client* known = find(client);
-  if (known == nullptr || !known->due(step)) return false;
-  known->acknowledged = std::max(known->acknowledged, step);
-  return true;
+bool Lockstep::somebody_receives(int line, std::string_view channel) const {
+  const auto found = receivers_.find(channel);
+  return found != receivers_.end() &&
+         std::any_of(found->second.begin(), found->second.end(),
+                     [&](const Receiver& receiver) { return receiver.member->line == line; });
 }
 
-std::vector<std::string> Lockstep::missing(std::int64_t step) const {
-  std::vector<std::string> names;
-  for (const Client& client : clients_)
-    if (client.due(step) && client.acknowledged < step) names.push_back(client.name);
-  return names;
+void Lockstep::post(int line, std::string_view channel, std::span<const std::byte> payload) {
+  const auto found = receivers_.find(channel);
+  if (found == receivers_.end()) return;
+  std::shared_ptr<const Bytes> shared;
+  std::uint32_t crc = 0;
+  for (const Receiver& receiver : found->second) {
+    if (receiver.member->line != line) continue;
+    if (!shared) {
+      shared = std::make_shared<const Bytes>(payload.begin(), payload.end());
+      crc = crc32(payload);
+    }
+    receiver.member->pending.push_back({receiver.channel, crc, shared});
+  }
 }
 
-Lockstep::Client* Lockstep::find(const std::string& client) {
-  const auto found =
-      std::find_if(clients_.begin(), clients_.end(), [&](const Client& each) { return each.name == client; });
-  return found == clients_.end() ? nullptr : &*found;
+void Lockstep::close_list(LockstepMember& member, std::int64_t step) {
+  ++member.sequence;
+  member.asked = step;
+  member.answered = false;
+  member.list.clear();
+  member.list.swap(member.pending);
+}
+
+void Lockstep::ask(std::int64_t step) {
+  for (auto& [name, member] : members_)
+    if (member.due(step) && member.asked < step) close_list(member, step);
+}
+
+void Lockstep::ask_all(std::int64_t step) {
+  for (auto& [name, member] : members_) close_list(member, step);
+}
+
+std::vector<LockstepMember*> Lockstep::missing(std::int64_t step) {
+  std::vector<LockstepMember*> late;
+  for (auto& [name, member] : members_)
+    if (member.due(step) && (member.asked < step || !member.answered)) late.push_back(&member);
+  return late;
+}
+
+Lockstep::Verdict Lockstep::acknowledge(const LockstepAck& ack, std::int64_t step, std::string& why) {
+  const std::string who = "client '" + printable(shortened(ack.client)) + "'";
+  LockstepMember* member = find(ack.client);
+  if (ack.step > step)
+    why = who + " acknowledges step " + std::to_string(ack.step) + ", which is still to come";
+  else if (member == nullptr)
+    why = who + " acknowledges a tick, but takes no part in the lockstep";
+  else if (member->terms.session != ack.session)
+    why = who + " acknowledges in session " + std::to_string(ack.session) + ", which is not the one that joined";
+  else if (ack.session != 0 && ack.sequence > member->sequence)
+    why = who + " acknowledges tick " + std::to_string(ack.sequence) + ", which it was not sent";
+  else if (ack.session != 0 && ack.sequence == member->sequence && ack.step != member->asked)
+    why = who + " acknowledges step " + std::to_string(ack.step) + " for the tick of step " +
+          std::to_string(member->asked);
+  if (!why.empty()) return Verdict::refused;
+  const bool current = ack.session != 0 ? ack.sequence == member->sequence : ack.step == member->asked;
+  if (!current || member->answered) return Verdict::repeated;
+  member->answered = true;
+  return Verdict::accepted;
+}
+
+void Lockstep::rewound(std::int64_t step) {
+  for (auto& [name, member] : members_) {
+    // The phase stays, also for one that joined later than this.
+    if (member.joined > step)
+      member.joined -= (member.joined - step + member.period_steps - 1) / member.period_steps * member.period_steps;
+    member.asked = -1;
+    member.answered = true;
+    member.list.clear();
+    member.pending.clear();
+  }
 }
 
 }  // namespace sim

@@ -1,40 +1,124 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "sim/bus/bus.hpp"
 
 namespace sim {
 
-/// Which clients the world waits for, and at which steps.  Knows no message and no clock.
+class ParamReader;
+
+/// What happens when a client does not answer in time.
+enum class OnTimeout {
+  wait,     ///< the world waits for ever
+  pause,    ///< the world pauses, until it answers or somebody resumes: then without it
+  go_on,    ///< without it
+  end_run,  ///< with exit code 5
+};
+
+/// What a client asks for when it joins: the `text` of `join`, a YAML map.
+struct LockstepTerms {
+  std::int64_t session = 0;           ///< its own random number; 0: a simple client, without lists
+  std::vector<std::string> receives;  ///< channels of which it must have every message
+  std::string on_timeout = "end";
+  double timeout_s = 10;  ///< wall time
+  bool agreed = false;    ///< on_timeout was asked for, by the client or the world
+  void read(ParamReader& in);
+  OnTimeout policy() const;
+};
+
+/// Reads the `text` of a join; what it does not say is as in `defaults`.  Throws ConfigError.
+LockstepTerms read_lockstep_terms(const std::string& text, const LockstepTerms& defaults);
+
+/// A message that a client must have.
+struct PostedMessage {
+  std::int32_t channel = 0;  ///< place in its `receives`
+  std::uint32_t crc = 0;
+  std::shared_ptr<const Bytes> payload;
+};
+
+/// A message that a client says it published.
+struct NamedMessage {
+  std::string channel;
+  std::uint32_t crc = 0;
+};
+
+struct LockstepAck {
+  std::string client;
+  std::int64_t step = 0;
+  std::int64_t session = 0;
+  std::int64_t sequence = 0;
+};
+
+/// A client as the world knows it.
+struct LockstepMember {
+  std::string name;
+  int line = 0;  ///< which bus it is on, as the caller counts
+  LockstepTerms terms;
+  std::int64_t period_steps = 1;
+  std::int64_t joined = 0;  ///< the first step it is asked
+  std::int64_t sequence = 0;
+  std::int64_t asked = -1;             ///< step of its last tick
+  bool answered = true;                ///< that tick
+  bool gone = false;                   ///< its process is known to have ended
+  std::vector<PostedMessage> list;     ///< of its last tick
+  std::vector<PostedMessage> pending;  ///< for the next
+  bool due(std::int64_t step) const { return step >= joined && (step - joined) % period_steps == 0; }
+};
+
+/// Which clients the world waits for, at which steps, and what they must have received by then.  Knows no message type
+/// and no clock.
 class Lockstep {
  public:
-  /// From `step` on the world waits for this client every `period_steps` (at least 1).  Joining again changes the
-  /// period.
-  void join(const std::string& client, std::int64_t period_steps, std::int64_t step);
+  /// From `step` on the world waits for this client every `period_steps` (at least 1).  Joining again in the same
+  /// session changes period and terms; the list of channels may only grow.  Throws std::invalid_argument when it does
+  /// not.  Another session begins anew.
+  void join(const std::string& client, const LockstepTerms& terms, std::int64_t period_steps, std::int64_t step,
+            int line = 0);
   /// False when there is no such client.
   bool leave(const std::string& client);
-  bool has(const std::string& client) const;
-  bool empty() const { return clients_.empty(); }
+  bool has(std::string_view client) const { return members_.contains(client); }
+  bool empty() const { return members_.empty(); }
+  /// Null: there is none.
+  LockstepMember* find(std::string_view client);
+  /// By name.
+  std::map<std::string, LockstepMember, std::less<>>& members() { return members_; }
+  /// Some client of this line must have every message of this channel.
+  bool somebody_receives(int line, std::string_view channel) const;
 
-  /// The clients that get a tick at this step, in the order of their names.
-  std::vector<std::string> due(std::int64_t step) const;
-  /// The client is done with `step`.  False when there is no such client or it was not asked.
-  bool acknowledge(const std::string& client, std::int64_t step);
-  /// Those due at this step that have not acknowledged it.
-  std::vector<std::string> missing(std::int64_t step) const;
+  /// A message was published on a line: it is put on the lists of those who must have it.
+  void post(int line, std::string_view channel, std::span<const std::byte> payload);
+  /// Asks those who are due at this step and were not asked yet; their lists are closed.
+  void ask(std::int64_t step);
+  /// Asks everybody for a last time, due or not.
+  void ask_all(std::int64_t step);
+  /// Those due at this step that have not answered, in the order of their names.
+  std::vector<LockstepMember*> missing(std::int64_t step);
+
+  enum class Verdict { accepted, repeated, refused };
+  /// `why` says what is wrong with one that is refused.
+  Verdict acknowledge(const LockstepAck& ack, std::int64_t step, std::string& why);
+  /// The world went back to `step`: lists are empty, and all are asked by their periods from there.
+  void rewound(std::int64_t step);
 
  private:
-  struct Client {
-    std::string name;
-    std::int64_t period_steps = 1;
-    std::int64_t joined = 0;
-    std::int64_t acknowledged = -1;
-    bool due(std::int64_t step) const { return step >= joined && (step - joined) % period_steps == 0; }
+  struct Receiver {
+    LockstepMember* member;
+    std::int32_t channel;
   };
-  Client* find(const std::string& client);
+  void close_list(LockstepMember& member, std::int64_t step);
+  void index_receivers();
 
-  std::vector<Client> clients_;
+  std::map<std::string, LockstepMember, std::less<>> members_;
+  std::map<std::string, std::vector<Receiver>, std::less<>> receivers_;  // by channel
 };
 
 }  // namespace sim

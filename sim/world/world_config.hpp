@@ -104,8 +104,10 @@ struct ProcessConfig {
 };
 
 struct LockstepConfig {
-  double timeout_s = 10;       ///< wall time to wait for an acknowledgement
-  double join_timeout_s = 30;  ///< wall time to wait for the launched clients to join
+  double timeout_s = 10;           ///< wall time to wait for an acknowledgement
+  double join_timeout_s = 30;      ///< wall time to wait for the launched clients to join
+  std::string on_timeout = "end";  ///< what is done then: wait, pause, continue, end
+  bool agreed = false;             ///< the file says on_timeout
   void read(ParamReader& in);
 };
 

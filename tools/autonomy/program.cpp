@@ -66,7 +66,18 @@ int take_part(shoal::Client& client, const Participation& participation,
     client.join(participation.period_s, std::chrono::milliseconds(std::llround(1000 * participation.join_timeout_s)));
   while (const auto utime = client.next_tick()) decide(*utime);
   if (signal_caught != 0) return 128 + signal_caught;
-  return client.end() == shoal::Client::End::silence ? exit_timeout : exit_ok;
+  switch (client.end()) {
+    case shoal::Client::End::silence:
+      return exit_timeout;
+    case shoal::Client::End::dropped:
+      std::cerr << client.reason() << '\n';
+      return exit_timeout;
+    case shoal::Client::End::rewound:
+      std::cerr << "the world went back in time; this program does not go back with it, and ends\n";
+      return exit_rewound;
+    default:
+      return exit_ok;
+  }
 }
 
 int run_program(const char* name, const std::function<int()>& program) {

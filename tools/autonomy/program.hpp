@@ -9,11 +9,12 @@
 
 namespace autonomy {
 
-enum ExitCode { exit_ok = 0, exit_usage = 2, exit_bus = 4, exit_timeout = 5 };
+enum ExitCode { exit_ok = 0, exit_usage = 2, exit_bus = 4, exit_timeout = 5, exit_rewound = 6 };
 
 /// What all programs say of their exit codes in --help.
 inline constexpr const char* exit_code_help =
-    "Exit codes: 0 the run ended, 2 usage, 4 bus trouble, 5 the simulator fell silent, 130 SIGINT, 143 SIGTERM.";
+    "Exit codes: 0 the run ended, 2 usage, 4 bus trouble, 5 the simulator fell silent or dropped it, 6 the world "
+    "went back, 130 SIGINT, 143 SIGTERM.";
 
 /// A number of a closed range.  CLI::Range would let NaN through.
 CLI::Validator between(double low, double high);

@@ -10,6 +10,7 @@
 
 #include "sim/config/config_node.hpp"
 #include "sim/script/script.hpp"
+#include "bridges/lcm/lockstep_summary.hpp"
 #include "sim/world/world.hpp"
 #include "tools/experiment/link_counts.hpp"
 #include "tools/experiment/scoring.hpp"
@@ -38,6 +39,7 @@ struct Summary {
   std::map<std::string, double> metrics;
   std::vector<Scoring::Verdict> verdicts;
   std::vector<Process> processes;
+  std::vector<bridges::LockstepSummary> clients;  ///< that took part in the lockstep, by name
   std::map<std::string, sim::ZoneRecord> zones;  ///< by vehicle, when the world has zones with rules
   std::optional<LinkCounts> acoustics;           ///< of all modems under water, when there are any
   std::uint64_t serial_dropped_bytes = 0;        ///< that no program fetched from pseudo-terminals and FIFOs
@@ -46,9 +48,13 @@ struct Summary {
       "duration";     ///< duration, event, quit, signal, fault, bus, timeout, process, configuration, error
   std::string error;  ///< why it ended early, empty when it did not
   int exit_code = 0;
-  std::string version;  ///< of shoal
+  std::string version;      ///< of shoal
+  std::int32_t branch = 0;  ///< how often the run went back before
+  std::string snapshot;     ///< file that the run began with; empty: it began at 0
+  double from_s = 0;        ///< since when the metrics count
+  double stepped_s = 0;     ///< simulated in this process
 
-  double real_time_factor() const { return wall_s > 0 ? sim_time_s / wall_s : 0; }
+  double real_time_factor() const { return wall_s > 0 ? stepped_s / wall_s : 0; }
   bool passed() const;
   void fail(int code, const std::string& how_ended, const std::string& why);
   std::string to_json() const;
@@ -73,6 +79,11 @@ class Results {
   void after_step();
   /// Why tracks cannot be written; looked at once a simulated second.
   std::optional<std::string> error() const { return error_; }
+  /// The world is about to go back: keeps what there is of the branch that is left in DIRECTORY/branchK, without
+  /// pictures.  Throws std::runtime_error.
+  void keep_branch(const Summary& left, const Scoring& scoring, const sim::ConfigNode& resolved);
+  /// It has gone back: drops what the tracks know of later.  Throws std::runtime_error.
+  void cut_tracks(sim::Time back_to);
   /// summary.json, metrics.csv, errors.csv, world.yaml and the pictures.  Plotting ends once `give_up` says so.
   /// What cannot be written does not keep the rest from being written.  Throws std::runtime_error about the first.
   void finish(const Summary& summary, const Scoring& scoring, const sim::ConfigNode& resolved,
@@ -80,8 +91,8 @@ class Results {
 
  private:
   void write_outlines() const;
-  void write_errors(const Scoring& scoring) const;
-  void write_metrics(const Summary& summary) const;
+  void write_errors(const std::string& directory, const Scoring& scoring) const;
+  void write_metrics(const std::string& directory, const Summary& summary) const;
   void close_tracks();
   void plot(const Summary& summary, const Scoring& scoring, const std::function<bool()>& give_up) const;
   void write(const std::string& file, const std::string& text) const;

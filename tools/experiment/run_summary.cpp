@@ -19,7 +19,8 @@ void note_signal(Summary& summary) {
 void Run::finish(Summary& summary) {
   journal_.finish(summary.ended != "fault" && summary.ended != "error");
   if (alone_) {  // else it would end the other simulator's clients
-    service_.publish_end();
+    lockstep_.publish_end([this](std::chrono::milliseconds time) { buses_.wait(time); },
+                          std::chrono::milliseconds(caught_signal() == 0 ? 1000 : 200));
     if (caught_signal() == 0) programs_.await_clients();
   }
   programs_.stop();
@@ -35,13 +36,18 @@ void Run::add_figures(Summary& summary) {
   const sim::BusCounts counts = buses_.counts();
   summary.world = loaded_.config.name;
   summary.seed = loaded_.config.run.seed;
+  summary.branch = control_.branch;
+  summary.snapshot = options_.from_file;
+  summary.from_s = time_.scores_from_s();
+  summary.stepped_s = sim::to_seconds(world_.step_time() * steps_taken_);
   summary.version = short_version();
   summary.steps = world_.step_number();
   summary.sim_time_s = sim::to_seconds(world_.now());
   summary.state_hash = world_.state_hash();
   summary.messages = counts.published + counts.received;
   summary.dropped_messages = counts.dropped_incoming + counts.dropped_outgoing;
-  summary.bad_messages = world_.counts().bad_messages + service_.bad_messages() + scoring_.bad_messages();
+  summary.bad_messages =
+      world_.counts().bad_messages + service_.bad_messages() + lockstep_.bad_messages() + scoring_.bad_messages();
   summary.quick_steps = world_.physics().quick_steps();
   const LinkCounts links = link_counts(world_, "", "");
   if (!world_.acoustics().transducers().empty()) summary.acoustics = links;
@@ -49,6 +55,7 @@ void Run::add_figures(Summary& summary) {
   summary.metrics = scoring_.figures();
   summary.verdicts = scoring_.verdicts();
   summary.processes = programs_.ended();
+  summary.clients = lockstep_.summaries();
   summary.event = world_.ended();
   for (const auto& [vehicle, record] : world_.zone_records()) summary.zones[vehicle] = record;
   // Without the programs that a world names there is nothing to judge.

@@ -30,7 +30,8 @@ class ClientError : public std::runtime_error {
 ///     client.join(0.1);
 ///     while (client.next_tick()) client.publish("auv1.autopilot.cmd", command);
 ///
-/// Handlers are called in next_tick() and wait_until() only, in the order in which messages came.  A payload that is
+/// Handlers are called in next_tick() and wait_until() only: in lockstep for all messages up to the tick, in the order
+/// in which they were published, whatever the network lost or repeated; else in the order in which they came.  A payload that is
 /// not what its channel should carry is counted, told once for each channel on standard error, and not handled; so is
 /// one whose handler throws MessageError.  Any other exception of a handler leaves the call that waited.  Handlers may
 /// publish and subscribe.
@@ -41,11 +42,21 @@ class Client {
     last_tick,  ///< the simulator ended the run
     stopped,    ///< stop() was called
     silence,    ///< nothing came for as long as the silence limit
+    rewound,    ///< the world went back in time, and there is no on_rewind()
+    dropped,    ///< the world went on without this client, which had not answered in time: reason() says more
+  };
+  /// What is to happen when the client does not answer.
+  struct JoinOptions {
+    std::string on_timeout;  ///< wait, pause (the world pauses), continue (without it), end (the run); "": the world's
+    double timeout_s = 0;    ///< of wall time; 0: the world's
+    std::chrono::milliseconds timeout = std::chrono::seconds(30);  ///< to wait for a simulator
   };
   struct Counts {
     std::uint64_t received = 0;  ///< messages on channels that were subscribed to
     std::uint64_t bad = 0;       ///< of those, refused
     std::uint64_t published = 0;
+    std::uint64_t asked_for = 0;  ///< in lockstep: messages that were lost, and came when they were asked for
+    std::uint64_t repeated = 0;   ///< in lockstep: messages that came twice
   };
   using BytesHandler = std::function<void(std::span<const std::byte>)>;
 
@@ -68,7 +79,7 @@ class Client {
   /// The payload as it came.
   void subscribe_bytes(const std::string& channel, BytesHandler handler);
 
-  /// At once.  Throws MessageError when an array is not as long as its length member says, ClientError when LCM
+  /// At once; in lockstep what is published before the first tick waits for it.  Throws MessageError when an array is not as long as its length member says, ClientError when LCM
   /// refuses.
   template <class Message>
   void publish(std::string_view channel, const Message& message) {
@@ -81,6 +92,7 @@ class Client {
   /// ClientError with the simulator's words when it refuses, when none answers within `timeout` of wall time, and when
   /// stop() is called meanwhile.
   void join(double period_s, std::chrono::milliseconds timeout = std::chrono::seconds(30));
+  void join(double period_s, const JoinOptions& options);
   /// Free running: the world does not wait.  next_tick() then returns when sim.clock passes a multiple of `period_s`;
   /// sim.clock comes at `state_rate_hz` of the world, 10 Hz unless it says otherwise.
   void follow(double period_s);
@@ -96,10 +108,17 @@ class Client {
   /// Makes next_tick() return, for good.  From a signal handler or another thread.
   void stop() noexcept;
   End end() const;
+  /// What the simulator said when it dropped this client.
+  const std::string& reason() const;
+  /// `handler(utime)` is called in next_tick() when the world went back in time, before anything else from there is
+  /// handled; what was held is dropped.  Without a handler next_tick() then returns nothing.
+  void on_rewind(std::function<void(std::int64_t utime)> handler);
+  /// How often the world went back before the present tick.
+  std::int32_t branch() const;
   /// How much wall time may pass without any message; zero: for ever.  10 minutes unless set: somebody may look at the
   /// world while it is paused.
   void set_silence_limit(std::chrono::milliseconds limit);
-  const Counts& counts() const;
+  Counts counts() const;
 
  private:
   struct Connection;

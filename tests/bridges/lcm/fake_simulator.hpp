@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <memory>
 #include <optional>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -12,7 +14,10 @@
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_control_reply_t.hpp"
 #include "shoal/sim_control_request_t.hpp"
+#include "shoal/sim_resend_t.hpp"
+#include "shoal/sim_resent_t.hpp"
 #include "shoal/sim_tick_t.hpp"
+#include "sim/bus/crc32.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 
 namespace lcm_test {
@@ -24,21 +29,40 @@ class FakeSimulator {
       : bus_(own_url(1)),
         requests_(bus_.open_mailbox("sim.control")),
         acks_(bus_.open_mailbox("sim.ack")),
+        questions_(bus_.open_mailbox("sim.resend")),
+        bundles_(bus_.open_mailbox("sim.resent")),
         commands_(bus_.open_mailbox("auv1.cmd")) {}
 
   bridges::LcmBus& bus() { return bus_; }
   sim::Mailbox& commands() { return *commands_; }  ///< on auv1.cmd
 
+  /// Publishes, and puts the message on the lists of those who joined and receive the channel.
+  void publish(const std::string& channel, const sim::Bytes& payload) {
+    name(channel, payload);
+    bus_.publish(channel, payload, sim::Time(0));
+    bus_.end_of_step();
+  }
   template <class M>
   void send(const std::string& channel, const M& message) {
-    bus_.publish(channel, shoal::encode(message), sim::Time(0));
-    bus_.end_of_step();
+    publish(channel, shoal::encode(message));
+  }
+  /// Puts it on the lists only: the network lost it.
+  void name(const std::string& channel, const sim::Bytes& payload) {
+    for (auto& [client, member] : members_)
+      for (std::size_t i = 0; i < member.receives.size(); ++i)
+        if (member.receives[i] == channel) {
+          member.due.channel.push_back(static_cast<std::int32_t>(i));
+          member.due.crc.push_back(sim::crc32(payload));
+        }
   }
 
   shoal::sim_control_request_t await_request() { return await_message<shoal::sim_control_request_t>(*requests_); }
   shoal::sim_ack_t await_ack() { return await_message<shoal::sim_ack_t>(*acks_); }
+  shoal::sim_resend_t await_question() { return await_message<shoal::sim_resend_t>(*questions_); }
+  shoal::sim_resent_t await_bundle() { return await_message<shoal::sim_resent_t>(*bundles_); }
 
   void reply(const shoal::sim_control_request_t& request, bool ok, const std::string& text) {
+    if (ok && request.command == "join") join(request);
     shoal::sim_control_reply_t reply{};
     reply.id = request.id;
     reply.client = request.client;
@@ -47,17 +71,54 @@ class FakeSimulator {
     send("sim.control.reply", reply);
   }
 
-  void tick(std::int64_t step, const std::vector<std::string>& clients, bool last = false) {
+  void tick(std::int64_t step, const std::vector<std::string>& clients, bool last = false, std::int32_t branch = 0) {
     shoal::sim_tick_t tick{};
     tick.utime = 1000 + step * 10;
     tick.step = step;
     tick.last = last ? 1 : 0;
+    tick.branch = branch;
     tick.count = static_cast<std::int32_t>(clients.size());
-    tick.client = clients;
+    for (const std::string& client : clients) tick.client.push_back(next_of(client));
+    last_tick_ = tick;
     send("sim.tick", tick);
   }
+  void repeat_tick() { send("sim.tick", last_tick_); }
+  std::int64_t session(const std::string& client) const { return members_.at(client).due.session; }
+  std::vector<std::string> receives(const std::string& client) const { return members_.at(client).receives; }
 
  private:
+  struct Member {
+    std::vector<std::string> receives;
+    shoal::sim_due_t due;
+  };
+
+  void join(const shoal::sim_control_request_t& request) {
+    Member& member = members_[request.client];
+    member = {};
+    member.due.name = request.client;
+    std::smatch match;
+    if (std::regex_search(request.text, match, std::regex("session: (\\d+)"))) member.due.session = std::stoll(match[1]);
+    const std::regex channel("\"([^\"]*)\"");
+    for (std::sregex_iterator i(request.text.begin(), request.text.end(), channel), end; i != end; ++i)
+      member.receives.push_back((*i)[1]);
+  }
+
+  shoal::sim_due_t next_of(const std::string& client) {
+    const auto found = members_.find(client);
+    if (found == members_.end()) {
+      shoal::sim_due_t due{};
+      due.name = client;
+      return due;
+    }
+    shoal::sim_due_t& due = found->second.due;
+    ++due.sequence;
+    due.count = static_cast<std::int32_t>(due.crc.size());
+    shoal::sim_due_t now = due;
+    due.channel.clear();
+    due.crc.clear();
+    return now;
+  }
+
   template <class M>
   M await_message(sim::Mailbox& mailbox) {
     std::optional<sim::Message> message;
@@ -66,7 +127,9 @@ class FakeSimulator {
   }
 
   bridges::LcmBus bus_;
-  std::unique_ptr<sim::Mailbox> requests_, acks_, commands_;
+  std::unique_ptr<sim::Mailbox> requests_, acks_, questions_, bundles_, commands_;
+  std::map<std::string, Member> members_;
+  shoal::sim_tick_t last_tick_;
 };
 
 }  // namespace lcm_test

@@ -13,6 +13,12 @@ using lcm_test::own_url;
 using lcm_test::text_of;
 using namespace std::chrono_literals;
 
+void join(FakeSimulator& simulator, LockstepClient& client) {
+  std::thread thread([&] { simulator.reply(simulator.await_request(), true, ""); });
+  client.join(0.1, 10s);
+  thread.join();
+}
+
 TEST(LockstepClient, RunsInStepWithTheSimulator) {
   FakeSimulator simulator;
   LockstepClient client(own_url(1), "pilot");
@@ -27,7 +33,7 @@ TEST(LockstepClient, RunsInStepWithTheSimulator) {
     EXPECT_EQ(request.value, 0.1);
     simulator.reply(request, true, "");
     for (int step = 1; step <= 20; ++step) {
-      simulator.bus().publish("auv1.depth", bytes_of(std::to_string(step)), sim::Time(0));
+      simulator.publish("auv1.depth", bytes_of(std::to_string(step)));
       simulator.tick(step, {"other", "pilot"}, step == 20);
       EXPECT_EQ(simulator.await_ack().step, step);
       // The command was sent before the acknowledgement, so it is here now.
@@ -119,8 +125,9 @@ TEST(LockstepClient, HandlerMaySubscribeToItsOwnChannel) {
     for (int i = 0; i < 50; ++i) client.subscribe("auv1.note", [&](std::span<const std::byte>) { ++later; });
     if (text == std::string(40, 'x')) ++first;  // it is still there
   });
-  simulator.bus().publish("auv1.note", bytes_of("one"), sim::Time(0));
-  simulator.bus().publish("auv1.note", bytes_of("two"), sim::Time(0));
+  join(simulator, client);
+  simulator.publish("auv1.note", bytes_of("one"));
+  simulator.publish("auv1.note", bytes_of("two"));
   simulator.tick(1, {"pilot"});
   shoal::sim_tick_t tick;
   ASSERT_TRUE(client.next_tick(tick));
@@ -136,12 +143,13 @@ TEST(LockstepClient, SaysThatNoSimulatorAnswers) {
 TEST(LockstepClient, AcknowledgesARepeatedTickAgain) {
   FakeSimulator simulator;
   LockstepClient client(own_url(1), "pilot");
+  join(simulator, client);
   simulator.tick(1, {"pilot"});
   shoal::sim_tick_t tick;
   ASSERT_TRUE(client.next_tick(tick));
   client.acknowledge(tick);
   EXPECT_EQ(simulator.await_ack().step, 1);
-  simulator.tick(1, {"pilot"});
+  simulator.repeat_tick();
   simulator.tick(2, {"other"});
   simulator.tick(3, {"pilot"});
   ASSERT_TRUE(client.next_tick(tick));
@@ -152,6 +160,7 @@ TEST(LockstepClient, AcknowledgesARepeatedTickAgain) {
 TEST(LockstepClient, InvalidPayloadsAreIgnored) {
   FakeSimulator simulator;
   LockstepClient client(own_url(1), "pilot");
+  join(simulator, client);
   simulator.bus().publish("sim.tick", bytes_of(""), sim::Time(0));
   simulator.bus().publish("sim.tick", bytes_of("garbage that is no tick"), sim::Time(0));
   sim::Bytes cut = shoal::encode(shoal::sim_tick_t{});
@@ -175,6 +184,141 @@ TEST(LockstepClient, EndsWhenStoppedAndAfterSilence) {
   EXPECT_FALSE(client.next_tick(tick));
   EXPECT_EQ(client.end(), LockstepClient::End::stopped);
   thread.join();
+}
+
+/// A client that writes down what it handles.
+struct Listening {
+  explicit Listening(const std::vector<std::string>& channels) {
+    for (const std::string& channel : channels)
+      client.subscribe(channel, [this](std::span<const std::byte> payload) {
+        seen.push_back(text_of({payload.begin(), payload.end()}));
+      });
+    join(simulator, client);
+  }
+  FakeSimulator simulator;
+  LockstepClient client{own_url(1), "pilot"};
+  std::vector<std::string> seen;
+  shoal::sim_tick_t tick;
+};
+
+TEST(LockstepClient, HandlesMessagesInTheOrderOfTheTickAndOnce) {
+  Listening test({"a", "b"});
+  for (const char* text : {"1", "3"}) test.simulator.name("a", bytes_of(text));
+  test.simulator.name("b", bytes_of("2"));
+  for (const char* text : {"3", "1", "1"}) test.simulator.bus().publish("a", bytes_of(text), sim::Time(0));
+  test.simulator.bus().publish("b", bytes_of("2"), sim::Time(0));
+  test.simulator.bus().publish("b", bytes_of("2"), sim::Time(0));
+  test.simulator.tick(1, {"pilot"});
+  ASSERT_TRUE(test.client.next_tick(test.tick));
+  EXPECT_EQ(test.seen, (std::vector<std::string>{"1", "3", "2"}));
+  EXPECT_EQ(test.client.counts().repeated, 2u);
+}
+
+TEST(LockstepClient, AsksForWhatIsMissingUntilItHasAll) {
+  Listening test({"a"});
+  test.simulator.publish("a", bytes_of("1"));
+  test.simulator.name("a", bytes_of("2"));
+  test.simulator.name("a", bytes_of("3"));
+  std::thread thread([&] {
+    test.simulator.tick(1, {"pilot"});
+    auto question = test.simulator.await_question();
+    EXPECT_EQ(question.first, 1);
+    EXPECT_EQ(question.of_client, 0);
+    EXPECT_EQ(question.session, test.simulator.session("pilot"));
+    question = test.simulator.await_question();  // again
+    shoal::sim_resent_t bundle{};
+    bundle.client = "pilot";
+    bundle.session = question.session;
+    bundle.sequence = question.sequence;
+    for (const char text : {'2', '3'}) {
+      bundle.first = text - '1';
+      bundle.count = 1;
+      bundle.message = {{"a", 1, {static_cast<std::uint8_t>(text)}}};
+      test.simulator.send("sim.resent", bundle);
+    }
+  });
+  ASSERT_TRUE(test.client.next_tick(test.tick));
+  thread.join();
+  EXPECT_EQ(test.seen, (std::vector<std::string>{"1", "2", "3"}));
+  EXPECT_EQ(test.client.counts().asked_for, 2u);
+}
+
+TEST(LockstepClient, NamesWhatItPublishedAndSendsItAgain) {
+  Listening test({"a"});
+  test.client.publish("early", bytes_of("e"));  // waits for the tick
+  test.simulator.tick(1, {"pilot"});
+  ASSERT_TRUE(test.client.next_tick(test.tick));
+  test.client.publish("auv1.cmd", bytes_of("command"));
+  test.client.acknowledge(test.tick);
+  const shoal::sim_ack_t ack = test.simulator.await_ack();
+  EXPECT_EQ(ack.channel, (std::vector<std::string>{"early", "auv1.cmd"}));
+  EXPECT_EQ(ack.crc[1], sim::crc32(bytes_of("command")));
+  EXPECT_EQ(ack.sequence, 1);
+  shoal::sim_resend_t question{};
+  question.client = "pilot";
+  question.session = ack.session;
+  question.sequence = 1;
+  question.of_client = 1;
+  question.first = 1;
+  std::thread thread([&] {
+    test.simulator.send("sim.resend", question);
+    const shoal::sim_resent_t bundle = test.simulator.await_bundle();
+    EXPECT_EQ(bundle.first, 1);
+    ASSERT_EQ(bundle.message.size(), 1u);
+    EXPECT_EQ(bundle.message[0].channel, "auv1.cmd");
+    EXPECT_EQ(bundle.message[0].data.size(), 7u);
+    test.simulator.tick(2, {"pilot"});
+  });
+  ASSERT_TRUE(test.client.next_tick(test.tick));
+  thread.join();
+  test.client.acknowledge(test.tick);
+  EXPECT_EQ(test.simulator.await_ack().count, 0);
+}
+
+TEST(LockstepClient, TellsTheSimulatorOfChannelsItSubscribesToLater) {
+  Listening test({"a"});
+  test.simulator.tick(1, {"pilot"});
+  ASSERT_TRUE(test.client.next_tick(test.tick));
+  test.client.subscribe("b", [](std::span<const std::byte>) {});
+  std::thread thread([&] {
+    test.simulator.reply(test.simulator.await_request(), true, "");
+    EXPECT_EQ(test.simulator.receives("pilot"), (std::vector<std::string>{"a", "b"}));
+  });
+  test.client.acknowledge(test.tick);
+  thread.join();
+  EXPECT_EQ(test.simulator.await_ack().step, 1);
+}
+
+TEST(LockstepClient, EndsWhenTheWorldGoesBackUnlessItGoesWithIt) {
+  Listening test({"a"});
+  test.simulator.tick(5, {"pilot"});
+  ASSERT_TRUE(test.client.next_tick(test.tick));
+  test.client.acknowledge(test.tick);
+  int rewound = 0;
+  test.client.on_rewind([&](const shoal::sim_tick_t& tick) { rewound = static_cast<int>(tick.step); });
+  test.simulator.tick(2, {"pilot"}, false, 1);
+  ASSERT_TRUE(test.client.next_tick(test.tick));
+  EXPECT_EQ(rewound, 2);
+  EXPECT_EQ(test.client.branch(), 1);
+  test.client.acknowledge(test.tick);
+  test.client.on_rewind({});
+  test.simulator.tick(1, {"pilot"}, false, 2);
+  EXPECT_FALSE(test.client.next_tick(test.tick));
+  EXPECT_EQ(test.client.end(), LockstepClient::End::rewound);
+}
+
+TEST(LockstepClient, SaysThatTheWorldWentOnWithoutIt) {
+  Listening test({"a"});
+  // The simulator answers the join once more.
+  shoal::sim_control_reply_t reply{};
+  reply.client = "pilot";
+  reply.ok = 0;
+  reply.text = "too late; join again";
+  reply.id = static_cast<std::int32_t>(getpid() % 1'000'000) * 1000 + 1;
+  test.simulator.send("sim.control.reply", reply);
+  EXPECT_FALSE(test.client.next_tick(test.tick));
+  EXPECT_EQ(test.client.end(), LockstepClient::End::dropped);
+  EXPECT_EQ(test.client.reason(), "too late; join again");
 }
 
 }  // namespace

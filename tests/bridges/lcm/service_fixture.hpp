@@ -11,7 +11,7 @@ namespace lcm_test {
 
 /// A world from YAML text, and its service on the same in-process bus.
 struct ServedWorld {
-  explicit ServedWorld(const std::string& yaml) : test(yaml) {}
+  explicit ServedWorld(const std::string& yaml) : test(yaml) { lockstep.add_line(test.bus, gate); }
 
   /// Sends a request, has it answered, and gives the answer.
   shoal::sim_control_reply_t ask(const std::string& command, double value, const std::string& text,
@@ -30,7 +30,8 @@ struct ServedWorld {
   test::TestWorld test;
   test::Listener<shoal::sim_control_reply_t> replies{test, "sim.control.reply"};
   sim::RunControl control;
-  sim::Lockstep lockstep;
+  sim::MailGate gate{test.bus};
+  bridges::LockstepService lockstep{test.world, control};
   bridges::SimService service{test.bus, test.bus, test.world, control, lockstep, {"{}", "test"}};
   std::int32_t id = 0;
 };

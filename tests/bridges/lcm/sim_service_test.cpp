@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 
-#include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_state_t.hpp"
 #include "shoal/sim_tick_t.hpp"
 #include "tests/bridges/lcm/service_fixture.hpp"
@@ -18,19 +17,6 @@ struct Service : lcm_test::ServedWorld {
   shoal::sim_control_reply_t ask(const std::string& command, double value) {
     return ServedWorld::ask(command, value, "");
   }
-  void acknowledge(std::int64_t step, const std::string& client = "pilot") {
-    shoal::sim_ack_t ack{};
-    ack.step = step;
-    ack.client = client;
-    test.send("sim.ack", ack);
-  }
-  /// Waits for nobody longer than a moment.
-  void synchronize() {
-    service.synchronize(
-        0.02, [](std::chrono::milliseconds) {}, [] { return true; });
-  }
-
-  test::Listener<shoal::sim_tick_t> ticks{test, "sim.tick"};
 };
 
 TEST(SimService, AnswersEachRequestWithItsNumber) {
@@ -54,28 +40,6 @@ TEST(SimService, SaysWhyItRefuses) {
   EXPECT_THAT(s.ask("join", 0.015).text, testing::HasSubstr("a multiple of the step"));
   EXPECT_THAT(s.ask("leave", 0).text, testing::HasSubstr("no client of the name 'pilot'"));
   EXPECT_EQ(s.service.bad_messages(), 5);
-}
-
-TEST(SimService, WaitsForTheClientsThatAreDueAndNamesTheMissing) {
-  Service s;
-  ASSERT_TRUE(s.ask("join", 0.01).ok);
-  try {
-    s.synchronize();
-    FAIL();
-  } catch (const bridges::LockstepTimeout& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("no acknowledgement from 'pilot' for step 0"));
-  }
-  EXPECT_EQ(s.ticks.last().client, std::vector<std::string>{"pilot"});
-  s.acknowledge(0);
-  EXPECT_NO_THROW(s.synchronize());
-}
-
-TEST(SimService, AnAcknowledgementOfAStepToComeIsRefusedAndCounted) {
-  Service s;
-  ASSERT_TRUE(s.ask("join", 0.01).ok);
-  s.acknowledge(1000000);
-  EXPECT_THROW(s.synchronize(), bridges::LockstepTimeout);
-  EXPECT_EQ(s.service.bad_messages(), 1);
 }
 
 TEST(SimService, HearsAnotherSimulatorOnItsBus) {

@@ -1,58 +1,169 @@
 #include "sim/run/lockstep.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
+
+#include "sim/config/diagnostics.hpp"
 
 namespace {
 
 using Names = std::vector<std::string>;
+using sim::Lockstep;
+using testing::HasSubstr;
 
-TEST(Lockstep, TicksEachClientInItsOwnPeriod) {
-  sim::Lockstep lockstep;
-  lockstep.join("slow", 10, 0);
-  lockstep.join("fast", 5, 0);
-  EXPECT_EQ(lockstep.due(0), (Names{"fast", "slow"}));
-  EXPECT_EQ(lockstep.due(5), (Names{"fast"}));
-  EXPECT_EQ(lockstep.due(7), (Names{}));
-  EXPECT_EQ(lockstep.due(10), (Names{"fast", "slow"}));
+sim::LockstepTerms session(std::int64_t number, const Names& receives = {}) {
+  sim::LockstepTerms terms;
+  terms.session = number;
+  terms.receives = receives;
+  return terms;
 }
 
-TEST(Lockstep, MissesOnlyThoseWhoHaveNotAcknowledged) {
-  sim::Lockstep lockstep;
-  lockstep.join("a", 1, 0);
-  lockstep.join("b", 1, 0);
-  EXPECT_TRUE(lockstep.acknowledge("a", 3));
-  EXPECT_EQ(lockstep.missing(3), (Names{"b"}));
-  EXPECT_EQ(lockstep.missing(4), (Names{"a", "b"}));
-  EXPECT_FALSE(lockstep.acknowledge("nobody", 3));
+sim::Bytes bytes_of(const std::string& text) {
+  const auto* data = reinterpret_cast<const std::byte*>(text.data());
+  return {data, data + text.size()};
 }
 
-TEST(Lockstep, AnAcknowledgementOfAnotherStepDoesNotCount) {
-  sim::Lockstep lockstep;
-  lockstep.join("a", 5, 0);
-  EXPECT_FALSE(lockstep.acknowledge("a", 7));  // was not asked at 7
-  lockstep.acknowledge("a", 5);
-  EXPECT_TRUE(lockstep.missing(5).empty());
-  lockstep.acknowledge("a", 0);  // late and twice
-  EXPECT_TRUE(lockstep.missing(5).empty());
-  EXPECT_EQ(lockstep.missing(10), (Names{"a"}));
+Names missing(Lockstep& lockstep, std::int64_t step) {
+  Names names;
+  for (const sim::LockstepMember* member : lockstep.missing(step)) names.push_back(member->name);
+  return names;
+}
+
+/// The reason, when it is refused.
+std::string answer(Lockstep& lockstep, const sim::LockstepAck& ack, std::int64_t step,
+                   Lockstep::Verdict expected = Lockstep::Verdict::accepted) {
+  std::string why;
+  EXPECT_EQ(lockstep.acknowledge(ack, step, why), expected) << why;
+  return why;
+}
+
+TEST(Lockstep, AsksEachClientInItsOwnPeriod) {
+  Lockstep lockstep;
+  lockstep.join("slow", {}, 10, 0);
+  lockstep.join("fast", {}, 5, 0);
+  EXPECT_EQ(missing(lockstep, 0), (Names{"fast", "slow"}));
+  EXPECT_EQ(missing(lockstep, 5), (Names{"fast"}));
+  EXPECT_EQ(missing(lockstep, 7), (Names{}));
+  EXPECT_EQ(missing(lockstep, 10), (Names{"fast", "slow"}));
+}
+
+TEST(Lockstep, MissesOnlyThoseWhoHaveNotAnswered) {
+  Lockstep lockstep;
+  lockstep.join("a", {}, 1, 0);
+  lockstep.join("b", session(7), 1, 0);
+  lockstep.ask(3);
+  answer(lockstep, {"a", 3, 0, 0}, 3);
+  EXPECT_EQ(missing(lockstep, 3), (Names{"b"}));
+  answer(lockstep, {"b", 3, 7, 1}, 3);
+  EXPECT_EQ(missing(lockstep, 3), (Names{}));
+  EXPECT_EQ(missing(lockstep, 4), (Names{"a", "b"}));
+}
+
+TEST(Lockstep, RefusesWrongAnswersAndSaysWhy) {
+  Lockstep lockstep;
+  lockstep.join("a", session(7), 1, 0);
+  lockstep.ask(3);
+  const auto refused = Lockstep::Verdict::refused;
+  EXPECT_THAT(answer(lockstep, {"b", 3, 0, 0}, 3, refused), HasSubstr("'b' acknowledges a tick, but takes no part"));
+  EXPECT_THAT(answer(lockstep, {"a", 4, 7, 1}, 3, refused), HasSubstr("step 4, which is still to come"));
+  EXPECT_THAT(answer(lockstep, {"a", 3, 8, 1}, 3, refused), HasSubstr("in session 8, which is not the one"));
+  EXPECT_THAT(answer(lockstep, {"a", 3, 7, 2}, 3, refused), HasSubstr("tick 2, which it was not sent"));
+  EXPECT_THAT(answer(lockstep, {"a", 2, 7, 1}, 3, refused), HasSubstr("step 2 for the tick of step 3"));
+  EXPECT_EQ(missing(lockstep, 3), (Names{"a"}));
+  answer(lockstep, {"a", 3, 7, 1}, 3);
+  answer(lockstep, {"a", 3, 7, 1}, 3, Lockstep::Verdict::repeated);
+  lockstep.ask(4);
+  answer(lockstep, {"a", 3, 7, 1}, 4, Lockstep::Verdict::repeated);  // late and twice
+  EXPECT_EQ(missing(lockstep, 4), (Names{"a"}));
+}
+
+TEST(Lockstep, ListsWhatAClientMustHaveInTheOrderOfPublishing) {
+  Lockstep lockstep;
+  lockstep.join("a", session(7, {"x", "y"}), 2, 0);
+  lockstep.join("b", session(8, {"x"}), 1, 0, 1);  // on another line
+  lockstep.ask(0);
+  lockstep.post(0, "y", bytes_of("1"));
+  lockstep.post(0, "x", bytes_of("2"));
+  lockstep.post(0, "z", bytes_of("3"));
+  lockstep.post(1, "y", bytes_of("4"));
+  EXPECT_TRUE(lockstep.find("a")->list.empty());
+  lockstep.ask(1);
+  EXPECT_TRUE(lockstep.find("a")->list.empty());  // not due
+  lockstep.ask(2);
+  const auto& list = lockstep.find("a")->list;
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[0].channel, 1);
+  EXPECT_EQ(list[1].channel, 0);
+  EXPECT_EQ(*list[1].payload, bytes_of("2"));
+  EXPECT_EQ(list[0].crc, 0x83dcefb7u);  // CRC-32 of "1"
+  EXPECT_TRUE(lockstep.somebody_receives(0, "y"));
+  EXPECT_FALSE(lockstep.somebody_receives(1, "y"));
 }
 
 TEST(Lockstep, JoiningTwiceMovesNoTick) {
-  sim::Lockstep lockstep;
-  lockstep.join("a", 10, 0);
-  lockstep.join("a", 10, 3);
-  EXPECT_EQ(lockstep.due(10), (Names{"a"}));
-  EXPECT_TRUE(lockstep.due(13).empty());
-  lockstep.join("a", 4, 20);
-  EXPECT_EQ(lockstep.due(24), (Names{"a"}));
+  Lockstep lockstep;
+  lockstep.join("a", {}, 10, 0);
+  lockstep.join("a", {}, 10, 3);
+  EXPECT_EQ(missing(lockstep, 10), (Names{"a"}));
+  EXPECT_EQ(missing(lockstep, 13), (Names{}));
+  lockstep.join("a", {}, 4, 20);
+  EXPECT_EQ(missing(lockstep, 24), (Names{"a"}));
+}
+
+TEST(Lockstep, ChannelsKeepTheirPlaces) {
+  Lockstep lockstep;
+  lockstep.join("a", session(7, {"x"}), 1, 0);
+  lockstep.join("a", session(7, {"x", "y"}), 1, 0);
+  EXPECT_TRUE(lockstep.somebody_receives(0, "y"));
+  EXPECT_THROW(lockstep.join("a", session(7, {"y", "x"}), 1, 0), std::invalid_argument);
+  EXPECT_THROW(lockstep.join("a", session(7, {"x"}), 1, 0), std::invalid_argument);
 }
 
 TEST(Lockstep, AClientThatLeftIsNotAwaited) {
-  sim::Lockstep lockstep;
-  lockstep.join("a", 1, 0);
+  Lockstep lockstep;
+  lockstep.join("a", session(7, {"x"}), 1, 0);
   EXPECT_TRUE(lockstep.leave("a"));
   EXPECT_FALSE(lockstep.leave("a"));
-  EXPECT_TRUE(lockstep.missing(1).empty());
+  lockstep.post(0, "x", bytes_of("1"));
+  EXPECT_EQ(missing(lockstep, 1), (Names{}));
+}
+
+TEST(Lockstep, AfterGoingBackEverybodyIsAskedByItsPeriod) {
+  Lockstep lockstep;
+  lockstep.join("a", session(7, {"x"}), 10, 0);
+  lockstep.join("late", session(8), 10, 55);
+  lockstep.post(0, "x", bytes_of("1"));
+  lockstep.ask(60);
+  lockstep.rewound(20);
+  EXPECT_EQ(missing(lockstep, 20), (Names{"a"}));
+  EXPECT_EQ(missing(lockstep, 25), (Names{"late"}));
+  lockstep.ask(20);
+  EXPECT_TRUE(lockstep.find("a")->list.empty());
+  EXPECT_EQ(lockstep.find("a")->sequence, 2);
+}
+
+TEST(LockstepTerms, AreReadWithClearErrors) {
+  sim::LockstepTerms defaults;
+  defaults.on_timeout = "pause";
+  const auto terms = sim::read_lockstep_terms("{session: 12, receives: [a, b], timeout_s: 2}", defaults);
+  EXPECT_EQ(terms.session, 12);
+  EXPECT_EQ(terms.receives, (Names{"a", "b"}));
+  EXPECT_EQ(terms.timeout_s, 2);
+  EXPECT_EQ(terms.policy(), sim::OnTimeout::pause);
+  EXPECT_FALSE(terms.agreed);
+  EXPECT_EQ(sim::read_lockstep_terms("", defaults).session, 0);
+  const auto error = [&](const std::string& text) -> std::string {
+    try {
+      sim::read_lockstep_terms(text, defaults);
+    } catch (const sim::ConfigError& caught) {
+      return caught.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(error("{sesion: 1}"), HasSubstr("unknown key 'sesion'; known keys: on_timeout, receives, session, timeo"));
+  EXPECT_THAT(error("{session: -1}"), HasSubstr("'session' must be"));
+  EXPECT_THAT(error("{receives: [a]}"), HasSubstr("'receives' needs a 'session'"));
+  EXPECT_THAT(error("{session: 1, on_timeout: never}"), HasSubstr("on_timeout"));
+  EXPECT_THAT(error("{session: 1, receives: ['']}"), HasSubstr("a channel has 1 to 63 characters"));
 }
 
 }  // namespace

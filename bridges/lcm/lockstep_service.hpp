@@ -1,0 +1,147 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bridges/lcm/lockstep_summary.hpp"
+#include "shoal/sim_control_request_t.hpp"
+#include "sim/bus/bus.hpp"
+#include "sim/bus/mail_gate.hpp"
+#include "sim/run/client_mail.hpp"
+#include "sim/run/lockstep.hpp"
+#include "sim/run/run_control.hpp"
+#include "sim/world/world.hpp"
+
+namespace bridges {
+
+/// A lockstep client did not answer in time, and the run ends with that.
+class LockstepTimeout : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+enum class LockstepOutcome {
+  done,
+  stopped,  ///< `idle` said so, or the run is to end; the next call goes on with the same step
+};
+
+/// The lockstep on the bus: sends sim.tick, takes sim.ack, and asks and answers on sim.resend and sim.resent, so that
+/// neither a tick nor a message between world and client is lost.  See docs/lockstep.md.
+class LockstepService {
+ public:
+  /// Waits for messages up to the given time, or returns earlier.
+  using Wait = std::function<void(std::chrono::milliseconds)>;
+
+  /// The defaults are those of the world's `lockstep`.
+  LockstepService(sim::World& world, sim::RunControl& control);
+  LockstepService(const LockstepService&) = delete;
+  LockstepService& operator=(const LockstepService&) = delete;
+  ~LockstepService();
+
+  /// A bus on which clients may be: the world's first.  `network` is under `gate`; the handshake goes there directly,
+  /// so that records leave it out.  Both must outlive this.
+  void add_line(sim::Bus& network, sim::MailGate& gate);
+  /// Called with the name of each client that answers.
+  void set_on_heard(std::function<void(const std::string&)> heard) { heard_ = std::move(heard); }
+
+  /// False: not decided yet, and not to be answered; the client asks again.  Throws std::runtime_error that says why
+  /// it is refused.
+  bool join(int line, const shoal::sim_control_request_t& request);
+  /// False as with join().  Throws std::runtime_error when there is no such client.
+  bool leave(const shoal::sim_control_request_t& request);
+  /// Its process has ended: what was agreed for a time-out is done at once; the world goes on when nothing was agreed.
+  void client_gone(const std::string& client);
+  bool has(const std::string& client) const { return lockstep_.has(client); }
+  bool empty() const { return lockstep_.empty(); }
+
+  /// A message that went to a line beside its gate, for the clients that must have it.
+  void post(int line, std::string_view channel, std::span<const std::byte> payload) {
+    lockstep_.post(line, channel, payload);
+  }
+  /// Step 8 of a step: ticks the clients that are due, and waits until they have answered and all they published is
+  /// there.  `idle` is called while waiting, and handles requests; false ends the wait.  Throws LockstepTimeout.
+  LockstepOutcome synchronize(const Wait& wait, const std::function<bool()>& idle);
+  /// Tells clients that the run is over, for up to `limit` of wall time until all of them know.
+  void publish_end(const Wait& wait, std::chrono::milliseconds limit);
+
+  /// The world went back, to its present step, as another branch.
+  void set_branch(std::int32_t branch);
+  std::int32_t branch() const { return branch_; }
+  /// While suspended the mail at the gates keeps its order: it is played in again.
+  void suspend(bool suspended) { suspended_ = suspended; }
+  /// Bad acknowledgements and questions so far.
+  std::int64_t bad_messages() const { return bad_messages_; }
+  /// By name, with those that are gone.
+  std::vector<LockstepSummary> summaries() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Line;
+  /// A client that the world waits for.
+  struct Asked {
+    Clock::time_point begin, send_at, serve_after;
+    std::chrono::milliseconds interval;
+    bool told = false;  ///< that it is late
+  };
+  /// One that was dropped, and is told so when it answers late.
+  struct Dropped {
+    std::int64_t session = 0;
+    std::int32_t join_id = 0;
+    int line = 0;
+    std::string why;
+  };
+
+  bool may_join(const sim::LockstepMember& first, const sim::LockstepTerms& terms);
+  std::vector<std::string> late();
+  void serve(const std::vector<std::string>& late);
+  void check_time(const std::string& client, Asked& asked, Clock::time_point now);
+  void drop(const std::string& client, const std::string& why);
+  void forget(const std::string& client, const std::string& why);
+  void tell_dropped(const Dropped& dropped, const std::string& client);
+  void resume();
+
+  void publish_tick(const std::vector<std::string>& clients, bool last);
+  void ask_client(const sim::LockstepMember& member);
+  void take_messages();
+  void take_ack(int line, const sim::Message& message);
+  void take_question(const sim::Message& message);
+  void take_bundle(const sim::Message& message);
+  void send_again(const sim::LockstepMember& member, std::int32_t first);
+  void complain(const std::string& client, const std::string& text);
+  void watch_gates();
+  std::chrono::milliseconds nap() const;
+  std::int64_t utime() const { return world_.epoch_us() + world_.now().count(); }
+  LockstepSummary& summary_of(const std::string& client);
+  template <typename Message>
+  void publish(sim::Bus& bus, const char* channel, const Message& message);
+
+  sim::World& world_;
+  sim::RunControl& control_;
+  sim::LockstepTerms defaults_;
+  sim::Lockstep lockstep_;
+  std::vector<std::unique_ptr<Line>> lines_;
+  std::map<std::string, Asked, std::less<>> asked_;  // in the present step
+  std::map<std::string, Dropped, std::less<>> dropped_;
+  std::map<std::string, std::int32_t, std::less<>> join_ids_;
+  std::map<std::string, std::int64_t, std::less<>> challenges_;  // by name: tick of the first at the other's join
+  std::map<std::string, LockstepSummary, std::less<>> summaries_;
+  std::set<std::string, std::less<>> told_;  // whose bad messages were told of
+  std::function<void(const std::string&)> heard_;
+  bool paused_here_ = false;
+  bool suspended_ = false;
+  std::int32_t branch_ = 0;
+  std::int64_t bad_messages_ = 0;
+  sim::Bytes buffer_;
+};
+
+}  // namespace bridges

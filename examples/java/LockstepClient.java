@@ -1,0 +1,254 @@
+// A client in lockstep with the simulator, over a network that may lose messages: docs/lockstep.md, in Java.
+// Drives rover1 of worlds/minimal.yaml towards the wall, and stops before it.
+//
+//     lcm-gen --java --jpath types bridges/lcm/types/*.lcm
+//     javac -cp lcm.jar:types examples/java/LockstepClient.java -d .
+//     java -cp lcm.jar:types:. LockstepClient
+import java.io.IOException;
+import java.util.ArrayDeque;
+import java.util.ArrayList;
+import java.util.HashMap;
+import java.util.List;
+import java.util.Map;
+import java.util.concurrent.LinkedBlockingQueue;
+import java.util.concurrent.TimeUnit;
+import java.util.function.Consumer;
+import java.util.function.LongConsumer;
+import java.util.zip.CRC32;
+import lcm.lcm.LCM;
+import lcm.lcm.LCMDataInputStream;
+import lcm.lcm.LCMEncodable;
+import lcm.lcm.LCMSubscriber;
+import lcm.lcm.LCMDataOutputStream;
+import shoal.planar_lidar_t;
+import shoal.sim_ack_t;
+import shoal.sim_control_reply_t;
+import shoal.sim_control_request_t;
+import shoal.sim_due_t;
+import shoal.sim_payload_t;
+import shoal.sim_resend_t;
+import shoal.sim_resent_t;
+import shoal.sim_tick_t;
+import shoal.twist_command_t;
+
+public class LockstepClient implements LCMSubscriber {
+  record Message(String channel, byte[] data) {}
+
+  private final LCM lcm = new LCM();
+  private final String name;
+  private final long session = 1 + (long) (Math.random() * (1L << 52));
+  private final LinkedBlockingQueue<Message> arrived = new LinkedBlockingQueue<>();
+  private final List<String> receives = new ArrayList<>();
+  private final Map<String, Consumer<byte[]>> handlers = new HashMap<>();
+  private final Map<String, ArrayDeque<byte[]>> held = new HashMap<>();
+  private final List<Message> published = new ArrayList<>();
+  private sim_tick_t tick; // that waits for messages
+  private sim_due_t due;
+  private byte[][] messages;
+  private long sequence; // of the last tick that was handled
+  private sim_ack_t ack;
+  private boolean joined, over;
+
+  public LockstepClient(String name) throws IOException {
+    this.name = name;
+    for (String channel : List.of("sim.control.reply", "sim.tick", "sim.resend", "sim.resent"))
+      lcm.subscribe(channel.replace(".", "\\."), this);
+  }
+
+  /// LCM calls this in a thread of its own.
+  @Override
+  public void messageReceived(LCM from, String channel, LCMDataInputStream in) {
+    try {
+      byte[] data = new byte[in.available()];
+      in.readFully(data);
+      arrived.add(new Message(channel, data));
+    } catch (IOException error) {
+      // It is as if it had not come.
+    }
+  }
+
+  public void subscribe(String channel, Consumer<byte[]> handler) {
+    receives.add(channel);
+    handlers.put(channel, handler);
+    held.put(channel, new ArrayDeque<>());
+    lcm.subscribe(channel.replace(".", "\\."), this);
+  }
+
+  public void publish(String channel, LCMEncodable message) throws IOException {
+    byte[] data = bytesOf(message);
+    published.add(new Message(channel, data));
+    lcm.publish(channel, data, 0, data.length);
+  }
+
+  /// Joins, and calls `decide` with the time at each tick, after the handlers of all messages.
+  public void run(double periodS, LongConsumer decide) throws IOException, InterruptedException {
+    while (!joined) { // the simulator may start later than we
+      sim_control_request_t request = new sim_control_request_t();
+      request.id = 1;
+      request.client = name;
+      request.command = "join";
+      request.value = periodS;
+      request.text = "{session: " + session + ", receives: ['" + String.join("', '", receives) + "']}";
+      lcm.publish("sim.control", request);
+      take(arrived.poll(200, TimeUnit.MILLISECONDS));
+    }
+    held.values().forEach(ArrayDeque::clear); // it was not for a member of the lockstep
+    long pauseMs = 1;
+    while (!over) {
+      Message message = arrived.poll(tick == null ? 1000 : pauseMs, TimeUnit.MILLISECONDS);
+      take(message);
+      if (message == null && tick != null) {
+        ask();
+        pauseMs = Math.min(Math.max(20, 2 * pauseMs), 250);
+      }
+      if (tick != null && hasAll()) {
+        handle(decide);
+        pauseMs = 1;
+      }
+    }
+  }
+
+  private void take(Message message) throws IOException {
+    if (message == null) return;
+    switch (message.channel()) {
+      case "sim.control.reply" -> onReply(new sim_control_reply_t(message.data()));
+      case "sim.tick" -> onTick(new sim_tick_t(message.data()));
+      case "sim.resend" -> onResend(new sim_resend_t(message.data()));
+      case "sim.resent" -> onResent(new sim_resent_t(message.data()));
+      default -> {
+        ArrayDeque<byte[]> waiting = held.get(message.channel());
+        waiting.add(message.data());
+        if (waiting.size() > 10_000) waiting.remove(); // if a tick names it, it is asked for
+      }
+    }
+  }
+
+  private void onReply(sim_control_reply_t reply) {
+    if (!reply.client.equals(name) || reply.id != 1) return;
+    if (!reply.ok) throw new IllegalStateException(reply.text);
+    joined = true;
+  }
+
+  private void onTick(sim_tick_t next) throws IOException {
+    for (sim_due_t each : next.client) {
+      if (!each.name.equals(name) || each.session != session) continue;
+      if (each.sequence == sequence && ack != null) {
+        lcm.publish("sim.ack", ack); // ours was lost
+      } else if (each.sequence > sequence && tick == null) {
+        tick = next;
+        due = each;
+        messages = new byte[each.count][];
+      }
+      return;
+    }
+    over = over || next.last;
+  }
+
+  private boolean hasAll() {
+    boolean all = true;
+    for (int i = 0; i < due.count; ++i) {
+      if (messages[i] != null) continue;
+      ArrayDeque<byte[]> waiting = held.get(receives.get(due.channel[i]));
+      for (byte[] data : waiting)
+        if (crcOf(data) == due.crc[i]) {
+          messages[i] = data;
+          waiting.remove(data); // this very array
+          break;
+        }
+      all = all && messages[i] != null;
+    }
+    return all;
+  }
+
+  private void ask() throws IOException {
+    sim_resend_t question = new sim_resend_t();
+    question.client = name;
+    question.session = session;
+    question.sequence = due.sequence;
+    while (messages[question.first] != null) ++question.first;
+    lcm.publish("sim.resend", question);
+  }
+
+  private void onResent(sim_resent_t bundle) {
+    if (tick == null || bundle.of_client || bundle.session != session || bundle.sequence != due.sequence) return;
+    for (int i = 0; i < bundle.count; ++i)
+      if (crcOf(bundle.message[i].data) == due.crc[bundle.first + i]) messages[bundle.first + i] = bundle.message[i].data;
+  }
+
+  private void handle(LongConsumer decide) throws IOException {
+    sim_tick_t now = tick;
+    tick = null;
+    sequence = due.sequence;
+    published.clear();
+    for (int i = 0; i < due.count; ++i) handlers.get(receives.get(due.channel[i])).accept(messages[i]);
+    over = now.last;
+    if (!over) decide.accept(now.utime);
+    ack = new sim_ack_t();
+    ack.utime = now.utime;
+    ack.step = now.step;
+    ack.client = name;
+    ack.session = session;
+    ack.sequence = sequence;
+    ack.listed = true;
+    ack.count = published.size();
+    ack.channel = published.stream().map(Message::channel).toArray(String[]::new);
+    ack.crc = published.stream().mapToLong(each -> crcOf(each.data())).toArray();
+    lcm.publish("sim.ack", ack);
+  }
+
+  private void onResend(sim_resend_t question) throws IOException {
+    if (!question.of_client || question.session != session || question.sequence != sequence) return;
+    for (int i = question.first; i < published.size(); ++i) {
+      sim_payload_t message = new sim_payload_t();
+      message.channel = published.get(i).channel();
+      message.data = published.get(i).data();
+      message.size = message.data.length;
+      sim_resent_t bundle = new sim_resent_t();
+      bundle.client = name;
+      bundle.session = session;
+      bundle.sequence = sequence;
+      bundle.of_client = true;
+      bundle.first = i;
+      bundle.count = 1;
+      bundle.message = new sim_payload_t[] {message};
+      lcm.publish("sim.resent", bundle);
+    }
+  }
+
+  private static long crcOf(byte[] data) {
+    CRC32 crc = new CRC32();
+    crc.update(data);
+    return crc.getValue();
+  }
+
+  private static byte[] bytesOf(LCMEncodable message) throws IOException {
+    LCMDataOutputStream out = new LCMDataOutputStream();
+    message.encode(out);
+    return out.toByteArray();
+  }
+
+  public static void main(String[] arguments) throws Exception {
+    LockstepClient client = new LockstepClient("pilot");
+    double[] aheadM = {0};
+    client.subscribe("rover1.lidar", data -> {
+      try {
+        planar_lidar_t scan = new planar_lidar_t(data);
+        aheadM[0] = scan.ranges[scan.nranges / 2];
+      } catch (IOException error) {
+        System.err.println("rover1.lidar: " + error.getMessage());
+      }
+    });
+    client.run(0.1, utime -> {
+      twist_command_t command = new twist_command_t();
+      command.utime = utime;
+      command.forward_mps = aheadM[0] > 1.0 ? 0.5 : 0.0;
+      try {
+        client.publish("rover1.drive.cmd", command);
+      } catch (IOException error) {
+        throw new IllegalStateException(error);
+      }
+    });
+    System.out.printf("the run is over, %.2f m before the wall%n", aheadM[0]);
+    System.exit(0); // LCM's thread would go on
+  }
+}

@@ -1,0 +1,171 @@
+"""A client in lockstep with the simulator, over a network that may lose messages: docs/lockstep.md, in Python.
+
+    PYTHONPATH=build/release/python:examples/python python3 examples/python/lockstep_client.py rover1
+
+drives rover1 of worlds/minimal.yaml towards the wall, and stops before it.
+"""
+import binascii
+import random
+import sys
+import time
+
+import lcm
+import shoal
+
+SILENCE_S = 600
+
+
+class LockstepClient:
+    """Subscribe, then run(): it joins, and calls decide(utime) at each tick, when all messages were handled."""
+
+    def __init__(self, name, period_s, terms=""):
+        """`terms`: more of what it joins with, such as `, on_timeout: pause, timeout_s: 2`."""
+        self.lc = lcm.LCM()
+        self.name, self.period_s, self.terms = name, period_s, terms
+        self.session = random.SystemRandom().randrange(1, 1 << 53)
+        self.receives, self.handlers = [], []
+        self.held = []  # [channel, CRC, payload] that came, and that no tick named yet
+        self.tick = None  # that waits for messages
+        self.sequence = self.branch = 0  # of the last tick that was handled
+        self.published, self.ack = [], None
+        self.joined = self.over = False
+        self.decide = lambda utime: None
+        for channel, handler in (("sim.control.reply", self.on_reply), ("sim.tick", self.on_tick),
+                                 ("sim.resend", self.on_resend), ("sim.resent", self.on_resent)):
+            self.lc.subscribe(channel.replace(".", "\\."), handler)
+
+    def subscribe(self, channel, message, handler):
+        if channel not in self.receives:
+            self.receives.append(channel)
+            self.handlers.append([])
+            number = len(self.receives) - 1
+            self.lc.subscribe(channel.replace(".", "\\."),
+                              lambda _, data: self.held.append([number, binascii.crc32(data), data]))
+        self.handlers[self.receives.index(channel)].append(lambda data: handler(message.decode(data)))
+
+    def publish(self, channel, message):
+        """From a handler or from decide()."""
+        data = message.encode()
+        self.published.append((channel, binascii.crc32(data), data))
+        self.lc.publish(channel, data)
+
+    def run(self):
+        while not self.joined:  # the simulator may start later than we
+            request = shoal.sim_control_request_t()
+            request.id, request.client, request.command, request.value = 1, self.name, "join", self.period_s
+            request.text = f"{{session: {self.session}, receives: {self.receives}{self.terms}}}"
+            self.lc.publish("sim.control", request.encode())
+            self.lc.handle_timeout(200)
+        self.held.clear()  # it was not for a member of the lockstep
+        heard, pause_s = time.monotonic(), 0.001
+        while not self.over:
+            if self.lc.handle_timeout(1000 * pause_s if self.tick else 1000):
+                heard = time.monotonic()
+            elif time.monotonic() - heard > SILENCE_S:
+                raise SystemExit("the simulator fell silent")
+            elif self.tick:
+                self.ask()
+                pause_s = min(max(0.02, 2 * pause_s), 0.25)
+            if self.tick and self.has_all():
+                self.handle()
+                pause_s = 0.001
+
+    def on_reply(self, channel, data):
+        reply = shoal.sim_control_reply_t.decode(data)
+        if reply.client == self.name and reply.id == 1:
+            if not reply.ok:  # refused, or later: the world went on without us
+                raise SystemExit(reply.text)
+            self.joined = True
+
+    def on_tick(self, channel, data):
+        tick = shoal.sim_tick_t.decode(data)
+        mine = [due for due in tick.client if due.name == self.name and due.session == self.session]
+        if not mine:
+            self.over = self.over or bool(tick.last)
+        elif mine[0].sequence == self.sequence and self.ack:
+            self.lc.publish("sim.ack", self.ack.encode())  # ours was lost
+        elif mine[0].sequence > self.sequence and not self.tick:
+            if tick.branch != self.branch and self.sequence > 0:
+                raise SystemExit("the world went back in time")
+            self.tick, self.due, self.branch = tick, mine[0], tick.branch
+            self.messages = [None] * mine[0].count
+
+    def has_all(self):
+        for place, (channel, crc) in enumerate(zip(self.due.channel, self.due.crc)):
+            if self.messages[place] is None:
+                found = next((each for each in self.held if each[:2] == [channel, crc]), None)
+                if found:
+                    self.messages[place] = found[2]
+                    self.held.remove(found)
+        return None not in self.messages
+
+    def ask(self):
+        question = shoal.sim_resend_t()
+        question.client, question.session, question.sequence = self.name, self.session, self.due.sequence
+        question.of_client, question.first = False, self.messages.index(None)
+        self.lc.publish("sim.resend", question.encode())
+
+    def on_resent(self, channel, data):
+        bundle = shoal.sim_resent_t.decode(data)
+        if (self.tick and not bundle.of_client and bundle.session == self.session
+                and bundle.sequence == self.due.sequence):
+            for place, message in enumerate(bundle.message, bundle.first):
+                if binascii.crc32(message.data) == self.due.crc[place]:
+                    self.messages[place] = message.data
+
+    def handle(self):
+        tick, messages, channels = self.tick, self.messages, self.due.channel
+        self.tick, self.sequence, self.published = None, self.due.sequence, []
+        for channel, data in zip(channels, messages):
+            for handler in self.handlers[channel]:
+                handler(data)
+        # What no tick of ours names came twice, or of somebody whom the simulator does not hear.
+        del self.held[:-1000]
+        self.over = bool(tick.last)
+        if not self.over:
+            self.decide(tick.utime)
+        self.ack = shoal.sim_ack_t()
+        self.ack.utime, self.ack.step, self.ack.client = tick.utime, tick.step, self.name
+        self.ack.session, self.ack.sequence, self.ack.listed = self.session, self.sequence, True
+        self.ack.count = len(self.published)
+        self.ack.channel = [channel for channel, _, _ in self.published]
+        self.ack.crc = [crc for _, crc, _ in self.published]
+        self.lc.publish("sim.ack", self.ack.encode())
+
+    def on_resend(self, channel, data):
+        question = shoal.sim_resend_t.decode(data)
+        if not question.of_client or question.session != self.session or question.sequence != self.sequence:
+            return
+        for place in range(question.first, len(self.published)):
+            bundle, message = shoal.sim_resent_t(), shoal.sim_payload_t()
+            bundle.client, bundle.session, bundle.sequence = self.name, self.session, self.sequence
+            bundle.of_client, bundle.first, bundle.count = True, place, 1
+            message.channel, _, message.data = self.published[place]
+            message.size = len(message.data)
+            bundle.message = [message]
+            self.lc.publish("sim.resent", bundle.encode())
+
+
+class Pilot:
+    """Drives towards what is ahead, and stops one metre before it."""
+
+    def __init__(self, vehicle):
+        self.vehicle, self.ahead_m = vehicle, 0.0
+        self.client = LockstepClient("pilot", 0.1)
+        self.client.subscribe(vehicle + ".lidar", shoal.planar_lidar_t, self.on_lidar)
+        self.client.decide = self.decide
+
+    def on_lidar(self, scan):
+        self.ahead_m = scan.ranges[scan.nranges // 2]
+
+    def decide(self, utime):
+        command = shoal.twist_command_t()
+        command.utime = utime
+        command.forward_mps = 0.5 if self.ahead_m > 1.0 else 0.0
+        self.client.publish(self.vehicle + ".drive.cmd", command)
+
+
+if __name__ == "__main__":
+    pilot = Pilot(sys.argv[1] if len(sys.argv) > 1 else "rover1")
+    pilot.client.run()
+    print(f"the run is over, {pilot.ahead_m:.2f} m before the wall")

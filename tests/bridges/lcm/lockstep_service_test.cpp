@@ -1,0 +1,296 @@
+#include "bridges/lcm/lockstep_service.hpp"
+
+#include <gmock/gmock.h>
+
+#include "shoal/sim_ack_t.hpp"
+#include "shoal/sim_resend_t.hpp"
+#include "shoal/sim_resent_t.hpp"
+#include "shoal/sim_tick_t.hpp"
+#include "sim/bus/crc32.hpp"
+#include "tests/bridges/lcm/service_fixture.hpp"
+
+namespace {
+
+using testing::HasSubstr;
+
+sim::Bytes bytes_of(const std::string& text) {
+  const auto* data = reinterpret_cast<const std::byte*>(text.data());
+  return {data, data + text.size()};
+}
+
+/// A world with one box.
+struct Service : lcm_test::ServedWorld {
+  Service()
+      : ServedWorld(
+            "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nlockstep: {timeout_s: 0.02}\nvehicles: [{name: a, "
+            "model: {shoal: 1, bodies: [{name: b, parts: [{shape: box, mass_kg: 1}]}]}}]\n") {}
+
+  shoal::sim_control_reply_t join(const std::string& client, const std::string& text = "", double period_s = 0.01) {
+    return ask("join", period_s, text, client);
+  }
+  /// A request that is not answered yet.
+  bool is_undecided(const std::string& command, const std::string& client, const std::string& text) {
+    replies.take_all();
+    shoal::sim_control_request_t request{};
+    request.client = client;
+    request.command = command;
+    request.value = 0.01;
+    request.text = text;
+    test.send("sim.control", request);
+    service.handle_requests();
+    return replies.take_all().empty();
+  }
+  void acknowledge(std::int64_t step, const std::string& client, std::int64_t session = 0, std::int64_t sequence = 0,
+                   const std::vector<std::pair<std::string, std::string>>& published = {}) {
+    shoal::sim_ack_t ack{};
+    ack.step = step;
+    ack.client = client;
+    ack.session = session;
+    ack.sequence = sequence;
+    ack.listed = session != 0;
+    for (const auto& [channel, text] : published) {
+      ack.channel.push_back(channel);
+      ack.crc.push_back(sim::crc32(bytes_of(text)));
+    }
+    ack.count = static_cast<std::int32_t>(published.size());
+    test.send("sim.ack", ack);
+  }
+  /// `while_waiting` is called each time that the world waits for somebody.
+  bridges::LockstepOutcome synchronize(
+      const std::function<void()>& while_waiting = [] {}) {
+    return lockstep.synchronize([&](std::chrono::milliseconds) { while_waiting(); },
+                                [&] {
+                                  service.handle_requests();
+                                  return true;
+                                });
+  }
+  std::string admitted() {
+    std::string all;
+    for (const sim::MailGate::Mail& mail : gate.admit())
+      all.append(reinterpret_cast<const char*>(mail.payload.data()), mail.payload.size());
+    return all;
+  }
+
+  test::Listener<shoal::sim_tick_t> ticks{test, "sim.tick"};
+  test::Listener<shoal::sim_resend_t> questions{test, "sim.resend"};
+  test::Listener<shoal::sim_resent_t> bundles{test, "sim.resent"};
+};
+
+TEST(LockstepService, WaitsForTheClientsThatAreDueAndNamesTheMissing) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot").ok);
+  try {
+    s.synchronize();
+    FAIL();
+  } catch (const bridges::LockstepTimeout& error) {
+    EXPECT_THAT(error.what(), HasSubstr("no acknowledgement from 'pilot' for step 0 within 0.02 s"));
+  }
+  ASSERT_EQ(s.ticks.last().count, 1);
+  s.acknowledge(0, "pilot");
+  EXPECT_EQ(s.synchronize(), bridges::LockstepOutcome::done);
+}
+
+TEST(LockstepService, ATickNamesWhatTheClientMustHaveAndSendsItAgain) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, receives: [x, y], timeout_s: 60}").ok);
+  s.gate.publish("y", bytes_of("one"), sim::Time(0));
+  s.gate.publish("x", bytes_of("two"), sim::Time(0));
+  int asked = 0;
+  s.synchronize([&] {
+    if (++asked == 1) {
+      const auto tick = s.ticks.last();
+      ASSERT_EQ(tick.client.size(), 1u);
+      const shoal::sim_due_t& due = tick.client[0];
+      EXPECT_EQ(due.name, "pilot");
+      EXPECT_EQ(due.session, 5);
+      EXPECT_EQ(due.sequence, 1);
+      EXPECT_EQ(due.channel, (std::vector<std::int32_t>{1, 0}));
+      EXPECT_EQ(due.crc[1], sim::crc32(bytes_of("two")));
+      shoal::sim_resend_t question{};
+      question.client = "pilot";
+      question.session = 5;
+      question.sequence = 1;
+      question.first = 1;
+      s.test.send("sim.resend", question);
+    } else if (asked == 2) {
+      const auto bundle = s.bundles.last();
+      EXPECT_EQ(bundle.first, 1);
+      ASSERT_EQ(bundle.message.size(), 1u);
+      EXPECT_EQ(bundle.message[0].channel, "x");
+      EXPECT_EQ(std::string(bundle.message[0].data.begin(), bundle.message[0].data.end()), "two");
+      s.acknowledge(0, "pilot", 5, 1);
+    }
+  });
+  EXPECT_EQ(s.lockstep.summaries().at(0).messages_sent_again, 1);
+  EXPECT_EQ(s.lockstep.bad_messages(), 0);
+}
+
+TEST(LockstepService, BundlesThatAreTooLargeComeInParts) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, receives: [x], timeout_s: 60}").ok);
+  for (int i = 0; i < 5; ++i) s.gate.publish("x", sim::Bytes(25'000, static_cast<std::byte>(i)), sim::Time(0));
+  s.gate.publish("x", sim::Bytes(200'000), sim::Time(0));  // more than a datagram holds
+  int asked = 0;
+  s.synchronize([&] {
+    if (++asked == 1) {
+      shoal::sim_resend_t question{};
+      question.client = "pilot";
+      question.session = 5;
+      question.sequence = 1;
+      s.test.send("sim.resend", question);
+    } else if (asked == 2) {
+      std::vector<std::int32_t> first;
+      for (const auto& bundle : s.bundles.take_all()) first.push_back(bundle.first);
+      EXPECT_EQ(first, (std::vector<std::int32_t>{0, 2, 4, 5}));  // two of 25 kB fit in 60 kB
+      s.acknowledge(0, "pilot", 5, 1);
+    }
+  });
+}
+
+TEST(LockstepService, AsksForWhatAClientPublishedUntilItIsThere) {
+  Service s;
+  const auto reader = s.gate.open_mailbox("cmd");
+  ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
+  int waited = 0;
+  bool sent = false;
+  s.synchronize([&] {
+    if (++waited == 1) {
+      s.test.bus.publish("cmd", bytes_of("2"), sim::Time(0));
+      s.acknowledge(0, "pilot", 5, 1, {{"cmd", "1"}, {"cmd", "2"}});
+      return;
+    }
+    for (const auto& question : s.questions.take_all()) {
+      EXPECT_EQ(question.of_client, 1);
+      EXPECT_EQ(question.first, 0);
+      shoal::sim_resent_t bundle{};
+      bundle.client = "pilot";
+      bundle.session = 5;
+      bundle.sequence = 1;
+      bundle.of_client = 1;
+      bundle.count = 1;
+      bundle.message = {{"cmd", 1, {'1'}}};
+      s.test.send("sim.resent", bundle);
+      sent = true;
+    }
+  });
+  EXPECT_TRUE(sent);
+  EXPECT_EQ(s.admitted(), "12");
+}
+
+TEST(LockstepService, WhatOneClientPublishesIsOnTheListOfAnotherInOrder) {
+  Service s;
+  ASSERT_TRUE(s.join("b", "{session: 5, receives: [note]}").ok);
+  ASSERT_TRUE(s.join("a", "{session: 6}").ok);
+  s.synchronize([&] {
+    s.acknowledge(0, "a", 6, 1, {{"note", "1"}, {"other", "x"}});  // nobody in the world reads `note`
+    s.test.bus.publish("note", bytes_of("1"), sim::Time(0));
+    s.acknowledge(0, "b", 5, 1);
+    for (const auto& question : s.questions.take_all()) {
+      EXPECT_EQ(question.client, "a");  // it came before anybody listened
+      s.test.bus.publish("note", bytes_of("1"), sim::Time(0));
+    }
+  });
+  s.gate.admit();
+  s.test.world.step();
+  s.synchronize([&] {
+    const auto tick = s.ticks.last();
+    ASSERT_EQ(tick.client.size(), 2u);
+    EXPECT_EQ(tick.client[1].crc, (std::vector<std::int64_t>{sim::crc32(bytes_of("1"))}));
+    s.acknowledge(1, "a", 6, 2);
+    s.acknowledge(1, "b", 5, 2);
+  });
+}
+
+TEST(LockstepService, WrongAcknowledgementsAreRefusedAndCounted) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5}").ok);
+  s.acknowledge(1'000'000, "pilot", 5, 1);
+  s.acknowledge(0, "pilot", 6, 1);
+  s.acknowledge(0, "stranger");
+  EXPECT_THROW(s.synchronize(), bridges::LockstepTimeout);
+  EXPECT_EQ(s.lockstep.bad_messages(), 3);
+}
+
+TEST(LockstepService, ASecondClientOfANameIsRefusedWhenTheFirstAnswers) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
+  EXPECT_TRUE(s.is_undecided("join", "pilot", "{session: 6}"));
+  s.synchronize([&] { s.acknowledge(0, "pilot", 5, 1); });
+  EXPECT_THAT(s.join("pilot", "{session: 6}").text, HasSubstr("another client of the name 'pilot' takes part"));
+}
+
+TEST(LockstepService, ASecondClientTakesThePlaceOfAFirstThatIsGone) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, on_timeout: wait, timeout_s: 60}").ok);
+  s.lockstep.client_gone("pilot");
+  EXPECT_TRUE(s.lockstep.has("pilot"));  // that is what was agreed
+  ASSERT_TRUE(s.join("pilot", "{session: 6, timeout_s: 60}").ok);
+  s.synchronize([&] { s.acknowledge(0, "pilot", 6, 1); });
+}
+
+TEST(LockstepService, ALeaveWaitsForTheAcknowledgementBeforeIt) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
+  bool left = false;
+  s.synchronize([&] {
+    if (!left) EXPECT_TRUE(s.is_undecided("leave", "pilot", "{session: 5}"));
+    s.acknowledge(0, "pilot", 5, 1);
+    left = true;
+  });
+  EXPECT_TRUE(s.ask("leave", 0, "{session: 5}").ok);
+  EXPECT_FALSE(s.lockstep.has("pilot"));
+  EXPECT_EQ(s.lockstep.summaries().at(0).ended, "left");
+}
+
+TEST(LockstepService, WithoutALateClientTheWorldGoesOnAndTellsItSo) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, on_timeout: continue, timeout_s: 0.001}").ok);
+  s.synchronize();
+  EXPECT_FALSE(s.lockstep.has("pilot"));
+  s.acknowledge(0, "pilot", 5, 1);
+  s.replies.take_all();
+  s.synchronize();
+  const auto reply = s.replies.last();
+  EXPECT_FALSE(reply.ok);
+  EXPECT_THAT(reply.text, HasSubstr("the world went on without it: join again"));
+}
+
+TEST(LockstepService, ALateClientPausesTheWorldUntilItAnswers) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, on_timeout: pause, timeout_s: 0.001}").ok);
+  s.synchronize([&] {
+    if (s.control.paused) s.acknowledge(0, "pilot", 5, 1);
+  });
+  EXPECT_FALSE(s.control.paused);
+  EXPECT_TRUE(s.lockstep.has("pilot"));
+  s.test.world.step();
+  s.synchronize([&] {
+    if (s.control.paused) s.control.paused = false;  // somebody resumes
+  });
+  EXPECT_FALSE(s.lockstep.has("pilot"));
+}
+
+TEST(LockstepService, AFloodOfJoinsLeavesTheClientsThatAreThere) {
+  Service s;
+  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(s.join("client" + std::to_string(i), "", 100).ok);
+  EXPECT_THAT(s.join("one more").text, HasSubstr("1000 clients have joined"));
+  EXPECT_TRUE(s.lockstep.has("client999"));
+}
+
+TEST(LockstepService, TellsTheEndUntilAllKnow) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, receives: [x]}", 1).ok);
+  s.gate.publish("x", bytes_of("last"), sim::Time(0));
+  int waited = 0;
+  s.lockstep.publish_end(
+      [&](std::chrono::milliseconds) {
+        if (++waited == 3) s.acknowledge(0, "pilot", 5, 1);
+      },
+      std::chrono::minutes(1));
+  EXPECT_EQ(waited, 3);
+  const auto tick = s.ticks.last();
+  EXPECT_EQ(tick.last, 1);
+  EXPECT_EQ(tick.client.at(0).count, 1);
+}
+
+}  // namespace

@@ -1,0 +1,310 @@
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <future>
+#include <map>
+
+#include "bridges/lcm/lcm_listener.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/sim_ack_t.hpp"
+#include "shoal/sim_control_reply_t.hpp"
+#include "shoal/sim_control_request_t.hpp"
+#include "shoal/sim_resend_t.hpp"
+#include "tests/system/lossy_relay.hpp"
+#include "tests/system/shoal_program.hpp"
+
+// Clients in lockstep, in processes of their own: what they do to a run, and what a run does when they fail.
+
+namespace {
+
+using namespace system_test;
+using testing::HasSubstr;
+
+/// Two rovers for some seconds.
+std::string two_rovers(const std::string& duration_s, const std::string& more = "") {
+  std::string text = "shoal: 1\nname: two_rovers\nrun: {duration_s: " + duration_s +
+                     ", speed: 0}\nstate_rate_hz: 20\nobjects:\n  - {name: ground, fixed: true, parts: [{shape: "
+                     "plane}]}\nvehicles:\n";
+  for (const char* name : {"rover1", "rover2"})
+    text += "  - {name: " + std::string(name) + ", file: " + source("vehicles/rover.yaml") +
+            ", pose: {position_m: [0, " + (name[5] == '1' ? "0" : "5") + ", 0.2]}}\n";
+  return text + more;
+}
+
+using Arguments = std::vector<std::string>;
+
+/// A mission of three clients, whose commands depend on every byte that they get, also from each other.
+struct Mission {
+  std::string sim_url = own_url(0), client_url = own_url(0);
+  std::string duration_s = "2";
+  Arguments run;                      ///< more for `shoal run`
+  std::map<std::string, Arguments> clients = {
+      {"a", {"--vehicle", "rover1", "--period", "0.05", "--receive", "rover1.odometry", "b.note", "sim.clock"}},
+      {"b", {"--vehicle", "rover2", "--period", "0.1", "--receive", "rover2.odometry", "a.note", "rover1.odometry"}},
+      {"c", {"--period", "0.2", "--receive", "a.note", "b.note", "sim.state"}},
+  };
+
+  /// The state hash, and what each client printed up to its number of ticks.
+  std::string fly() const {
+    const ScratchFolder folder;
+    write_file(folder.file("world.yaml"), two_rovers(duration_s));
+    Arguments arguments = {built("shoal"), "run", folder.file("world.yaml"), "--lcm-url", sim_url};
+    for (const auto& [name, unused] : clients) arguments.insert(arguments.end(), {"--await", name});
+    arguments.insert(arguments.end(), run.begin(), run.end());
+    std::vector<std::unique_ptr<Program>> pilots;
+    for (const auto& [name, options] : clients) {
+      Arguments pilot = {built("lockstep_pilot"), "--name", name, "--lcm-url", client_url};
+      pilot.insert(pilot.end(), options.begin(), options.end());
+      pilots.push_back(std::make_unique<Program>(pilot));
+    }
+    Program shoal(arguments);
+    const int exit_code = shoal.wait();
+    std::string result = exit_code == 0 ? state_hash_in({0, shoal.output(), shoal.errors()})
+                                        : "exit code " + std::to_string(exit_code) + ": " + shoal.errors();
+    for (const auto& pilot : pilots) {
+      const int code = pilot->wait();
+      const std::string output = pilot->output();
+      result += "\n" + std::to_string(code) + " " + output.substr(0, output.find(" asked_for")) + pilot->errors();
+    }
+    return result;
+  }
+};
+
+/// The result of a mission that nothing disturbs.
+const std::string& undisturbed() {
+  static const std::string result = Mission{}.fly();
+  return result;
+}
+
+Mission slowed(Mission mission, const std::string& up_to_ms, const std::string& seed = "1") {
+  for (auto& [name, options] : mission.clients)
+    options.insert(options.begin(), {"--slow-ms", up_to_ms, "--seed", seed});
+  return mission;
+}
+
+TEST(LockstepMission, HasClientsThatMatter) {
+  EXPECT_THAT(undisturbed(), HasSubstr("ticks 41"));
+  Mission without;
+  without.clients.erase("b");
+  EXPECT_NE(without.fly().substr(0, 16), undisturbed().substr(0, 16));
+}
+
+TEST(LockstepMission, IsTheSameAtAnySpeedWithSlowClientsAndAnyNumberOfThreads) {
+  Mission mission;
+  mission.run = {"--speed", "10", "--threads", "2"};
+  EXPECT_EQ(mission.fly(), undisturbed());
+  mission.run = {"--speed", "max", "--threads", "8"};
+  EXPECT_EQ(slowed(mission, "5").fly(), undisturbed());
+  mission.run = {"--speed", "1", "--threads", "1"};
+  EXPECT_EQ(slowed(mission, "20", "2").fly(), undisturbed());
+}
+
+TEST(LockstepMission, IsTheSameAHundredTimes) {
+  Mission mission;
+  mission.duration_s = "0.5";
+  const std::string expected = mission.fly();
+  EXPECT_THAT(expected, HasSubstr("ticks 11"));
+  constexpr int at_once = 4;
+  for (int round = 0; round < 100 / at_once; ++round) {
+    std::vector<std::future<std::string>> results;
+    for (int i = 0; i < at_once; ++i) {
+      mission.sim_url = mission.client_url = own_url(i);
+      mission.run = {"--threads", std::to_string(1 << (round + i) % 4)};
+      const Mission flown = (round + i) % 2 == 0 ? slowed(mission, "2", std::to_string(round * at_once + i)) : mission;
+      results.push_back(std::async(std::launch::async, [flown] { return flown.fly(); }));
+    }
+    for (auto& result : results) ASSERT_EQ(result.get(), expected) << "round " << round;
+  }
+}
+
+TEST(LockstepMission, IsTheSameOverANetworkThatLosesAThird) {
+  LossyRelay relay(own_url(0), own_url(1), 0.3, 7);
+  Mission mission;
+  mission.client_url = own_url(1);
+  EXPECT_EQ(mission.fly(), undisturbed());
+  EXPECT_GT(relay.lost(), 100);
+  EXPECT_GT(relay.repeated(), 30);
+  EXPECT_GT(relay.swapped(), 30);
+}
+
+/// A run of two rovers that starts `pilot` by itself.
+class Policy : public testing::Test {
+ protected:
+  /// `options`: of lockstep_pilot, in YAML.
+  void start(const std::string& options, const std::string& world = "") {
+    write_file(folder_.file("world.yaml"),
+               two_rovers(duration_s_, "processes: [{name: pilot, client: pilot, command: [" + built("lockstep_pilot") +
+                                   ", --name, pilot, --vehicle, rover1, --lcm-url, '{lcm_url}', " + options + "]}]\n" +
+                                   world));
+    listener_.listen("sim.control.reply");
+    listener_.listen("sim.tick");
+    shoal_ = std::make_unique<Program>(Arguments{built("shoal"), "run", folder_.file("world.yaml"), "--launch",
+                                                 "--lcm-url", own_url(), "--results", folder_.file("results")});
+  }
+  void await_error(const std::string& text) {
+    EXPECT_TRUE(await([&] { return shoal_->errors().find(text) != std::string::npos; }, patience)) << shoal_->errors();
+  }
+  shoal::sim_control_reply_t request(const std::string& command, const std::string& text = "",
+                                     const std::string& client = "test", double value = 0) {
+    shoal::sim_control_request_t request{};
+    request.id = ++id_;
+    request.client = client;
+    request.command = command;
+    request.text = text;
+    request.value = value;
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    while (std::chrono::steady_clock::now() < deadline) {
+      listener_.publish("sim.control", shoal::encode(request));
+      const auto message = listener_.next(200ms);
+      if (!message || message->channel != "sim.control.reply") continue;
+      const auto reply = shoal::decode<shoal::sim_control_reply_t>(message->payload, shoal::Finite::any);
+      if (reply.id == request.id && reply.client == client) return reply;
+    }
+    ADD_FAILURE() << "no reply to " << command << ": " << shoal_->errors();
+    return {};
+  }
+  std::string summary() const { return text_of_file(folder_.file("results") + "/summary.json"); }
+
+  ScratchFolder folder_;
+  bridges::LcmListener listener_{own_url()};
+  std::unique_ptr<Program> shoal_;
+  std::string duration_s_ = "2";
+  std::int32_t id_ = 0;
+};
+
+TEST_F(Policy, EndByDefaultEndsTheRunWithASilentClient) {
+  start("--stop-at, '5'", "lockstep: {timeout_s: 0.2}\n");
+  EXPECT_EQ(shoal_->wait(), 5);
+  EXPECT_THAT(shoal_->errors(), HasSubstr("lockstep: no acknowledgement from 'pilot' for step 40 within 0.2 s"));
+  EXPECT_THAT(summary(), HasSubstr("\"timeouts\": 1"));
+}
+
+TEST_F(Policy, ContinueGoesOnWithoutASilentClient) {
+  start("--stop-at, '5', --on-timeout, continue, --timeout, '0.2'");
+  EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+  EXPECT_THAT(shoal_->errors(), HasSubstr("the world goes on without it"));
+  EXPECT_THAT(summary(), HasSubstr("\"ended\": \"no acknowledgement from 'pilot' for step 40 within 0.2 s\""));
+}
+
+TEST_F(Policy, ContinueGoesOnWithoutAKilledClientAtOnce) {
+  start("--die-at, '5', --on-timeout, continue, --timeout, '1000'");
+  EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+  EXPECT_THAT(shoal_->errors(), HasSubstr("the process of client 'pilot' ended before it answered step 40"));
+}
+
+TEST_F(Policy, EndThatWasAgreedEndsTheRunWithAKilledClientAtOnce) {
+  start("--die-at, '5'", "lockstep: {on_timeout: end, timeout_s: 1000}\n");
+  EXPECT_EQ(shoal_->wait(), 5);
+}
+
+TEST_F(Policy, KilledClientThatAgreedNothingIsGoneAndTheRunGoesOn) {
+  start("--die-at, '5'", "lockstep: {timeout_s: 1000}\n");
+  EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+  EXPECT_THAT(summary(), HasSubstr("\"ended\": \"its process ended\""));
+}
+
+TEST_F(Policy, PauseHoldsTheWorldUntilSomebodyResumesIt) {
+  start("--stop-at, '5', --on-timeout, pause, --timeout, '0.1'");
+  await_error("the world pauses");
+  const auto before = request("alive").utime;
+  EXPECT_EQ(request("alive").utime, before);  // it stands
+  EXPECT_TRUE(request("resume").ok);
+  EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+  EXPECT_THAT(shoal_->errors(), HasSubstr("the world goes on without it"));
+}
+
+TEST_F(Policy, PauseEndsWhenAStalledClientAnswers) {
+  start("--period, '0.01', --slow-ms, '2', --on-timeout, pause, --timeout, '0.3'");
+  EXPECT_TRUE(await([&] { return !shoal_->children().empty(); }, patience));
+  while (const auto message = listener_.next(patience))
+    if (message->channel == "sim.tick") break;
+  const std::vector<pid_t> children = shoal_->children();
+  ASSERT_EQ(children.size(), 1u);
+  kill(children[0], SIGSTOP);
+  await_error("the world pauses");
+  kill(children[0], SIGCONT);
+  EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+  EXPECT_THAT(shoal_->errors(), HasSubstr("lockstep: the world goes on\n"));
+  EXPECT_THAT(summary(), HasSubstr("\"ended\": \"with the run\""));
+}
+
+// UberSim halts for ever when one client does not answer, and another copy of the client cannot take its place.
+TEST_F(Policy, WaitWaitsForAKilledClientUntilAnotherTakesItsPlace) {
+  start("--die-at, '5', --on-timeout, wait, --timeout, '0.1'");
+  await_error("the world waits");
+  Program second({built("lockstep_pilot"), "--name", "pilot", "--vehicle", "rover1", "--lcm-url", own_url()});
+  EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+  EXPECT_EQ(second.wait(), 0) << second.errors();
+  EXPECT_THAT(second.output(), HasSubstr("ticks 17 "));  // 21 for the whole run, of which 4 were answered by the first
+}
+
+TEST_F(Policy, WaitGivesTheNameOfAStalledClientToAnother) {
+  start("--stop-at, '5', --on-timeout, wait, --timeout, '0.1'");
+  await_error("the world waits");
+  Program second({built("lockstep_pilot"), "--name", "pilot", "--vehicle", "rover1", "--lcm-url", own_url()});
+  EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+  EXPECT_EQ(second.wait(), 0) << second.errors();
+}
+
+TEST_F(Policy, ASecondClientOfANameIsRefusedWhileTheFirstAnswers) {
+  start("--period, '0.01', --slow-ms, '20'");
+  while (const auto message = listener_.next(patience))
+    if (message->channel == "sim.tick") break;
+  Program second({built("lockstep_pilot"), "--name", "pilot", "--vehicle", "rover1", "--lcm-url", own_url()});
+  EXPECT_EQ(second.wait(), 4);
+  EXPECT_THAT(second.errors(), HasSubstr("another client of the name 'pilot' takes part, and answers"));
+  EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+}
+
+TEST_F(Policy, AClientThatAnswersTooLateIsToldAndMayJoinAgain) {
+  duration_s_ = "0";
+  start("--period, '0.01', --slow-ms, '2', --on-timeout, continue, --timeout, '0.3'");
+  while (const auto message = listener_.next(patience))
+    if (message->channel == "sim.tick") break;
+  const std::vector<pid_t> children = shoal_->children();
+  ASSERT_EQ(children.size(), 1u);
+  kill(children[0], SIGSTOP);
+  await_error("the world goes on without it");
+  kill(children[0], SIGCONT);
+  await_error("process 'pilot' exited with code 1");
+  EXPECT_THAT(text_of_file(folder_.file("results") + "/pilot.log"), HasSubstr("join again"));
+  EXPECT_TRUE(request("quit").ok);
+  EXPECT_EQ(shoal_->wait(), 0);
+}
+
+// Nonsense and floods from everybody, while a client flies its mission.
+TEST_F(Policy, WrongAcknowledgementsAndFloodsChangeNothing) {
+  start("--period, '0.01', --slow-ms, '1'");
+  const std::string undisturbed_run = [&] {
+    EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+    return summary_value(folder_.file("results"), "state_hash");
+  }();
+  start("--period, '0.01', --slow-ms, '1'");
+  shoal::sim_ack_t ack{};
+  shoal::sim_resend_t question{};
+  shoal::sim_control_request_t join{};
+  std::int64_t sent = 0;
+  while (shoal_->running()) {
+    for (int i = 0; i < 20; ++i, ++sent) {
+      ack.client = question.client = i % 2 == 0 ? "pilot" : "stranger" + std::to_string(i);
+      ack.step = i * 10;
+      ack.session = question.session = i % 3;
+      ack.sequence = question.sequence = sent;
+      listener_.publish("sim.ack", shoal::encode(ack));
+      listener_.publish("sim.resend", shoal::encode(question));
+      join.client = i % 2 == 0 ? "pilot" : "";
+      join.command = "join";
+      join.value = 0.01;
+      join.text = i % 4 == 0 ? "{session: 5}" : "{session: five";
+      listener_.publish("sim.control", shoal::encode(join));
+    }
+    while (listener_.next(1ms)) {
+    }
+  }
+  EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+  EXPECT_EQ(summary_value(folder_.file("results"), "state_hash"), undisturbed_run);
+  EXPECT_GT(std::stol(summary_value(folder_.file("results"), "bad_messages")), 100);
+}
+
+}  // namespace
