@@ -15,6 +15,8 @@ namespace {
 
 // liblcm writes field by field; with stdio's small buffer large images cost seven times as much.
 constexpr std::size_t file_buffer_bytes = std::size_t{1} << 20;
+/// Sync word, number, time, two lengths.
+constexpr std::uint64_t event_head_bytes = 28;
 
 }  // namespace
 
@@ -116,11 +118,36 @@ void RecordingBus::record(std::string_view channel, std::span<const std::byte> p
   errno = 0;
   if (lcm_eventlog_write_event(log_->events, &event) != 0) return fail(errno);
   ++recorded_;
+  bytes_ += event_head_bytes + channel.size() + payload.size();
   // Once a simulated second: a killed run loses little, and `tail` sees it grow.
   if (const std::int64_t second = (utime_ - epoch_utime_) / 1'000'000; second > flushed_s_) {
     flushed_s_ = second;
     if (std::fflush(log_->events->f) != 0) fail(errno);
   }
+}
+
+void RecordingBus::go_on_in(const std::string& path, std::uint64_t events, std::uint64_t bytes, Existing existing) {
+  if (!log_ || error_) return;
+  if (std::fflush(log_->events->f) != 0) return fail(errno);
+  auto next = std::make_unique<Log>(path, existing);
+  std::FILE* from = std::fopen(path_.c_str(), "rb");
+  if (from == nullptr) throw BusError(path_ + ": " + std::strerror(errno));
+  std::vector<char> part(file_buffer_bytes);
+  std::uint64_t left = bytes;
+  while (left > 0) {
+    const std::size_t got = std::fread(part.data(), 1, std::min<std::uint64_t>(left, part.size()), from);
+    if (got == 0 || std::fwrite(part.data(), 1, got, next->events->f) != got) break;
+    left -= got;
+  }
+  std::fclose(from);
+  if (left > 0) throw BusError(path + ": cannot copy " + path_ + " into it");
+  next->events->eventcount = static_cast<std::int64_t>(events);
+  log_ = std::move(next);
+  path_ = path;
+  recorded_ = events;
+  bytes_ = bytes;
+  utime_ = epoch_utime_;  // time went back: the next set_time() tells
+  flushed_s_ = 0;
 }
 
 void RecordingBus::fail(int error_number) {

@@ -43,6 +43,11 @@ class RecordingBus final : public sim::Bus {
   /// The first error, with path and reason; nothing is written after it.  What was written stays readable.
   std::optional<std::string> error() const { return error_; }
   std::uint64_t recorded() const { return recorded_; }
+  /// Size of the log so far.
+  std::uint64_t bytes() const { return bytes_; }
+  /// Leaves the log as it is and goes on in another, which begins with a copy of the first `events` events, of `bytes`
+  /// bytes.  Throws BusError when the file cannot be made; the old log goes on then.
+  void go_on_in(const std::string& path, std::uint64_t events, std::uint64_t bytes, Existing existing);
   /// Writes what is buffered.  The bus goes on without recording.
   void close();
   sim::Bus& inner() { return inner_; }
@@ -66,6 +71,7 @@ class RecordingBus final : public sim::Bus {
   std::map<std::string, std::unique_ptr<Channel>, std::less<>> channels_;  // those with a mailbox
   std::optional<std::string> error_;
   std::uint64_t recorded_ = 0;
+  std::uint64_t bytes_ = 0;
 };
 
 }  // namespace bridges

@@ -65,7 +65,7 @@ void SimService::publish_step() {
   shoal::utime_t clock;
   clock.utime = world_.epoch_us() + world_.now().count();
   publish(bus_, "sim.clock", clock);
-  for (std::size_t i = 1; i < lines_.size(); ++i) {
+  for (std::size_t i = 1; i < lines_.size() && !muted_; ++i) {
     publish(*lines_[i].network, "sim.clock", clock);
     lockstep_.post(static_cast<int>(i), "sim.clock", buffer_);
   }
@@ -178,10 +178,10 @@ void SimService::answer(Line& line, const shoal::sim_control_request_t& request)
 
 std::optional<std::string> SimService::obey(Line& line, const shoal::sim_control_request_t& request) {
   const std::string& command = request.command;
+  if (time_machine_ != nullptr)
+    if (auto text = time_machine_->obey(command, request.text, request.value)) return text;
   if (command == "pause" || command == "resume") {
-    control_.paused = command == "pause";
-    control_.single_steps = 0;
-    ++control_.changes;
+    control_.set_paused(command == "pause");
   } else if (command == "step") {
     if (!(request.value >= 1 && request.value <= 1e9)) throw std::runtime_error("'step' needs a value from 1 to 1e9");
     control_.paused = true;
@@ -204,8 +204,8 @@ std::optional<std::string> SimService::obey(Line& line, const shoal::sim_control
     visitors_.act(request.text);
   } else if (command != "alive") {
     throw std::runtime_error("unknown command '" + sim::shortened(sim::printable(command)) +
-                             "'; known commands: alive, describe, do, join, leave, pause, quit, remove, resume, "
-                             "spawn, speed, step");
+                             "'; known commands: alive, describe, do, join, leave, pause, quit, remove, "
+                             "restore, resume, rewind, snapshot, spawn, speed, step, until, where");
   }
   return "";
 }
@@ -238,8 +238,7 @@ void SimService::client_gone(const std::string& client) {
 void SimService::set_speed(double speed) {
   if (speed != 0 && !(speed >= 1e-3 && speed <= 1e6))
     throw std::runtime_error("'speed' must be 0 (as fast as possible) or from 0.001 to 1e6");
-  control_.speed = speed;
-  ++control_.changes;
+  control_.set_speed(speed);
 }
 
 }  // namespace bridges

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bridges/lcm/lockstep_service.hpp"
+#include "bridges/lcm/time_machine.hpp"
 #include "bridges/lcm/visitors.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "sim/bus/bus.hpp"
@@ -28,14 +29,25 @@ class SimService {
   };
 
   /// `network`: the bus under `bus`; the handshake goes there directly, so that records leave it out.
-  SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim::RunControl& control,
-             LockstepService& lockstep, Info info);
+  SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim::RunControl& control, LockstepService& lockstep,
+             Info info);
 
   /// A bus that vehicles have to themselves: there the service gives the time on sim.clock, answers join, leave and
   /// alive on sim.control, and nothing else.  In the order in which the lockstep knows them.
   void serve_vehicles(sim::Bus& network);
   /// What changes the world is written down there.  It must outlive this.
   void use_journal(RunJournal& journal);
+  /// Serves snapshot, restore, rewind, until and where.  It must outlive this; null: nobody does.
+  void set_time_machine(TimeMachine* machine) { time_machine_ = machine; }
+  /// Whose vehicles there are.
+  void visit_state(sim::StateArchive& archive) { visitors_.visit_state(archive); }
+  /// While muted only the world's bus is published on, and nobody is told of vehicles that come and go.
+  void set_muted(bool muted) {
+    muted_ = muted;
+    visitors_.set_muted(muted);
+  }
+  /// Tells of vehicles that came or went.
+  void tell_changes() { visitors_.tell_changes(); }
   /// Publishes sim.info now, and not a second time at this step.
   void publish_info();
   /// Carries out a request that a journal wrote down.  Throws std::runtime_error that says why it was refused, as then.
@@ -82,6 +94,8 @@ class SimService {
   Info info_;
   Visitors visitors_;
   RunJournal* journal_ = nullptr;
+  TimeMachine* time_machine_ = nullptr;
+  bool muted_ = false;
   std::int64_t info_step_ = -1;  // of the last sim.info
   std::vector<Line> lines_;      // the world's first
   sim::Bytes buffer_;

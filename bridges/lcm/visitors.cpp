@@ -8,6 +8,7 @@
 #include "bridges/lcm/run_journal.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/state/state_archive.hpp"
 #include "sim/world/vehicle_loader.hpp"
 
 namespace bridges {
@@ -56,7 +57,8 @@ void Visitors::tell(shoal::sim_vehicle_t& message, bool present) {
   message.utime = world_.epoch_us() + world_.now().count();
   message.present = present;
   const auto owner = owners_.find(message.vehicle);
-  message.client = owner == owners_.end() ? "" : owner->second.client;
+  // Whose it was is not known any more when time went back behind its coming.
+  if (owner != owners_.end() || present) message.client = owner == owners_.end() ? "" : owner->second.client;
   shoal::encode_into(message, buffer_);
   bus_.publish("sim.vehicle", buffer_, world_.now());
 }
@@ -74,7 +76,7 @@ void Visitors::write_down(const std::string& client, const std::string& command,
 }
 
 void Visitors::tell_changes() {
-  if (generation_ == world_.generation()) return;
+  if (muted_ || generation_ == world_.generation()) return;
   generation_ = world_.generation();
   for (auto known = known_.begin(); known != known_.end();) {
     if (world_.find_vehicle(known->first) != nullptr) {
@@ -114,6 +116,7 @@ std::string Visitors::add(const std::string& client, const sim::SpawnRequest& re
   }
   spdlog::info("client '{}' brought vehicle '{}' at {:.3f} s", sim::printable(sim::shortened(client)), vehicle.name(),
                sim::to_seconds(world_.now()));
+  if (muted_) return {};
   tell_changes();
   return in_words(known_.at(vehicle.name()));
 }
@@ -175,6 +178,20 @@ void Visitors::remove_those_of(const std::string& client) {
     owners_.erase(vehicle);
   }
   clients_.erase(client);
+}
+
+void Visitors::Client::visit_state(sim::StateArchive& archive) {
+  archive(timeout);
+  if (archive.restoring()) heard = Clock::now();
+}
+
+void Visitors::Owner::visit_state(sim::StateArchive& archive) {
+  archive(client, with_client);
+}
+
+void Visitors::visit_state(sim::StateArchive& archive) {
+  archive(owners_, clients_);
+  if (archive.restoring()) generation_ = ~std::uint64_t{0};  // whatever came or went is told of
 }
 
 }  // namespace bridges

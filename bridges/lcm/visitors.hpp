@@ -43,6 +43,10 @@ class Visitors {
   /// Removes the vehicles that came with this client and go with it.
   void remove_those_of(const std::string& client);
   bool has(const std::string& client) const { return clients_.contains(client); }
+  /// While muted nothing is told.
+  void set_muted(bool muted) { muted_ = muted; }
+  /// Whose vehicles there are.  When restoring, time-outs begin anew.
+  void visit_state(sim::StateArchive& archive);
   /// Told of every request that is about to change the world, whoever makes it, and of descriptions.
   void use_journal(RunJournal& journal) { journal_ = &journal; }
 
@@ -51,10 +55,12 @@ class Visitors {
   struct Client {
     Clock::time_point heard;
     std::chrono::duration<double> timeout{0};
+    void visit_state(sim::StateArchive& archive);
   };
   struct Owner {
     std::string client;
     bool with_client = false;
+    void visit_state(sim::StateArchive& archive);
   };
 
   std::string add(const std::string& client, const sim::SpawnRequest& request);
@@ -68,6 +74,7 @@ class Visitors {
   std::map<std::string, Client, std::less<>> clients_;              // those with vehicles that go with them
   std::map<std::string, shoal::sim_vehicle_t, std::less<>> known_;  // the vehicles told of, or there from the start
   std::uint64_t generation_;
+  bool muted_ = false;
   sim::Bytes buffer_;
 };
 

@@ -27,6 +27,11 @@ class CollisionMetric final : public Metric {
     }
   }
 
+  void visit_state(sim::StateArchive& archive, History) override {
+    archive(last_touch_s_, count_, first_s_);
+    if (archive.restoring()) generation_ = ~std::uint64_t{0};
+  }
+
   void add_figures(Figures& figures) const override {
     add(figures, "count", static_cast<double>(count_));
     add(figures, "first_s", first_s_);

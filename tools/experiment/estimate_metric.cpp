@@ -50,11 +50,7 @@ double nees_of(const Eigen::Matrix3d& covariance_m2, const sim::Vector3d& error)
 class EstimateMetric final : public Metric {
  public:
   EstimateMetric(const sim::MetricConfig& config, const sim::World& world, const TruthHistory& truth)
-      : Metric(config),
-        world_(world),
-        truth_(truth),
-        vehicle_(*world.find_vehicle(config.vehicle)),
-        mailbox_(vehicle_.bus().open_mailbox(config.channel)) {}
+      : Metric(config), world_(world), truth_(truth), mailbox_(vehicle().bus().open_mailbox(config.channel)) {}
 
   void after_step() override {
     std::erase_if(early_, [this](const Early& early) { return compare(early.time, early.estimate); });
@@ -78,16 +74,35 @@ class EstimateMetric final : public Metric {
   const std::vector<ErrorSample>* samples() const override { return &samples_; }
   std::int64_t bad_messages() const override { return bad_messages_; }
 
+  void visit_state(sim::StateArchive& archive, History history) override {
+    archive(early_, bad_messages_);
+    std::uint64_t count = samples_.size();
+    archive(count);
+    if (history == History::whole)
+      archive(samples_);
+    else if (archive.restoring() && count > samples_.size())
+      archive.fail("more estimates than there were");
+    else if (archive.restoring())
+      samples_.resize(count);
+    if (archive.restoring()) empty(*mailbox_);
+  }
+
  private:
   /// An estimate whose time has not come yet.
   struct Early {
-    sim::Time time;
+    sim::Time time{0};
     Estimate estimate;
+    void visit_state(sim::StateArchive& archive) {
+      archive(time, estimate.utime, estimate.position_m, estimate.covariance_m2);
+    }
   };
+
+  /// A restored world may have built it anew.
+  const sim::Vehicle& vehicle() const { return *world_.find_vehicle(config().vehicle); }
 
   void take(const Estimate& estimate) {
     check_covariance(estimate);
-    const sim::Time time = true_time_of(world_, vehicle_, estimate.utime);
+    const sim::Time time = true_time_of(world_, vehicle(), estimate.utime);
     const bool forgotten = time.count() < 0 || time < world_.now() - sim::from_seconds(TruthHistory::memory_s);
     if (forgotten || time > world_.now() + most_ahead)
       throw std::runtime_error(
@@ -161,7 +176,6 @@ class EstimateMetric final : public Metric {
 
   const sim::World& world_;
   const TruthHistory& truth_;
-  const sim::Vehicle& vehicle_;
   std::unique_ptr<sim::Mailbox> mailbox_;
   std::vector<Early> early_;
   std::vector<ErrorSample> samples_;
@@ -176,6 +190,7 @@ class DistanceMetric final : public Metric {
   void after_step() override {
     if (sim::to_seconds(world_.now()) <= config().from_s) before_m_ = truth_.now().travelled_m;
   }
+  void visit_state(sim::StateArchive& archive, History) override { archive(before_m_); }
   void add_figures(Figures& figures) const override {
     add(figures, "travelled_m", truth_.now().travelled_m - before_m_);
   }

@@ -16,6 +16,12 @@ class MissionTimeMetric final : public Metric {
     if (watch_ ? watch_->count_new(world_) > 0 : is_there()) time_s_ = sim::to_seconds(world_.now());
   }
   void add_figures(Figures& figures) const override { add(figures, "time_s", time_s_); }
+  void visit_state(sim::StateArchive& archive, History) override {
+    archive(time_s_);
+    // A restored world may have built anew what the watch looks at.
+    if (watch_ && archive.restoring()) watch_ = sim::make_watch(config().when, world_, world_.zones());
+    if (watch_) watch_->visit_state(archive);
+  }
 
  private:
   bool is_there() const {
@@ -46,6 +52,10 @@ class MessagesMetric final : public Metric {
     add(figures, "count", static_cast<double>(count_));
     add(figures, "bytes", static_cast<double>(bytes_));
     add(figures, "first_s", first_s_);
+  }
+  void visit_state(sim::StateArchive& archive, History) override {
+    archive(count_, bytes_, first_s_);
+    if (archive.restoring()) empty(*mailbox_);
   }
 
  private:

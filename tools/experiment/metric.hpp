@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/state/state_archive.hpp"
 #include "sim/world/world.hpp"
 #include "tools/experiment/truth_history.hpp"
 
@@ -28,6 +29,15 @@ struct ErrorSample {
   double travelled_m = 0;      ///< way of the truth from the start
   double sigma_m = no_figure;  ///< rms error that the covariance of the estimate tells; NaN: it has none
   double nees = no_figure;     ///< normalised estimation error squared; NaN without a covariance
+  void visit_state(sim::StateArchive& archive) {
+    archive(time_s, error_m, truth_m, estimate_m, travelled_m, sigma_m, nees);
+  }
+};
+
+/// How much of what grows with a run is saved.
+enum class History {
+  whole,
+  length,  ///< for the same metrics, later: what came after is cut off again
 };
 
 /// One entry of `metrics:` while the run goes.
@@ -46,9 +56,15 @@ class Metric {
   /// Null when it compares no estimates.
   virtual const std::vector<ErrorSample>* samples() const { return nullptr; }
   virtual std::int64_t bad_messages() const { return 0; }
+  /// Mail that it has not read yet is thrown away when restoring.
+  virtual void visit_state(sim::StateArchive&, History) {}
   const sim::MetricConfig& config() const { return config_; }
 
  protected:
+  static void empty(sim::Mailbox& mailbox) {
+    while (mailbox.take()) {
+    }
+  }
   void add(Figures& figures, const std::string& figure, double value) const {
     figures[config_.name + "." + figure] = value;
   }

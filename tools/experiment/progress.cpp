@@ -1,7 +1,9 @@
 #include "tools/experiment/progress.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -10,30 +12,59 @@ namespace tools {
 Progress::Progress(double duration_s, bool quiet)
     : duration_s_(duration_s), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0), last_(Clock::now()) {}
 
-void Progress::update(sim::Time now, std::uint64_t messages, bool paused) {
-  if (quiet_ || (++skip_ < 16 && !paused)) return;  // looking at the clock at every step would cost
+void Progress::update(sim::Time now, std::uint64_t messages, const sim::RunControl& control, bool waits) {
+  if (quiet_ || asking_ || (++skip_ < 16 && !waits)) return;  // looking at the clock at every step would cost
   skip_ = 0;
   const Clock::time_point wall = Clock::now();
   const double since_s = std::chrono::duration<double>(wall - last_).count();
   if (since_s < (terminal_ ? 0.25 : 10.0)) return;
-  const double factor = sim::to_seconds(now - last_now_) / since_s;
-  const double per_second = static_cast<double>(messages - last_messages_) / since_s;
-  char end[32] = "";
-  if (duration_s_ > 0) std::snprintf(end, sizeof end, " / %.0f s", duration_s_);
-  std::fprintf(stderr, "%s%8.2f s%s  %7.2f x real time  %8.0f messages/s%s%s", terminal_ ? "\r" : "",
-               sim::to_seconds(now), end, factor, per_second, paused ? "  paused" : "        ", terminal_ ? "" : "\n");
-  std::fflush(stderr);
-  shown_ = terminal_;
+  std::string line = fmt::format("{:8.2f} s", sim::to_seconds(now));
+  if (duration_s_ > 0) line += fmt::format(" / {:.0f} s", duration_s_);
+  line += fmt::format("  {:7.2f} x real time  {:8.0f} messages/s", sim::to_seconds(now - last_now_) / since_s,
+                      static_cast<double>(messages - last_messages_) / since_s);
+  if (control.branch > 0) line += fmt::format("  branch {}", control.branch);
+  if (waits || control.paused) line += "  paused";
+  show(line);
   last_ = wall;
   last_now_ = now;
   last_messages_ = messages;
 }
 
+void Progress::show(const std::string& line) {
+  if (terminal_) {
+    std::fprintf(stderr, "\r%s%*s", line.c_str(), static_cast<int>(width_ > line.size() ? width_ - line.size() : 0),
+                 "");
+    width_ = line.size();
+    shown_ = true;
+  } else {
+    std::fprintf(stderr, "%s\n", line.c_str());
+  }
+  std::fflush(stderr);
+}
+
 void Progress::clear() {
+  asking_ = false;
   if (!shown_) return;
-  std::fprintf(stderr, "\r%*s\r", 79, "");
+  std::fprintf(stderr, "\r%*s\r", static_cast<int>(std::max<std::size_t>(width_, 79)), "");
   std::fflush(stderr);
   shown_ = false;
+  width_ = 0;
+}
+
+void Progress::say(const std::string& text) {
+  clear();
+  std::fprintf(stderr, "%s\n", text.c_str());
+  std::fflush(stderr);
+}
+
+void Progress::ask(const std::string& text) {
+  asking_ = true;
+  show(text);
+}
+
+void Progress::restart(sim::Time now) {
+  last_ = Clock::now();
+  last_now_ = now;
 }
 
 }  // namespace tools

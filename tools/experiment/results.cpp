@@ -110,6 +110,9 @@ std::string Summary::to_json() const {
   json["error"] = error;
   json["exit_code"] = exit_code;
   json["shoal"] = version;
+  if (branch > 0) json["branch"] = branch;
+  if (!snapshot.empty()) json["snapshot"] = snapshot;
+  if (!snapshot.empty()) json["metrics_from_s"] = from_s;
   return json.dump(2) + "\n";
 }
 
@@ -119,6 +122,9 @@ std::string Summary::to_text() const {
       "  {} steps, {:.2f} s simulated in {:.2f} s: {:.1f} x real time\n"
       "  {} messages, {} dropped, {} bad\n",
       world, seed, steps, sim_time_s, wall_s, real_time_factor(), messages, dropped_messages, bad_messages);
+  if (!snapshot.empty())
+    text += fmt::format("  {:.2f} s of it here, from {}; metrics count from {:.2f} s\n", stepped_s, snapshot, from_s);
+  if (branch > 0) text += fmt::format("  branch {}: the run went back\n", branch);
   if (quick_steps > 0)
     text += fmt::format("  {} steps used QuickStep, for an island of bodies was too large\n", quick_steps);
   if (acoustics) {
@@ -206,7 +212,7 @@ void Results::write_outlines() const {
   write("outlines.dat", text.empty() ? "0 0\n" : text);
 }
 
-void Results::write_errors(const Scoring& scoring) const {
+void Results::write_errors(const std::string& directory, const Scoring& scoring) const {
   std::string text =
       "time_s,metric,error_m,estimate_x_m,estimate_y_m,truth_x_m,truth_y_m,estimate_z_m,truth_z_m,travelled_m,sigma_m,"
       "nees\n";
@@ -216,13 +222,44 @@ void Results::write_errors(const Scoring& scoring) const {
                           sample.time_s, track.metric, sample.error_m, sample.estimate_m.x(), sample.estimate_m.y(),
                           sample.truth_m.x(), sample.truth_m.y(), sample.estimate_m.z(), sample.truth_m.z(),
                           sample.travelled_m, sample.sigma_m, sample.nees);
-  write("errors.csv", text);
+  write_file(directory + "/errors.csv", text);
 }
 
-void Results::write_metrics(const Summary& summary) const {
+void Results::write_metrics(const std::string& directory, const Summary& summary) const {
   std::string text = "metric,value\n";
   for (const auto& [name, value] : summary.metrics) text += fmt::format("{},{:.9g}\n", name, value);
-  write("metrics.csv", text);
+  write_file(directory + "/metrics.csv", text);
+}
+
+void Results::cut_tracks(sim::Time back_to) {
+  const std::string path = directory_ + "/tracks.csv";
+  const auto cannot_cut = [&] { return cannot_write(path, std::strerror(errno)); };
+  if (std::fflush(tracks_) != 0) throw cannot_cut();
+  std::ifstream in(path);
+  std::string line;
+  std::uintmax_t keep = 0;
+  // Times are written with all their digits.
+  for (bool first = true; std::getline(in, line); first = false) {
+    if (!first && std::strtod(line.c_str(), nullptr) > sim::to_seconds(back_to) + 1e-7) break;
+    keep += line.size() + 1;
+  }
+  std::error_code error;
+  std::filesystem::resize_file(path, keep, error);
+  if (error) throw cannot_write(path, error.message());
+  if (std::fseek(tracks_, 0, SEEK_END) != 0) throw cannot_cut();
+}
+
+void Results::keep_branch(const Summary& left, const Scoring& scoring, const sim::ConfigNode& resolved) {
+  const std::string directory = directory_ + "/branch" + std::to_string(left.branch);
+  write_summary(directory, left);
+  write_metrics(directory, left);
+  write_errors(directory, scoring);
+  write_file(directory + "/world.yaml", sim::to_yaml(resolved));
+  std::error_code error;
+  if (std::fflush(tracks_) != 0) throw cannot_write(directory_ + "/tracks.csv", std::strerror(errno));
+  std::filesystem::copy_file(directory_ + "/tracks.csv", directory + "/tracks.csv",
+                             std::filesystem::copy_options::overwrite_existing, error);
+  if (error) throw cannot_write(directory + "/tracks.csv", error.message());
 }
 
 void Results::close_tracks() {
@@ -245,8 +282,8 @@ void Results::finish(const Summary& summary, const Scoring& scoring, const sim::
   };
   attempt([&] { write_summary(directory_, summary); });
   attempt([&] { close_tracks(); });
-  attempt([&] { write_metrics(summary); });
-  attempt([&] { write_errors(scoring); });
+  attempt([&] { write_metrics(directory_, summary); });
+  attempt([&] { write_errors(directory_, scoring); });
   attempt([&] { write("world.yaml", sim::to_yaml(resolved)); });
   attempt([&] { plot(summary, scoring, give_up); });
   if (first_error) throw std::runtime_error(*first_error);

@@ -48,9 +48,13 @@ struct Summary {
       "duration";     ///< duration, event, quit, signal, fault, bus, timeout, process, configuration, error
   std::string error;  ///< why it ended early, empty when it did not
   int exit_code = 0;
-  std::string version;  ///< of shoal
+  std::string version;      ///< of shoal
+  std::int32_t branch = 0;  ///< how often the run went back before
+  std::string snapshot;     ///< file that the run began with; empty: it began at 0
+  double from_s = 0;        ///< since when the metrics count
+  double stepped_s = 0;     ///< simulated in this process
 
-  double real_time_factor() const { return wall_s > 0 ? sim_time_s / wall_s : 0; }
+  double real_time_factor() const { return wall_s > 0 ? stepped_s / wall_s : 0; }
   bool passed() const;
   void fail(int code, const std::string& how_ended, const std::string& why);
   std::string to_json() const;
@@ -75,6 +79,11 @@ class Results {
   void after_step();
   /// Why tracks cannot be written; looked at once a simulated second.
   std::optional<std::string> error() const { return error_; }
+  /// The world is about to go back: keeps what there is of the branch that is left in DIRECTORY/branchK, without
+  /// pictures.  Throws std::runtime_error.
+  void keep_branch(const Summary& left, const Scoring& scoring, const sim::ConfigNode& resolved);
+  /// It has gone back: drops what the tracks know of later.  Throws std::runtime_error.
+  void cut_tracks(sim::Time back_to);
   /// summary.json, metrics.csv, errors.csv, world.yaml and the pictures.  Plotting ends once `give_up` says so.
   /// What cannot be written does not keep the rest from being written.  Throws std::runtime_error about the first.
   void finish(const Summary& summary, const Scoring& scoring, const sim::ConfigNode& resolved,
@@ -82,8 +91,8 @@ class Results {
 
  private:
   void write_outlines() const;
-  void write_errors(const Scoring& scoring) const;
-  void write_metrics(const Summary& summary) const;
+  void write_errors(const std::string& directory, const Scoring& scoring) const;
+  void write_metrics(const std::string& directory, const Summary& summary) const;
   void close_tracks();
   void plot(const Summary& summary, const Scoring& scoring, const std::function<bool()>& give_up) const;
   void write(const std::string& file, const std::string& text) const;

@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -30,6 +31,10 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       service_(buses_.outer(), buses_.network(), world_, control_, lockstep_,
                {sim::to_yaml(loaded.resolved), version_text(), build_text(), files_text(loaded.resolved)}),
       scoring_(world_),
+      mail_(buses_, journal_, service_, lockstep_),
+      branch_log_(buses_, journal_, options.record, options.overwrite),
+      time_(world_, control_, scoring_, service_, mail_, time_options(),
+            {[this] { leave_branch(); }, [this](bool ours) { begin_branch(ours); }}),
       duration_s_(options.duration_s.value_or(loaded.config.run.duration_s)),
       progress_(duration_s_, options.quiet),
       programs_(loaded.config, options, buses_) {
@@ -43,7 +48,37 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
   }
   control_.speed = options.speed.value_or(loaded.config.run.speed);
   control_.paused = options.paused;
+  if (options.from) time_.go_on_from(*options.from);
   if (!options.results.empty()) results_ = std::make_unique<Results>(options.results, world_, options.pictures);
+  snapshot_at_s_ = options.snapshot_at_s;
+  std::sort(snapshot_at_s_.begin(), snapshot_at_s_.end(), std::greater<>());
+  if (options.keys && !options.quiet && TerminalKeys::possible()) {
+    keys_ = std::make_unique<RunKeys>(
+        time_, control_, [this](const std::string& text) { progress_.say(text); },
+        [this](const std::string& text) { progress_.ask(text); });
+    progress_.say(RunKeys::help());
+  }
+}
+
+TimeControl::Options Run::time_options() const {
+  constexpr double usual_rewind_s = 60;
+  const bool somebody_can_ask =
+      options_.bus != "none" || (options_.keys && !options_.quiet && TerminalKeys::possible());
+  TimeControl::Options time;
+  time.rewind_s = options_.rewind_s.value_or(somebody_can_ask ? usual_rewind_s : 0);
+  time.most_bytes = static_cast<std::size_t>(options_.rewind_MB * 1e6);
+  time.directory = options_.snapshots;
+  if (time.directory.empty() && !options_.results.empty()) time.directory = options_.results + "/snapshots";
+  time.overwrite = options_.overwrite;
+  time.resolved_world = sim::to_yaml(loaded_.resolved);
+  time.version = short_version();
+  return time;
+}
+
+void Run::obey() {
+  service_.handle_requests();
+  if (keys_) keys_->read();
+  if (!time_.broken().empty()) throw RunError(3, "fault", time_.broken());
 }
 
 Summary Run::go() {
@@ -118,22 +153,20 @@ void Run::await(const std::vector<std::string>& clients) {
 
 void Run::loop() {
   journal_.start();
-  service_.publish_step();
-  journal_.after_step();
-  buses_.end_of_step();
-  synchronize();
+  end_of_step();
   const sim::Time end = duration_s_ > 0 ? sim::from_seconds(duration_s_) : sim::Time::max();
   while (wanted() && !world_.ended() && world_.now() < end) {
-    service_.handle_requests();
+    obey();
+    if (time_.take_moved()) synchronized_ = false;
     if (!control_.may_step()) {
-      progress_.update(world_.now(), messages(), true);
+      progress_.update(world_.now(), messages(), control_, true);
       check_programs();
       check_bus();
       buses_.wait(std::chrono::milliseconds(20));
       continue;
     }
     if (synchronized_) pace();
-    if (!control_.may_step()) continue;
+    if (!control_.may_step() || time_.has_moved()) continue;
     if (synchronized_)
       step();
     else
@@ -146,32 +179,42 @@ void Run::step() {
   buses_.admit(
       [this](const std::string& bus, std::span<const sim::MailGate::Mail> mail) { journal_.admitted(bus, mail); });
   world_.step();
+  ++steps_taken_;
   control_.step_taken();
-  service_.publish_step();
-  journal_.after_step();
-  scoring_.after_step();
-  if (results_) results_->after_step();
-  buses_.end_of_step();
-  synchronize();
+  end_of_step();
   if (const auto error = buses_.record_error()) throw RunError(4, "bus", *error);
   if (results_)
     if (const auto error = results_->error()) throw RunError(4, "bus", *error);
   if (world_.step_number() % 100 == 0) check_bus();
   // Looking for dead children costs a system call; ten times a simulated second will do.
   if (world_.step_number() % 10 == 0) check_programs();
-  progress_.update(world_.now(), messages(), false);
+  progress_.update(world_.now(), messages(), control_, false);
+}
+
+void Run::end_of_step() {
+  service_.publish_step();
+  journal_.after_step();
+  if (steps_taken_ > 0) scoring_.after_step();
+  if (results_ && steps_taken_ > 0) results_->after_step();
+  buses_.end_of_step();
+  time_.after_step();
+  branch_log_.mark(world_.step_number(), time_.oldest_step().value_or(world_.step_number()));
+  take_snapshots();
+  if (time_.stop_when_there()) progress_.restart(world_.now());
+  synchronize();
 }
 
 void Run::synchronize() {
   const auto outcome = lockstep_.synchronize([this](std::chrono::milliseconds time) { buses_.wait(time); },
                                              [this] {
-                                               service_.handle_requests();
-                                               if (control_.paused) progress_.update(world_.now(), messages(), true);
+                                               obey();
+                                               if (control_.paused)
+                                                 progress_.update(world_.now(), messages(), control_, true);
                                                check_programs();
                                                check_bus();
-                                               return caught_signal() == 0;
+                                               return caught_signal() == 0 && !time_.has_moved();
                                              });
-  synchronized_ = outcome == bridges::LockstepOutcome::done;
+  synchronized_ = outcome == bridges::LockstepOutcome::done && !time_.has_moved();
 }
 
 void Run::pace() {
@@ -184,7 +227,8 @@ void Run::pace() {
     } else {
       std::this_thread::sleep_for(wait);
     }
-    service_.handle_requests();
+    obey();
+    if (time_.has_moved()) return;
   }
 }
 

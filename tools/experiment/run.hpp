@@ -3,16 +3,21 @@
 #include <memory>
 #include <string>
 
+#include "bridges/lcm/lockstep_service.hpp"
 #include "bridges/lcm/run_journal.hpp"
 #include "bridges/lcm/sim_service.hpp"
 #include "sim/run/run_control.hpp"
+#include "tools/experiment/branch_log.hpp"
 #include "tools/experiment/pacer.hpp"
 #include "tools/experiment/progress.hpp"
 #include "tools/experiment/results.hpp"
 #include "tools/experiment/run_buses.hpp"
+#include "tools/experiment/run_keys.hpp"
+#include "tools/experiment/run_mail.hpp"
 #include "tools/experiment/run_programs.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/experiment/scoring.hpp"
+#include "tools/experiment/time_control.hpp"
 
 namespace tools {
 
@@ -29,6 +34,13 @@ class Run {
   void await(const std::vector<std::string>& clients);
   void loop();
   void step();
+  void end_of_step();
+  TimeControl::Options time_options() const;
+  void leave_branch();
+  void begin_branch(bool ours);
+  void take_snapshots();
+  /// Requests and keys.
+  void obey();
   void synchronize();
   /// Waits until the next step is due, answering requests meanwhile.
   void pace();
@@ -50,13 +62,20 @@ class Run {
   bridges::LockstepService lockstep_;
   bridges::SimService service_;
   Scoring scoring_;
+  RunMail mail_;
+  BranchLog branch_log_;
+  TimeControl time_;
   double duration_s_;
   Progress progress_;
   Pacer pacer_;
   RunPrograms programs_;
   bool synchronized_ = true;  ///< the clients have answered the present step
-  bool alone_ = true;  ///< no other simulator was heard at the start
+  bool alone_ = true;         ///< no other simulator was heard at the start
   std::unique_ptr<Results> results_;
+  std::unique_ptr<RunKeys> keys_;      ///< null: no terminal
+  std::int64_t steps_taken_ = 0;       ///< in this process
+  std::vector<double> snapshot_at_s_;  ///< still to come, the last one first
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace tools

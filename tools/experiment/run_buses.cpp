@@ -89,6 +89,25 @@ void RunBuses::close_record() {
   if (main_.recorder) main_.recorder->close();
 }
 
+RunBuses::RecordMark RunBuses::record_mark() const {
+  return main_.recorder ? RecordMark{main_.recorder->recorded(), main_.recorder->bytes()} : RecordMark{};
+}
+
+void RunBuses::branch_record(const std::string& path, const RecordMark& mark, bool overwrite) {
+  if (!main_.recorder) return;
+  main_.recorder->go_on_in(path, mark.events, mark.bytes,
+                           overwrite ? bridges::Existing::overwrite : bridges::Existing::refuse);
+}
+
+void RunBuses::set_muted(bool muted) {
+  for_each([&](const Line& line) {
+    line.mute->set_muted(true);  // what waits in the network goes as well
+    line.gate->collect();
+    line.gate->waiting().clear();
+    line.mute->set_muted(muted);
+  });
+}
+
 sim::BusCounts RunBuses::counts() const {
   sim::BusCounts sum;
   for_each([&](const Line& line) {

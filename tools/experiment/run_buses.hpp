@@ -14,6 +14,7 @@
 #include "sim/bus/bus.hpp"
 #include "sim/bus/mail_gate.hpp"
 #include "sim/world/world_config.hpp"
+#include "tools/experiment/mute_bus.hpp"
 #include "tools/experiment/runner.hpp"
 
 namespace tools {
@@ -27,10 +28,8 @@ class RunBuses {
 
   /// The world's bus, recorded, behind its gate.
   sim::Bus& outer() { return main_.outer(); }
-  /// A bus without gate and record; empty: the world's.
-  sim::Bus& network(const std::string& name = {}) {
-    return name.empty() ? *main_.network : *others_.at(name).network;
-  }
+  /// The world's bus without the record.
+  sim::Bus& network(const std::string& name = {}) { return name.empty() ? *main_.network : *others_.at(name).network; }
   /// The bus of a name in `buses:`, recorded, behind its gate; empty: the world's.
   sim::Bus& of(const std::string& name) { return name.empty() ? main_.outer() : others_.at(name).outer(); }
   /// The gate of a bus; empty: the world's.
@@ -51,6 +50,16 @@ class RunBuses {
   std::optional<std::string> lost_connection() const;
   std::optional<std::string> record_error() const;
   void close_record();
+  /// Where the record is.
+  struct RecordMark {
+    std::uint64_t events = 0, bytes = 0;
+  };
+  RecordMark record_mark() const;
+  /// Goes on with another record, which begins with the old one's up to a mark.  Throws BusError.
+  void branch_record(const std::string& path, const RecordMark& mark, bool overwrite);
+  /// While muted nothing goes to the networks and into the record, and what comes in is thrown away.  What waits at the
+  /// gates is thrown away at both calls.
+  void set_muted(bool muted);
   /// Of all buses.
   sim::BusCounts counts() const;
 
@@ -59,10 +68,12 @@ class RunBuses {
     std::unique_ptr<sim::Bus> network;
     bridges::LcmBus* lcm = nullptr;  ///< the same, when it is LCM
     std::unique_ptr<bridges::RecordingBus> recorder;
+    std::unique_ptr<MuteBus> mute;
     std::unique_ptr<sim::MailGate> gate;
     sim::Bus& outer() { return *gate; }
     void close_gate() {
-      gate = std::make_unique<sim::MailGate>(recorder ? static_cast<sim::Bus&>(*recorder) : *network);
+      mute = std::make_unique<MuteBus>(recorder ? static_cast<sim::Bus&>(*recorder) : *network);
+      gate = std::make_unique<sim::MailGate>(*mute);
     }
   };
   Line open(const std::string& url, const RunOptions& options);

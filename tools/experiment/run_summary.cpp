@@ -36,14 +36,18 @@ void Run::add_figures(Summary& summary) {
   const sim::BusCounts counts = buses_.counts();
   summary.world = loaded_.config.name;
   summary.seed = loaded_.config.run.seed;
+  summary.branch = control_.branch;
+  summary.snapshot = options_.from_file;
+  summary.from_s = time_.scores_from_s();
+  summary.stepped_s = sim::to_seconds(world_.step_time() * steps_taken_);
   summary.version = short_version();
   summary.steps = world_.step_number();
   summary.sim_time_s = sim::to_seconds(world_.now());
   summary.state_hash = world_.state_hash();
   summary.messages = counts.published + counts.received;
   summary.dropped_messages = counts.dropped_incoming + counts.dropped_outgoing;
-  summary.bad_messages = world_.counts().bad_messages + service_.bad_messages() + lockstep_.bad_messages() +
-                         scoring_.bad_messages();
+  summary.bad_messages =
+      world_.counts().bad_messages + service_.bad_messages() + lockstep_.bad_messages() + scoring_.bad_messages();
   summary.quick_steps = world_.physics().quick_steps();
   const LinkCounts links = link_counts(world_, "", "");
   if (!world_.acoustics().transducers().empty()) summary.acoustics = links;

@@ -7,6 +7,7 @@
 #include "sim/world/load_world.hpp"
 #include "tools/experiment/results.hpp"
 #include "tools/experiment/signals.hpp"
+#include "tools/experiment/snapshot_file.hpp"
 
 namespace tools {
 
@@ -26,6 +27,14 @@ struct RunOptions {
   bool serial_ports = true;        ///< pseudo-terminals and FIFOs of devices are opened
   int threads = 0;                 ///< that follow rays; 0: one for each processor
   bool quiet = false;
+  bool keys = true;                        ///< keys of the terminal are obeyed, when there is one
+  std::optional<Snapshot> from;            ///< the run goes on from there
+  std::string from_file;                   ///< its name
+  std::string snapshots;                   ///< directory of snapshot files; empty: `snapshots` in the results
+  std::vector<double> snapshot_at_s;       ///< when to write one, in simulated time
+  std::optional<double> snapshot_every_s;  ///< and how often
+  std::optional<double> rewind_s;          ///< how far back a run can go; without it 60 s when somebody can ask for it
+  double rewind_MB = 64;                   ///< memory for that
 };
 
 /// Runs a world to its end: builds it, opens the bus and the record, starts the processes, steps, paces, waits for

@@ -71,6 +71,17 @@ Figures Scoring::figures() const {
   return figures;
 }
 
+void Scoring::visit_state(sim::StateArchive& archive, History history) {
+  for (const auto& [vehicle, truth] : truths_) {
+    archive.section("truth of " + vehicle);
+    archive(*truth);
+  }
+  for (const auto& metric : metrics_) {
+    archive.section("metric " + metric->config().name);
+    metric->visit_state(archive, history);
+  }
+}
+
 std::vector<Scoring::Verdict> Scoring::verdicts() const {
   const Figures all = figures();
   std::vector<Verdict> verdicts;

@@ -41,6 +41,8 @@ class Scoring {
   /// Of the metrics that compare estimates with the truth.
   std::vector<Track> tracks() const;
   std::int64_t bad_messages() const;
+  /// In sections of their own.
+  void visit_state(sim::StateArchive& archive, History history);
 
  private:
   const TruthHistory& truth_of(const std::string& vehicle);

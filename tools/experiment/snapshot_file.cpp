@@ -83,8 +83,7 @@ Snapshot snapshot_from_bytes(const sim::Bytes& bytes, const std::string& path) {
   const auto fail = [&](const std::string& what) -> SnapshotFileError { return SnapshotFileError(path + ": " + what); };
   if (bytes.size() < sizeof magic || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
     throw fail("is no snapshot of shoal: it must begin with 'SHOALSNP'");
-  if (bytes.size() < head_bytes + checksum_bytes)
-    throw fail(fmt::format("is cut off after {} bytes", bytes.size()));
+  if (bytes.size() < head_bytes + checksum_bytes) throw fail(fmt::format("is cut off after {} bytes", bytes.size()));
   const auto version = number_at<std::uint32_t>(bytes, sizeof magic);
   if (version != format_version)
     throw fail(fmt::format("its format version must be {}, got {}", format_version, version));

@@ -75,9 +75,9 @@ sim::Bytes uncompressed(const sim::Bytes& bytes) {
   std::memcpy(&size, bytes.data(), sizeof size);
   sim::Bytes out(size);
   uLongf room = static_cast<uLongf>(size);
-  const int outcome =
-      uncompress(reinterpret_cast<Bytef*>(out.data()), &room, reinterpret_cast<const Bytef*>(bytes.data() + sizeof size),
-                 static_cast<uLong>(bytes.size() - sizeof size));
+  const int outcome = uncompress(reinterpret_cast<Bytef*>(out.data()), &room,
+                                 reinterpret_cast<const Bytef*>(bytes.data() + sizeof size),
+                                 static_cast<uLong>(bytes.size() - sizeof size));
   if (outcome != Z_OK || room != size) throw std::runtime_error("a snapshot in memory is damaged");
   return out;
 }
@@ -90,7 +90,7 @@ std::size_t SnapshotRing::Family::bytes() const {
   return sum;
 }
 
-void SnapshotRing::add(std::int64_t step, const sim::Bytes& snapshot) {
+void SnapshotRing::add(std::int64_t step, const sim::Bytes& snapshot, std::size_t bytes_beside) {
   assert(families_.empty() ||
          step > (families_.back().others.empty() ? families_.back().step : families_.back().others.back().step));
   const bool full = !families_.empty() && families_.back().others.size() + 1 >= most_in_family;
@@ -106,7 +106,7 @@ void SnapshotRing::add(std::int64_t step, const sim::Bytes& snapshot) {
   }
   ++count_;
   // A family goes when even its last is not needed any more; the newest family stays whatever it costs.
-  while (families_.size() > 1 && (families_[1].step <= step - steps_ || bytes_ > most_bytes_)) {
+  while (families_.size() > 1 && (families_[1].step <= step - steps_ || bytes_ + bytes_beside > most_bytes_)) {
     bytes_ -= families_.front().bytes();
     count_ -= 1 + families_.front().others.size();
     families_.pop_front();

@@ -17,8 +17,8 @@ class SnapshotRing {
   /// Snapshots are kept for `steps` steps, but never more than `most_bytes` of them.
   SnapshotRing(std::int64_t steps, std::size_t most_bytes) : steps_(steps), most_bytes_(most_bytes) {}
 
-  /// `step` must be larger than that of the newest.
-  void add(std::int64_t step, const sim::Bytes& snapshot);
+  /// `step` must be larger than that of the newest.  `bytes_beside` count as well.
+  void add(std::int64_t step, const sim::Bytes& snapshot, std::size_t bytes_beside = 0);
   /// The step of the newest snapshot that is not later than `step`.
   std::optional<std::int64_t> newest_until(std::int64_t step) const;
   /// The snapshot of a step that newest_until() gave.

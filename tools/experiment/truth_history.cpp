@@ -14,18 +14,23 @@ sim::Time true_time_of(const sim::World& world, const sim::Vehicle& vehicle, std
 
 TruthHistory::TruthHistory(const sim::World& world, const sim::Vehicle& vehicle)
     : world_(world),
-      vehicle_(vehicle),
+      vehicle_(vehicle.name()),
       recent_(static_cast<std::size_t>(memory_s / sim::to_seconds(world.step_time())) + 1,
               Truth{vehicle.X_WV().translation(), 0}) {}
 
 void TruthHistory::after_step() {
   const Truth& before = recent_[slot_of(world_.step_number() - 1)];
-  const sim::Vector3d position_m = vehicle_.X_WV().translation();
+  const sim::Vector3d position_m = world_.find_vehicle(vehicle_)->X_WV().translation();
   // Who is put elsewhere has not travelled there.
   constexpr double fastest_mps = 200;
   const double way_m = (position_m - before.position_m).norm();
   const bool travelled = way_m <= fastest_mps * sim::to_seconds(world_.step_time());
   recent_[slot_of(world_.step_number())] = {position_m, before.travelled_m + (travelled ? way_m : 0)};
+}
+
+void TruthHistory::visit_state(sim::StateArchive& archive) {
+  archive.expect_count(recent_.size(), "steps of truth");
+  for (Truth& truth : recent_) archive(truth);
 }
 
 const TruthHistory::Truth& TruthHistory::now() const {

@@ -109,11 +109,13 @@ void add_control_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("control", "Send a request to a running simulator and print its answer");
   const auto arguments = std::make_shared<ControlArguments>();
   command
-      ->add_option("COMMAND", arguments->command,
-                   "pause, resume, step, speed, quit, spawn, remove, describe, do (docs/messages.md)")
+      ->add_option(
+          "COMMAND", arguments->command,
+          "pause, resume, step, speed, quit, until, rewind, snapshot, restore, where, spawn, remove, describe, do "
+          "(docs/messages.md)")
       ->required();
   command->add_option("TEXT", arguments->text, "text of the request; @FILE: what is in the file; -: standard input");
-  command->add_option("--value", arguments->value, "number of the request: steps, speed");
+  command->add_option("--value", arguments->value, "number of the request: steps, speed, seconds");
   command->add_option("--client", arguments->client, "name to ask by")->capture_default_str();
   command->add_option("--timeout", arguments->timeout_s, "wall seconds to wait for the answer")
       ->check(number_from(0.01, 1e6));
@@ -123,6 +125,11 @@ void add_control_command(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  shoal control pause\n"
       "  shoal control step --value 10\n"
+      "  shoal control until --value 90\n"
+      "  shoal control until storm            (an event of the world)\n"
+      "  shoal control rewind --value 30      (paused then; with the text run it goes on)\n"
+      "  shoal control snapshot before_dive\n"
+      "  shoal control restore before_dive\n"
       "  shoal control spawn '{name: rover7, file: rover.yaml, position_m: [2, 0, 0]}'\n"
       "  shoal control spawn @my_robot.yaml\n"
       "  shoal control remove rover7\n"

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <iostream>
 #include <memory>
+#include <sstream>
 
 #include "shoal/message_writer.hpp"
 #include "tools/experiment/runner.hpp"
@@ -17,6 +18,8 @@ struct RunArguments {
   sim::LoadOptions load;
   RunOptions run;
   std::string speed;
+  std::string from;
+  std::string snapshot_at;
   std::optional<double> duration_s;
   std::string log_level = "info";
 };
@@ -42,13 +45,43 @@ std::string check_seed(const std::string& text) {
   return good ? "" : "must be a whole number from 0 to 9223372036854775807, got '" + text + "'";
 }
 
+/// `10,20.5`: times in s.
+std::vector<double> parse_times(const std::string& text) {
+  std::vector<double> times;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, ',');) {
+    double time_s = 0;
+    const auto [at, error] = std::from_chars(part.data(), part.data() + part.size(), time_s);
+    const bool good = error == std::errc{} && at == part.data() + part.size() && time_s >= 0 && time_s <= 1e9;
+    if (!good) throw CLI::ValidationError("--snapshot-at", "must be times from 0 to 1e9 s, got '" + part + "'");
+    times.push_back(time_s);
+  }
+  return times;
+}
+
+/// The world of a snapshot, with the values that the command line sets.
+sim::LoadedWorld load_from(RunArguments& arguments) {
+  if (arguments.load.seed) throw CLI::ValidationError("--seed", "cannot be changed in a snapshot");
+  arguments.run.from = read_snapshot(arguments.from);
+  arguments.run.from_file = arguments.from;
+  check_version(*arguments.run.from, arguments.from, short_version());
+  return sim::load_world_text(arguments.run.from->resolved_world, arguments.from, arguments.load);
+}
+
 int run(RunArguments& arguments) {
   spdlog::set_level(spdlog::level::from_str(arguments.log_level));
   arguments.load.allow_plugins = arguments.run.launch;
   arguments.run.speed = parse_speed(arguments.speed);
   arguments.run.duration_s = arguments.duration_s;
   arguments.load.encode_message = shoal::encode_own_message;
-  const sim::LoadedWorld loaded = sim::load_world(arguments.world, arguments.load);
+  if (arguments.world.empty() == arguments.from.empty())
+    throw CLI::ValidationError("shoal run", "needs either a WORLD or --from SNAPSHOT");
+  arguments.run.snapshot_at_s = parse_times(arguments.snapshot_at);
+  const bool nowhere = arguments.run.snapshots.empty() && arguments.run.results.empty();
+  if (nowhere && (!arguments.snapshot_at.empty() || arguments.run.snapshot_every_s))
+    throw CLI::ValidationError("--snapshot-at", "needs --snapshots DIR or --results DIR");
+  const sim::LoadedWorld loaded =
+      arguments.from.empty() ? sim::load_world(arguments.world, arguments.load) : load_from(arguments);
   catch_signals(true);
   const Summary summary = run_world(loaded, arguments.run);
   if (!summary.error.empty()) std::cerr << "shoal: " << summary.error << '\n';
@@ -63,9 +96,23 @@ int run(RunArguments& arguments) {
 void add_run_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", "Run a world");
   const auto arguments = std::make_shared<RunArguments>();
-  command->add_option("WORLD", arguments->world, "world file")->required();
+  command->add_option("WORLD", arguments->world, "world file");
   command->add_option("--duration", arguments->duration_s, "simulated seconds; 0: until told to quit")
       ->check(number_from(0, 1e9));
+  command->add_option("--from", arguments->from, "go on from a snapshot file instead of the start of a WORLD");
+  command->add_option("--snapshot-at", arguments->snapshot_at, "write snapshot files at these times in s: 10,20.5");
+  command->add_option("--snapshot-every", arguments->run.snapshot_every_s, "write one every so many simulated seconds")
+      ->check(number_from(0.001, 1e9));
+  command->add_option("--snapshots", arguments->run.snapshots,
+                      "directory of snapshot files; without it RESULTS/snapshots");
+  command
+      ->add_option("--rewind-s", arguments->run.rewind_s,
+                   "how far back the run can go, in simulated seconds; without it 60 on a bus or terminal")
+      ->check(number_from(0, 1e6));
+  command->add_option("--rewind-mb", arguments->run.rewind_MB, "memory for that in MB")
+      ->check(number_from(1, 1e5))
+      ->capture_default_str();
+  command->add_flag("!--no-keys", arguments->run.keys, "keys of the terminal do nothing");
   command->add_option("--speed", arguments->speed, "times real time, from 0.001 to 1e6, or max");
   command->add_option("--seed", arguments->load.seed, "of every random stream")->check(check_seed);
   command->add_option("--set", arguments->load.sets, "path=value: change a value of the world file")
@@ -96,6 +143,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  shoal run worlds/minimal.yaml --duration 10 --speed 1\n"
       "  shoal run worlds/coop_land.yaml --launch --results results/coop_land --record coop.lcm\n"
+      "  shoal run worlds/coop_land.yaml --duration 20 --snapshot-at 10 --snapshots snaps\n"
+      "  shoal run --from snaps/branch0_step1000.snapshot --set vehicles.rover3.devices.lidar.rate_hz=5\n"
       "  shoal run worlds/coop_land.yaml --seed 7 --set vehicles.rover3.devices.modem.loss_probability=0.2");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

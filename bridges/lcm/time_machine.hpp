@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace bridges {
+
+/// Carries out requests that move the world in time.
+class TimeMachine {
+ public:
+  virtual ~TimeMachine() = default;
+  /// What came of a request; nothing when the command is none of its own.  Throws std::runtime_error that says why it
+  /// was refused.
+  virtual std::optional<std::string> obey(const std::string& command, const std::string& text, double value) = 0;
+};
+
+}  // namespace bridges

@@ -1,0 +1,204 @@
+#include <gmock/gmock.h>
+#include <poll.h>
+#include <pty.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "tests/system/shoal_program.hpp"
+
+// `shoal run` on a terminal, with real keys.
+
+namespace {
+
+using namespace system_test;
+using testing::HasSubstr;
+
+/// A program with a terminal of its own.
+class OnTerminal {
+ public:
+  explicit OnTerminal(std::vector<std::string> arguments) {
+    pid_ = forkpty(&terminal_, nullptr, nullptr, nullptr);
+    if (pid_ == 0) {
+      std::vector<char*> argv;
+      for (std::string& argument : arguments) argv.push_back(argument.data());
+      argv.push_back(nullptr);
+      execvp(argv[0], argv.data());
+      _exit(127);
+    }
+  }
+  ~OnTerminal() {
+    if (pid_ > 0 && !over_) {
+      kill(pid_, SIGKILL);
+      waitpid(pid_, nullptr, 0);
+    }
+    close(terminal_);
+  }
+  OnTerminal(const OnTerminal&) = delete;
+  OnTerminal& operator=(const OnTerminal&) = delete;
+
+  void press(const std::string& keys) const {
+    EXPECT_EQ(write(terminal_, keys.data(), keys.size()), static_cast<ssize_t>(keys.size()));
+  }
+  /// Waits until the terminal shows a text that it has not shown before; what was shown up to its end is used up.
+  bool shows(const std::string& text) {
+    const bool found = await(
+        [&] {
+          read_all();
+          return shown_.find(text) != std::string::npos;
+        },
+        patience);
+    EXPECT_TRUE(found) << "no '" << text << "' in: " << shown_;
+    if (found) shown_.erase(0, shown_.find(text) + text.size());
+    return found;
+  }
+  int wait() {
+    int status = 0;
+    const bool ended = await(
+        [&] {
+          read_all();
+          return waitpid(pid_, &status, WNOHANG) == pid_;
+        },
+        patience);
+    over_ = ended;
+    if (!ended) return -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+  /// It stands still after Ctrl-Z.
+  bool is_stopped() {
+    return await(
+        [&] {
+          read_all();
+          int status = 0;
+          return waitpid(pid_, &status, WNOHANG | WUNTRACED) == pid_ && WIFSTOPPED(status);
+        },
+        patience);
+  }
+  /// Keys are given one by one, without echo.
+  bool is_raw() const {
+    termios settings{};
+    tcgetattr(terminal_, &settings);
+    return (settings.c_lflag & (ICANON | ECHO)) == 0;
+  }
+  pid_t pid() const { return pid_; }
+  int file() const { return terminal_; }
+
+ private:
+  void read_all() {
+    pollfd waiting{terminal_, POLLIN, 0};
+    char part[4096];
+    while (poll(&waiting, 1, 0) > 0 && (waiting.revents & POLLIN) != 0) {
+      const ssize_t got = read(terminal_, part, sizeof part);
+      if (got <= 0) return;
+      shown_.append(part, static_cast<std::size_t>(got));
+    }
+  }
+
+  pid_t pid_ = 0;
+  int terminal_ = -1;
+  bool over_ = false;
+  std::string shown_;
+};
+
+std::vector<std::string> endless_run(const ScratchFolder& folder, std::vector<std::string> more = {}) {
+  write_file(folder.file("world.yaml"), endless_world());
+  std::vector<std::string> run{built("shoal"), "run",         folder.file("world.yaml"), "--bus", "none",
+                               "--paused",     "--snapshots", folder.file("snaps")};
+  run.insert(run.end(), more.begin(), more.end());
+  return run;
+}
+
+TEST(Keys, StepGoBackBranchAndQuit) {
+  const ScratchFolder folder;
+  OnTerminal shoal(endless_run(folder, {"--speed", "max"}));
+  ASSERT_TRUE(shoal.shows("keys: space pause, n step, N 10 steps"));
+  EXPECT_TRUE(shoal.is_raw());
+  shoal.press("nN.");
+  shoal.press("s");
+  shoal.shows("branch0_step");
+  shoal.press("u15\r");
+  shoal.shows("run until (seconds");
+  shoal.shows("runs until 15 s");
+  shoal.shows("15.00 s");
+  shoal.shows("paused");
+  shoal.press("r");
+  shoal.shows("step 500, 5 s, branch 1, paused");
+  shoal.press("r");
+  shoal.shows("cannot go back 10 s from 5 s: what is kept begins at 0 s");
+  shoal.press("u1\r");
+  shoal.shows("'until' needs a time after now (5 s)");
+  shoal.press("u99\033");
+  shoal.shows("not");
+  shoal.press("?");
+  shoal.shows("q quit, ? this");
+  shoal.press("q");
+  EXPECT_EQ(shoal.wait(), 0);
+  EXPECT_FALSE(shoal.is_raw());
+}
+
+TEST(Keys, ChangeTheSpeed) {
+  const ScratchFolder folder;
+  OnTerminal shoal(endless_run(folder, {"--speed", "1"}));
+  shoal.press("+");
+  shoal.shows("goes on 2 x real time");
+  shoal.press("-");
+  shoal.shows("goes on 1 x real time");
+  shoal.press("m");
+  shoal.shows("goes on as fast as possible");
+  shoal.press(" ");
+  shoal.shows("; goes as fast as possible");
+  shoal.press("1");
+  shoal.shows("; goes 1 x real time");
+  shoal.press(" ");
+  shoal.shows(", paused; goes on 1 x real time");
+  shoal.press("q");
+  EXPECT_EQ(shoal.wait(), 0);
+}
+
+TEST(Keys, TheTerminalIsAsBeforeAfterASignal) {
+  for (const int signal : {SIGTERM, SIGQUIT, SIGINT}) {
+    const ScratchFolder folder;
+    OnTerminal shoal(endless_run(folder));
+    ASSERT_TRUE(shoal.shows("keys: "));
+    ASSERT_TRUE(await([&] { return shoal.is_raw(); }));
+    kill(shoal.pid(), signal);
+    EXPECT_EQ(shoal.wait(), 128 + signal);
+    EXPECT_FALSE(shoal.is_raw()) << signal;
+  }
+}
+
+TEST(Keys, CtrlZGivesTheTerminalBackAndGoingOnTakesItAgain) {
+  const ScratchFolder folder;
+  OnTerminal shoal(endless_run(folder));
+  ASSERT_TRUE(shoal.shows("keys: "));
+  shoal.press("\032");
+  ASSERT_TRUE(shoal.is_stopped());
+  EXPECT_FALSE(shoal.is_raw());
+  kill(shoal.pid(), SIGCONT);
+  EXPECT_TRUE(await([&] { return shoal.is_raw(); }));
+  shoal.press("q");
+  EXPECT_EQ(shoal.wait(), 0);
+}
+
+TEST(Keys, AJobInTheBackgroundIsNotStopped) {
+  const ScratchFolder folder;
+  write_file(folder.file("world.yaml"), endless_world());
+  // An interactive shell gives its jobs process groups of their own.
+  OnTerminal shell({"sh", "-m", "-c",
+                    built("shoal") + " run " + folder.file("world.yaml") +
+                        " --bus none --duration 2 --speed max && echo all is over & wait"});
+  EXPECT_TRUE(shell.shows("all is over"));
+  EXPECT_EQ(shell.wait(), 0);
+}
+
+TEST(Keys, CanBeTurnedOff) {
+  const ScratchFolder folder;
+  OnTerminal shoal(endless_run(folder, {"--no-keys"}));
+  ASSERT_TRUE(shoal.shows("paused"));
+  EXPECT_FALSE(shoal.is_raw());
+  shoal.press("q\003");
+  EXPECT_EQ(shoal.wait(), 128 + SIGINT);
+}
+
+}  // namespace

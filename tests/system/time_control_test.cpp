@@ -1,0 +1,289 @@
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <filesystem>
+#include <regex>
+
+#include "bridges/lcm/lcm_listener.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/sim_vehicle_t.hpp"
+#include "shoal/twist_command_t.hpp"
+#include "tests/system/shoal_program.hpp"
+
+// Snapshots, rewind, branches and `until` in the real program, asked for over the bus.
+
+namespace {
+
+using namespace system_test;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::Not;
+
+Ended control(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "control");
+  arguments.insert(arguments.end(), {"--lcm-url", own_url()});
+  return run_shoal(arguments);
+}
+
+/// A rover with a lidar and a modem, which an event pushes about, and noise everywhere.
+std::string lively_world() {
+  return "shoal: 1\nname: lively\nrun: {duration_s: 20, speed: max}\n"
+         "objects:\n  - {name: ground, fixed: true, parts: [{shape: plane}]}\n"
+         "  - {name: ball, position_m: [2, 0, 1], parts: [{shape: sphere, radius_m: 0.2, mass_kg: 1}]}\n"
+         "vehicles:\n  - {name: r1, file: " +
+         source("vehicles/rover.yaml") +
+         "}\n"
+         "events:\n"
+         "  - {name: move, every_s: 1.5, jitter_s: 0.4, do: {move: ball, position_m: [1, 1, 1]}}\n"
+         "  - {name: late, at_s: 7.25, do: {log: here}}\n";
+}
+
+struct Folder : ScratchFolder {
+  Folder() { write_file(file("world.yaml"), lively_world()); }
+  std::string world() const { return file("world.yaml"); }
+};
+
+/// A run that people talk to.
+struct Live {
+  explicit Live(const Folder& folder, std::vector<std::string> more = {}) : program(arguments(folder, more)) {
+    EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, patience));
+  }
+  static std::vector<std::string> arguments(const Folder& folder, const std::vector<std::string>& more) {
+    std::vector<std::string> all{built("shoal"), "run",     folder.world(), "--paused",           "--duration", "0",
+                                 "--lcm-url",    own_url(), "--snapshots",  folder.file("snaps"), "--speed",    "max"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  /// Runs to a time and waits until it is there.
+  void run_until(const std::string& time_s) {
+    const Ended ended = control({"until", "--value", time_s});
+    ASSERT_EQ(ended.exit_code, 0) << ended.errors;
+    await_pause();
+  }
+  void await_pause() {
+    EXPECT_TRUE(await([] { return control({"where"}).output.find(", paused") != std::string::npos; }, patience));
+  }
+  static std::string where() { return control({"where"}).output; }
+  int quit() {
+    control({"quit"});
+    return program.wait();
+  }
+  Program program;
+};
+
+std::string hash_of_snapshot(const std::string& path) {
+  const Ended ended = run_shoal({"snapshot", path});
+  std::smatch found;
+  if (!std::regex_search(ended.output, found, std::regex("state hash ([0-9a-f]{16})"))) return ended.errors;
+  return found[1];
+}
+
+TEST(Snapshot, AFreshProcessGoesOnBitForBit) {
+  const Folder folder;
+  const std::vector<std::string> run{"run",           folder.world(), "--bus",       "none",
+                                     "--snapshot-at", "10,3.33",      "--snapshots", folder.file("snaps")};
+  const Ended whole = run_shoal(run);
+  ASSERT_EQ(whole.exit_code, 0) << whole.errors;
+  for (const char* name : {"/branch0_step1000.snapshot", "/branch0_step333.snapshot"}) {
+    const std::string snapshot = folder.file("snaps") + name;
+    const Ended checked = run_shoal({"snapshot", snapshot, "--check"});
+    EXPECT_EQ(checked.exit_code, 0) << checked.errors;
+    EXPECT_THAT(checked.output, HasSubstr("restores with the same hash"));
+    const Ended rest = run_shoal({"run", "--from", snapshot, "--bus", "none"});
+    EXPECT_EQ(rest.exit_code, 0) << rest.errors;
+    EXPECT_EQ(state_hash_in(rest), state_hash_in(whole));
+    EXPECT_THAT(rest.output, HasSubstr("2000 steps, 20.00 s simulated"));
+  }
+}
+
+TEST(Snapshot, ValuesCanBeSetAndStructureCannot) {
+  const Folder folder;
+  ASSERT_EQ(run_shoal({"run", folder.world(), "--bus", "none", "--duration", "2", "--snapshot-at", "1", "--snapshots",
+                       folder.file("snaps")})
+                .exit_code,
+            0);
+  const std::string snapshot = folder.file("snaps") + "/branch0_step100.snapshot";
+  const auto from = [&](const std::string& set) {
+    return run_shoal({"run", "--from", snapshot, "--bus", "none", "--duration", "3", "--set", set});
+  };
+  const Ended same = run_shoal({"run", "--from", snapshot, "--bus", "none", "--duration", "3"});
+  const Ended lighter = from("physics.gravity_mps2=5");
+  EXPECT_EQ(lighter.exit_code, 0) << lighter.errors;
+  EXPECT_NE(state_hash_in(lighter), state_hash_in(same));
+  const Ended other = from("objects.ball.present=false");
+  EXPECT_EQ(other.exit_code, 2) << other.output;
+  EXPECT_THAT(other.errors, HasSubstr("snapshot"));
+  const Ended step = from("physics.step_s=0.005");
+  EXPECT_EQ(step.exit_code, 2);
+  EXPECT_THAT(step.errors, HasSubstr("a step of 10000 us"));
+}
+
+TEST(Snapshot, RefusesWhatIsNone) {
+  const Folder folder;
+  write_file(folder.file("foreign"), "not a snapshot at all");
+  const Ended foreign = run_shoal({"snapshot", folder.file("foreign")});
+  EXPECT_EQ(foreign.exit_code, 4);
+  EXPECT_THAT(foreign.errors, HasSubstr("foreign: is no snapshot of shoal"));
+  EXPECT_EQ(run_shoal({"run", "--from", folder.file("foreign"), "--bus", "none"}).exit_code, 4);
+  EXPECT_EQ(run_shoal({"run", "--from", folder.file("missing"), "--bus", "none"}).exit_code, 4);
+  EXPECT_EQ(run_shoal({"run", folder.world(), "--from", folder.file("foreign")}).exit_code, 2);
+  EXPECT_EQ(run_shoal({"run"}).exit_code, 2);
+  for (const char* times : {"x", "1,nan", "-1", "1,,2"})
+    EXPECT_EQ(run_shoal({"run", folder.world(), "--snapshots", folder.file("s"), "--snapshot-at", times}).exit_code, 2)
+        << times;
+  EXPECT_EQ(run_shoal({"run", folder.world(), "--snapshot-at", "1"}).exit_code, 2);
+}
+
+TEST(Rewind, RunAgainIsEqualToARunThatNeverWentBack) {
+  const Folder folder;
+  const Ended straight = run_shoal({"run", folder.world(), "--bus", "none"});
+  Live live(folder, {"--duration", "20", "--record", folder.file("log.lcm")});
+  live.run_until("9.37");
+  const Ended back = control({"rewind", "--value", "4.2"});
+  EXPECT_EQ(back.exit_code, 0) << back.errors;
+  EXPECT_EQ(back.output, "step 517, 5.17 s, branch 1, paused\n");
+  live.run_until("12");
+  EXPECT_EQ(control({"rewind", "run", "--value", "11"}).exit_code, 0);
+  ASSERT_EQ(live.program.wait(), 0) << live.program.errors();
+  Ended ended;
+  ended.output = live.program.output();
+  EXPECT_EQ(state_hash_in(ended), state_hash_in(straight));
+  EXPECT_THAT(ended.output, HasSubstr("branch 2"));
+  for (const char* log : {"log.lcm", "log.branch1.lcm", "log.branch2.lcm"}) {
+    const Ended replayed = run_shoal({"replay", folder.file(log)});
+    EXPECT_EQ(replayed.exit_code, 0) << log << replayed.output << replayed.errors;
+  }
+}
+
+TEST(Rewind, MailAndRequestsComeInAgainAtTheSameSteps) {
+  const Folder folder;
+  Live live(folder);
+  bridges::LcmListener listener(own_url());
+  live.run_until("2");
+  EXPECT_EQ(
+      control({"spawn", "{name: guest, file: " + source("vehicles/rover.yaml") + ", position_m: [0, 3, 0]}"}).exit_code,
+      0);
+  shoal::twist_command_t forward{};
+  forward.forward_mps = 1;
+  for (const char* channel : {"r1.drive.cmd", "guest.drive.cmd"}) listener.publish(channel, shoal::encode(forward));
+  live.run_until("4.5");
+  EXPECT_EQ(control({"do", "{move: ball, position_m: [3, 3, 3]}"}).exit_code, 0);
+  live.run_until("4.9");
+  EXPECT_EQ(control({"snapshot", "first"}).exit_code, 0);
+  live.run_until("8");
+  const Ended back = control({"rewind", "--value", "3.1"});
+  EXPECT_EQ(back.output, "step 490, 4.9 s, branch 1, paused\n") << back.errors;
+  EXPECT_EQ(control({"snapshot", "again"}).exit_code, 0);
+  EXPECT_EQ(hash_of_snapshot(folder.file("snaps/again.snapshot")),
+            hash_of_snapshot(folder.file("snaps/first.snapshot")));
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+}
+
+TEST(Rewind, TellsOfVehiclesThatAreGone) {
+  const Folder folder;
+  Live live(folder);
+  bridges::LcmListener listener(own_url());
+  listener.listen("sim.vehicle");
+  live.run_until("2");
+  EXPECT_EQ(control({"spawn", "{name: guest, file: " + source("vehicles/rover.yaml") + ", position_m: [0, 3, 0]}",
+                     "--client", "visitor"})
+                .exit_code,
+            0);
+  live.run_until("4");
+  EXPECT_EQ(control({"rewind", "--value", "3"}).exit_code, 0);
+  EXPECT_TRUE(await([&] {
+    const auto message = listener.next(100ms);
+    if (!message) return false;
+    const auto vehicle = shoal::decode<shoal::sim_vehicle_t>(message->payload, shoal::Finite::any);
+    return vehicle.vehicle == "guest" && !vehicle.present && vehicle.client == "visitor";
+  }));
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+}
+
+TEST(Rewind, RefusesWhatCannotBeAndSaysSo) {
+  const Folder folder;
+  Live live(folder, {"--rewind-s", "3"});
+  live.run_until("50");
+  const auto refused = [](std::vector<std::string> arguments) {
+    const Ended ended = control(std::move(arguments));
+    EXPECT_EQ(ended.exit_code, 1) << ended.output;
+    return ended.errors;
+  };
+  EXPECT_THAT(refused({"rewind", "--value", "49"}),
+              HasSubstr("cannot go back 49 s from 50 s: what is kept begins at "));
+  EXPECT_THAT(refused({"rewind", "--value", "-1"}), HasSubstr("'rewind' needs a value above 0, in seconds, got -1"));
+  EXPECT_THAT(refused({"rewind"}), HasSubstr("'rewind' needs a value above 0"));
+  EXPECT_THAT(refused({"rewind", "--value", "nan"}), HasSubstr("'rewind' needs a value above 0, in seconds, got nan"));
+  EXPECT_THAT(refused({"rewind", "fast", "--value", "1"}), HasSubstr("takes the text 'run' or none, got 'fast'"));
+  EXPECT_THAT(refused({"until", "--value", "50"}), HasSubstr("'until' needs a time after now (50 s)"));
+  EXPECT_THAT(refused({"until", "--value", "inf"}), HasSubstr("'until' needs a time after now"));
+  EXPECT_THAT(refused({"until", "nothing"}), HasSubstr("the name of an event of the world, got 'nothing'"));
+  EXPECT_THAT(refused({"snapshot", "../escape"}), HasSubstr("a snapshot has a file name of"));
+  EXPECT_THAT(refused({"restore", "missing"}), HasSubstr("missing.snapshot: cannot be read"));
+  EXPECT_EQ(control({"snapshot", "once"}).exit_code, 0);
+  EXPECT_THAT(refused({"snapshot", "once"}), HasSubstr("exists already"));
+  write_file(folder.file("snaps/bad.snapshot"), "SHOALSNP");
+  EXPECT_THAT(refused({"restore", "bad"}), HasSubstr("bad.snapshot: is cut off after 8 bytes"));
+  EXPECT_EQ(Live::where(), "step 5000, 50 s, branch 0, paused\n");
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+}
+
+TEST(Restore, GoesOnFromAFileAndRefusesAnotherWorldsOne) {
+  const Folder folder;
+  Live live(folder);
+  live.run_until("3");
+  EXPECT_EQ(control({"snapshot", "a"}).exit_code, 0);
+  live.run_until("5");
+  EXPECT_EQ(control({"snapshot", "b"}).exit_code, 0);
+  const Ended restored = control({"restore", "a"});
+  EXPECT_EQ(restored.output, "step 300, 3 s, branch 1, paused\n") << restored.errors;
+  live.run_until("5");
+  EXPECT_EQ(control({"snapshot", "c"}).exit_code, 0);
+  EXPECT_EQ(hash_of_snapshot(folder.file("snaps/b.snapshot")), hash_of_snapshot(folder.file("snaps/c.snapshot")));
+  ASSERT_EQ(run_shoal({"run", folder.world(), "--bus", "none", "--seed", "99", "--duration", "2", "--snapshot-at", "1",
+                       "--snapshots", folder.file("snaps")})
+                .exit_code,
+            0);
+  const Ended other = control({"restore", "branch0_step100"});
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.errors, HasSubstr("is of another world or other values: line "));
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+}
+
+TEST(Until, PausesAtATimeAndWhenAnEventFires) {
+  const Folder folder;
+  Live live(folder);
+  live.run_until("1.005");
+  EXPECT_EQ(Live::where(), "step 101, 1.01 s, branch 0, paused\n");
+  EXPECT_EQ(control({"until", "late"}).exit_code, 0);
+  live.await_pause();
+  // The event fires in the step that begins at 7.25 s.
+  EXPECT_EQ(Live::where(), "step 726, 7.26 s, branch 0, paused\n");
+  EXPECT_EQ(control({"step", "--value", "3"}).exit_code, 0);
+  EXPECT_TRUE(await([] { return Live::where().starts_with("step 729,"); }, patience));
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+}
+
+TEST(Branch, KeepsTheResultsOfTheOneThatIsLeft) {
+  const Folder folder;
+  const std::string results = folder.file("results");
+  Live live(folder, {"--results", results, "--no-pictures"});
+  live.run_until("6");
+  EXPECT_EQ(control({"rewind", "--value", "4"}).exit_code, 0);
+  EXPECT_EQ(control({"do", "{move: ball, position_m: [5, 5, 1]}"}).exit_code, 0);
+  live.run_until("6");
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+  EXPECT_EQ(summary_value(results, "steps"), "600");
+  EXPECT_EQ(summary_value(results, "branch"), "1");
+  EXPECT_EQ(summary_value(results + "/branch0", "steps"), "600");
+  EXPECT_EQ(summary_value(results + "/branch0", "ended"), "\"rewound\"");
+  EXPECT_NE(summary_value(results, "state_hash"), summary_value(results + "/branch0", "state_hash"));
+  const auto lines = [](const std::string& path) {
+    const std::string text = text_of_file(path);
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  // Cut off at 2 s and written again to 6 s: as many lines, each time once.
+  EXPECT_EQ(lines(results + "/tracks.csv"), lines(results + "/branch0/tracks.csv"));
+}
+
+}  // namespace

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+
+#include "bridges/lcm/run_journal.hpp"
+#include "tools/experiment/run_buses.hpp"
+
+namespace tools {
+
+/// The records of a run's branches: each branch has a file of its own, which begins with what its parent wrote up to
+/// the step where they part.
+class BranchLog {
+ public:
+  /// `record`: of branch 0; empty: there is none.  All must outlive this.
+  BranchLog(RunBuses& buses, bridges::RunJournal& journal, const std::string& record, bool overwrite)
+      : buses_(buses), journal_(journal), record_(record), overwrite_(overwrite) {}
+
+  /// Call after each step whose messages are out.  `oldest`: nobody goes back further.
+  void mark(std::int64_t step, std::int64_t oldest);
+  /// The world has gone to `step`.  `ours`: it has been there in this run, else the log begins anew.  Throws BusError
+  /// when the file cannot be made; the old record goes on then.
+  void branch(std::int32_t branch, std::int64_t step, bool ours);
+  /// `coop.lcm` becomes `coop.branch2.lcm`.
+  std::string file_of(std::int32_t branch) const;
+
+ private:
+  struct Mark {
+    std::int64_t step;
+    RunBuses::RecordMark record;
+    std::int64_t sequence;
+  };
+
+  RunBuses& buses_;
+  bridges::RunJournal& journal_;
+  std::string record_;
+  bool overwrite_;
+  std::deque<Mark> marks_;
+};
+
+}  // namespace tools

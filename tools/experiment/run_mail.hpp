@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+
+#include "bridges/lcm/lockstep_service.hpp"
+#include "bridges/lcm/run_journal.hpp"
+#include "bridges/lcm/sim_service.hpp"
+#include "tools/experiment/run_buses.hpp"
+
+namespace tools {
+
+/// What came into a run from outside since a step, and a way to let it come in again.
+class RunMail {
+ public:
+  /// All must outlive this.
+  RunMail(RunBuses& buses, bridges::RunJournal& journal, bridges::SimService& service,
+          bridges::LockstepService& lockstep)
+      : buses_(buses), journal_(journal), service_(service), lockstep_(lockstep) {}
+
+  /// Keeps all that comes from now on.  `too_much` is called when it is more than so many bytes.
+  void keep(std::size_t most_bytes, std::function<void()> too_much);
+  std::size_t bytes() const { return bytes_; }
+  void forget_before(std::int64_t step);
+  /// What came at this step and later.
+  void forget_from(std::int64_t step);
+
+  /// Nothing goes out from here on, and what comes in is thrown away.
+  void begin_again(std::int64_t from_step);
+  /// What came after the reports of a step, up to the next, takes effect again.
+  void deliver(std::int64_t step);
+  void end_again();
+
+ private:
+  struct Kept {
+    std::int64_t step;
+    bridges::RunJournal::Letter letter;
+    std::size_t bytes() const;
+  };
+  void deliver(const bridges::RunJournal::Letter& letter);
+
+  RunBuses& buses_;
+  bridges::RunJournal& journal_;
+  bridges::SimService& service_;
+  bridges::LockstepService& lockstep_;
+  std::deque<Kept> kept_;
+  std::size_t bytes_ = 0;
+  std::size_t next_ = 0;  ///< to be delivered
+};
+
+}  // namespace tools

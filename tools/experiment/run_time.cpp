@@ -1,0 +1,56 @@
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+
+#include "tools/experiment/run.hpp"
+#include "tools/experiment/run_error.hpp"
+
+// What a run does beside when its world moves in time, and when it writes snapshots.
+
+namespace tools {
+
+void Run::leave_branch() {
+  journal_.finish();
+  if (!results_) return;
+  Summary left;
+  left.ended = "rewound";
+  left.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  add_figures(left);
+  results_->keep_branch(left, scoring_, loaded_.resolved);
+}
+
+void Run::begin_branch(bool ours) {
+  const std::int64_t step = world_.step_number();
+  branch_log_.branch(control_.branch, step, ours);
+  lockstep_.set_branch(control_.branch);
+  if (results_) results_->cut_tracks(world_.now());
+  progress_.restart(world_.now());
+  buses_.set_time(world_.now());
+  service_.tell_changes();
+  service_.publish_info();
+  buses_.end_of_step();
+}
+
+void Run::take_snapshots() {
+  const double now_s = sim::to_seconds(world_.now());
+  const double half_step_s = sim::to_seconds(world_.step_time()) / 2;
+  bool due = false;
+  while (!snapshot_at_s_.empty() && snapshot_at_s_.back() < now_s + half_step_s) {
+    due = due || snapshot_at_s_.back() > now_s - half_step_s;
+    snapshot_at_s_.pop_back();
+  }
+  if (options_.snapshot_every_s && steps_taken_ > 0) {
+    const double since = std::floor((now_s + half_step_s) / *options_.snapshot_every_s);
+    const double before = std::floor((now_s - half_step_s) / *options_.snapshot_every_s);
+    due = due || since > before;
+  }
+  if (!due) return;
+  try {
+    progress_.clear();
+    spdlog::info("{}", time_.write_snapshot(""));
+  } catch (const std::exception& error) {  // asked for on the command line: not to be missed
+    throw RunError(4, "bus", error.what());
+  }
+}
+
+}  // namespace tools

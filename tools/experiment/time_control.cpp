@@ -1,0 +1,314 @@
+#include "tools/experiment/time_control.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "sim/config/message_text.hpp"
+#include "sim/state/state_archive.hpp"
+
+namespace tools {
+
+namespace {
+
+constexpr int most_files = 1000;
+constexpr const char* suffix = ".snapshot";
+
+/// One run of bytes that the ring can compare part by part, and back.  Its last bytes tell the three sizes.
+constexpr std::size_t trailer_bytes = 3 * sizeof(std::uint64_t);
+
+sim::Bytes joined(const sim::Bytes& state, const sim::Bytes& scores, const sim::Bytes& owners) {
+  sim::Bytes all;
+  all.reserve(state.size() + scores.size() + owners.size() + 64);
+  for (const sim::Bytes* part : {&state, &scores, &owners}) all.insert(all.end(), part->begin(), part->end());
+  auto trailer = sim::StateArchive::saver();
+  trailer.section("sizes");
+  for (const sim::Bytes* part : {&state, &scores, &owners}) {
+    std::uint64_t size = part->size();
+    trailer(size);
+  }
+  trailer.end();
+  const sim::Bytes sizes = trailer.take_bytes();
+  all.insert(all.end(), sizes.begin(), sizes.end());
+  return all;
+}
+
+/// How often an event of the world has fired; nothing when there is none.
+std::optional<std::int64_t> event_firings(const sim::World& world, const std::string& name) {
+  static_cast<void>(world);
+  static_cast<void>(name);
+  return std::nullopt;
+}
+
+/// The line where two texts part.
+std::string first_difference(const std::string& there, const std::string& here) {
+  std::size_t begin = 0;
+  int line = 1;
+  while (begin < there.size() && begin < here.size()) {
+    const std::size_t end_there = std::min(there.find('\n', begin), there.size());
+    const std::size_t end_here = std::min(here.find('\n', begin), here.size());
+    const std::string a = there.substr(begin, end_there - begin);
+    const std::string b = here.substr(begin, end_here - begin);
+    if (a != b) return fmt::format("line {}: '{}' there, '{}' here", line, sim::shortened(a), sim::shortened(b));
+    begin = end_here + 1;
+    ++line;
+  }
+  return fmt::format("line {}: one is longer", line);
+}
+
+}  // namespace
+
+TimeControl::TimeControl(sim::World& world, sim::RunControl& control, Scoring& scoring, bridges::SimService& service,
+                         RunMail& mail, Options options, Hooks hooks)
+    : world_(world),
+      control_(control),
+      scoring_(scoring),
+      service_(service),
+      mail_(mail),
+      options_(std::move(options)),
+      hooks_(std::move(hooks)),
+      steps_per_second_(std::max<std::int64_t>(1, std::llround(1e6 / static_cast<double>(world.step_time().count())))),
+      ring_(std::llround(options_.rewind_s * static_cast<double>(steps_per_second_)), options_.most_bytes) {
+  service_.set_time_machine(this);
+  if (options_.rewind_s > 0) mail_.keep(options_.most_bytes, [this] { forget_all(); });
+}
+
+TimeControl::Saved TimeControl::save(History history) const {
+  Saved saved;
+  saved.state = world_.snapshot();
+  auto scores = sim::StateArchive::saver();
+  scoring_.visit_state(scores, history);
+  scores.end();
+  saved.scores = scores.take_bytes();
+  auto owners = sim::StateArchive::saver();
+  owners.section("owners");
+  service_.visit_state(owners);
+  owners.end();
+  saved.owners = owners.take_bytes();
+  return saved;
+}
+
+void TimeControl::load(const Saved& saved, History history) {
+  world_.restore(saved.state);
+  load_beside(saved, history);
+}
+
+void TimeControl::load_beside(const Saved& saved, History history) {
+  auto scores = sim::StateArchive::restorer(saved.scores);
+  scoring_.visit_state(scores, history);
+  scores.end();
+  auto owners = sim::StateArchive::restorer(saved.owners);
+  owners.section("owners");
+  service_.visit_state(owners);
+  owners.end();
+}
+
+void TimeControl::after_step() {
+  if (options_.rewind_s <= 0) return;
+  const std::int64_t step = world_.step_number();
+  const bool due = step % steps_per_second_ == 0 || ring_.size() == 0;
+  if (!due) return;
+  const Saved saved = save(History::length);
+  ring_.add(step, joined(saved.state, saved.scores, saved.owners), mail_.bytes());
+  mail_.forget_before(*ring_.oldest());
+}
+
+void TimeControl::forget_all() {
+  ring_.forget_after(-1);
+  mail_.forget_from(-1);
+}
+
+bool TimeControl::stop_when_there() {
+  const bool there = control_.until && world_.now() >= *control_.until;
+  const bool fired =
+      !control_.until_event.empty() && event_firings(world_, control_.until_event).value_or(0) > control_.until_firings;
+  if (!there && !fired) return false;
+  control_.forget_until();
+  control_.set_paused(true);
+  return true;
+}
+
+std::optional<std::string> TimeControl::obey(const std::string& command, const std::string& text, double value) {
+  const auto run_on = [&] {
+    if (!text.empty() && text != "run")
+      throw std::runtime_error("'rewind' takes the text 'run' or none, got '" + sim::shortened(sim::printable(text)) +
+                               "'");
+    return text == "run";
+  };
+  if (command == "snapshot") return write_snapshot(text);
+  if (command == "restore") return restore(text, value == 1);
+  if (command == "rewind") return rewind(value, run_on());
+  if (command == "until") return text.empty() ? run_until(value) : run_until_event(text);
+  if (command == "where") return place();
+  return std::nullopt;
+}
+
+std::string TimeControl::place() const {
+  return fmt::format("step {}, {:.6g} s, branch {}{}", world_.step_number(), sim::to_seconds(world_.now()),
+                     control_.branch, control_.paused ? ", paused" : "");
+}
+
+std::string TimeControl::run_until(double time_s) {
+  if (!(time_s > sim::to_seconds(world_.now()) && time_s <= 1e9))
+    throw std::runtime_error(fmt::format("'until' needs a time after now ({:.6g} s) and at most 1e9 s, got {}",
+                                         sim::to_seconds(world_.now()), time_s));
+  control_.forget_until();
+  control_.until = sim::from_seconds(time_s);
+  control_.set_paused(false);
+  return place() + fmt::format(", runs until {:.6g} s", time_s);
+}
+
+std::string TimeControl::run_until_event(const std::string& name) {
+  const auto firings = event_firings(world_, name);
+  if (!firings)
+    throw std::runtime_error("'until' needs a time or the name of an event of the world, got '" +
+                             sim::shortened(sim::printable(name)) + "'");
+  control_.forget_until();
+  control_.until_event = name;
+  control_.until_firings = *firings;
+  control_.set_paused(false);
+  return place() + ", runs until event '" + name + "' fires";
+}
+
+std::string TimeControl::rewind(double seconds, bool run_on) {
+  if (options_.rewind_s <= 0) throw std::runtime_error("this run keeps no snapshots to go back to: see --rewind-s");
+  if (!(seconds > 0 && seconds <= 1e9))
+    throw std::runtime_error(fmt::format("'rewind' needs a value above 0, in seconds, got {}", seconds));
+  const double steps = seconds * 1e6 / static_cast<double>(world_.step_time().count());
+  const std::int64_t target = world_.step_number() - std::llround(steps);
+  const auto base = ring_.newest_until(target);
+  if (!base) {
+    const double oldest_s = sim::to_seconds(sim::Time{ring_.oldest().value_or(0) * world_.step_time().count()});
+    throw std::runtime_error(fmt::format("cannot go back {:.6g} s from {:.6g} s: what is kept begins at {:.6g} s",
+                                         seconds, sim::to_seconds(world_.now()), oldest_s));
+  }
+  travel(
+      [&] {
+        const sim::Bytes all = ring_.get(*base);
+        std::uint64_t sizes[3];
+        std::memcpy(sizes, all.data() + all.size() - trailer_bytes, trailer_bytes);
+        const auto at = [&](std::uint64_t offset) { return all.begin() + static_cast<std::ptrdiff_t>(offset); };
+        load({{at(0), at(sizes[0])},
+              {at(sizes[0]), at(sizes[0] + sizes[1])},
+              {at(sizes[0] + sizes[1]), at(sizes[0] + sizes[1] + sizes[2])}},
+             History::length);
+        simulate_again(target);
+        ring_.forget_after(target);
+        mail_.forget_from(target);
+      },
+      run_on, true);
+  return place();
+}
+
+void TimeControl::simulate_again(std::int64_t to_step) {
+  mail_.begin_again(world_.step_number());
+  while (world_.step_number() < to_step) {
+    mail_.deliver(world_.step_number());
+    world_.step();
+    service_.publish_step();  // metrics may count it; nobody else hears it
+    scoring_.after_step();
+  }
+}
+
+void TimeControl::travel(const std::function<void()>& work, bool run_on, bool ours) {
+  const Saved before = save(History::whole);
+  if (hooks_.leaving) hooks_.leaving();
+  mail_.begin_again(world_.step_number());
+  try {
+    work();
+  } catch (const std::exception& error) {
+    try {
+      load(before, History::whole);
+    } catch (const std::exception&) {
+      broken_ = error.what();
+    }
+    mail_.end_again();
+    throw;
+  }
+  mail_.end_again();
+  ++control_.branch;
+  control_.forget_until();
+  control_.set_paused(!run_on);
+  moved_ = true;
+  if (hooks_.arrived) hooks_.arrived(ours);
+}
+
+void TimeControl::go_on_from(const Snapshot& snapshot) {
+  if (snapshot.step_us != world_.step_time().count() || snapshot.epoch_us != world_.epoch_us())
+    throw std::runtime_error(fmt::format(
+        "the snapshot has a step of {} us and an epoch of {}, this world {} us and {}: they cannot be changed",
+        snapshot.step_us, snapshot.epoch_us, world_.step_time().count(), world_.epoch_us()));
+  world_.restore(snapshot.state);
+  options_.scores_from_s = snapshot.from_s;
+  try {
+    load_beside({{}, snapshot.scores, snapshot.owners}, History::whole);
+  } catch (const sim::SnapshotError&) {
+    throw std::runtime_error("the metrics of the snapshot are others than this world's: `metrics` cannot be changed");
+  }
+}
+
+Snapshot TimeControl::snapshot() const {
+  Snapshot s;
+  s.version = options_.version;
+  s.world = world_.config().name;
+  s.resolved_world = options_.resolved_world;
+  s.seed = world_.config().run.seed;
+  s.epoch_us = world_.epoch_us();
+  s.step_us = world_.step_time().count();
+  s.step = world_.step_number();
+  s.branch = control_.branch;
+  s.from_s = options_.scores_from_s;
+  s.state_hash = world_.state_hash();
+  for (const auto& vehicle : world_.vehicles()) s.vehicles.push_back(vehicle->name());
+  Saved saved = save(History::whole);
+  s.state = std::move(saved.state);
+  s.scores = std::move(saved.scores);
+  s.owners = std::move(saved.owners);
+  return s;
+}
+
+std::string TimeControl::path_of(const std::string& name) const {
+  if (options_.directory.empty())
+    throw std::runtime_error("this run has no directory for snapshots: see --snapshots and --results");
+  const bool good =
+      !name.empty() && name.size() <= 100 && name.front() != '.' && std::all_of(name.begin(), name.end(), [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-' || c == '_';
+      });
+  if (!good)
+    throw std::runtime_error(
+        "a snapshot has a file name of 1 to 100 letters, digits, '.', '-' and '_', not beginning with '.', got '" +
+        sim::shortened(sim::printable(name)) + "'");
+  return options_.directory + "/" + name + (name.ends_with(suffix) ? "" : suffix);
+}
+
+std::string TimeControl::write_snapshot(const std::string& name) {
+  const std::string path =
+      path_of(!name.empty() ? name : fmt::format("branch{}_step{}", control_.branch, world_.step_number()));
+  if (files_ >= most_files) throw std::runtime_error(fmt::format("this run wrote {} snapshots already", most_files));
+  std::error_code error;
+  std::filesystem::create_directories(options_.directory, error);
+  if (!options_.overwrite && std::filesystem::exists(path, error))
+    throw std::runtime_error(path + ": exists already; choose another name");
+  tools::write_snapshot(path, snapshot());
+  ++files_;
+  return place() + ": " + path;
+}
+
+std::string TimeControl::restore(const std::string& name, bool run_on) {
+  const std::string path = path_of(name);
+  const Snapshot snapshot = read_snapshot(path);
+  check_version(snapshot, path, options_.version);
+  if (snapshot.resolved_world != options_.resolved_world)
+    throw std::runtime_error(path + ": is of another world or other values: " +
+                             first_difference(snapshot.resolved_world, options_.resolved_world));
+  travel([&] { load({snapshot.state, snapshot.scores, snapshot.owners}, History::whole); }, run_on, false);
+  options_.scores_from_s = snapshot.from_s;
+  forget_all();
+  after_step();
+  return place();
+}
+
+}  // namespace tools

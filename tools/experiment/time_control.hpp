@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "bridges/lcm/sim_service.hpp"
+#include "bridges/lcm/time_machine.hpp"
+#include "sim/run/run_control.hpp"
+#include "sim/world/world.hpp"
+#include "tools/experiment/run_mail.hpp"
+#include "tools/experiment/scoring.hpp"
+#include "tools/experiment/snapshot_file.hpp"
+#include "tools/experiment/snapshot_ring.hpp"
+
+namespace tools {
+
+/// Moves a running world in time: keeps snapshots of the last seconds and the mail since then, goes back to any step
+/// of them, writes snapshot files and goes on from them, and stops the run at a time or event.
+///
+/// Going back begins a new branch: RunControl::branch grows by one.
+class TimeControl final : public bridges::TimeMachine {
+ public:
+  struct Options {
+    double rewind_s = 0;  ///< how far back a run can go; 0: not at all
+    std::size_t most_bytes = std::size_t{64} << 20;
+    std::string directory;       ///< of snapshot files; empty: none can be asked for
+    bool overwrite = false;      ///< snapshot files may replace others
+    std::string resolved_world;  ///< YAML
+    std::string version;         ///< of shoal
+    double scores_from_s = 0;    ///< since when the scores count
+  };
+  /// What the run does when the world goes elsewhere in time.
+  struct Hooks {
+    std::function<void()> leaving;           ///< before: the branch is as it was left
+    std::function<void(bool ours)> arrived;  ///< after; `ours`: at a step that this run has been at
+  };
+
+  /// All must outlive this.
+  TimeControl(sim::World& world, sim::RunControl& control, Scoring& scoring, bridges::SimService& service,
+              RunMail& mail, Options options, Hooks hooks);
+
+  /// Call before the first step, and after each.
+  void after_step();
+  /// Pauses a run that has come where `until` said.  True: it did so now.
+  bool stop_when_there();
+
+  /// pause, resume, step, speed and what moves in time.  Throws std::runtime_error that says why it was refused.
+  std::optional<std::string> obey(const std::string& command, const std::string& text, double value) override;
+  /// Goes back by so many seconds.
+  std::string rewind(double seconds, bool run_on);
+  /// Runs to a time, or up to the next time an event fires, and pauses there.
+  std::string run_until(double time_s);
+  std::string run_until_event(const std::string& name);
+  /// Writes a file into the directory of snapshots; an empty name makes one of the step.
+  std::string write_snapshot(const std::string& name);
+  /// Goes on from a file in the directory of snapshots.
+  std::string restore(const std::string& name, bool run_on);
+
+  /// Begins a run with a snapshot.  Throws std::runtime_error when it does not fit.
+  void go_on_from(const Snapshot& snapshot);
+  double scores_from_s() const { return options_.scores_from_s; }
+  /// The world as it is.
+  Snapshot snapshot() const;
+  /// Where the world is: `step 2000, 20.00 s, branch 1`.
+  std::string place() const;
+  /// True once after each move in time.
+  bool has_moved() const { return moved_; }
+  bool take_moved() { return std::exchange(moved_, false); }
+  /// Why the world cannot go on.
+  const std::string& broken() const { return broken_; }
+  std::size_t bytes() const { return ring_.bytes() + mail_.bytes(); }
+  std::optional<std::int64_t> oldest_step() const { return ring_.oldest(); }
+
+ private:
+  struct Saved {
+    sim::Bytes state, scores, owners;
+  };
+
+  Saved save(History history) const;
+  void load(const Saved& saved, History history);
+  void load_beside(const Saved& saved, History history);
+  void forget_all();
+  void simulate_again(std::int64_t to_step);
+  /// Carries out `work`, which moves the world; puts the world back when that fails.
+  void travel(const std::function<void()>& work, bool run_on, bool ours);
+  std::string path_of(const std::string& name) const;
+
+  sim::World& world_;
+  sim::RunControl& control_;
+  Scoring& scoring_;
+  bridges::SimService& service_;
+  RunMail& mail_;
+  Options options_;
+  Hooks hooks_;
+  std::int64_t steps_per_second_;
+  SnapshotRing ring_;
+  int files_ = 0;
+  bool moved_ = false;
+  std::string broken_;
+};
+
+}  // namespace tools
