@@ -50,6 +50,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
   control_.paused = options.paused;
   if (options.from) time_.go_on_from(*options.from);
   if (!options.results.empty()) results_ = std::make_unique<Results>(options.results, world_, options.pictures);
+  progress_.restart(world_.now());
   snapshot_at_s_ = options.snapshot_at_s;
   std::sort(snapshot_at_s_.begin(), snapshot_at_s_.end(), std::greater<>());
   if (options.keys && !options.quiet && TerminalKeys::possible()) {
