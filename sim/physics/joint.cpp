@@ -1,6 +1,7 @@
 #include "sim/physics/joint.hpp"
 
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "sim/physics/ode_math.hpp"
@@ -37,6 +38,12 @@ int axes_of(dJointType kind, bool ball_motor) {
 /// All axes of a ball are configured alike.
 const JointAxisConfig& axis_config(const JointConfig& config, int axis) {
   return axis == 0 || config.type == "ball" ? config.axis1 : config.axis2;
+}
+
+/// Where its axes are: ODE does not measure that of a motor with axes of ours, and needs it for the stops.
+void tell_ball_angles(dJointID motor, double sign, std::span<const double> position) {
+  for (int axis = 0; motor != nullptr && axis < dJointGetAMotorNumAxes(motor); ++axis)
+    dJointSetAMotorAngle(motor, axis, sign * position[static_cast<std::size_t>(axis)]);
 }
 
 /// ODE's frame of a body, at its centre of mass.
@@ -173,7 +180,8 @@ void Joint::set_parameter(int parameter, double value, int axis) {
     case dJointTypeUniversal:
       return dJointSetUniversalParam(ode_.get(), parameter, value);
     case dJointTypeBall:
-      return dJointSetAMotorParam(ball_motor_.get(), parameter, value);
+      if (ball_motor_) dJointSetAMotorParam(ball_motor_.get(), parameter, value);
+      return;
     default:
       return;
   }
@@ -199,6 +207,7 @@ double Joint::velocity(int axis) const {
     case dJointTypeUniversal:
       return sign_ * (axis == 0 ? dJointGetUniversalAngle1Rate(ode_.get()) : dJointGetUniversalAngle2Rate(ode_.get()));
     case dJointTypeBall: {
+      if (!ball_motor_) return 0;
       const dBodyID first = dJointGetBody(ode_.get(), 0), second = dJointGetBody(ode_.get(), 1);
       Vector3d w_W = to_eigen(dBodyGetAngularVel(first));
       if (second != nullptr) w_W -= to_eigen(dBodyGetAngularVel(second));
@@ -233,10 +242,8 @@ void Joint::update_position(double step_s) {
   }
   if (kind_ == dJointTypeBall) {
     const Vector3d rotation = rotation_of_ball();
-    for (int axis = 0; axis < axes_; ++axis) {
-      position_[axis] = rotation[axis];
-      dJointSetAMotorAngle(ball_motor_.get(), axis, sign_ * rotation[axis]);
-    }
+    for (int axis = 0; axis < axes_; ++axis) position_[axis] = rotation[axis];
+    tell_ball_angles(ball_motor_.get(), sign_, position_);
     return;
   }
   for (int axis = 0; axis < axes_; ++axis) {
@@ -279,7 +286,8 @@ void Joint::add_effort(double effort, int axis) {
     case dJointTypeUniversal:
       return dJointAddUniversalTorques(ode_.get(), torque1, torque2);
     case dJointTypeBall:
-      return dJointAddAMotorTorques(ball_motor_.get(), torque1, torque2, axis == 2 ? sign_ * effort : 0);
+      if (ball_motor_) dJointAddAMotorTorques(ball_motor_.get(), torque1, torque2, axis == 2 ? sign_ * effort : 0);
+      return;
     default:
       return;
   }
@@ -297,7 +305,7 @@ double Joint::get_parameter(int parameter, int axis) const {
     case dJointTypeUniversal:
       return dJointGetUniversalParam(ode_.get(), parameter);
     case dJointTypeBall:
-      return dJointGetAMotorParam(ball_motor_.get(), parameter);
+      return ball_motor_ ? dJointGetAMotorParam(ball_motor_.get(), parameter) : 0;
     default:
       return 0;
   }
@@ -425,6 +433,7 @@ void Joint::visit_state(StateArchive& archive) {
     set_parameter(dParamVel, sign_ * motor_velocity_[axis], axis);
     set_parameter(dParamFMax, motor_max_force_[axis], axis);
   }
+  if (archive.restoring()) tell_ball_angles(ball_motor_.get(), sign_, position_);
   bool measured = load_ != nullptr;
   archive.unhashed(measured);
   if (measured) measure_load();

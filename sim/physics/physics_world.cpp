@@ -61,10 +61,6 @@ void PhysicsWorld::forget() {
   left_behind.push_back(impl_.release());
 }
 
-bool PhysicsWorld::broken() const {
-  return impl_->broken;
-}
-
 bool PhysicsWorld::anchored(int group) const {
   const std::vector<int>& joints = impl_->group(group).joints;
   return std::any_of(joints.begin(), joints.end(), [&](int number) {

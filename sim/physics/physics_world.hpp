@@ -135,8 +135,6 @@ class PhysicsWorld {
   /// Bit of a category name.  Throws std::out_of_range.
   std::uint32_t category_bit(const std::string& name) const;
   double step_s() const;
-  /// step() threw.
-  bool broken() const;
   /// A joint of the group holds on to the world.
   bool anchored(int group) const;
   /// What is neither a body's nor a joint's: gravity, contacts of the last step, counts.

@@ -156,6 +156,7 @@ void World::sort_devices() {
 
 void World::step() {
   if (!script_) throw SnapshotError("the world was lost when a snapshot was restored");
+  in_step_ = true;
   for (const Listening& listening : listening_)
     if (listening.mail->load(std::memory_order_relaxed) && listening.mail->exchange(false, std::memory_order_acquire))
       listening.device->take_mail(now(), step_number_);
@@ -169,6 +170,7 @@ void World::step() {
   advance_clocks();
   run_due_events();
   sense();
+  in_step_ = false;
 }
 
 /// Between physics and what is due: what is stamped in this step is stamped by the clocks as they stand at its end.

@@ -214,6 +214,7 @@ class World {
   std::int64_t step_us_;
   double step_s_;
   std::int64_t step_number_ = 0;
+  bool in_step_ = false;  ///< also after a step that threw
   Geodesy geodesy_;
   EventQueue events_;
   DeviceHost host_;

@@ -149,8 +149,9 @@ void World::check_removable(const std::string& name) const {
 void World::remove_vehicle(const std::string& name) {
   check_removable(name);
   Vehicle& vehicle = vehicle_named(name);
-  journal_->vehicle_went(vehicle.name());
+  const std::string own_name = vehicle.name();  // the caller's may be that of the vehicle
   take_apart(vehicle);
+  journal_->vehicle_went(own_name);
   sort_devices();
 }
 
@@ -207,8 +208,9 @@ const WorldObject& World::place_object(const ObjectConfig& config, const std::st
 
 void World::remove_object(const std::string& name) {
   const WorldObject& object = object_named(name);
-  journal_->object_went(object.name);
+  const std::string own_name = object.name;  // the caller's may be that of the object
   take_apart(object);
+  journal_->object_went(own_name);
 }
 
 void World::take_apart(const WorldObject& object) {

@@ -1,5 +1,7 @@
 #include "sim/world/world_journal.hpp"
 
+#include <algorithm>
+
 #include "sim/acoustics/channel.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "sim/world/load_world.hpp"
@@ -27,7 +29,7 @@ std::string text_of(const ConfigNode& source) {
 }  // namespace
 
 void WorldJournal::Entry::visit_state(StateArchive& archive) {
-  archive(kind, step, name, text, in_file, text_number, bus, X_W, number, free_numbers, devices);
+  archive(kind, step, name, text, keys, in_file, text_number, bus, X_W, number, free_numbers, devices);
 }
 
 WorldJournal::Entry WorldJournal::entry(Kind kind, const std::string& name) const {
@@ -42,9 +44,30 @@ void WorldJournal::append(Entry entry) {
   StateArchive archive = StateArchive::saver();
   archive(entry);
   const std::vector<std::byte> bytes = archive.take_bytes();
-  last_begin_ = bytes_.size();
-  last_failed_.clear();
+  noted_.push_back({entry.kind, entry.name, entry.keys, entry.text_number, bytes.size()});
   bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+}
+
+void WorldJournal::drop(std::size_t number) {
+  std::ptrdiff_t begin = 0;
+  for (std::size_t i = 0; i < number; ++i) begin += static_cast<std::ptrdiff_t>(noted_[i].bytes);
+  const auto from = bytes_.begin() + begin;
+  bytes_.erase(from, from + static_cast<std::ptrdiff_t>(noted_[number].bytes));
+  noted_.erase(noted_.begin() + static_cast<std::ptrdiff_t>(number));
+}
+
+void WorldJournal::drop_all_of(const std::string& name, std::size_t first) {
+  for (std::size_t i = noted_.size(); i-- > first;)
+    if (noted_[i].name == name || noted_[i].name.starts_with(name + "/")) drop(i);
+}
+
+std::optional<std::size_t> WorldJournal::came_last(Kind kind, const std::string& name) const {
+  for (std::size_t i = noted_.size(); i-- > 0;) {
+    const Kind other = noted_[i].kind;
+    if (other == kind && noted_[i].name == name) return i;
+    if (other == Kind::vehicle_came || other == Kind::object_came || other == Kind::surfaces) return std::nullopt;
+  }
+  return std::nullopt;
 }
 
 std::int64_t WorldJournal::number_of(const std::string& text) {
@@ -77,19 +100,34 @@ void WorldJournal::vehicle_came(const VehicleInstance& instance, int number) {
 }
 
 void WorldJournal::vehicle_failed(const VehicleInstance& instance) {
-  Entry failed = entry(Kind::vehicle_failed, instance.name);
-  // Who tries over and over makes one entry.
-  const std::string text = instance.config->source ? text_of(*instance.config->source) : "";
-  if (!last_failed_.empty() && last_failed_ == text) bytes_.resize(last_begin_);
+  Entry failed = entry(Kind::surfaces, instance.name);
   note_vehicle(failed, instance);
-  failed.free_numbers = world_.free_numbers_;
-  failed.devices = static_cast<std::int64_t>(world_.devices_.size());
-  append(std::move(failed));
-  last_failed_ = text;
+  note_what_stayed(instance.name, failed.text_number, failed.in_file);
+}
+
+void WorldJournal::note_what_stayed(const std::string& name, std::int64_t text_number, std::int64_t in_file) {
+  const auto brought = [&](const Noted& noted) {
+    return (noted.kind == Kind::surfaces || noted.kind == Kind::vehicle_came) && noted.text_number == text_number;
+  };
+  // What is in the world file has brought its surfaces at the start.
+  if (in_file < 0 && std::none_of(noted_.begin(), noted_.end(), brought)) {
+    Entry surfaces = entry(Kind::surfaces, name);
+    surfaces.text_number = text_number;
+    append(std::move(surfaces));
+  }
+  if (!noted_.empty() && noted_.back().kind == Kind::numbers) drop(noted_.size() - 1);
+  Entry numbers = entry(Kind::numbers, "");
+  numbers.free_numbers = world_.free_numbers_;
+  numbers.devices = static_cast<std::int64_t>(world_.devices_.size());
+  append(std::move(numbers));
 }
 
 void WorldJournal::vehicle_went(const std::string& name) {
-  append(entry(Kind::vehicle_went, name));
+  const std::optional<std::size_t> came = came_last(Kind::vehicle_came, name);
+  if (!came || noted_[*came].text_number < 0) return append(entry(Kind::vehicle_went, name));
+  const std::int64_t text_number = noted_[*came].text_number;
+  drop_all_of(name, *came);
+  note_what_stayed(name, text_number, -1);
 }
 
 void WorldJournal::object_came(const ObjectConfig& config, const std::string& name, const Pose& X_WE,
@@ -104,12 +142,22 @@ void WorldJournal::object_came(const ObjectConfig& config, const std::string& na
 }
 
 void WorldJournal::object_went(const std::string& name) {
-  append(entry(Kind::object_went, name));
+  if (const std::optional<std::size_t> came = came_last(Kind::object_came, name))
+    drop_all_of(name, *came);
+  else
+    append(entry(Kind::object_went, name));
 }
 
 void WorldJournal::device_changed(const std::string& full_name, const ConfigNode& values) {
   Entry changed = entry(Kind::device_changed, full_name);
   changed.text = to_yaml(values);
+  for (const ConfigNode::Entry& value : values.entries) changed.keys += value.key + " ";
+  const std::string vehicle = full_name.substr(0, full_name.find('/'));
+  for (std::size_t i = noted_.size(); i-- > 0 && noted_[i].name != vehicle;)
+    if (noted_[i].kind == Kind::device_changed && noted_[i].name == full_name && noted_[i].keys == changed.keys) {
+      drop(i);  // these values count no more
+      break;
+    }
   append(std::move(changed));
 }
 
@@ -122,7 +170,8 @@ void WorldJournal::anchored_vehicle_moved(const std::string& name, const Pose& X
 void WorldJournal::replay(std::span<const std::byte> bytes) {
   bytes_.clear();
   texts_.clear();
-  last_failed_.clear();
+  noted_.clear();
+  gap_.clear();
   known_texts_.clear();
   parsed_.clear();
   vehicles_.clear();
@@ -154,8 +203,11 @@ void WorldJournal::apply(const Entry& entry) {
       number_of(entry.text);
       return;
     case Kind::vehicle_came:
-    case Kind::vehicle_failed:
       return apply_vehicle(entry);
+    case Kind::surfaces:
+      return world_.bring_surfaces(*vehicle_config(entry));
+    case Kind::numbers:
+      return apply_numbers(entry);
     case Kind::vehicle_went:
       return world_.take_apart(world_.vehicle_named(entry.name));
     case Kind::object_came:
@@ -183,11 +235,11 @@ void WorldJournal::apply_vehicle(const Entry& entry) {
   instance.bus = entry.bus;
   instance.config = vehicle_config(entry);
   world_.bring_surfaces(*instance.config);
-  if (entry.kind == Kind::vehicle_came) {
-    world_.next_vehicle_number_ = static_cast<int>(entry.number);
-    world_.build_vehicle(instance);
-    return;
-  }
+  world_.next_vehicle_number_ = static_cast<int>(entry.number);
+  world_.build_vehicle(instance);
+}
+
+void WorldJournal::apply_numbers(const Entry& entry) {
   const auto devices = static_cast<std::size_t>(entry.devices);
   if (devices < world_.devices_.size() || devices > world_.devices_.size() + entry.free_numbers.size())
     throw SnapshotError("the snapshot has numbers of devices that cannot be");
@@ -196,6 +248,10 @@ void WorldJournal::apply_vehicle(const Entry& entry) {
         (static_cast<std::size_t>(number) < world_.devices_.size() &&
          world_.devices_[static_cast<std::size_t>(number)]))
       throw SnapshotError("the snapshot has numbers of devices that cannot be");
+  std::vector<int> sorted = entry.free_numbers;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+    throw SnapshotError("the snapshot has numbers of devices that cannot be");
   world_.devices_.resize(devices);
   world_.free_numbers_ = entry.free_numbers;
 }

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,9 @@ class World;
 /// What changed the make of a world since its start: what came and went, and which devices got other values.  A
 /// snapshot carries it, so that a world of the same configuration can be brought to the same make, with the same
 /// numbers and in the same order.  The order counts: ODE goes through bodies and joints as they came.
+///
+/// It does not grow with what leaves no trace: who came and went with nobody coming in between, those who could not
+/// come, and values of a device that were changed again.
 class WorldJournal {
  public:
   explicit WorldJournal(World& world) : world_(world) {}
@@ -41,12 +46,23 @@ class WorldJournal {
   void replay(std::span<const std::byte> bytes);
 
  private:
-  enum class Kind { text, vehicle_came, vehicle_failed, vehicle_went, object_came, object_went, device_changed, moved };
+  enum class Kind {
+    text,
+    vehicle_came,
+    vehicle_went,
+    object_came,
+    object_went,
+    device_changed,
+    moved,
+    surfaces,  ///< of a vehicle that could not come, or went again
+    numbers    ///< of devices: which are free, in their order
+  };
   struct Entry {
     Kind kind = Kind::text;
     std::int64_t step = 0;
     std::string name;
     std::string text;           ///< YAML, of kind text and device_changed
+    std::string keys;           ///< of the values that were changed
     std::int64_t in_file = -1;  ///< place in the lists of the world file, for what was read there
     std::int64_t text_number = -1;
     std::string bus;
@@ -59,11 +75,19 @@ class WorldJournal {
 
   Entry entry(Kind kind, const std::string& name) const;
   void append(Entry entry);
+  /// Drops the entries of a name, from the entry `first` on, and those of its devices.
+  void drop_all_of(const std::string& name, std::size_t first);
+  void drop(std::size_t number);
+  /// Where something came, when nobody else has come since; else nothing.
+  std::optional<std::size_t> came_last(Kind kind, const std::string& name) const;
+  /// What a vehicle that is not there has left behind.
+  void note_what_stayed(const std::string& name, std::int64_t text_number, std::int64_t in_file);
   void note_vehicle(Entry& entry, const VehicleInstance& instance);
   /// The number of a text, which is noted when it is new.
   std::int64_t number_of(const std::string& text);
   void apply(const Entry& entry);
   void apply_vehicle(const Entry& entry);
+  void apply_numbers(const Entry& entry);
   void apply_object(const Entry& entry);
   const ConfigNode& parsed(std::int64_t text_number);
   std::shared_ptr<const VehicleConfig> vehicle_config(const Entry& entry);
@@ -71,8 +95,14 @@ class WorldJournal {
 
   World& world_;
   Bytes bytes_;
-  std::size_t last_begin_ = 0;  ///< of the last entry
-  std::string last_failed_;     ///< the last entry is of a vehicle that failed, with this text; else empty
+  /// An entry in bytes_, with what decides whether it still counts.
+  struct Noted {
+    Kind kind;
+    std::string name, keys;
+    std::int64_t text_number;
+    std::size_t bytes;
+  };
+  std::vector<Noted> noted_;
   std::map<std::string, std::int64_t> texts_;
   std::string gap_;
   // While it replays.

@@ -87,7 +87,7 @@ struct SnapshotHead {
 
 Bytes World::snapshot() const {
   if (!script_) throw SnapshotError("the world was lost when a snapshot was restored");
-  if (physics_->broken()) throw SnapshotError("the physics of the world broke down: there is nothing to go on from");
+  if (in_step_) throw SnapshotError("the last step of the world was not ended: there is nothing to go on from");
   if (!journal_->gap().empty()) throw SnapshotError("this world cannot be saved: " + journal_->gap());
   StateArchive archive = StateArchive::saver(last_snapshot_bytes_ + last_snapshot_bytes_ / 8);
   archive.section("make");
@@ -101,7 +101,7 @@ Bytes World::snapshot() const {
 
 void World::restore(std::span<const std::byte> snapshot) {
   std::optional<Bytes> before;
-  if (script_ && !physics_->broken() && journal_->gap().empty()) before = this->snapshot();
+  if (script_ && !in_step_ && journal_->gap().empty()) before = this->snapshot();
   try {
     restore_state(snapshot);
   } catch (const std::exception& error) {
@@ -130,12 +130,13 @@ void World::restore_state(std::span<const std::byte> snapshot) {
                  std::to_string(head.step_us) + " us; this one has seed " + std::to_string(seed()) + ", step " +
                  std::to_string(step_us_) + " us");
   const bool same_make = head.journal == journal_->bytes() && journal_->gap().empty();
-  if (!same_make || !script_ || physics_->broken()) {
+  if (!same_make || !script_ || in_step_) {
     build_again();
     journal_->replay(head.journal);
   }
   visit_state(archive);
   sort_devices();
+  in_step_ = false;
 }
 
 /// Devices before what they hold on to, as at the end of the world.

@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 
-
 #include "tools/experiment/scale_scene.hpp"
 
 namespace {
@@ -29,9 +28,8 @@ int bodies_of(const sim::World& world) {
 
 void count_bodies(benchmark::State& state, const sim::World& world) {
   state.counters["bodies"] = bodies_of(world);
-  state.counters["us_per_body"] =
-      benchmark::Counter(static_cast<double>(state.iterations()) * bodies_of(world) * 1e-6,
-                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["us_per_body"] = benchmark::Counter(static_cast<double>(state.iterations()) * bodies_of(world) * 1e-6,
+                                                     benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 void Snapshot(benchmark::State& state) {

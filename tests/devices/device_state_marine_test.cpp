@@ -110,13 +110,13 @@ TEST(DeviceState, MessagesInTheQueuesOfModemsAreSentAfterARestore) {
       "0.3}";
   const std::string yaml = test::modem_sea({{"a", "[0, 0, 5]", radio}, {"b", "[30, 0, 5]", radio}});
   test::SavedRun run(yaml, [](test::TappedWorld& to, int step) {
-    // 8 s of air time in the queue.
+    // 5 s of air time in the queue.
     if (step != 5) return;
     for (const char* text : {"the first of all", "and the second", "a third", "number four", "five", "six", "seven"})
       to.send("a.radio.cmd", test::bytes_to(text));
     to.send("b.radio.cmd", test::bytes_to("something back", "a"));
   });
-  run.expect_restored_worlds_go_on_alike({6, 100, 333, 610}, 500);
+  run.expect_restored_worlds_go_on_alike({6, 100, 333, 402}, 300);
 }
 
 TEST(DeviceState, AMicromodemGoesOnInTheMiddleOfACycle) {

@@ -33,6 +33,8 @@ TEST(DeviceState, OfEveryDeviceAtSeaOutlastsASnapshot) {
 }
 
 /// The images are taken in pieces over most of the time between two samples, so that every snapshot cuts one in two.
+/// The third image of depth is sampled after 216 steps and the next after 323, 107.5 ms before which the camera was
+/// where it was half a step before the snapshot.
 TEST(DeviceState, CamerasGoOnWithAHalfDoneImage) {
   SavedRun run(
       test::rover_world(
@@ -41,15 +43,15 @@ TEST(DeviceState, CamerasGoOnWithAHalfDoneImage) {
           "[0, 0, 0.4], noise: {gaussian_std: 2}}\n"
           "        - {name: blurred, type: camera, width: 16, height: 12, rate_hz: 9, exposure_time_s: 0.1, "
           "blur_samples: 9, position_m: [0, 0, 0.4], full_well_electrons: 1000, exposure: {auto: true}}\n"
-          "        - {name: depth, type: camera, image: depth, width: 16, height: 12, rate_hz: 9, readout_s: 0.1, "
-          "position_m: [0, 0, 0.4], noise: {gauss_markov_std: 0.1}}\n"
+          "        - {name: depth, type: camera, image: depth, width: 16, height: 12, rate_hz: 9.3, phase_s: 0, "
+          "readout_s: 0.1075, position_m: [0, 0, 0.4], noise: {gauss_markov_std: 0.1}}\n"
           "        - {name: parts, type: camera, image: segmentation_parts, width: 16, height: 12, rate_hz: 9, "
           "readout_s: 0.1, position_m: [0, 0, 0.4]}\n",
-          "  - {name: wall, fixed: true, position_m: [3, 0, 0.5], parts: [{shape: box, size_m: [0.2, 1, 1]}]}\n"),
+          "  - {name: wall, fixed: true, position_m: [3, 0, 0.5], parts: [{shape: box, size_m: [0.2, 6, 6]}]}\n"),
       [](TappedWorld& world, int step) {
         if (step == 5) world.send("r1.drive.cmd", shoal::twist_command_t{0, 0.4, 0.7});
       });
-  run.expect_restored_worlds_go_on_alike({50, 151, 290}, 250);
+  run.expect_restored_worlds_go_on_alike({50, 151, 216, 290}, 250);
 }
 
 /// A sled that is pushed against a wall and pulled away; its bumper samples seldom, its battery runs empty at the end.
@@ -122,10 +124,10 @@ TEST(DeviceState, AnAutopilotGoesOnWithItsRouteItsStationAndItsSums) {
            file + "\n    position_m: [0, 0, -10]\n    overrides:\n" + overrides;
   };
   SavedRun route(
-      world("remus100_survey.yaml",
-            "      devices.autopilot.waypoints: [{at_m: [8, 0], depth_m: 11}, {at_m: [16, 8], speed_mps: 1.2}, "
-            "{at_m: [30, 8]}]\n"
-            "      devices.autopilot.guidance: {lookahead_m: 5, integral: 0.3, acceptance_radius_m: 2}\n"));
+      yaml("remus100_survey.yaml",
+           "      devices.autopilot.waypoints: [{at_m: [8, 0], depth_m: 11}, {at_m: [16, 8], speed_mps: 1.2}, "
+           "{at_m: [30, 8]}]\n"
+           "      devices.autopilot.guidance: {lookahead_m: 5, integral: 0.3, acceptance_radius_m: 2}\n"));
   route.expect_restored_worlds_go_on_alike({5, 655, 1431}, 300);
   SavedRun station(yaml("bluerov2_station.yaml", "      devices.autopilot.rate_hz: 7\n"),
                    [](TappedWorld& world, int step) {

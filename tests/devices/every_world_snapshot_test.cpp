@@ -60,7 +60,7 @@ std::vector<std::string> worlds() {
 
 class EveryWorld : public testing::TestWithParam<std::string> {
  protected:
-  static constexpr int more_steps = 200;
+  static constexpr int more_steps = 300;
 
   EveryWorld() {
     sim::LoadOptions options;
@@ -68,7 +68,7 @@ class EveryWorld : public testing::TestWithParam<std::string> {
     loaded = sim::load_world(SHOAL_SOURCE_DIR "/worlds/" + GetParam() + ".yaml", options);
     sim::Random random(1, GetParam());
     random.begin_step(0);
-    for (int i = 0; i < 3; ++i) saved_at.push_back(static_cast<int>(random.integer_below(400)));
+    for (int i = 0; i < 3; ++i) saved_at.push_back(static_cast<int>(random.integer_below(1500)));
     std::sort(saved_at.begin(), saved_at.end());
   }
 

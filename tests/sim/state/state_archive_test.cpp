@@ -168,11 +168,12 @@ TEST(StateArchive, IsRefusedWhenItIsTooLong) {
   std::vector<std::byte> bytes = saved(example());
   bytes.push_back(std::byte{0});
   Everything back;
-  EXPECT_EQ(error_of(bytes, [&](StateArchive& archive) {
-              archive.section("all");
-              archive(back);
-              archive.end();
-            }),
+  EXPECT_EQ(error_of(bytes,
+                     [&](StateArchive& archive) {
+                       archive.section("all");
+                       archive(back);
+                       archive.end();
+                     }),
             "snapshot: the end: 1 bytes are left over in the snapshot");
 }
 

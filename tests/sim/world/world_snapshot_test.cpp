@@ -46,7 +46,7 @@ vehicles:
       devices:
         - {name: imu, type: imu, rate_hz: 50, gyro_noise: {gaussian_std: 0.01, random_walk_std: 0.01}, latency_s: 0.02,
            jitter_s: 0.01}
-        - {name: lidar, type: lidar, rate_hz: 10, beams: 20, range_noise: {gaussian_std: 0.01}}
+        - {name: lidar, type: lidar, rate_hz: 10, beams: 20, range_std_m: 0.01}
         - {name: bumper, type: bumper, rate_hz: 20}
 events:
   - {name: rain, every: 0.4, jitter_s: 0.1, probability: 0.7,
@@ -99,6 +99,45 @@ TEST(WorldSnapshot, VisitorsFaultsMovesAndChangesComeBack) {
     if (step == 140) world.physics().set_gravity(1.6);
   };
   SavedRun(busy_world, meddle).expect_restored_worlds_go_on_alike({10, 45, 55, 75, 95, 115, 125, 145, 170}, 100);
+}
+
+/// Each comes and goes often, alone or while others are there; values are changed again and again.
+TEST(WorldSnapshot, WhatLeavesNoTraceIsNotKept) {
+  TappedWorld test(busy_world);
+  const auto bytes_after = [&](int rounds) {
+    for (int i = 0; i < rounds; ++i) {
+      test.world.add_vehicle(visitor(test.world, "guest", 0));
+      test.world.step();
+      test.world.add_vehicle(visitor(test.world, "other", 2));
+      test.world.step();
+      EXPECT_THROW(test.world.add_vehicle(visitor(test.world, "taken", 2)), sim::ConfigError);
+      sim::Diagnostics diagnostics;
+      const std::string values = "{rate_hz: " + std::to_string(10 + i % 2) + "}";
+      test.world.change_device("rover1/imu", sim::parse_config_text(values, "change", diagnostics), diagnostics);
+      test.world.remove_vehicle("other");
+      test.world.remove_vehicle("guest");
+      test.world.remove_object("crate3");
+      test.world.add_object(test.world.config().objects[2], "crate3", sim::make_pose({9, 9, 1}, {0, 0, 0}));
+      test.world.step();
+    }
+    return test.world.snapshot().size();
+  };
+  const auto few = static_cast<double>(bytes_after(2));
+  // Reports under way and contacts come and go.
+  EXPECT_NEAR(static_cast<double>(bytes_after(20)), few, 2000);
+  TappedWorld fresh(busy_world);
+  const sim::Bytes snapshot = test.world.snapshot();
+  fresh.world.restore(snapshot);
+  EXPECT_EQ(fresh.world.snapshot(), snapshot);
+  for (int i = 0; i < 100; ++i) {
+    if (i == 10) {  // numbers of devices are those of the original
+      test.world.add_vehicle(visitor(test.world, "last", 0));
+      fresh.world.add_vehicle(visitor(fresh.world, "last", 0));
+    }
+    test.world.step();
+    fresh.world.step();
+    ASSERT_EQ(fresh.world.state_hash(), test.world.state_hash()) << i;
+  }
 }
 
 /// A mast that is joined to the world, and is put elsewhere.
