@@ -54,6 +54,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
     journal_.begin_branch(control_.branch, 1);
   }
   if (!options.results.empty()) results_ = std::make_unique<Results>(options.results, world_, options.pictures);
+  progress_.restart(world_.now());
   snapshot_at_s_ = options.snapshot_at_s;
   std::sort(snapshot_at_s_.begin(), snapshot_at_s_.end(), std::greater<>());
   if (options.keys && !options.quiet && TerminalKeys::possible()) {
