@@ -144,11 +144,11 @@ bool LockstepService::may_join(const sim::LockstepMember& first, const sim::Lock
     throw std::runtime_error("another client of the name '" + first.name + "' takes part, and answers" +
                              (terms.session == 0 ? "" : "; give this one another name"));
   };
-  const auto [challenge, fresh] = challenges_.try_emplace(first.name, first.sequence - (first.answered ? 0 : 1));
+  const std::int64_t answers = first.sequence - (first.answered ? 0 : 1);
+  const auto [challenge, fresh] = challenges_.try_emplace(first.name, answers);
+  if (!fresh && answers > challenge->second) refuse();  // it answered a tick since then
   const auto asked = asked_.find(first.name);
   if (asked != asked_.end() && !first.answered) return Clock::now() - asked->second.begin > alive_for;
-  // It answered a tick since then.
-  if (!fresh && first.sequence > challenge->second && first.answered) refuse();
   if (control_.paused) refuse();
   return false;
 }
