@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 
+#include "bridges/lcm/lockstep_service.hpp"
 #include "bridges/lcm/run_journal.hpp"
 #include "bridges/lcm/sim_service.hpp"
 #include "shoal/message_codec.hpp"
@@ -93,7 +94,6 @@ class Replay {
         others_(make_others()),
         world_(loaded_.config, *main_.gate, serial_.opener(),
                [this](const std::string& name) -> sim::Bus& { return *others_.at(name).gate; }),
-        lockstep_(world_, control_),
         service_(*main_.gate, *main_.network, world_, control_, lockstep_,
                  {sim::to_yaml(loaded_.resolved), version_text(), build_text(), log_.info.files}) {
     check_times();
@@ -116,7 +116,7 @@ class Replay {
         for_each_line([](Line& line) { line.gate->admit(); });
         world_.step();
         after_step();
-        progress.update(world_.now(), messages_.equal(), false);
+        progress.update(world_.now(), messages_.equal(), control_, false);
       }
     } catch (const sim::PhysicsFault& error) {
       differ("the world", std::string("physics fault here: ") + error.what());
@@ -157,7 +157,8 @@ class Replay {
       throw std::runtime_error(fmt::format("{}: its run has the epoch {}, the world here {}: all stamps would differ",
                                            log_.path, log_.info.epoch_utime, world_.epoch_us()));
     if (log_.proven_step && *log_.proven_step <= 0 && log_.usable_step() < log_.last_step)
-      throw std::runtime_error(log_.path + ": cannot be run again from the start: " + log_.holes.front());
+      throw std::runtime_error(log_.path + ": cannot be run again from the start: " + log_.holes.front() +
+                               "; the log begins later than the run, or the run began with a snapshot");
     if (log_.last_step == 0 && log_.hashes.empty())
       throw std::runtime_error(log_.path + ": ends before the first step");
   }
@@ -343,7 +344,7 @@ class Replay {
   std::map<std::string, Line> others_;
   sim::RunControl control_;
   sim::World world_;
-  bridges::LockstepService lockstep_;
+  bridges::LockstepService lockstep_{world_, control_};  // nobody joins
   bridges::SimService service_;
   std::size_t next_letter_ = 0;
   bool cut_ = false;

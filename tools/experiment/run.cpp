@@ -48,8 +48,13 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
   }
   control_.speed = options.speed.value_or(loaded.config.run.speed);
   control_.paused = options.paused;
-  if (options.from) time_.go_on_from(*options.from);
+  if (options.from) {
+    time_.go_on_from(*options.from);
+    // What came before is not in this run's log, and a gap says so.
+    journal_.begin_branch(control_.branch, 1);
+  }
   if (!options.results.empty()) results_ = std::make_unique<Results>(options.results, world_, options.pictures);
+  progress_.restart(world_.now());
   snapshot_at_s_ = options.snapshot_at_s;
   std::sort(snapshot_at_s_.begin(), snapshot_at_s_.end(), std::greater<>());
   if (options.keys && !options.quiet && TerminalKeys::possible()) {

@@ -142,13 +142,20 @@ std::optional<std::string> TimeControl::obey(const std::string& command, const s
   if (command == "restore") return restore(text, value == 1);
   if (command == "rewind") return rewind(value, run_on());
   if (command == "until") return text.empty() ? run_until(value) : run_until_event(text);
-  if (command == "where") return place();
+  if (command == "where") return place() + what_is_kept();
   return std::nullopt;
 }
 
 std::string TimeControl::place() const {
   return fmt::format("step {}, {:.6g} s, branch {}{}", world_.step_number(), sim::to_seconds(world_.now()),
                      control_.branch, control_.paused ? ", paused" : "");
+}
+
+std::string TimeControl::what_is_kept() const {
+  const auto oldest = ring_.oldest();
+  if (!oldest) return "";
+  return fmt::format("; can go back to {:.6g} s, which takes {:.2f} MB",
+                     sim::to_seconds(world_.step_time() * *oldest), static_cast<double>(bytes()) / 1e6);
 }
 
 std::string TimeControl::run_until(double time_s) {

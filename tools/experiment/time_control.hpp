@@ -86,6 +86,7 @@ class TimeControl final : public bridges::TimeMachine {
   void simulate_again(std::int64_t to_step);
   /// Carries out `work`, which moves the world; puts the world back when that fails.
   void travel(const std::function<void()>& work, bool run_on, bool ours);
+  std::string what_is_kept() const;
   std::string path_of(const std::string& name) const;
 
   sim::World& world_;
