@@ -218,6 +218,20 @@ TEST(LockstepService, ASecondClientOfANameIsRefusedWhenTheFirstAnswers) {
   EXPECT_THAT(s.join("pilot", "{session: 6}").text, HasSubstr("another client of the name 'pilot' takes part"));
 }
 
+TEST(LockstepService, ASecondClientIsRefusedAlsoWhileTheFirstIsAtWork) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
+  s.synchronize([&] {
+    EXPECT_TRUE(s.is_undecided("join", "pilot", "{session: 6}"));
+    s.acknowledge(0, "pilot", 5, 1);
+  });
+  s.test.world.step();
+  s.synchronize([&] {
+    EXPECT_THAT(s.join("pilot", "{session: 6}").text, HasSubstr("another client of the name 'pilot' takes part"));
+    s.acknowledge(1, "pilot", 5, 2);
+  });
+}
+
 TEST(LockstepService, ASecondClientTakesThePlaceOfAFirstThatIsGone) {
   Service s;
   ASSERT_TRUE(s.join("pilot", "{session: 5, on_timeout: wait, timeout_s: 60}").ok);
