@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 
+#include "bridges/lcm/lockstep_service.hpp"
 #include "bridges/lcm/run_journal.hpp"
 #include "bridges/lcm/sim_service.hpp"
 #include "shoal/message_codec.hpp"
@@ -115,7 +116,7 @@ class Replay {
         for_each_line([](Line& line) { line.gate->admit(); });
         world_.step();
         after_step();
-        progress.update(world_.now(), messages_.equal(), false);
+        progress.update(world_.now(), messages_.equal(), control_, false);
       }
     } catch (const sim::PhysicsFault& error) {
       differ("the world", std::string("physics fault here: ") + error.what());
@@ -156,7 +157,8 @@ class Replay {
       throw std::runtime_error(fmt::format("{}: its run has the epoch {}, the world here {}: all stamps would differ",
                                            log_.path, log_.info.epoch_utime, world_.epoch_us()));
     if (log_.proven_step && *log_.proven_step <= 0 && log_.usable_step() < log_.last_step)
-      throw std::runtime_error(log_.path + ": cannot be run again from the start: " + log_.holes.front());
+      throw std::runtime_error(log_.path + ": cannot be run again from the start: " + log_.holes.front() +
+                               "; the log begins later than the run, or the run began with a snapshot");
     if (log_.last_step == 0 && log_.hashes.empty())
       throw std::runtime_error(log_.path + ": ends before the first step");
   }
@@ -341,8 +343,8 @@ class Replay {
   Line main_;
   std::map<std::string, Line> others_;
   sim::RunControl control_;
-  sim::Lockstep lockstep_;
   sim::World world_;
+  bridges::LockstepService lockstep_{world_, control_};  // nobody joins
   bridges::SimService service_;
   std::size_t next_letter_ = 0;
   bool cut_ = false;
