@@ -46,8 +46,8 @@ class SimService {
     muted_ = muted;
     visitors_.set_muted(muted);
   }
-  /// Tells of vehicles that came or went.
-  void tell_changes() { visitors_.tell_changes(); }
+  /// Tells of vehicles that came or went when time did, beside the record, which knows nothing of another time.
+  void tell_changes() { visitors_.tell_changes(network_); }
   /// Publishes sim.info now, and not a second time at this step.
   void publish_info();
   /// Carries out a request that a journal wrote down.  Throws std::runtime_error that says why it was refused, as then.

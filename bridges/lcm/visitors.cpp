@@ -53,14 +53,14 @@ Visitors::Visitors(sim::World& world, sim::Bus& bus) : world_(world), bus_(bus),
   for (const auto& vehicle : world.vehicles()) known_.emplace(vehicle->name(), message_of(*vehicle));
 }
 
-void Visitors::tell(shoal::sim_vehicle_t& message, bool present) {
+void Visitors::tell(sim::Bus& bus, shoal::sim_vehicle_t& message, bool present) {
   message.utime = world_.epoch_us() + world_.now().count();
   message.present = present;
   const auto owner = owners_.find(message.vehicle);
   // Whose it was is not known any more when time went back behind its coming.
   if (owner != owners_.end() || present) message.client = owner == owners_.end() ? "" : owner->second.client;
   shoal::encode_into(message, buffer_);
-  bus_.publish("sim.vehicle", buffer_, world_.now());
+  bus.publish("sim.vehicle", buffer_, world_.now());
 }
 
 void Visitors::write_down(const std::string& client, const std::string& command, const std::string& text) {
@@ -75,7 +75,7 @@ void Visitors::write_down(const std::string& client, const std::string& command,
   journal_->request(request);
 }
 
-void Visitors::tell_changes() {
+void Visitors::tell_changes(sim::Bus& bus) {
   if (muted_ || generation_ == world_.generation()) return;
   generation_ = world_.generation();
   for (auto known = known_.begin(); known != known_.end();) {
@@ -83,7 +83,7 @@ void Visitors::tell_changes() {
       ++known;
       continue;
     }
-    tell(known->second, false);
+    tell(bus, known->second, false);
     owners_.erase(known->first);
     known = known_.erase(known);
   }
@@ -91,7 +91,7 @@ void Visitors::tell_changes() {
     const auto [known, fresh] = known_.try_emplace(vehicle->name());
     if (!fresh) continue;
     known->second = message_of(*vehicle);
-    tell(known->second, true);
+    tell(bus, known->second, true);
   }
 }
 
@@ -134,7 +134,7 @@ std::string Visitors::describe(const std::string& name) {
   const sim::Vehicle* vehicle = world_.find_vehicle(name);
   if (vehicle == nullptr) throw sim::WorldError("there is no vehicle '" + sim::shortened(sim::printable(name)) + "'");
   shoal::sim_vehicle_t& message = known_.at(vehicle->name());
-  tell(message, true);
+  tell(bus_, message, true);
   return in_words(message);
 }
 

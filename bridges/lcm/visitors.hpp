@@ -35,7 +35,9 @@ class Visitors {
   void act(const std::string& text);
 
   /// Tells of the vehicles that came or went since the last call.
-  void tell_changes();
+  void tell_changes() { tell_changes(bus_); }
+  /// The same on another bus.
+  void tell_changes(sim::Bus& bus);
   /// The client lives.
   void heard_of(const std::string& client);
   /// Removes the vehicles of clients that said nothing for their time-out (wall time).
@@ -64,7 +66,7 @@ class Visitors {
   };
 
   std::string add(const std::string& client, const sim::SpawnRequest& request);
-  void tell(shoal::sim_vehicle_t& message, bool present);
+  void tell(sim::Bus& bus, shoal::sim_vehicle_t& message, bool present);
   void write_down(const std::string& client, const std::string& command, const std::string& text);
 
   sim::World& world_;

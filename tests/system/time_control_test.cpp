@@ -27,7 +27,7 @@ Ended control(std::vector<std::string> arguments) {
 
 /// A rover with a lidar and a modem, which an event pushes about, and noise everywhere.
 std::string lively_world() {
-  return "shoal: 1\nname: lively\nrun: {duration_s: 20, speed: max}\n"
+  return "shoal: 1\nname: lively\nrun: {duration_s: 20, speed: 0}\n"
          "objects:\n  - {name: ground, fixed: true, parts: [{shape: plane}]}\n"
          "  - {name: ball, position_m: [2, 0, 1], parts: [{shape: sphere, radius_m: 0.2, mass_kg: 1}]}\n"
          "vehicles:\n  - {name: r1, file: " +

@@ -10,6 +10,12 @@ void BranchLog::mark(std::int64_t step, std::int64_t oldest) {
   marks_.push_back({step, buses_.record_mark(), journal_.sequence()});
 }
 
+void BranchLog::check(std::int32_t branch) const {
+  std::error_code error;
+  if (record_.empty() || overwrite_ || !std::filesystem::exists(file_of(branch), error)) return;
+  throw bridges::BusError(file_of(branch) + ": exists already; the record of the branch would go there");
+}
+
 void BranchLog::branch(std::int32_t branch, std::int64_t step, bool ours) {
   while (!marks_.empty() && marks_.back().step > step) marks_.pop_back();
   Mark mark{step, {}, 1};  // not from the start: the gap in the numbers says so

@@ -19,6 +19,8 @@ class BranchLog {
 
   /// Call after each step whose messages are out.  `oldest`: nobody goes back further.
   void mark(std::int64_t step, std::int64_t oldest);
+  /// Throws BusError when the file of this branch is there already and may not be replaced.
+  void check(std::int32_t branch) const;
   /// The world has gone to `step`.  `ours`: it has been there in this run, else the log begins anew.  Throws BusError
   /// when the file cannot be made; the old record goes on then.
   void branch(std::int32_t branch, std::int64_t step, bool ours);

@@ -10,6 +10,7 @@
 namespace tools {
 
 void Run::leave_branch() {
+  branch_log_.check(control_.branch + 1);
   journal_.finish();
   if (!results_) return;
   Summary left;

@@ -1,6 +1,7 @@
 #include "tools/experiment/time_control.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -111,8 +112,14 @@ void TimeControl::after_step() {
   const std::int64_t step = world_.step_number();
   const bool due = step % steps_per_second_ == 0 || ring_.size() == 0;
   if (!due) return;
-  const Saved saved = save(History::length);
-  ring_.add(step, joined(saved.state, saved.scores, saved.owners), mail_.bytes());
+  try {
+    const Saved saved = save(History::length);
+    ring_.add(step, joined(saved.state, saved.scores, saved.owners), mail_.bytes());
+  } catch (const sim::SnapshotError& error) {
+    spdlog::warn("this run cannot go back: {}", error.what());
+    options_.rewind_s = 0;
+    return forget_all();
+  }
   mail_.forget_before(*ring_.oldest());
 }
 

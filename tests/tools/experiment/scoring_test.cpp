@@ -47,6 +47,53 @@ struct ScoredWorld {
   tools::Scoring scoring;
 };
 
+/// What `save` saved goes back into `scoring`.
+void put_back(tools::Scoring& scoring, const sim::Bytes& bytes, tools::History history) {
+  auto archive = sim::StateArchive::restorer(bytes);
+  scoring.visit_state(archive, history);
+  archive.end();
+}
+
+sim::Bytes save(tools::Scoring& scoring, tools::History history) {
+  auto archive = sim::StateArchive::saver();
+  scoring.visit_state(archive, history);
+  archive.end();
+  return archive.take_bytes();
+}
+
+TEST(Scoring, GoesBackToWhatWasSaved) {
+  for (const tools::History history : {tools::History::length, tools::History::whole}) {
+    ScoredWorld world;
+    world.run_for(0.1);
+    world.estimate("good", 1 + 3, 2 + 4);
+    world.run_for(0.1);
+    const sim::Bytes saved = save(world.scoring, history);
+    const auto figures = world.scoring.figures();
+    EXPECT_EQ(figures.at("good.samples"), 1);
+    world.estimate("good", 5, 5);
+    world.run_for(0.1);
+    world.estimate("good", 5, 6);  // still in the mailbox
+    EXPECT_EQ(world.scoring.figures().at("good.samples"), 2);
+    put_back(world.scoring, saved, history);
+    EXPECT_EQ(world.scoring.figures().at("good.samples"), 1);
+    EXPECT_EQ(world.scoring.figures().at("good.rms_m"), figures.at("good.rms_m"));
+    world.run_for(0.01);
+    EXPECT_EQ(world.scoring.figures().at("good.samples"), 1) << "mail of another time was read";
+  }
+}
+
+TEST(Scoring, OnlyAWholeHistoryGoesIntoAnotherRun) {
+  ScoredWorld world, other;
+  world.run_for(0.1);
+  world.estimate("good", 1 + 3, 2 + 4);
+  world.run_for(0.1);
+  put_back(other.scoring, save(world.scoring, tools::History::whole), tools::History::whole);
+  EXPECT_EQ(other.scoring.figures().at("good.rms_m"), world.scoring.figures().at("good.rms_m"));
+  ScoredWorld third;
+  const sim::Bytes length = save(world.scoring, tools::History::length);
+  EXPECT_THROW(put_back(third.scoring, length, tools::History::length), sim::SnapshotError);
+}
+
 TEST(Scoring, SumsUpTheErrors) {
   ScoredWorld world;
   world.run_for(0.1);
