@@ -180,9 +180,7 @@ void Run::loop() {
 }
 
 void Run::step() {
-  buses_.set_time(world_.now());
-  buses_.admit(
-      [this](const std::string& bus, std::span<const sim::MailGate::Mail> mail) { journal_.admitted(bus, mail); });
+  admit_mail();
   world_.step();
   ++steps_taken_;
   control_.step_taken();
@@ -194,6 +192,12 @@ void Run::step() {
   // Looking for dead children costs a system call; ten times a simulated second will do.
   if (world_.step_number() % 10 == 0) check_programs();
   progress_.update(world_.now(), messages(), control_, false);
+}
+
+void Run::admit_mail() {
+  buses_.set_time(world_.now());
+  buses_.admit(
+      [this](const std::string& bus, std::span<const sim::MailGate::Mail> mail) { journal_.admitted(bus, mail); });
 }
 
 void Run::end_of_step() {
