@@ -28,7 +28,7 @@ std::string two_rovers(const std::string& duration_s, const std::string& more = 
                      "plane}]}\nvehicles:\n";
   for (const char* name : {"rover1", "rover2"})
     text += "  - {name: " + std::string(name) + ", file: " + source("vehicles/rover.yaml") +
-            ", pose: {position_m: [0, " + (name[5] == '1' ? "0" : "5") + ", 0.2]}}\n";
+            ", position_m: [0, " + (name[5] == '1' ? "0" : "5") + ", 0.2]}\n";
   return text + more;
 }
 

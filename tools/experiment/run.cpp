@@ -48,7 +48,11 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
   }
   control_.speed = options.speed.value_or(loaded.config.run.speed);
   control_.paused = options.paused;
-  if (options.from) time_.go_on_from(*options.from);
+  try {
+    if (options.from) time_.go_on_from(*options.from);
+  } catch (const std::runtime_error& error) {
+    throw RunError(2, "configuration", options.from_file + ": " + error.what());
+  }
   if (!options.results.empty()) results_ = std::make_unique<Results>(options.results, world_, options.pictures);
   progress_.restart(world_.now());
   snapshot_at_s_ = options.snapshot_at_s;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bridges/lcm/event_log.hpp"
+#include "bridges/lcm/lockstep_service.hpp"
 #include "bridges/lcm/recording_bus.hpp"
 #include "bridges/lcm/run_journal.hpp"
 #include "bridges/lcm/sim_service.hpp"
@@ -75,8 +76,8 @@ class RecordedRun {
   sim::MailGate gate;
   bridges::RunJournal journal;
   sim::RunControl control;
-  sim::Lockstep lockstep;
   sim::World world;
+  bridges::LockstepService lockstep{world, control};
   bridges::SimService service;
 };
 

@@ -17,10 +17,9 @@ namespace {
 
 using test::RecordedRun;
 using test_support::ScratchFolder;
-using testing::AnyOf;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::Not;
 using tools::replay;
 using tools::ReplayOptions;
 using tools::ReplayOutcome;
