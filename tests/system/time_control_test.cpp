@@ -49,7 +49,8 @@ struct Live {
     EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, patience));
   }
   static std::vector<std::string> arguments(const Folder& folder, const std::vector<std::string>& more) {
-    std::vector<std::string> all{built("shoal"), "run",     folder.world(), "--paused",           "--lcm-url", own_url(), "--snapshots",  folder.file("snaps"), "--speed",    "max"};
+    std::vector<std::string> all{built("shoal"), "run",         folder.world(),       "--paused", "--lcm-url",
+                                 own_url(),      "--snapshots", folder.file("snaps"), "--speed",  "max"};
     all.insert(all.end(), more.begin(), more.end());
     if (std::find(all.begin(), all.end(), "--duration") == all.end()) all.insert(all.end(), {"--duration", "0"});
     return all;
@@ -164,9 +165,7 @@ TEST(Rewind, MailAndRequestsComeInAgainAtTheSameSteps) {
   Live live(folder);
   bridges::LcmListener listener(own_url());
   live.run_until("2");
-  EXPECT_EQ(
-      control({"spawn", "{name: guest, file: " + source("vehicles/rover.yaml") + ", position_m: [0, 3, 0]}"}).exit_code,
-      0);
+  EXPECT_EQ(control({"spawn", "{name: guest, file: rover.yaml, position_m: [0, 3, 0]}"}).exit_code, 0);
   shoal::twist_command_t forward{};
   forward.forward_mps = 1;
   for (const char* channel : {"r1.drive.cmd", "guest.drive.cmd"}) listener.publish(channel, shoal::encode(forward));
@@ -189,10 +188,8 @@ TEST(Rewind, TellsOfVehiclesThatAreGone) {
   bridges::LcmListener listener(own_url());
   listener.listen("sim.vehicle");
   live.run_until("2");
-  EXPECT_EQ(control({"spawn", "{name: guest, file: " + source("vehicles/rover.yaml") + ", position_m: [0, 3, 0]}",
-                     "--client", "visitor"})
-                .exit_code,
-            0);
+  EXPECT_EQ(
+      control({"spawn", "{name: guest, file: rover.yaml, position_m: [0, 3, 0]}", "--client", "visitor"}).exit_code, 0);
   live.run_until("4");
   EXPECT_EQ(control({"rewind", "--value", "3"}).exit_code, 0);
   EXPECT_TRUE(await([&] {
@@ -274,7 +271,7 @@ TEST(Branch, KeepsTheResultsOfTheOneThatIsLeft) {
   Live live(folder, {"--results", results, "--no-pictures"});
   live.run_until("6");
   EXPECT_EQ(control({"rewind", "--value", "4"}).exit_code, 0);
-  EXPECT_EQ(control({"do", "{move: ball, position_m: [5, 5, 1]}"}).exit_code, 0);
+  EXPECT_EQ(control({"do", "{move: r1, position_m: [5, 5, 0.2]}"}).exit_code, 0);
   live.run_until("6");
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
   EXPECT_EQ(summary_value(results, "steps"), "600");
