@@ -39,7 +39,10 @@ std::string lively_world() {
 }
 
 struct Folder : ScratchFolder {
-  Folder() { write_file(file("world.yaml"), lively_world()); }
+  Folder() {
+    write_file(file("world.yaml"), lively_world());
+    write_file(file("rover.yaml"), text_of_file(source("vehicles/rover.yaml")));  // guests come by file name
+  }
   std::string world() const { return file("world.yaml"); }
 };
 
