@@ -103,9 +103,7 @@ void Client::join(double period_s, std::chrono::milliseconds timeout) {
 }
 
 void Client::join(double period_s, const JoinOptions& options) {
-  with_own_errors([&] {
-    connection_->lcm.join(period_s, options.timeout, {options.on_timeout, options.timeout_s});
-  });
+  with_own_errors([&] { connection_->lcm.join(period_s, options.timeout, {options.on_timeout, options.timeout_s}); });
   connection_->end = End::none;
   connection_->unanswered.reset();
   connection_->joined = true;
@@ -197,8 +195,7 @@ const std::string& Client::reason() const {
 }
 
 void Client::on_rewind(std::function<void(std::int64_t utime)> handler) {
-  connection_->lcm.on_rewind(
-      [handler = std::move(handler)](const shoal::sim_tick_t& tick) { handler(tick.utime); });
+  connection_->lcm.on_rewind([handler = std::move(handler)](const shoal::sim_tick_t& tick) { handler(tick.utime); });
 }
 
 std::int32_t Client::branch() const {

@@ -23,9 +23,8 @@ constexpr const char* reply_channel = "sim.control.reply";
 constexpr const char* question_channel = "sim.resend";
 constexpr const char* bundle_channel = "sim.resent";
 /// The handshake, and what tells of it: no tick names them, and handlers are called when they come.
-constexpr std::string_view unnamed_channels[] = {"sim.ack",      "sim.control", "sim.control.reply",
-                                                 "sim.hash",     "sim.info",    "sim.mail",
-                                                 "sim.resend",   "sim.resent",  "sim.tick"};
+constexpr std::string_view unnamed_channels[] = {"sim.ack",  "sim.control", "sim.control.reply", "sim.hash", "sim.info",
+                                                 "sim.mail", "sim.resend",  "sim.resent",        "sim.tick"};
 
 constexpr milliseconds slice{50};
 /// A message that is on its way comes within this; what was lost is asked for then.
@@ -78,8 +77,8 @@ LockstepClient::LockstepClient(const std::string& url, std::string name)
 
 void LockstepClient::subscribe(const std::string& channel, Handler handler) {
   auto& handlers = handlers_[channel];
-  const bool own = channel == tick_channel || channel == reply_channel || channel == question_channel ||
-                   channel == bundle_channel;
+  const bool own =
+      channel == tick_channel || channel == reply_channel || channel == question_channel || channel == bundle_channel;
   // One subscription per channel, or each message would arrive twice.
   if (handlers.empty() && !own) lcm_.listen(channel);
   if (handlers.empty() && is_named(channel)) {
@@ -134,8 +133,7 @@ void LockstepClient::request(const std::string& command, double value, const std
   }
   const std::string where = " on " + lcm_.url();
   if (stop_ && heed_stop) throw BusError("'" + name_ + "' was stopped while it waited for a simulator" + where);
-  throw BusError("no simulator answered '" + name_ + "' in time" + where +
-                 "; is it running, with the same LCM URL?");
+  throw BusError("no simulator answered '" + name_ + "' in time" + where + "; is it running, with the same LCM URL?");
 }
 
 std::string LockstepClient::terms() const {
@@ -242,7 +240,8 @@ void LockstepClient::take_tick(std::span<const std::byte> payload) {
     }
     return;
   }
-  if (due->sequence == sequence_ && !open_ && sequence_ > 0) return send_ack();  // our answer was lost, or is on its way
+  if (due->sequence == sequence_ && !open_ && sequence_ > 0)
+    return send_ack();  // our answer was lost, or is on its way
   if (due->sequence <= sequence_ || (incomplete_ && incomplete_->sequence == due->sequence)) return;
   const shoal::sim_due_t own = std::move(*due);
   begin_tick(std::move(*tick), own);

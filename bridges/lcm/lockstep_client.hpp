@@ -171,7 +171,7 @@ class LockstepClient {
   std::optional<Incomplete> incomplete_;
   std::int64_t sequence_ = 0;  // of the last tick that was handled
   shoal::sim_tick_t tick_;
-  bool open_ = false;  // handled, and not acknowledged
+  bool open_ = false;                                  // handled, and not acknowledged
   std::vector<Published> published_, sent_, delayed_;  // since the tick; with the last acknowledgement; before the next
   std::set<std::pair<std::size_t, std::uint32_t>> recent_;  // handled a short time ago
   std::deque<std::pair<std::size_t, std::uint32_t>> recent_order_;

@@ -121,7 +121,8 @@ bool LockstepService::join(int line, const shoal::sim_control_request_t& request
     throw std::runtime_error("'join' needs a period that is a multiple of the step of " +
                              std::to_string(sim::to_seconds(world_.step_time())) + " s");
   const sim::LockstepTerms terms = sim::read_lockstep_terms(request.text, defaults_);
-  if (const sim::LockstepMember* first = lockstep_.find(request.client); first && first->terms.session != terms.session) {
+  if (const sim::LockstepMember* first = lockstep_.find(request.client);
+      first && first->terms.session != terms.session) {
     if (!may_join(*first, terms)) return false;
     forget(request.client, "another client of its name took its place");
   }
@@ -144,11 +145,11 @@ bool LockstepService::may_join(const sim::LockstepMember& first, const sim::Lock
     throw std::runtime_error("another client of the name '" + first.name + "' takes part, and answers" +
                              (terms.session == 0 ? "" : "; give this one another name"));
   };
-  const auto [challenge, fresh] = challenges_.try_emplace(first.name, first.sequence - (first.answered ? 0 : 1));
+  const std::int64_t answers = first.sequence - (first.answered ? 0 : 1);
+  const auto [challenge, fresh] = challenges_.try_emplace(first.name, answers);
+  if (!fresh && answers > challenge->second) refuse();  // it answered a tick since then
   const auto asked = asked_.find(first.name);
   if (asked != asked_.end() && !first.answered) return Clock::now() - asked->second.begin > alive_for;
-  // It answered a tick since then.
-  if (!fresh && first.sequence > challenge->second && first.answered) refuse();
   if (control_.paused) refuse();
   return false;
 }
@@ -161,7 +162,8 @@ bool LockstepService::leave(const shoal::sim_control_request_t& request) {
   if (terms.session != 0 && terms.session != member->terms.session)
     throw std::runtime_error("the client '" + member->name + "' that has joined is another one");
   // What it said before it leaves counts, if it takes a while to arrive.
-  const bool unfinished = !member->answered || !lines_[static_cast<std::size_t>(member->line)]->mail.is_complete(member->name);
+  const bool unfinished =
+      !member->answered || !lines_[static_cast<std::size_t>(member->line)]->mail.is_complete(member->name);
   if (terms.session != 0 && unfinished) return false;
   forget(request.client, "left");
   return true;
@@ -215,7 +217,8 @@ std::vector<std::string> LockstepService::late() {
   std::vector<std::string> names;
   for (const sim::LockstepMember* member : lockstep_.missing(world_.step_number())) names.push_back(member->name);
   for (const auto& [name, member] : lockstep_.members())
-    if (member.answered && !lines_[static_cast<std::size_t>(member.line)]->mail.is_complete(name)) names.push_back(name);
+    if (member.answered && !lines_[static_cast<std::size_t>(member.line)]->mail.is_complete(name))
+      names.push_back(name);
   return names;
 }
 
@@ -281,8 +284,9 @@ void LockstepService::check_time(const std::string& client, Asked& asked, Clock:
   char limit[32];
   std::snprintf(limit, sizeof limit, "%g s", timeout_s);
   const std::string step = std::to_string(world_.step_number());
-  const std::string why = member->gone ? "the process of client '" + client + "' ended before it answered step " + step
-                                       : "no acknowledgement from '" + client + "' for step " + step + " within " + limit;
+  const std::string why = member->gone
+                              ? "the process of client '" + client + "' ended before it answered step " + step
+                              : "no acknowledgement from '" + client + "' for step " + step + " within " + limit;
   if (!asked.told) ++summary_of(client).timeouts;
   switch (member->terms.policy()) {
     case sim::OnTimeout::wait:
@@ -466,14 +470,16 @@ void LockstepService::take_bundle(const sim::Message& message) {
     who = bundle.client.substr(0, 60);
     const sim::LockstepMember* member = lockstep_.find(bundle.client);
     if (member == nullptr || member->terms.session != bundle.session)
-      throw std::runtime_error("client '" + bundle.client + "' sends messages again, but takes no part in the lockstep");
+      throw std::runtime_error("client '" + bundle.client +
+                               "' sends messages again, but takes no part in the lockstep");
     if (bundle.sequence != member->sequence || !member->answered) return;  // late
     Line& line = *lines_[static_cast<std::size_t>(member->line)];
     for (std::size_t i = 0; i < bundle.message.size(); ++i) {
       const auto* data = reinterpret_cast<const std::byte*>(bundle.message[i].data.data());
       const sim::Bytes payload(data, data + bundle.message[i].data.size());
       ++summary_of(bundle.client).messages_asked_for;
-      if (!line.mail.add(bundle.client, bundle.first + static_cast<std::int32_t>(i), bundle.message[i].channel, payload))
+      if (!line.mail.add(bundle.client, bundle.first + static_cast<std::int32_t>(i), bundle.message[i].channel,
+                         payload))
         throw std::runtime_error("client '" + bundle.client + "' sends again what it had not named");
     }
   } catch (const std::runtime_error& error) {

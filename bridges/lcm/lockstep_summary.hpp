@@ -9,7 +9,7 @@ namespace bridges {
 struct LockstepSummary {
   std::string client;
   std::int64_t ticks = 0;
-  std::int64_t repeated_ticks = 0;     ///< sent again, as no answer came
+  std::int64_t repeated_ticks = 0;       ///< sent again, as no answer came
   std::int64_t messages_sent_again = 0;  ///< to the client, as it had not received them
   std::int64_t messages_asked_for = 0;   ///< of the client, as they had not come here
   std::int64_t timeouts = 0;

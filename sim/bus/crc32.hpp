@@ -37,8 +37,8 @@ inline std::uint32_t crc32(std::span<const std::byte> bytes) {
   // Eight bytes at once: each goes through the row that puts it behind the others.
   for (; left >= 8; at += 8, left -= 8) {
     const std::uint32_t low = remainder ^ (byte_at(0) | byte_at(1) << 8 | byte_at(2) << 16 | byte_at(3) << 24);
-    remainder = t[7][low & 0xFF] ^ t[6][low >> 8 & 0xFF] ^ t[5][low >> 16 & 0xFF] ^ t[4][low >> 24] ^
-                t[3][byte_at(4)] ^ t[2][byte_at(5)] ^ t[1][byte_at(6)] ^ t[0][byte_at(7)];
+    remainder = t[7][low & 0xFF] ^ t[6][low >> 8 & 0xFF] ^ t[5][low >> 16 & 0xFF] ^ t[4][low >> 24] ^ t[3][byte_at(4)] ^
+                t[2][byte_at(5)] ^ t[1][byte_at(6)] ^ t[0][byte_at(7)];
   }
   for (; left > 0; ++at, --left) remainder = (remainder >> 8) ^ t[0][(remainder ^ byte_at(0)) & 0xFF];
   return ~remainder;

@@ -59,7 +59,7 @@ class ClientMail {
 
   MailGate& gate_;
   std::map<std::string, std::vector<Expected>, std::less<>> expected_;
-  std::deque<Stray> strays_;  // came, and nobody named them yet
+  std::deque<Stray> strays_;                                     // came, and nobody named them yet
   std::multiset<std::pair<std::string, std::uint32_t>> recent_;  // admitted from clients a short time ago
   std::deque<std::pair<std::string, std::uint32_t>> recent_order_;
   std::uint64_t repeated_ = 0;

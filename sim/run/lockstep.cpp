@@ -13,7 +13,8 @@ namespace sim {
 void LockstepTerms::read(ParamReader& in) {
   in.read("session", session, between(0, 9e18), "random number of the client, its own at each start; 0: none");
   in.read("receives", receives, "channels of which it must have every message");
-  in.read_choice("on_timeout", on_timeout, {"wait", "pause", "continue", "end"}, "when it does not answer in timeout_s");
+  in.read_choice("on_timeout", on_timeout, {"wait", "pause", "continue", "end"},
+                 "when it does not answer in timeout_s");
   in.read("timeout_s", timeout_s, between(0.001, 1e6), "wall time to wait for its acknowledgement");
   agreed = agreed || in.has("on_timeout");
   if (receives.size() > 10'000) in.error("receives", "'receives' may name at most 10000 channels");

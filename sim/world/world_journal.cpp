@@ -115,7 +115,9 @@ void WorldJournal::note_what_stayed(const std::string& name, std::int64_t text_n
     surfaces.text_number = text_number;
     append(std::move(surfaces));
   }
-  if (!noted_.empty() && noted_.back().kind == Kind::numbers) drop(noted_.size() - 1);
+  // Only who comes later takes numbers: until somebody comes, the last numbers count.
+  for (std::size_t i = noted_.size(); i-- > 0 && noted_[i].kind != Kind::vehicle_came;)
+    if (noted_[i].kind == Kind::numbers) drop(i);
   Entry numbers = entry(Kind::numbers, "");
   numbers.free_numbers = world_.free_numbers_;
   numbers.devices = static_cast<std::int64_t>(world_.devices_.size());

@@ -9,6 +9,7 @@
 #include "shoal/joint_settings_t.hpp"
 #include "shoal/joint_state_t.hpp"
 #include "sim/world/mounted_device.hpp"
+#include "tests/devices/state_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -271,6 +272,22 @@ TEST(JointDrive, TheWheelOfAHinge2HasNoStops) {
   rig.run_for(0.1);
   EXPECT_EQ(rig.refused(), 1);
   EXPECT_EQ(rig.joint().motor_velocity(1), 0);
+}
+
+/// Saved on its way, at a stop, and after the stop was moved.
+TEST(JointDrive, MotorsAndStopsOutlastASnapshot) {
+  for (const char* joint : {"type: ball, motor: true", hinge2_keys}) {
+    const std::string state = "}\n        - {name: state, type: joint_state, rate_hz: 100, phase_s: 0";
+    test::SavedRun run(rig(joint, strong + state), [](test::TappedWorld& world, int step) {
+      shoal::joint_settings_t message{0, 0, 0.5, 3, -0.1, 0.2};
+      if (step == 0) world.send("rig.drive.cmd", message);
+      message = {0, 0, nan_, nan_, nan_, 0.4};
+      if (step == 600) world.send("rig.drive.cmd", message);
+      message = {0, 1, 0.3, 2, nan_, nan_};
+      if (step == 300) world.send("rig.drive.cmd", message);
+    });
+    run.expect_restored_worlds_go_on_alike({0, 200, 450, 601}, 500);
+  }
 }
 
 TEST(JointDrive, SaysWhatIsWrongWithItsParameters) {

@@ -52,8 +52,8 @@ int fly(const Pilot& pilot) {
     if (ticks == pilot.die_at) kill(getpid(), SIGKILL);
     while (ticks == pilot.stop_at) pause();
     if (pilot.slow_ms > 0)
-      std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(
-          std::uniform_real_distribution<>(0, pilot.slow_ms)(random)));
+      std::this_thread::sleep_for(
+          std::chrono::duration<double, std::milli>(std::uniform_real_distribution<>(0, pilot.slow_ms)(random)));
     if (!pilot.vehicle.empty()) {
       shoal::twist_command_t command{};
       command.utime = *now;

@@ -27,8 +27,8 @@ std::string two_rovers(const std::string& duration_s, const std::string& more = 
                      ", speed: 0}\nstate_rate_hz: 20\nobjects:\n  - {name: ground, fixed: true, parts: [{shape: "
                      "plane}]}\nvehicles:\n";
   for (const char* name : {"rover1", "rover2"})
-    text += "  - {name: " + std::string(name) + ", file: " + source("vehicles/rover.yaml") +
-            ", position_m: [0, " + (name[5] == '1' ? "0" : "5") + ", 0.2]}\n";
+    text += "  - {name: " + std::string(name) + ", file: " + source("vehicles/rover.yaml") + ", position_m: [0, " +
+            (name[5] == '1' ? "0" : "5") + ", 0.2]}\n";
   return text + more;
 }
 
@@ -38,7 +38,7 @@ using Arguments = std::vector<std::string>;
 struct Mission {
   std::string sim_url = own_url(0), client_url = own_url(0);
   std::string duration_s = "2";
-  Arguments run;                      ///< more for `shoal run`
+  Arguments run;  ///< more for `shoal run`
   std::map<std::string, Arguments> clients = {
       {"a", {"--vehicle", "rover1", "--period", "0.05", "--receive", "rover1.odometry", "b.note", "sim.clock"}},
       {"b", {"--vehicle", "rover2", "--period", "0.1", "--receive", "rover2.odometry", "a.note", "rover1.odometry"}},
@@ -135,8 +135,8 @@ class Policy : public testing::Test {
   void start(const std::string& options, const std::string& world = "") {
     write_file(folder_.file("world.yaml"),
                two_rovers(duration_s_, "processes: [{name: pilot, client: pilot, command: [" + built("lockstep_pilot") +
-                                   ", --name, pilot, --vehicle, rover1, --lcm-url, '{lcm_url}', " + options + "]}]\n" +
-                                   world));
+                                           ", --name, pilot, --vehicle, rover1, --lcm-url, '{lcm_url}', " + options +
+                                           "]}]\n" + world));
     listener_.listen("sim.control.reply");
     listener_.listen("sim.tick");
     shoal_ = std::make_unique<Program>(Arguments{built("shoal"), "run", folder_.file("world.yaml"), "--launch",

@@ -1,9 +1,10 @@
-"""examples/python/coop_auv.py beside the programs of worlds/coop_underwater.yaml, as docs/howto_python.md shows it.
+"""The programs of examples/python, in runs: coop_auv.py as docs/howto_python.md shows it, lockstep_client.py.
 
     python3 python_example_test.py BINARIES LCM_GEN
 """
 import glob
 import os
+import random
 import subprocess
 import sys
 import tempfile
@@ -21,37 +22,61 @@ def options_of_the_page():
     return line.split("coop_auv.py", 1)[1].replace("&", "").split()
 
 
+def prepare():
+    """The message types of this tree and a bus of the test's own; once, before the examples are imported."""
+    types = tempfile.TemporaryDirectory()
+    subprocess.run([LCM_GEN, "--python", "--ppath", types.name,
+                    *glob.glob(os.path.join(ROOT, "bridges", "lcm", "types", "*.lcm"))], check=True)
+    sys.path[:0] = [types.name, os.path.join(ROOT, "examples", "python")]
+    sys.path.append(os.path.join(HERE, "python"))  # after a real lcm, where there is one
+    os.environ["LCM_DEFAULT_URL"] = f"udpm://239.255.76.67:{10000 + os.getpid() * 4 % 20000}?ttl=0"
+    return types
+
+
 class Example(unittest.TestCase):
     def test_finds_the_auv_of_the_world_as_it_is(self):
-        with tempfile.TemporaryDirectory() as types:
-            subprocess.run([LCM_GEN, "--python", "--ppath", types,
-                            *glob.glob(os.path.join(ROOT, "bridges", "lcm", "types", "*.lcm"))], check=True)
-            sys.path[:0] = [types, os.path.join(ROOT, "examples", "python")]
-            sys.path.append(os.path.join(HERE, "python"))  # after a real lcm, where there is one
-            os.environ["LCM_DEFAULT_URL"] = f"udpm://239.255.76.67:{10000 + os.getpid() * 4 % 20000}?ttl=0"
-            import coop_auv
-            auv, bus = coop_auv.attach(coop_auv.parse(options_of_the_page()))
-            with tempfile.TemporaryFile("w+") as log:
-                exit_code = self.run_world(bus, log)
-                log.seek(0)
-                self.assertEqual(exit_code, 0, log.read())
-            self.assertAlmostEqual(auv.ekf.time_s, 1767225600 + 600, delta=2)
+        import coop_auv
+        auv, bus = coop_auv.attach(coop_auv.parse(options_of_the_page()))
+        # Exit code 0: the rules are kept.  Seeds 1 to 4 have 0.9 to 1.3 m, dead reckoning some 30 m.
+        self.run_world(bus, "coop_underwater.yaml", "--launch", "--await", "auv_python", "--duration", "600",
+                       "--set", "metrics=[{name: python, vehicle: auv, channel: auv.python_estimate, from_s: 120}]",
+                       "--set", "pass=[{metric: python.rms_m, below: 5}, {metric: python.samples, above: 900}]")
+        self.assertAlmostEqual(auv.ekf.time_s, 1767225600 + 600, delta=2)
 
-    def run_world(self, bus, log):
-        """Exit code 0: the rules below are kept.  Seeds 1 to 4 have 0.9 to 1.3 m, dead reckoning some 30 m."""
-        run = subprocess.Popen(
-            [os.path.join(BINARIES, "shoal"), "run", os.path.join(ROOT, "worlds", "coop_underwater.yaml"),
-             "--launch", "--await", "auv_python", "--duration", "600",
-             "--set", "metrics=[{name: python, vehicle: auv, channel: auv.python_estimate, from_s: 120}]",
-             "--set", "pass=[{metric: python.rms_m, below: 5}, {metric: python.samples, above: 900}]"],
-            stdout=log, stderr=subprocess.STDOUT)
-        try:
-            bus.run()
-            return run.wait(60)
-        finally:
-            run.kill()
-            run.wait()
+    def test_drives_to_the_wall_though_messages_are_lost(self):
+        import lockstep_client
+        pilot = lockstep_client.Pilot("rover1")
+        self.run_world(pilot.client, "minimal.yaml", "--await", "pilot", "--duration", "15", "--speed", "max")
+        undisturbed = pilot.ahead_m
+        self.assertLess(undisturbed, 1.1)
+        self.assertGreater(undisturbed, 0.5)
+        lossy = lockstep_client.Pilot("rover1")
+        lose(lossy.client.lc)
+        self.run_world(lossy.client, "minimal.yaml", "--await", "pilot", "--duration", "15", "--speed", "max")
+        self.assertEqual(lossy.ahead_m, undisturbed)
+
+    def run_world(self, client, world, *options):
+        with tempfile.TemporaryFile("w+") as log:
+            run = subprocess.Popen([os.path.join(BINARIES, "shoal"), "run", os.path.join(ROOT, "worlds", world),
+                                    *options], stdout=log, stderr=subprocess.STDOUT)
+            try:
+                client.run()
+                exit_code = run.wait(60)
+            finally:
+                run.kill()
+                run.wait()
+            log.seek(0)
+            self.assertEqual(exit_code, 0, log.read())
+
+
+def lose(lc):
+    """Every tenth message that is sent, and every tenth that comes, gets lost."""
+    dice, publish = random.Random(1), lc.publish
+    lc.publish = lambda channel, data: None if dice.random() < 0.1 else publish(channel, data)
+    lc.handlers = [(pattern, lambda channel, data, handler=handler:
+                    None if dice.random() < 0.1 else handler(channel, data)) for pattern, handler in lc.handlers]
 
 
 if __name__ == "__main__":
+    TYPES = prepare()
     unittest.main(argv=sys.argv[:1])

@@ -18,7 +18,7 @@ void BranchLog::check(std::int32_t branch) const {
 
 void BranchLog::branch(std::int32_t branch, std::int64_t step, bool ours) {
   while (!marks_.empty() && marks_.back().step > step) marks_.pop_back();
-  Mark mark{step, {}, 0};
+  Mark mark{step, {}, 1};  // not from the start: the gap in the numbers says so
   if (ours && !marks_.empty() && marks_.back().step == step) mark = marks_.back();
   if (!ours) marks_.clear();
   journal_.begin_branch(branch, mark.sequence);

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "bridges/lcm/lockstep_summary.hpp"
 #include "sim/config/config_node.hpp"
 #include "sim/script/script.hpp"
-#include "bridges/lcm/lockstep_summary.hpp"
 #include "sim/world/world.hpp"
 #include "tools/experiment/link_counts.hpp"
 #include "tools/experiment/scoring.hpp"
@@ -40,10 +40,10 @@ struct Summary {
   std::vector<Scoring::Verdict> verdicts;
   std::vector<Process> processes;
   std::vector<bridges::LockstepSummary> clients;  ///< that took part in the lockstep, by name
-  std::map<std::string, sim::ZoneRecord> zones;  ///< by vehicle, when the world has zones with rules
-  std::optional<LinkCounts> acoustics;           ///< of all modems under water, when there are any
-  std::uint64_t serial_dropped_bytes = 0;        ///< that no program fetched from pseudo-terminals and FIFOs
-  std::optional<sim::EndOfRun> event;            ///< of the world that ended the run
+  std::map<std::string, sim::ZoneRecord> zones;   ///< by vehicle, when the world has zones with rules
+  std::optional<LinkCounts> acoustics;            ///< of all modems under water, when there are any
+  std::uint64_t serial_dropped_bytes = 0;         ///< that no program fetched from pseudo-terminals and FIFOs
+  std::optional<sim::EndOfRun> event;             ///< of the world that ended the run
   std::string ended =
       "duration";     ///< duration, event, quit, signal, fault, bus, timeout, process, configuration, error
   std::string error;  ///< why it ended early, empty when it did not

@@ -48,10 +48,14 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
   }
   control_.speed = options.speed.value_or(loaded.config.run.speed);
   control_.paused = options.paused;
-  try {
-    if (options.from) time_.go_on_from(*options.from);
-  } catch (const std::runtime_error& error) {
-    throw RunError(2, "configuration", options.from_file + ": " + error.what());
+  if (options.from) {
+    try {
+      time_.go_on_from(*options.from);
+    } catch (const std::runtime_error& error) {
+      throw RunError(2, "configuration", options.from_file + ": " + error.what());
+    }
+    // What came before is not in this run's log, and a gap says so.
+    journal_.begin_branch(control_.branch, 1);
   }
   if (!options.results.empty()) results_ = std::make_unique<Results>(options.results, world_, options.pictures);
   progress_.restart(world_.now());
@@ -180,9 +184,7 @@ void Run::loop() {
 }
 
 void Run::step() {
-  buses_.set_time(world_.now());
-  buses_.admit(
-      [this](const std::string& bus, std::span<const sim::MailGate::Mail> mail) { journal_.admitted(bus, mail); });
+  admit_mail();
   world_.step();
   ++steps_taken_;
   control_.step_taken();
@@ -194,6 +196,12 @@ void Run::step() {
   // Looking for dead children costs a system call; ten times a simulated second will do.
   if (world_.step_number() % 10 == 0) check_programs();
   progress_.update(world_.now(), messages(), control_, false);
+}
+
+void Run::admit_mail() {
+  buses_.set_time(world_.now());
+  buses_.admit(
+      [this](const std::string& bus, std::span<const sim::MailGate::Mail> mail) { journal_.admitted(bus, mail); });
 }
 
 void Run::end_of_step() {

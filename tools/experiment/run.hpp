@@ -34,6 +34,8 @@ class Run {
   void await(const std::vector<std::string>& clients);
   void loop();
   void step();
+  /// Hands what has come from outside to the world, and writes it down.
+  void admit_mail();
   void end_of_step();
   TimeControl::Options time_options() const;
   void leave_branch();

@@ -17,6 +17,7 @@ void note_signal(Summary& summary) {
 }  // namespace
 
 void Run::finish(Summary& summary) {
+  admit_mail();  // what came after the last step is in the log: the journal says that it came from outside
   journal_.finish(summary.ended != "fault" && summary.ended != "error");
   if (alone_) {  // else it would end the other simulator's clients
     lockstep_.publish_end([this](std::chrono::milliseconds time) { buses_.wait(time); },

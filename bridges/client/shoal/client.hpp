@@ -31,10 +31,10 @@ class ClientError : public std::runtime_error {
 ///     while (client.next_tick()) client.publish("auv1.autopilot.cmd", command);
 ///
 /// Handlers are called in next_tick() and wait_until() only: in lockstep for all messages up to the tick, in the order
-/// in which they were published, whatever the network lost or repeated; else in the order in which they came.  A payload that is
-/// not what its channel should carry is counted, told once for each channel on standard error, and not handled; so is
-/// one whose handler throws MessageError.  Any other exception of a handler leaves the call that waited.  Handlers may
-/// publish and subscribe.
+/// in which they were published, whatever the network lost or repeated; else in the order in which they came.  A
+/// payload that is not what its channel should carry is counted, told once for each channel on standard error, and not
+/// handled; so is one whose handler throws MessageError.  Any other exception of a handler leaves the call that waited.
+/// Handlers may publish and subscribe.
 class Client {
  public:
   enum class End {
@@ -79,8 +79,8 @@ class Client {
   /// The payload as it came.
   void subscribe_bytes(const std::string& channel, BytesHandler handler);
 
-  /// At once; in lockstep what is published before the first tick waits for it.  Throws MessageError when an array is not as long as its length member says, ClientError when LCM
-  /// refuses.
+  /// At once; in lockstep what is published before the first tick waits for it.  Throws MessageError when an array is
+  /// not as long as its length member says, ClientError when LCM refuses.
   template <class Message>
   void publish(std::string_view channel, const Message& message) {
     encode_into(message, buffer_);

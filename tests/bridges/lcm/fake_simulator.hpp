@@ -97,7 +97,8 @@ class FakeSimulator {
     member = {};
     member.due.name = request.client;
     std::smatch match;
-    if (std::regex_search(request.text, match, std::regex("session: (\\d+)"))) member.due.session = std::stoll(match[1]);
+    if (std::regex_search(request.text, match, std::regex("session: (\\d+)")))
+      member.due.session = std::stoll(match[1]);
     const std::regex channel("\"([^\"]*)\"");
     for (std::sregex_iterator i(request.text.begin(), request.text.end(), channel), end; i != end; ++i)
       member.receives.push_back((*i)[1]);

@@ -56,8 +56,7 @@ struct Service : lcm_test::ServedWorld {
     test.send("sim.ack", ack);
   }
   /// `while_waiting` is called each time that the world waits for somebody.
-  bridges::LockstepOutcome synchronize(
-      const std::function<void()>& while_waiting = [] {}) {
+  bridges::LockstepOutcome synchronize(const std::function<void()>& while_waiting = [] {}) {
     return lockstep.synchronize([&](std::chrono::milliseconds) { while_waiting(); },
                                 [&] {
                                   service.handle_requests();
@@ -219,6 +218,20 @@ TEST(LockstepService, ASecondClientOfANameIsRefusedWhenTheFirstAnswers) {
   EXPECT_THAT(s.join("pilot", "{session: 6}").text, HasSubstr("another client of the name 'pilot' takes part"));
 }
 
+TEST(LockstepService, ASecondClientIsRefusedAlsoWhileTheFirstIsAtWork) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
+  s.synchronize([&] {
+    EXPECT_TRUE(s.is_undecided("join", "pilot", "{session: 6}"));
+    s.acknowledge(0, "pilot", 5, 1);
+  });
+  s.test.world.step();
+  s.synchronize([&] {
+    EXPECT_THAT(s.join("pilot", "{session: 6}").text, HasSubstr("another client of the name 'pilot' takes part"));
+    s.acknowledge(1, "pilot", 5, 2);
+  });
+}
+
 TEST(LockstepService, ASecondClientTakesThePlaceOfAFirstThatIsGone) {
   Service s;
   ASSERT_TRUE(s.join("pilot", "{session: 5, on_timeout: wait, timeout_s: 60}").ok);
@@ -233,7 +246,9 @@ TEST(LockstepService, ALeaveWaitsForTheAcknowledgementBeforeIt) {
   ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
   bool left = false;
   s.synchronize([&] {
-    if (!left) EXPECT_TRUE(s.is_undecided("leave", "pilot", "{session: 5}"));
+    if (!left) {
+      EXPECT_TRUE(s.is_undecided("leave", "pilot", "{session: 5}"));
+    }
     s.acknowledge(0, "pilot", 5, 1);
     left = true;
   });

@@ -88,10 +88,4 @@ TEST(ClientMail, OfAClientThatIsGoneWhatHasComeIsAdmitted) {
   EXPECT_EQ(test.admitted(), "2");
 }
 
-TEST(Crc32, IsTheOneOfZlib) {
-  EXPECT_EQ(sim::crc32(bytes_of("123456789")), 0xCBF43926u);  // the usual check value
-  EXPECT_EQ(sim::crc32(bytes_of("")), 0u);
-  EXPECT_EQ(sim::crc32(bytes_of("The quick brown fox jumps over the lazy dog")), 0x414FA339u);
-}
-
 }  // namespace

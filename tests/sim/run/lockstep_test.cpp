@@ -159,7 +159,8 @@ TEST(LockstepTerms, AreReadWithClearErrors) {
     }
     return "";
   };
-  EXPECT_THAT(error("{sesion: 1}"), HasSubstr("unknown key 'sesion'; known keys: on_timeout, receives, session, timeo"));
+  EXPECT_THAT(error("{sesion: 1}"),
+              HasSubstr("unknown key 'sesion'; known keys: on_timeout, receives, session, timeo"));
   EXPECT_THAT(error("{session: -1}"), HasSubstr("'session' must be"));
   EXPECT_THAT(error("{receives: [a]}"), HasSubstr("'receives' needs a 'session'"));
   EXPECT_THAT(error("{session: 1, on_timeout: never}"), HasSubstr("on_timeout"));
