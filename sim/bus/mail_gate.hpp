@@ -67,6 +67,8 @@ class MailGate final : public Bus {
   };
 
   void collect_from(Channel& channel);
+  template <typename Wanted>
+  void take_from(Channel& channel, const Wanted& wanted);
   void drop_oldest(Channel& channel);
   void give(Channel& channel, std::span<const std::byte> payload, bool from_outside);
   void close(GateMailbox& mailbox);
