@@ -1,4 +1,5 @@
-// Every world that comes with the simulator is saved at random steps, and goes on alike wherever it is restored.
+// Every world that comes with the simulator is saved at its start and at random steps, and goes on alike wherever it is
+// restored.
 #include <algorithm>
 #include <filesystem>
 
@@ -69,7 +70,22 @@ class EveryWorld : public testing::TestWithParam<std::string> {
     sim::Random random(1, GetParam());
     random.begin_step(0);
     for (int i = 0; i < 3; ++i) saved_at.push_back(static_cast<int>(random.integer_below(1500)));
+    saved_at.push_back(0);
     std::sort(saved_at.begin(), saved_at.end());
+  }
+
+  /// In one world a device gets another rate before its third snapshot, and its own again after that.  The others have
+  /// an empty journal: they are restored in place.
+  void set_values(sim::World& world, int step) const {
+    if (GetParam() != "proving_ground") return;
+    const int before = saved_at[2] / 2, after = saved_at[2] + 10;
+    if (step != before && step != after) return;
+    const auto sampled = std::find_if(world.devices().begin(), world.devices().end(),
+                                      [](const auto& device) { return device->config().rate_hz > 0; });
+    ASSERT_NE(sampled, world.devices().end());
+    sim::Diagnostics diagnostics;
+    const auto values = sim::parse_config_text(step == before ? "{rate_hz: 17}" : "{rate_hz: 23}", "set", diagnostics);
+    EXPECT_TRUE(world.change_device((*sampled)->full_name(), values, diagnostics));
   }
 
   /// Restored, it is the world that was saved, and goes on like it.
@@ -79,6 +95,7 @@ class EveryWorld : public testing::TestWithParam<std::string> {
     ASSERT_TRUE(test.world.snapshot() == snapshots[number]) << "saved again it is not the same";
     test.bus.take_hash();
     for (std::size_t step = at; step < at + more_steps; ++step) {
+      set_values(test.world, static_cast<int>(step));
       const StepResult result = test.step();
       ASSERT_EQ(result.state, results[step].state) << "in the state after step " << step;
       ASSERT_EQ(result.messages, results[step].messages) << "in the messages of step " << step;
@@ -96,6 +113,7 @@ TEST_P(EveryWorld, GoesOnFromASnapshotBitForBit) {
   for (int step = 0; step < saved_at.back() + more_steps; ++step) {
     for (const int at : saved_at)
       if (step == at) snapshots.push_back(original.world.snapshot());
+    set_values(original.world, step);
     results.push_back(original.step());
   }
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
