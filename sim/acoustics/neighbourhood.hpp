@@ -19,8 +19,8 @@ class Neighbourhood {
   /// `reach_m`: about how far queries will look.
   void build(std::span<const Member> members, double reach_m);
   /// Numbers of all members no farther from the place than this in the plane, in rising order; perhaps some more.
-  void visit_state(StateArchive& archive) { archive(cell_m_, entries_); }
   void near(const Vector3d& p_W, double reach_m, std::vector<int>& numbers) const;
+  void visit_state(StateArchive& archive) { archive(cell_m_, entries_); }
 
  private:
   struct Entry {
