@@ -46,14 +46,6 @@ void tell_ball_angles(dJointID motor, double sign, std::span<const double> posit
     dJointSetAMotorAngle(motor, axis, sign * position[static_cast<std::size_t>(axis)]);
 }
 
-/// ODE's frame of a body, at its centre of mass.
-Pose ode_pose(dBodyID body) {
-  Pose X_WC = Pose::Identity();
-  X_WC.linear() = rotation_to_eigen(dBodyGetRotation(body));
-  X_WC.translation() = to_eigen(dBodyGetPosition(body));
-  return X_WC;
-}
-
 void set_ode_pose(dBodyID body, const Vector3d& p_WC, const dQuaternion q_WC) {
   dBodySetPosition(body, p_WC.x(), p_WC.y(), p_WC.z());
   dBodySetQuaternion(body, q_WC);
@@ -289,27 +281,6 @@ void Joint::set_motor(double velocity, double max_force, int axis) {
   motor_max_force_[axis] = max_force;
   set_parameter(dParamVel, sign_ * velocity, axis);
   set_parameter(dParamFMax, max_force, axis);
-}
-
-void Joint::add_effort(double effort, int axis) {
-  if (!std::isfinite(effort)) throw PhysicsFault("joint '" + name_ + "': an effort on it is not finite");
-  if (load_) load_->added[axis] += effort;
-  const double torque1 = axis == 0 ? sign_ * effort : 0, torque2 = axis == 1 ? sign_ * effort : 0;
-  switch (kind_) {
-    case dJointTypeHinge:
-      return dJointAddHingeTorque(ode_.get(), sign_ * effort);
-    case dJointTypeSlider:
-      return dJointAddSliderForce(ode_.get(), sign_ * effort);
-    case dJointTypeHinge2:
-      return dJointAddHinge2Torques(ode_.get(), torque1, torque2);
-    case dJointTypeUniversal:
-      return dJointAddUniversalTorques(ode_.get(), torque1, torque2);
-    case dJointTypeBall:
-      if (ball_motor_) dJointAddAMotorTorques(ball_motor_.get(), torque1, torque2, axis == 2 ? sign_ * effort : 0);
-      return;
-    default:
-      return;
-  }
 }
 
 double Joint::get_parameter(int parameter, int axis) const {

@@ -5,9 +5,30 @@
 #include "sim/physics/ode_math.hpp"
 #include "sim/state/state_archive.hpp"
 
-// What a joint carries: forces and torques that go through it.
+// Efforts on a joint, and what goes through it.
 
 namespace sim {
+
+void Joint::add_effort(double effort, int axis) {
+  if (!std::isfinite(effort)) throw PhysicsFault("joint '" + name_ + "': an effort on it is not finite");
+  if (load_) load_->added[axis] += effort;
+  const double torque1 = axis == 0 ? sign_ * effort : 0, torque2 = axis == 1 ? sign_ * effort : 0;
+  switch (kind_) {
+    case dJointTypeHinge:
+      return dJointAddHingeTorque(ode_.get(), sign_ * effort);
+    case dJointTypeSlider:
+      return dJointAddSliderForce(ode_.get(), sign_ * effort);
+    case dJointTypeHinge2:
+      return dJointAddHinge2Torques(ode_.get(), torque1, torque2);
+    case dJointTypeUniversal:
+      return dJointAddUniversalTorques(ode_.get(), torque1, torque2);
+    case dJointTypeBall:
+      if (ball_motor_) dJointAddAMotorTorques(ball_motor_.get(), torque1, torque2, axis == 2 ? sign_ * effort : 0);
+      return;
+    default:
+      return;
+  }
+}
 
 void Joint::measure_load() {
   if (load_) return;

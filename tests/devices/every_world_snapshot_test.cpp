@@ -1,4 +1,5 @@
-// Every world that comes with the simulator is saved at random steps, and goes on alike wherever it is restored.
+// Every world that comes with the simulator is saved at its start and at random steps, and goes on alike wherever it is
+// restored.
 #include <algorithm>
 #include <filesystem>
 
@@ -68,6 +69,7 @@ class EveryWorld : public testing::TestWithParam<std::string> {
     loaded = sim::load_world(SHOAL_SOURCE_DIR "/worlds/" + GetParam() + ".yaml", options);
     sim::Random random(1, GetParam());
     random.begin_step(0);
+    saved_at.push_back(0);
     for (int i = 0; i < 3; ++i) saved_at.push_back(static_cast<int>(random.integer_below(1500)));
     std::sort(saved_at.begin(), saved_at.end());
   }
