@@ -3,6 +3,7 @@
 
 #include "sim/physics/joint.hpp"
 #include "sim/physics/ode_math.hpp"
+#include "sim/physics/physics_world.hpp"
 #include "sim/state/state_archive.hpp"
 
 // Efforts on a joint, and what goes through it.
