@@ -124,6 +124,7 @@ void RunJournal::publish_mail() {
 }
 
 void RunJournal::publish_hash() {
+  if (heard_ && !heard_()) return;
   shoal::sim_hash_t message;
   message.utime = world_->epoch_us() + world_->now().count();
   message.step = world_->step_number();
