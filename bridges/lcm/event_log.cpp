@@ -1,11 +1,11 @@
 #include "bridges/lcm/event_log.hpp"
 
+#include <endian.h>
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 
@@ -20,17 +20,16 @@ constexpr std::size_t max_problems = 100;
 constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
 constexpr std::size_t read_bytes = std::size_t{1} << 17;
 
-template <class T>
-T big_endian(const unsigned char* at) {
-  T value = 0;
-  for (std::size_t i = 0; i < sizeof(T); ++i) value = static_cast<T>(value << 8 | at[i]);
-  return value;
+std::uint32_t number32(const unsigned char* at) {
+  std::uint32_t value;
+  std::memcpy(&value, at, sizeof value);
+  return be32toh(value);
 }
 
-template <class T>
-std::byte* put_big_endian(std::byte* to, T value) {
-  for (std::size_t i = 0; i < sizeof(T); ++i) *to++ = static_cast<std::byte>(value >> 8 * (sizeof(T) - 1 - i));
-  return to;
+std::uint64_t number64(const unsigned char* at) {
+  std::uint64_t value;
+  std::memcpy(&value, at, sizeof value);
+  return be64toh(value);
 }
 
 }  // namespace
@@ -101,18 +100,18 @@ EventLogReader::Outcome EventLogReader::read_event(LogEventView& event) {
   const std::uint64_t left = file_bytes_ - at_;
   const std::size_t got = std::min<std::uint64_t>(fill(header_bytes), left);
   const unsigned char* header = here();
-  if (got >= 4 && big_endian<std::uint32_t>(header) != sync_word) return Outcome::garbage;
+  if (got >= 4 && number32(header) != sync_word) return Outcome::garbage;
   if (got < header_bytes) return Outcome::truncated;
-  const auto channel_bytes = static_cast<std::int32_t>(big_endian<std::uint32_t>(header + 20));
-  const auto data_bytes = static_cast<std::int32_t>(big_endian<std::uint32_t>(header + 24));
+  const auto channel_bytes = static_cast<std::int32_t>(number32(header + 20));
+  const auto data_bytes = static_cast<std::int32_t>(number32(header + 24));
   if (channel_bytes < 1 || channel_bytes > max_channel_bytes || data_bytes < 0) return Outcome::garbage;
   const std::size_t size =
       header_bytes + static_cast<std::size_t>(channel_bytes) + static_cast<std::size_t>(data_bytes);
   if (size > left || fill(size) < size) return Outcome::truncated;
   header = here();  // fill() may have moved it
   const auto* body = reinterpret_cast<const std::byte*>(header + header_bytes);
-  event.number = static_cast<std::int64_t>(big_endian<std::uint64_t>(header + 4));
-  event.utime = static_cast<std::int64_t>(big_endian<std::uint64_t>(header + 12));
+  event.number = static_cast<std::int64_t>(number64(header + 4));
+  event.utime = static_cast<std::int64_t>(number64(header + 12));
   event.offset = at_;
   event.channel = {reinterpret_cast<const char*>(body), static_cast<std::size_t>(channel_bytes)};
   event.payload = {body + channel_bytes, static_cast<std::size_t>(data_bytes)};
@@ -123,7 +122,7 @@ EventLogReader::Outcome EventLogReader::read_event(LogEventView& event) {
 void EventLogReader::find_sync() {
   for (++at_; at_ < file_bytes_; ++at_) {
     if (fill(4) < 4) break;
-    if (big_endian<std::uint32_t>(here()) == sync_word) return;
+    if (number32(here()) == sync_word) return;
   }
   at_ = file_bytes_;
 }
@@ -131,18 +130,29 @@ void EventLogReader::find_sync() {
 bool EventLogWriter::write(std::int64_t number, std::int64_t utime, std::string_view channel,
                            std::span<const std::byte> payload) {
   const std::size_t size = header_bytes + channel.size() + payload.size();
-  if (buffer_.size() + size > buffer_bytes && !flush()) return false;
-  buffer_.reserve(std::max(buffer_bytes, size));
-  std::array<std::byte, header_bytes> header;
-  std::byte* to = put_big_endian(header.data(), sync_word);
-  to = put_big_endian(to, static_cast<std::uint64_t>(number));
-  to = put_big_endian(to, static_cast<std::uint64_t>(utime));
-  to = put_big_endian(to, static_cast<std::uint32_t>(channel.size()));
-  put_big_endian(to, static_cast<std::uint32_t>(payload.size()));
-  const auto name = std::as_bytes(std::span(channel));
-  buffer_.insert(buffer_.end(), header.begin(), header.end());
-  buffer_.insert(buffer_.end(), name.begin(), name.end());
-  buffer_.insert(buffer_.end(), payload.begin(), payload.end());
+  if (used_ + size > buffer_bytes && !flush()) return false;
+  if (buffer_.size() < used_ + size) buffer_.resize(std::max(buffer_bytes, used_ + size));
+  std::byte* to = buffer_.data() + used_;
+  used_ += size;
+  const auto put = [&to](const void* from, std::size_t bytes) {
+    if (bytes > 0) std::memcpy(to, from, bytes);
+    to += bytes;
+  };
+  const auto put32 = [&put](std::size_t value) {
+    const std::uint32_t ordered = htobe32(static_cast<std::uint32_t>(value));
+    put(&ordered, sizeof ordered);
+  };
+  const auto put64 = [&put](std::int64_t value) {
+    const std::uint64_t ordered = htobe64(static_cast<std::uint64_t>(value));
+    put(&ordered, sizeof ordered);
+  };
+  put32(sync_word);
+  put64(number);
+  put64(utime);
+  put32(channel.size());
+  put32(payload.size());
+  put(channel.data(), channel.size());
+  put(payload.data(), payload.size());
   return true;
 }
 
@@ -157,8 +167,7 @@ bool EventLogWriter::write(std::span<const std::byte> bytes) {
 }
 
 bool EventLogWriter::flush() {
-  const bool done = write(buffer_);
-  buffer_.clear();
+  const bool done = write(std::span(buffer_).first(std::exchange(used_, 0)));
   return done;
 }
 

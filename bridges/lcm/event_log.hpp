@@ -95,6 +95,7 @@ class EventLogWriter {
  private:
   FileDescriptor file_;
   std::vector<std::byte> buffer_;
+  std::size_t used_ = 0;  // of the buffer
 };
 
 }  // namespace bridges

@@ -210,7 +210,7 @@ void Run::end_of_step() {
   if (results_ && steps_taken_ > 0) results_->after_step();
   buses_.end_of_step();
   time_.after_step();
-  branch_log_.mark(world_.step_number(), time_.oldest_step().value_or(world_.step_number()));
+  if (const auto oldest = time_.oldest_step()) branch_log_.mark(world_.step_number(), *oldest);
   take_snapshots();
   if (time_.stop_when_there()) progress_.restart(world_.now());
   synchronize();
