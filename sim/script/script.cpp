@@ -44,6 +44,12 @@ Script::Script(World& world) : world_(world), zones_(world.config().zones), live
 
 Script::~Script() = default;
 
+std::optional<std::int64_t> Script::firings(const std::string& event) const {
+  for (const EventState& each : events_)
+    if (each.config.name == event) return each.fired;
+  return std::nullopt;
+}
+
 bool Script::empty() const {
   return zones_.all().empty() && actors_.empty() && events_.empty();
 }

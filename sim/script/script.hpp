@@ -36,6 +36,8 @@ class Script {
 
   const Zones& zones() const { return zones_; }
   const std::map<std::string, ZoneRecord>& zone_records() const { return records_; }
+  /// How often the event of this name has fired; nothing when there is none.
+  std::optional<std::int64_t> firings(const std::string& event) const;
   /// The world file has none of it.
   bool empty() const;
   void visit_state(StateArchive& archive);

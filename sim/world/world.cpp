@@ -283,6 +283,10 @@ const Zones& World::zones() const {
   return script_->zones();
 }
 
+std::optional<std::int64_t> World::event_firings(const std::string& name) const {
+  return script_->firings(name);
+}
+
 const std::map<std::string, ZoneRecord>& World::zone_records() const {
   return script_->zone_records();
 }

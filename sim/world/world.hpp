@@ -157,6 +157,8 @@ class World {
   const Zones& zones() const;
   /// By vehicle, when the world has zones with a speed limit or a finish.
   const std::map<std::string, ZoneRecord>& zone_records() const;
+  /// How often the event of this name has fired; nothing when there is none.
+  std::optional<std::int64_t> event_firings(const std::string& name) const;
   const WorldCounts& counts() const { return counts_; }
 
   /// A hash over all that is state: bodies, joints, devices, clocks, medium, events, sound under way, script.

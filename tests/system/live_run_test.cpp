@@ -155,7 +155,8 @@ TEST_F(LiveRun, WaitsForAClientThatJoinsLate) {
     const std::int64_t before = tick.step;
     ASSERT_TRUE(client.next_tick(tick));
     EXPECT_EQ(tick.step, before + 5);
-    EXPECT_EQ(tick.client, std::vector<std::string>{"late"});
+    ASSERT_EQ(tick.client.size(), 1u);
+    EXPECT_EQ(tick.client[0].name, "late");
     client.acknowledge(tick);
   }
   shoal::sim_control_request_t leave{};

@@ -52,7 +52,11 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
   control_.speed = options.speed.value_or(loaded.config.run.speed);
   control_.paused = options.paused;
   if (options.from) {
-    time_.go_on_from(*options.from);
+    try {
+      time_.go_on_from(*options.from);
+    } catch (const std::runtime_error& error) {
+      throw RunError(2, "configuration", options.from_file + ": " + error.what());
+    }
     // What came before is not in this run's log, and a gap says so.
     journal_.begin_branch(control_.branch, 1);
   }

@@ -40,13 +40,6 @@ sim::Bytes joined(const sim::Bytes& state, const sim::Bytes& scores, const sim::
   return all;
 }
 
-/// How often an event of the world has fired; nothing when there is none.
-std::optional<std::int64_t> event_firings(const sim::World& world, const std::string& name) {
-  static_cast<void>(world);
-  static_cast<void>(name);
-  return std::nullopt;
-}
-
 /// The line where two texts part.
 std::string first_difference(const std::string& there, const std::string& here) {
   std::size_t begin = 0;
@@ -138,7 +131,7 @@ void TimeControl::forget_all() {
 bool TimeControl::stop_when_there() {
   const bool there = control_.until && world_.now() >= *control_.until;
   const bool fired =
-      !control_.until_event.empty() && event_firings(world_, control_.until_event).value_or(0) > control_.until_firings;
+      !control_.until_event.empty() && world_.event_firings(control_.until_event).value_or(0) > control_.until_firings;
   if (!there && !fired) return false;
   control_.forget_until();
   control_.set_paused(true);
@@ -183,7 +176,7 @@ std::string TimeControl::run_until(double time_s) {
 }
 
 std::string TimeControl::run_until_event(const std::string& name) {
-  const auto firings = event_firings(world_, name);
+  const auto firings = world_.event_firings(name);
   if (!firings)
     throw std::runtime_error("'until' needs a time or the name of an event of the world, got '" +
                              sim::shortened(sim::printable(name)) + "'");
