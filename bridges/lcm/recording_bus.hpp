@@ -13,6 +13,8 @@
 
 namespace bridges {
 
+class EventLogWriter;
+
 enum class Existing { refuse, overwrite };
 
 /// A bus that also writes all it carries into an LCM event log, stamped with epoch + simulated time:
@@ -54,7 +56,6 @@ class RecordingBus final : public sim::Bus {
 
  private:
   class RecordingMailbox;
-  struct Log;
   struct Channel;
 
   void record(std::string_view channel, std::span<const std::byte> payload);
@@ -67,7 +68,7 @@ class RecordingBus final : public sim::Bus {
   std::int64_t epoch_utime_ = 0;
   std::int64_t utime_ = 0;      // of the last event; never goes back
   std::int64_t flushed_s_ = 0;  // simulated second up to which the file is on disk
-  std::unique_ptr<Log> log_;
+  std::unique_ptr<EventLogWriter> log_;
   std::map<std::string, std::unique_ptr<Channel>, std::less<>> channels_;  // those with a mailbox
   std::optional<std::string> error_;
   std::uint64_t recorded_ = 0;
