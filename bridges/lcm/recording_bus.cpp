@@ -40,35 +40,6 @@ struct RecordingBus::Log {
   lcm_eventlog_t* events = nullptr;
 };
 
-/// What is known of a channel somebody here reads.
-struct RecordingBus::Channel {
-  std::string name;
-  std::vector<const RecordingMailbox*> mailboxes;  // the first one records
-};
-
-class RecordingBus::RecordingMailbox final : public sim::Mailbox {
- public:
-  RecordingMailbox(RecordingBus& bus, Channel& channel, std::unique_ptr<sim::Mailbox> inner)
-      : bus_(bus), channel_(channel), inner_(std::move(inner)) {
-    channel_.mailboxes.push_back(this);
-  }
-  ~RecordingMailbox() override { std::erase(channel_.mailboxes, this); }
-
-  std::optional<sim::Message> take() override {
-    auto message = inner_->take();
-    if (message && message->from_outside && channel_.mailboxes.front() == this)
-      bus_.record(message->channel, message->payload);
-    return message;
-  }
-  std::uint64_t dropped() const override { return inner_->dropped(); }
-  void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) override { inner_->raise_on_arrival(std::move(flag)); }
-
- private:
-  RecordingBus& bus_;
-  Channel& channel_;
-  std::unique_ptr<sim::Mailbox> inner_;
-};
-
 RecordingBus::RecordingBus(std::unique_ptr<sim::Bus> inner, const std::string& path, std::int64_t epoch_utime,
                            Existing existing)
     : RecordingBus(*inner, path, epoch_utime, existing) {
@@ -94,11 +65,8 @@ void RecordingBus::publish(std::string_view channel, std::span<const std::byte> 
   record(channel, payload);
 }
 
-std::unique_ptr<sim::Mailbox> RecordingBus::open_mailbox(const std::string& channel, std::size_t capacity) {
-  auto inner = inner_.open_mailbox(channel, capacity);
-  auto& known = channels_[channel];
-  if (!known) known = std::make_unique<Channel>(Channel{channel, {}});
-  return std::make_unique<RecordingMailbox>(*this, *known, std::move(inner));
+void RecordingBus::admitted(std::span<const sim::MailGate::Mail> mail) {
+  for (const sim::MailGate::Mail& each : mail) record(each.channel, each.payload);
 }
 
 void RecordingBus::set_time(sim::Time at) {
@@ -126,26 +94,41 @@ void RecordingBus::record(std::string_view channel, std::span<const std::byte> p
   }
 }
 
-void RecordingBus::go_on_in(const std::string& path, std::uint64_t events, std::uint64_t bytes, Existing existing) {
+void RecordingBus::prepare(const std::string& path, std::uint64_t events, std::uint64_t bytes, Existing existing) {
+  give_up();
   if (!log_ || error_) return;
   if (std::fflush(log_->events->f) != 0) return fail(errno);
   auto next = std::make_unique<Log>(path, existing);
   std::FILE* from = std::fopen(path_.c_str(), "rb");
-  if (from == nullptr) throw BusError(path_ + ": " + std::strerror(errno));
   std::vector<char> part(file_buffer_bytes);
   std::uint64_t left = bytes;
-  while (left > 0) {
+  while (from != nullptr && left > 0) {
     const std::size_t got = std::fread(part.data(), 1, std::min<std::uint64_t>(left, part.size()), from);
     if (got == 0 || std::fwrite(part.data(), 1, got, next->events->f) != got) break;
     left -= got;
   }
-  std::fclose(from);
-  if (left > 0) throw BusError(path + ": cannot copy " + path_ + " into it");
-  next->events->eventcount = static_cast<std::int64_t>(events);
-  log_ = std::move(next);
-  path_ = path;
-  recorded_ = events;
-  bytes_ = bytes;
+  if (from != nullptr) std::fclose(from);
+  next_.emplace(Next{path, events, bytes, std::move(next)});
+  if (left == 0 && std::fflush(next_->log->events->f) == 0) return;  // a full disk shows here
+  give_up();
+  throw BusError(path + ": cannot copy " + path_ + " into it");
+}
+
+void RecordingBus::give_up() {
+  if (!next_) return;
+  const std::string path = next_->path;
+  next_.reset();
+  std::remove(path.c_str());
+}
+
+void RecordingBus::go_on() {
+  if (!next_) return;
+  next_->log->events->eventcount = static_cast<std::int64_t>(next_->events);
+  log_ = std::move(next_->log);
+  path_ = next_->path;
+  recorded_ = next_->events;
+  bytes_ = next_->bytes;
+  next_.reset();
   utime_ = epoch_utime_;  // time went back: the next set_time() tells
   flushed_s_ = 0;
 }
