@@ -49,8 +49,8 @@ class RecordingBus final : public sim::Bus {
   std::uint64_t recorded() const { return recorded_; }
   /// Size of the log so far.
   std::uint64_t bytes() const { return bytes_; }
-  /// Makes another log, which begins with a copy of the first `events` events, of `bytes` bytes.  This one goes on until
-  /// go_on().  Throws BusError when the file cannot be made whole.
+  /// Makes another log, which begins with a copy of the first `events` events, of `bytes` bytes.  This one goes on
+  /// until go_on().  Throws BusError when the file cannot be made whole.
   void prepare(const std::string& path, std::uint64_t events, std::uint64_t bytes, Existing existing);
   /// Leaves the log as it is and goes on in the one that was prepared.
   void go_on();
@@ -79,7 +79,7 @@ class RecordingBus final : public sim::Bus {
   std::int64_t utime_ = 0;      // of the last event; never goes back
   std::int64_t flushed_s_ = 0;  // simulated second up to which the file is on disk
   std::unique_ptr<Log> log_;
-  std::optional<Next> next_;    // prepared
+  std::optional<Next> next_;  // prepared
   std::optional<std::string> error_;
   std::uint64_t recorded_ = 0;
   std::uint64_t bytes_ = 0;

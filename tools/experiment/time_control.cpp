@@ -154,8 +154,8 @@ std::string TimeControl::place() const {
 std::string TimeControl::what_is_kept() const {
   const auto oldest = ring_.oldest();
   if (!oldest) return "";
-  return fmt::format("; can go back to {:.6g} s, which takes {:.2f} MB",
-                     sim::to_seconds(world_.step_time() * *oldest), static_cast<double>(bytes()) / 1e6);
+  return fmt::format("; can go back to {:.6g} s, which takes {:.2f} MB", sim::to_seconds(world_.step_time() * *oldest),
+                     static_cast<double>(bytes()) / 1e6);
 }
 
 std::string TimeControl::run_until(double time_s) {
