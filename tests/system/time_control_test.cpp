@@ -262,6 +262,29 @@ TEST(Rewind, ABranchWhoseRecordCannotBeMadeLeavesTheRunAsItWas) {
   }
 }
 
+TEST(Restore, ALogDoesNotProveWhatBeganWithAFile) {
+  const Folder folder;
+  Live live(folder, {"--record", folder.file("log.lcm")});
+  bridges::LcmListener listener(own_url());
+  live.run_until("1");
+  shoal::twist_command_t forward{};
+  forward.forward_mps = 1;
+  listener.publish("r1.drive.cmd", shoal::encode(forward));
+  live.run_until("3");
+  EXPECT_EQ(control({"snapshot", "a"}).exit_code, 0);
+  EXPECT_EQ(control({"restore", "a"}).exit_code, 0);
+  live.run_until("4");
+  EXPECT_EQ(control({"rewind", "--value", "0.5"}).output, "step 350, 3.5 s, branch 2, paused\n");
+  live.run_until("4");
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+  EXPECT_EQ(run_shoal({"replay", folder.file("log.lcm")}).exit_code, 0);
+  for (const char* log : {"log.branch1.lcm", "log.branch2.lcm"}) {
+    const Ended replayed = run_shoal({"replay", folder.file(log)});
+    EXPECT_EQ(replayed.exit_code, 4) << log << replayed.output << replayed.errors;
+    EXPECT_THAT(replayed.errors, HasSubstr("the run began with a snapshot")) << log;
+  }
+}
+
 TEST(Restore, GoesOnFromAFileAndRefusesAnotherWorldsOne) {
   const Folder folder;
   Live live(folder);
