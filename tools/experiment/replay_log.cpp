@@ -9,6 +9,7 @@
 #include <string_view>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "bridges/lcm/event_log.hpp"
 #include "shoal/message_codec.hpp"
@@ -47,11 +48,26 @@ class Reader {
     for (const Count& count : counts_) log_.events.emplace(count.channel, count.events);
     for (const std::string& text : file_.problems()) problem(text);
     if (!informed_) fail_without_info();
-    if (log_.proven_step && *log_.proven_step > log_.last_step) log_.proven_step = log_.last_step;
+    for (const Hole& hole : holes_) tell(hole);
     return std::move(log_);
   }
 
  private:
+  /// Numbers of sim.mail that are missing, and the steps between which they were published.
+  struct Hole {
+    std::int64_t first, last;
+    std::int64_t from_step, to_step;
+  };
+
+  void tell(const Hole& hole) {
+    const auto& [first, last, from, to] = hole;
+    log_.holes.push_back(
+        first == last
+            ? fmt::format("sim.mail {} (of a step from {} to {}) is missing", first, from, to)
+            : fmt::format("sim.mail {} to {} (of steps from {} to {}) are missing", first, last, from, to));
+    log_.proven_step = std::min({log_.proven_step.value_or(from), from, log_.last_step});
+  }
+
   [[noreturn]] void fail(const std::string& what) const { throw std::runtime_error(log_.path + ": " + what); }
 
   [[noreturn]] void fail_without_info() const {
@@ -157,18 +173,16 @@ class Reader {
     log_.hashes.erase(log_.hashes.upper_bound(info.step), log_.hashes.end());
     log_.last_step = info.step;
     mail_step_ = std::min(mail_step_, info.step);
-    next_sequence_ = info.mail_sequence;
+    // What is missing of the part that was left is not missed.
+    std::erase_if(holes_, [&](const Hole& hole) { return hole.first >= info.mail_sequence; });
+    if (!holes_.empty()) holes_.back().last = std::min(holes_.back().last, info.mail_sequence - 1);
+    next_sequence_ = std::min(next_sequence_, info.mail_sequence);  // a larger one is a hole
   }
 
   /// `next`: the number of the first sim.mail that may still come.
   void check_sequence(std::int64_t next, std::int64_t step) {
     if (next <= next_sequence_) return;
-    const std::int64_t missing = next - next_sequence_;
-    log_.holes.push_back(
-        missing == 1 ? fmt::format("sim.mail {} (of a step from {} to {}) is missing", next_sequence_, mail_step_, step)
-                     : fmt::format("sim.mail {} to {} (of steps from {} to {}) are missing", next_sequence_, next - 1,
-                                   mail_step_, step));
-    if (!log_.proven_step) log_.proven_step = mail_step_;
+    holes_.push_back({next_sequence_, next - 1, mail_step_, step});
     next_sequence_ = next;
   }
 
@@ -206,9 +220,13 @@ class Reader {
 
   bridges::EventLogReader file_;
   ReplayLog log_;
+<<<<<<< HEAD
   std::deque<Count> counts_;  // whose names do not move
   std::unordered_map<std::string_view, std::size_t> by_name_;
   std::size_t last_ = 0;  // in counts_
+=======
+  std::vector<Hole> holes_;
+>>>>>>> fix4
   bool informed_ = false, stepped_ = false;
   std::int32_t branch_ = 0;
   std::int64_t next_sequence_ = 0;

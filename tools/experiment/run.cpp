@@ -34,7 +34,8 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       mail_(buses_, journal_, service_, lockstep_),
       branch_log_(buses_, journal_, options.record, options.overwrite),
       time_(world_, control_, scoring_, service_, mail_, time_options(),
-            {[this] { leave_branch(); }, [this](bool ours) { begin_branch(ours); }}),
+            {[this](std::int64_t to_step, bool ours) { leave_branch(to_step, ours); },
+             [this] { branch_log_.give_up(); }, [this] { begin_branch(); }}),
       duration_s_(options.duration_s.value_or(loaded.config.run.duration_s)),
       progress_(duration_s_, options.quiet),
       programs_(loaded.config, options, buses_) {
