@@ -69,23 +69,23 @@ class EveryWorld : public testing::TestWithParam<std::string> {
     loaded = sim::load_world(SHOAL_SOURCE_DIR "/worlds/" + GetParam() + ".yaml", options);
     sim::Random random(1, GetParam());
     random.begin_step(0);
-    for (int i = 0; i < 3; ++i) saved_at.push_back(static_cast<int>(random.integer_below(1500)));
     saved_at.push_back(0);
+    for (int i = 0; i < 3; ++i) saved_at.push_back(static_cast<int>(random.integer_below(1500)));
     std::sort(saved_at.begin(), saved_at.end());
   }
 
-  /// In one world a device gets another rate before its third snapshot, and its own again after that.  The others have
-  /// an empty journal: they are restored in place.
-  void set_values(sim::World& world, int step) const {
-    if (GetParam() != "proving_ground") return;
-    const int before = saved_at[2] / 2, after = saved_at[2] + 10;
-    if (step != before && step != after) return;
-    const auto sampled = std::find_if(world.devices().begin(), world.devices().end(),
-                                      [](const auto& device) { return device->config().rate_hz > 0; });
-    ASSERT_NE(sampled, world.devices().end());
-    sim::Diagnostics diagnostics;
-    const auto values = sim::parse_config_text(step == before ? "{rate_hz: 17}" : "{rate_hz: 23}", "set", diagnostics);
-    EXPECT_TRUE(world.change_device((*sampled)->full_name(), values, diagnostics));
+  /// Sets a value of the first device of the world, as an event's `set` does; false: it has none.
+  static bool change_a_device(sim::World& world) {
+    for (const auto& device : world.devices()) {
+      if (!device || !device->senses()) continue;
+      sim::Diagnostics diagnostics;
+      EXPECT_TRUE(world.change_device(device->full_name(),
+                                      sim::parse_config_text("{latency_s: 0.013, rate_hz: 7}", "set", diagnostics),
+                                      diagnostics))
+          << diagnostics.lines().front();
+      return true;
+    }
+    return false;
   }
 
   /// Restored, it is the world that was saved, and goes on like it.
@@ -95,7 +95,6 @@ class EveryWorld : public testing::TestWithParam<std::string> {
     ASSERT_TRUE(test.world.snapshot() == snapshots[number]) << "saved again it is not the same";
     test.bus.take_hash();
     for (std::size_t step = at; step < at + more_steps; ++step) {
-      set_values(test.world, static_cast<int>(step));
       const StepResult result = test.step();
       ASSERT_EQ(result.state, results[step].state) << "in the state after step " << step;
       ASSERT_EQ(result.messages, results[step].messages) << "in the messages of step " << step;
@@ -113,7 +112,6 @@ TEST_P(EveryWorld, GoesOnFromASnapshotBitForBit) {
   for (int step = 0; step < saved_at.back() + more_steps; ++step) {
     for (const int at : saved_at)
       if (step == at) snapshots.push_back(original.world.snapshot());
-    set_values(original.world, step);
     results.push_back(original.step());
   }
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
@@ -126,6 +124,29 @@ TEST_P(EveryWorld, GoesOnFromASnapshotBitForBit) {
     }
     SCOPED_TRACE("restored in the world that went on");
     ASSERT_NO_FATAL_FAILURE(expect_goes_on(original, i));
+  }
+}
+
+/// To before a value was set, and to after it: both times the world is built again.
+TEST_P(EveryWorld, GoesOnFromBeforeAndAfterAValueWasSet) {
+  SteppedWorld original(loaded);
+  saved_at = {20, 60};
+  const int set_at = 40;
+  for (int step = 0; step < saved_at.back() + more_steps; ++step) {
+    if (step == saved_at[0] || step == saved_at[1]) snapshots.push_back(original.world.snapshot());
+    if (step == set_at && !change_a_device(original.world)) GTEST_SKIP() << "it has no sensor";
+    results.push_back(original.step());
+  }
+  for (const std::size_t i : {0u, 1u, 0u}) {
+    SCOPED_TRACE("saved after " + std::to_string(saved_at[i]) + " steps");
+    const auto at = static_cast<std::size_t>(saved_at[i]);
+    original.world.restore(snapshots[i]);
+    ASSERT_TRUE(original.world.snapshot() == snapshots[i]) << "saved again it is not the same";
+    original.bus.take_hash();
+    for (std::size_t step = at; step < at + more_steps / 3; ++step) {
+      if (step == set_at) change_a_device(original.world);
+      ASSERT_TRUE(original.step() == results[step]) << "after step " << step;
+    }
   }
 }
 

@@ -116,10 +116,16 @@ TEST(Snapshot, ValuesCanBeSetAndStructureCannot) {
     return run_shoal({"run", "--from", snapshot, "--bus", "none", "--duration", "3", "--set", set});
   };
   const Ended same = run_shoal({"run", "--from", snapshot, "--bus", "none", "--duration", "3"});
-  const Ended lighter = from("physics.gravity_mps2=5");
-  EXPECT_EQ(lighter.exit_code, 0) << lighter.errors;
-  // What is state comes from the snapshot, and gravity is: only what is no state follows --set.
-  EXPECT_EQ(state_hash_in(lighter), state_hash_in(same));
+  const std::string hash = state_hash_in(same);
+  EXPECT_EQ(state_hash_in(from("vehicles.r1.devices.lidar.rate_hz=10")), hash) << "as it was";
+  // Each changes what happens from the snapshot on.
+  for (const char* set :
+       {"physics.gravity_mps2=5", "vehicles.r1.devices.lidar.rate_hz=5", "vehicles.r1.devices.lidar.range_max_m=1.5",
+        "vehicles.r1.devices.lidar.noise.bias=0.1", "vehicles.r1.devices.odometry.noise.gaussian_std=0.1"}) {
+    const Ended ended = from(set);
+    EXPECT_EQ(ended.exit_code, 0) << set << ended.errors;
+    EXPECT_NE(state_hash_in(ended), hash) << set;
+  }
   const Ended other = from("objects.ball.present=false");
   EXPECT_EQ(other.exit_code, 2) << other.output;
   EXPECT_THAT(other.errors, HasSubstr("snapshot"));
@@ -232,6 +238,57 @@ TEST(Rewind, RefusesWhatCannotBeAndSaysSo) {
   EXPECT_THAT(refused({"restore", "bad"}), HasSubstr("bad.snapshot: is cut off after 8 bytes"));
   EXPECT_EQ(Live::where(), "step 5000, 50 s, branch 0, paused");
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
+}
+
+TEST(Rewind, ABranchWhoseRecordCannotBeMadeLeavesTheRunAsItWas) {
+  const Folder folder;
+  Live live(folder, {"--overwrite", "--record", folder.file("log.lcm")});
+  live.run_until("5");
+  EXPECT_EQ(control({"snapshot", "five"}).exit_code, 0);
+  live.run_until("6");
+  const std::string before = Live::where();
+  std::filesystem::create_directory(folder.file("log.branch1.lcm"));
+  for (const std::vector<std::string>& move :
+       {std::vector<std::string>{"rewind", "--value", "2"}, std::vector<std::string>{"restore", "five"}}) {
+    const Ended refused = control(move);
+    EXPECT_EQ(refused.exit_code, 1) << refused.output;
+    EXPECT_THAT(refused.errors, HasSubstr("log.branch1.lcm: Is a directory"));
+    EXPECT_EQ(Live::where(), before);
+  }
+  std::filesystem::remove(folder.file("log.branch1.lcm"));
+  EXPECT_EQ(control({"rewind", "--value", "2"}).output, "step 400, 4 s, branch 1, paused\n");
+  live.run_until("5");
+  EXPECT_EQ(control({"snapshot", "again"}).exit_code, 0);
+  EXPECT_EQ(hash_of_snapshot(folder.file("snaps/five.snapshot")),
+            hash_of_snapshot(folder.file("snaps/again.snapshot")));
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+  for (const char* log : {"log.lcm", "log.branch1.lcm"}) {
+    const Ended replayed = run_shoal({"replay", folder.file(log)});
+    EXPECT_EQ(replayed.exit_code, 0) << log << replayed.output << replayed.errors;
+  }
+}
+
+TEST(Restore, ALogDoesNotProveWhatBeganWithAFile) {
+  const Folder folder;
+  Live live(folder, {"--record", folder.file("log.lcm")});
+  bridges::LcmListener listener(own_url());
+  live.run_until("1");
+  shoal::twist_command_t forward{};
+  forward.forward_mps = 1;
+  listener.publish("r1.drive.cmd", shoal::encode(forward));
+  live.run_until("3");
+  EXPECT_EQ(control({"snapshot", "a"}).exit_code, 0);
+  EXPECT_EQ(control({"restore", "a"}).exit_code, 0);
+  live.run_until("4");
+  EXPECT_EQ(control({"rewind", "--value", "0.5"}).output, "step 350, 3.5 s, branch 2, paused\n");
+  live.run_until("4");
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+  EXPECT_EQ(run_shoal({"replay", folder.file("log.lcm")}).exit_code, 0);
+  for (const char* log : {"log.branch1.lcm", "log.branch2.lcm"}) {
+    const Ended replayed = run_shoal({"replay", folder.file(log)});
+    EXPECT_EQ(replayed.exit_code, 4) << log << replayed.output << replayed.errors;
+    EXPECT_THAT(replayed.errors, HasSubstr("the run began with a snapshot")) << log;
+  }
 }
 
 TEST(Restore, GoesOnFromAFileAndRefusesAnotherWorldsOne) {
