@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -30,56 +31,6 @@ std::unique_ptr<EventLogWriter> create(const std::string& path, Existing existin
 
 }  // namespace
 
-<<<<<<< HEAD
-/// What is known of a channel somebody here reads.
-struct RecordingBus::Channel {
-  std::string name;
-  std::vector<const RecordingMailbox*> mailboxes;  // the first one records
-};
-
-class RecordingBus::RecordingMailbox final : public sim::Mailbox {
- public:
-  RecordingMailbox(RecordingBus& bus, Channel& channel, std::unique_ptr<sim::Mailbox> inner)
-      : bus_(bus), channel_(channel), inner_(std::move(inner)) {
-    channel_.mailboxes.push_back(this);
-  }
-  ~RecordingMailbox() override { std::erase(channel_.mailboxes, this); }
-
-  std::optional<sim::Message> take() override {
-    auto message = inner_->take();
-    if (message && message->from_outside && channel_.mailboxes.front() == this)
-      bus_.record(message->channel, message->payload);
-    return message;
-  }
-  std::uint64_t dropped() const override { return inner_->dropped(); }
-  void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) override { inner_->raise_on_arrival(std::move(flag)); }
-
- private:
-  RecordingBus& bus_;
-  Channel& channel_;
-  std::unique_ptr<sim::Mailbox> inner_;
-=======
-struct RecordingBus::Log {
-  Log(const std::string& path, Existing existing) {
-    // O_EXCL decides and creates in one go; a device such as /dev/full is never "made".
-    const int flags = O_WRONLY | O_CREAT | O_CLOEXEC | (existing == Existing::refuse ? O_EXCL : O_TRUNC);
-    const int fd = open(path.c_str(), flags, 0666);
-    if (fd < 0 && errno == EEXIST) throw BusError(path + ": exists already; choose another name or pass --overwrite");
-    if (fd < 0) throw BusError(path + ": " + std::strerror(errno));
-    ::close(fd);
-    events = lcm_eventlog_create(path.c_str(), "w");
-    if (events == nullptr) throw BusError(path + ": " + std::strerror(errno));
-    std::setvbuf(events->f, buffer.data(), _IOFBF, buffer.size());  // glibc ignores a size without a buffer
-  }
-  ~Log() { lcm_eventlog_destroy(events); }
-  Log(const Log&) = delete;
-  Log& operator=(const Log&) = delete;
-
-  std::vector<char> buffer = std::vector<char>(file_buffer_bytes);
-  lcm_eventlog_t* events = nullptr;
->>>>>>> fix4
-};
-
 RecordingBus::RecordingBus(std::unique_ptr<sim::Bus> inner, const std::string& path, std::int64_t epoch_utime,
                            Existing existing)
     : RecordingBus(*inner, path, epoch_utime, existing) {
@@ -87,11 +38,7 @@ RecordingBus::RecordingBus(std::unique_ptr<sim::Bus> inner, const std::string& p
 }
 
 RecordingBus::RecordingBus(sim::Bus& inner, const std::string& path, std::int64_t epoch_utime, Existing existing)
-    : inner_(inner),
-      path_(path),
-      epoch_utime_(epoch_utime),
-      utime_(epoch_utime),
-      log_(create(path, existing)) {}
+    : inner_(inner), path_(path), epoch_utime_(epoch_utime), utime_(epoch_utime), log_(create(path, existing)) {}
 
 RecordingBus::RecordingBus(sim::Bus& inner, RecordingBus& first) : inner_(inner), first_(&first) {}
 
@@ -131,38 +78,18 @@ void RecordingBus::record(std::string_view channel, std::span<const std::byte> p
 void RecordingBus::prepare(const std::string& path, std::uint64_t events, std::uint64_t bytes, Existing existing) {
   give_up();
   if (!log_ || error_) return;
-<<<<<<< HEAD
   if (!log_->flush()) return fail(errno);
-  auto next = create(path, existing);
+  next_.emplace(Next{path, events, bytes, create(path, existing)});
   const FileDescriptor from(open(path_.c_str(), O_RDONLY | O_CLOEXEC));
-  if (from.number() < 0) throw BusError(path_ + ": " + std::strerror(errno));
   sim::Bytes part(copied_at_once);
-  std::uint64_t left = bytes;
-  while (left > 0) {
+  std::uint64_t left = from.number() < 0 ? bytes + 1 : bytes;
+  while (left > 0 && from.number() >= 0) {
     const ssize_t got = ::read(from.number(), part.data(), std::min<std::uint64_t>(left, part.size()));
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0 || !next->write({part.data(), static_cast<std::size_t>(got)})) break;
+    if (got <= 0 || !next_->log->write({part.data(), static_cast<std::size_t>(got)})) break;
     left -= static_cast<std::uint64_t>(got);
   }
-  if (left > 0) throw BusError(path + ": cannot copy " + path_ + " into it");
-  log_ = std::move(next);
-  path_ = path;
-  recorded_ = events;
-  bytes_ = bytes;
-=======
-  if (std::fflush(log_->events->f) != 0) return fail(errno);
-  auto next = std::make_unique<Log>(path, existing);
-  std::FILE* from = std::fopen(path_.c_str(), "rb");
-  std::vector<char> part(file_buffer_bytes);
-  std::uint64_t left = bytes;
-  while (from != nullptr && left > 0) {
-    const std::size_t got = std::fread(part.data(), 1, std::min<std::uint64_t>(left, part.size()), from);
-    if (got == 0 || std::fwrite(part.data(), 1, got, next->events->f) != got) break;
-    left -= got;
-  }
-  if (from != nullptr) std::fclose(from);
-  next_.emplace(Next{path, events, bytes, std::move(next)});
-  if (left == 0 && std::fflush(next_->log->events->f) == 0) return;  // a full disk shows here
+  if (left == 0 && next_->log->flush()) return;  // a full disk shows here
   give_up();
   throw BusError(path + ": cannot copy " + path_ + " into it");
 }
@@ -176,13 +103,11 @@ void RecordingBus::give_up() {
 
 void RecordingBus::go_on() {
   if (!next_) return;
-  next_->log->events->eventcount = static_cast<std::int64_t>(next_->events);
   log_ = std::move(next_->log);
   path_ = next_->path;
   recorded_ = next_->events;
   bytes_ = next_->bytes;
   next_.reset();
->>>>>>> fix4
   utime_ = epoch_utime_;  // time went back: the next set_time() tells
   flushed_s_ = 0;
 }

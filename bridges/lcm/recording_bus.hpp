@@ -63,17 +63,11 @@ class RecordingBus final : public sim::Bus {
   sim::Bus& inner() { return inner_; }
 
  private:
-<<<<<<< HEAD
-  class RecordingMailbox;
-  struct Channel;
-=======
-  struct Log;
   struct Next {
     std::string path;
     std::uint64_t events, bytes;
-    std::unique_ptr<Log> log;
+    std::unique_ptr<EventLogWriter> log;
   };
->>>>>>> fix4
 
   void record(std::string_view channel, std::span<const std::byte> payload);
   void fail(int error_number);
@@ -85,13 +79,8 @@ class RecordingBus final : public sim::Bus {
   std::int64_t epoch_utime_ = 0;
   std::int64_t utime_ = 0;      // of the last event; never goes back
   std::int64_t flushed_s_ = 0;  // simulated second up to which the file is on disk
-<<<<<<< HEAD
   std::unique_ptr<EventLogWriter> log_;
-  std::map<std::string, std::unique_ptr<Channel>, std::less<>> channels_;  // those with a mailbox
-=======
-  std::unique_ptr<Log> log_;
   std::optional<Next> next_;  // prepared
->>>>>>> fix4
   std::optional<std::string> error_;
   std::uint64_t recorded_ = 0;
   std::uint64_t bytes_ = 0;

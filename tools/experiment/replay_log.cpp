@@ -62,9 +62,8 @@ class Reader {
   void tell(const Hole& hole) {
     const auto& [first, last, from, to] = hole;
     log_.holes.push_back(
-        first == last
-            ? fmt::format("sim.mail {} (of a step from {} to {}) is missing", first, from, to)
-            : fmt::format("sim.mail {} to {} (of steps from {} to {}) are missing", first, last, from, to));
+        first == last ? fmt::format("sim.mail {} (of a step from {} to {}) is missing", first, from, to)
+                      : fmt::format("sim.mail {} to {} (of steps from {} to {}) are missing", first, last, from, to));
     log_.proven_step = std::min({log_.proven_step.value_or(from), from, log_.last_step});
   }
 
@@ -220,13 +219,10 @@ class Reader {
 
   bridges::EventLogReader file_;
   ReplayLog log_;
-<<<<<<< HEAD
   std::deque<Count> counts_;  // whose names do not move
   std::unordered_map<std::string_view, std::size_t> by_name_;
   std::size_t last_ = 0;  // in counts_
-=======
   std::vector<Hole> holes_;
->>>>>>> fix4
   bool informed_ = false, stepped_ = false;
   std::int32_t branch_ = 0;
   std::int64_t next_sequence_ = 0;
