@@ -82,6 +82,7 @@ std::optional<std::size_t> WorldJournal::came_last(Kind kind, const std::string&
 }
 
 std::int64_t WorldJournal::number_of(const std::string& text) {
+  if (full_) return 0;
   const auto known = texts_.find(text);
   if (known != texts_.end()) return known->second;
   std::set<std::int64_t> taken;
