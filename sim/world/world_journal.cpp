@@ -294,6 +294,7 @@ void WorldJournal::apply(const Entry& entry) {
 }
 
 void WorldJournal::apply_vehicle(const Entry& entry) {
+  if (entry.number < 0 || entry.number > 100'000'000) throw SnapshotError("the snapshot has a vehicle of no number");
   VehicleInstance instance;
   instance.name = entry.name;
   instance.X_WV = entry.X_W;

@@ -37,6 +37,10 @@ void World::visit_state(StateArchive& archive) {
   archive.section("world");
   archive(step_number_, ended_);
   archive.unhashed(next_vehicle_number_, next_object_number_, counts_, complaints_);
+  constexpr int most_vehicles_ever = 100'000'000;  // lists have a place for each number
+  if (archive.restoring() &&
+      (next_vehicle_number_ < 0 || next_vehicle_number_ > most_vehicles_ever || next_object_number_ < 0))
+    archive.fail("numbers of vehicles or objects that cannot be");
   physics_->visit_state(archive);
   archive.section("medium");
   archive(medium_, *hydrodynamics_);
