@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -10,16 +9,19 @@
 
 #include "bridges/lcm/bus_error.hpp"
 #include "sim/bus/bus.hpp"
+#include "sim/bus/mail_gate.hpp"
 
 namespace bridges {
+
+class EventLogWriter;
 
 enum class Existing { refuse, overwrite };
 
 /// A bus that also writes all it carries into an LCM event log, stamped with epoch + simulated time:
 /// lcm-logplayer plays it back at the right speed, and two equal runs leave equal files.  For one thread.
 ///
-/// Recorded are what is published here, and what mailboxes hand over from outside, once per channel: when the
-/// simulation takes it, as only that decides what it does.
+/// Recorded are what is published here, and what a gate before this bus admitted: only that decides what the
+/// simulation does.
 class RecordingBus final : public sim::Bus {
  public:
   /// Throws BusError when the file exists and may not be overwritten, or cannot be made.
@@ -34,28 +36,38 @@ class RecordingBus final : public sim::Bus {
 
   void publish(std::string_view channel, std::span<const std::byte> payload, sim::Time at) override;
   std::unique_ptr<sim::Mailbox> open_mailbox(const std::string& channel,
-                                             std::size_t capacity = default_mailbox_capacity) override;
+                                             std::size_t capacity = default_mailbox_capacity) override {
+    return inner_.open_mailbox(channel, capacity);
+  }
+  /// Writes down what came from outside and was handed to the world.
+  void admitted(std::span<const sim::MailGate::Mail> mail);
   void end_of_step() override { inner_.end_of_step(); }
   sim::BusCounts counts() const override { return inner_.counts(); }
 
-  /// The step that begins: the stamp of what mailboxes hand over from now on.
+  /// The step that begins: the stamp of what is admitted from now on.
   void set_time(sim::Time at);
   /// The first error, with path and reason; nothing is written after it.  What was written stays readable.
   std::optional<std::string> error() const { return error_; }
   std::uint64_t recorded() const { return recorded_; }
   /// Size of the log so far.
   std::uint64_t bytes() const { return bytes_; }
-  /// Leaves the log as it is and goes on in another, which begins with a copy of the first `events` events, of `bytes`
-  /// bytes.  Throws BusError when the file cannot be made; the old log goes on then.
-  void go_on_in(const std::string& path, std::uint64_t events, std::uint64_t bytes, Existing existing);
+  /// Makes another log, which begins with a copy of the first `events` events, of `bytes` bytes.  This one goes on
+  /// until go_on().  Throws BusError when the file cannot be made whole.
+  void prepare(const std::string& path, std::uint64_t events, std::uint64_t bytes, Existing existing);
+  /// Leaves the log as it is and goes on in the one that was prepared.
+  void go_on();
+  /// Removes the one that was prepared.
+  void give_up();
   /// Writes what is buffered.  The bus goes on without recording.
   void close();
   sim::Bus& inner() { return inner_; }
 
  private:
-  class RecordingMailbox;
-  struct Log;
-  struct Channel;
+  struct Next {
+    std::string path;
+    std::uint64_t events, bytes;
+    std::unique_ptr<EventLogWriter> log;
+  };
 
   void record(std::string_view channel, std::span<const std::byte> payload);
   void fail(int error_number);
@@ -67,8 +79,8 @@ class RecordingBus final : public sim::Bus {
   std::int64_t epoch_utime_ = 0;
   std::int64_t utime_ = 0;      // of the last event; never goes back
   std::int64_t flushed_s_ = 0;  // simulated second up to which the file is on disk
-  std::unique_ptr<Log> log_;
-  std::map<std::string, std::unique_ptr<Channel>, std::less<>> channels_;  // those with a mailbox
+  std::unique_ptr<EventLogWriter> log_;
+  std::optional<Next> next_;  // prepared
   std::optional<std::string> error_;
   std::uint64_t recorded_ = 0;
   std::uint64_t bytes_ = 0;

@@ -60,6 +60,7 @@ bool SimService::due(double rate_hz) const {
 
 void SimService::publish_step() {
   visitors_.tell_changes();
+  if (!muted_) visitors_.tell_others(network_);
   if (due(info_rate_hz) && info_step_ != world_.step_number()) publish_info();
   if (!due(world_.config().state_rate_hz)) return;
   shoal::utime_t clock;

@@ -41,13 +41,10 @@ class SimService {
   void set_time_machine(TimeMachine* machine) { time_machine_ = machine; }
   /// Whose vehicles there are.
   void visit_state(sim::StateArchive& archive) { visitors_.visit_state(archive); }
-  /// While muted only the world's bus is published on, and nobody is told of vehicles that come and go.
-  void set_muted(bool muted) {
-    muted_ = muted;
-    visitors_.set_muted(muted);
-  }
+  /// While muted only the world's bus is published on.
+  void set_muted(bool muted) { muted_ = muted; }
   /// Tells of vehicles that came or went when time did, beside the record, which knows nothing of another time.
-  void tell_changes() { visitors_.tell_changes(network_); }
+  void tell_changes() { visitors_.tell_others(network_); }
   /// Publishes sim.info now, and not a second time at this step.
   void publish_info();
   /// Carries out a request that a journal wrote down.  Throws std::runtime_error that says why it was refused, as then.

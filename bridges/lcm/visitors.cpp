@@ -49,15 +49,15 @@ shoal::sim_vehicle_t message_of(const sim::Vehicle& vehicle) {
 
 }  // namespace
 
-Visitors::Visitors(sim::World& world, sim::Bus& bus) : world_(world), bus_(bus), generation_(world.generation()) {
-  for (const auto& vehicle : world.vehicles()) known_.emplace(vehicle->name(), message_of(*vehicle));
+Visitors::Visitors(sim::World& world, sim::Bus& bus) : world_(world), bus_(bus) {
+  know_all();
 }
 
 void Visitors::tell(sim::Bus& bus, shoal::sim_vehicle_t& message, bool present) {
   message.utime = world_.epoch_us() + world_.now().count();
   message.present = present;
   const auto owner = owners_.find(message.vehicle);
-  // Whose it was is not known any more when time went back behind its coming.
+  // Whose it was may not be known any more when time went back behind its coming.
   if (owner != owners_.end() || present) message.client = owner == owners_.end() ? "" : owner->second.client;
   shoal::encode_into(message, buffer_);
   bus.publish("sim.vehicle", buffer_, world_.now());
@@ -75,24 +75,40 @@ void Visitors::write_down(const std::string& client, const std::string& command,
   journal_->request(request);
 }
 
-void Visitors::tell_changes(sim::Bus& bus) {
-  if (muted_ || generation_ == world_.generation()) return;
+void Visitors::tell_changes() {
+  if (generation_ == world_.generation()) return;
   generation_ = world_.generation();
-  for (auto known = known_.begin(); known != known_.end();) {
-    if (world_.find_vehicle(known->first) != nullptr) {
-      ++known;
+  tell_difference(known_, bus_);
+}
+
+void Visitors::tell_difference(Known& known, sim::Bus& bus) {
+  for (auto told = known.begin(); told != known.end();) {
+    if (world_.find_vehicle(told->first) != nullptr) {
+      ++told;
       continue;
     }
-    tell(bus, known->second, false);
-    owners_.erase(known->first);
-    known = known_.erase(known);
+    tell(bus, told->second, false);
+    owners_.erase(told->first);
+    told = known.erase(told);
   }
   for (const auto& vehicle : world_.vehicles()) {
-    const auto [known, fresh] = known_.try_emplace(vehicle->name());
+    const auto [told, fresh] = known.try_emplace(vehicle->name());
     if (!fresh) continue;
-    known->second = message_of(*vehicle);
-    tell(bus, known->second, true);
+    told->second = message_of(*vehicle);
+    tell(bus, told->second, true);
   }
+}
+
+void Visitors::tell_others(sim::Bus& network) {
+  if (!told_others_) return;
+  tell_difference(*told_others_, network);
+  told_others_.reset();
+}
+
+void Visitors::know_all() {
+  known_.clear();
+  for (const auto& vehicle : world_.vehicles()) known_.emplace(vehicle->name(), message_of(*vehicle));
+  generation_ = world_.generation();
 }
 
 std::string Visitors::spawn(const std::string& client, const std::string& text) {
@@ -116,7 +132,6 @@ std::string Visitors::add(const std::string& client, const sim::SpawnRequest& re
   }
   spdlog::info("client '{}' brought vehicle '{}' at {:.3f} s", sim::printable(sim::shortened(client)), vehicle.name(),
                sim::to_seconds(world_.now()));
-  if (muted_) return {};
   tell_changes();
   return in_words(known_.at(vehicle.name()));
 }
@@ -133,6 +148,7 @@ std::string Visitors::describe(const std::string& name) {
   write_down("", "describe", name);
   const sim::Vehicle* vehicle = world_.find_vehicle(name);
   if (vehicle == nullptr) throw sim::WorldError("there is no vehicle '" + sim::shortened(sim::printable(name)) + "'");
+  tell_changes();
   shoal::sim_vehicle_t& message = known_.at(vehicle->name());
   tell(bus_, message, true);
   return in_words(message);
@@ -191,7 +207,9 @@ void Visitors::Owner::visit_state(sim::StateArchive& archive) {
 
 void Visitors::visit_state(sim::StateArchive& archive) {
   archive(owners_, clients_);
-  if (archive.restoring()) generation_ = ~std::uint64_t{0};  // whatever came or went is told of
+  if (!archive.restoring()) return;
+  if (!told_others_) told_others_ = known_;
+  know_all();
 }
 
 }  // namespace bridges

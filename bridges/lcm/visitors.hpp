@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "shoal/sim_vehicle_t.hpp"
@@ -35,9 +36,10 @@ class Visitors {
   void act(const std::string& text);
 
   /// Tells of the vehicles that came or went since the last call.
-  void tell_changes() { tell_changes(bus_); }
-  /// The same on another bus.
-  void tell_changes(sim::Bus& bus);
+  void tell_changes();
+  /// After visit_state() restored: tells those who heard of the time before what came or went by that.  The world does
+  /// not hear it, nor does its record: they know nothing of another time.
+  void tell_others(sim::Bus& network);
   /// The client lives.
   void heard_of(const std::string& client);
   /// Removes the vehicles of clients that said nothing for their time-out (wall time).
@@ -45,9 +47,7 @@ class Visitors {
   /// Removes the vehicles that came with this client and go with it.
   void remove_those_of(const std::string& client);
   bool has(const std::string& client) const { return clients_.contains(client); }
-  /// While muted nothing is told.
-  void set_muted(bool muted) { muted_ = muted; }
-  /// Whose vehicles there are.  When restoring, time-outs begin anew.
+  /// Whose vehicles there are.  When restoring, after the world itself, time-outs begin anew.
   void visit_state(sim::StateArchive& archive);
   /// Told of every request that is about to change the world, whoever makes it, and of descriptions.
   void use_journal(RunJournal& journal) { journal_ = &journal; }
@@ -65,18 +65,22 @@ class Visitors {
     void visit_state(sim::StateArchive& archive);
   };
 
+  using Known = std::map<std::string, shoal::sim_vehicle_t, std::less<>>;
+
   std::string add(const std::string& client, const sim::SpawnRequest& request);
+  void know_all();
+  void tell_difference(Known& known, sim::Bus& bus);
   void tell(sim::Bus& bus, shoal::sim_vehicle_t& message, bool present);
   void write_down(const std::string& client, const std::string& command, const std::string& text);
 
   sim::World& world_;
   sim::Bus& bus_;
   RunJournal* journal_ = nullptr;
-  std::map<std::string, Owner, std::less<>> owners_;                // by vehicle
-  std::map<std::string, Client, std::less<>> clients_;              // those with vehicles that go with them
-  std::map<std::string, shoal::sim_vehicle_t, std::less<>> known_;  // the vehicles told of, or there from the start
-  std::uint64_t generation_;
-  bool muted_ = false;
+  std::map<std::string, Owner, std::less<>> owners_;    // by vehicle
+  std::map<std::string, Client, std::less<>> clients_;  // those with vehicles that go with them
+  Known known_;                                         // the vehicles told of, or there from the start
+  std::optional<Known> told_others_;  // before time went elsewhere; unset: they know what the world does
+  std::uint64_t generation_ = 0;
   sim::Bytes buffer_;
 };
 

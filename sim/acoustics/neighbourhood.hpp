@@ -21,6 +21,8 @@ class Neighbourhood {
   /// Numbers of all members no farther from the place than this in the plane, in rising order; perhaps some more.
   void near(const Vector3d& p_W, double reach_m, std::vector<int>& numbers) const;
   void visit_state(StateArchive& archive) { archive(cell_m_, entries_); }
+  /// All members have numbers from 0 to below this.
+  bool numbers_are_below(std::size_t count) const;
 
  private:
   struct Entry {

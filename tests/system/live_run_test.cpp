@@ -129,8 +129,8 @@ TEST_F(LiveRun, RefusesWhatItDoesNotUnderstand) {
   const auto unknown = request("fly");
   EXPECT_FALSE(unknown.ok);
   EXPECT_EQ(unknown.text,
-            "unknown command 'fly'; known commands: alive, describe, do, join, leave, pause, quit, remove, resume, "
-            "spawn, speed, step");
+            "unknown command 'fly'; known commands: alive, describe, do, join, leave, pause, quit, remove, restore, "
+            "resume, rewind, snapshot, spawn, speed, step, until, where");
   EXPECT_FALSE(request("speed", -1).ok);
   EXPECT_FALSE(request("step", 0).ok);
   EXPECT_FALSE(request("step", 1e300).ok);

@@ -240,6 +240,57 @@ TEST(Rewind, RefusesWhatCannotBeAndSaysSo) {
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
 }
 
+TEST(Rewind, ABranchWhoseRecordCannotBeMadeLeavesTheRunAsItWas) {
+  const Folder folder;
+  Live live(folder, {"--overwrite", "--record", folder.file("log.lcm")});
+  live.run_until("5");
+  EXPECT_EQ(control({"snapshot", "five"}).exit_code, 0);
+  live.run_until("6");
+  const std::string before = Live::where();
+  std::filesystem::create_directory(folder.file("log.branch1.lcm"));
+  for (const std::vector<std::string>& move :
+       {std::vector<std::string>{"rewind", "--value", "2"}, std::vector<std::string>{"restore", "five"}}) {
+    const Ended refused = control(move);
+    EXPECT_EQ(refused.exit_code, 1) << refused.output;
+    EXPECT_THAT(refused.errors, HasSubstr("log.branch1.lcm: Is a directory"));
+    EXPECT_EQ(Live::where(), before);
+  }
+  std::filesystem::remove(folder.file("log.branch1.lcm"));
+  EXPECT_EQ(control({"rewind", "--value", "2"}).output, "step 400, 4 s, branch 1, paused\n");
+  live.run_until("5");
+  EXPECT_EQ(control({"snapshot", "again"}).exit_code, 0);
+  EXPECT_EQ(hash_of_snapshot(folder.file("snaps/five.snapshot")),
+            hash_of_snapshot(folder.file("snaps/again.snapshot")));
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+  for (const char* log : {"log.lcm", "log.branch1.lcm"}) {
+    const Ended replayed = run_shoal({"replay", folder.file(log)});
+    EXPECT_EQ(replayed.exit_code, 0) << log << replayed.output << replayed.errors;
+  }
+}
+
+TEST(Restore, ALogDoesNotProveWhatBeganWithAFile) {
+  const Folder folder;
+  Live live(folder, {"--record", folder.file("log.lcm")});
+  bridges::LcmListener listener(own_url());
+  live.run_until("1");
+  shoal::twist_command_t forward{};
+  forward.forward_mps = 1;
+  listener.publish("r1.drive.cmd", shoal::encode(forward));
+  live.run_until("3");
+  EXPECT_EQ(control({"snapshot", "a"}).exit_code, 0);
+  EXPECT_EQ(control({"restore", "a"}).exit_code, 0);
+  live.run_until("4");
+  EXPECT_EQ(control({"rewind", "--value", "0.5"}).output, "step 350, 3.5 s, branch 2, paused\n");
+  live.run_until("4");
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+  EXPECT_EQ(run_shoal({"replay", folder.file("log.lcm")}).exit_code, 0);
+  for (const char* log : {"log.branch1.lcm", "log.branch2.lcm"}) {
+    const Ended replayed = run_shoal({"replay", folder.file(log)});
+    EXPECT_EQ(replayed.exit_code, 4) << log << replayed.output << replayed.errors;
+    EXPECT_THAT(replayed.errors, HasSubstr("the run began with a snapshot")) << log;
+  }
+}
+
 TEST(Restore, GoesOnFromAFileAndRefusesAnotherWorldsOne) {
   const Folder folder;
   Live live(folder);

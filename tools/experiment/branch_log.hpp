@@ -19,11 +19,14 @@ class BranchLog {
 
   /// Call after each step whose messages are out.  `oldest`: nobody goes back further.
   void mark(std::int64_t step, std::int64_t oldest);
-  /// Throws BusError when the file of this branch is there already and may not be replaced.
-  void check(std::int32_t branch) const;
-  /// The world has gone to `step`.  `ours`: it has been there in this run, else the log begins anew.  Throws BusError
-  /// when the file cannot be made; the old record goes on then.
-  void branch(std::int32_t branch, std::int64_t step, bool ours);
+  /// The world is about to go to `step` and begin a branch.  `ours`: it has been there in this run, else the log begins
+  /// anew.  Throws BusError when the file cannot be made, or is there already and may not be replaced; nothing has
+  /// changed then.
+  void prepare(std::int32_t branch, std::int64_t step, bool ours);
+  /// It has gone there.
+  void branch(std::int32_t branch);
+  /// It has not.
+  void give_up();
   /// `coop.lcm` becomes `coop.branch2.lcm`.
   std::string file_of(std::int32_t branch) const;
 
@@ -39,6 +42,8 @@ class BranchLog {
   std::string record_;
   bool overwrite_;
   std::deque<Mark> marks_;
+  Mark next_{};  ///< of the branch that is prepared
+  bool next_is_ours_ = false;
 };
 
 }  // namespace tools

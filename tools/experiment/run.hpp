@@ -38,8 +38,8 @@ class Run {
   void admit_mail();
   void end_of_step();
   TimeControl::Options time_options() const;
-  void leave_branch();
-  void begin_branch(bool ours);
+  void leave_branch(std::int64_t to_step, bool ours);
+  void begin_branch();
   void take_snapshots();
   /// Requests and keys.
   void obey();

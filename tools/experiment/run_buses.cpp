@@ -51,7 +51,9 @@ std::string RunBuses::url(const std::string& name) const {
 void RunBuses::admit(const Admitted& admitted) {
   const auto hand_over = [&](const std::string& name, Line& line) {
     const std::vector<sim::MailGate::Mail>& mail = line.gate->admit();
-    if (!mail.empty()) admitted(name, mail);
+    if (mail.empty()) return;
+    if (line.recorder && !muted_) line.recorder->admitted(mail);
+    admitted(name, mail);
   };
   hand_over("", main_);
   for (auto& [name, line] : others_) hand_over(name, line);
@@ -93,13 +95,22 @@ RunBuses::RecordMark RunBuses::record_mark() const {
   return main_.recorder ? RecordMark{main_.recorder->recorded(), main_.recorder->bytes()} : RecordMark{};
 }
 
-void RunBuses::branch_record(const std::string& path, const RecordMark& mark, bool overwrite) {
+void RunBuses::prepare_record(const std::string& path, const RecordMark& mark, bool overwrite) {
   if (!main_.recorder) return;
-  main_.recorder->go_on_in(path, mark.events, mark.bytes,
-                           overwrite ? bridges::Existing::overwrite : bridges::Existing::refuse);
+  main_.recorder->prepare(path, mark.events, mark.bytes,
+                          overwrite ? bridges::Existing::overwrite : bridges::Existing::refuse);
+}
+
+void RunBuses::branch_record() {
+  if (main_.recorder) main_.recorder->go_on();
+}
+
+void RunBuses::give_up_record() {
+  if (main_.recorder) main_.recorder->give_up();
 }
 
 void RunBuses::set_muted(bool muted) {
+  muted_ = muted;
   for_each([&](const Line& line) {
     line.mute->set_muted(true);  // what waits in the network goes as well
     line.gate->collect();

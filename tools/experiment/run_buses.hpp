@@ -55,8 +55,11 @@ class RunBuses {
     std::uint64_t events = 0, bytes = 0;
   };
   RecordMark record_mark() const;
-  /// Goes on with another record, which begins with the old one's up to a mark.  Throws BusError.
-  void branch_record(const std::string& path, const RecordMark& mark, bool overwrite);
+  /// Makes another record, which begins with the present one's up to a mark.  Throws BusError.
+  void prepare_record(const std::string& path, const RecordMark& mark, bool overwrite);
+  /// Goes on with the record that was prepared, or removes it.
+  void branch_record();
+  void give_up_record();
   /// While muted nothing goes to the networks and into the record, and what comes in is thrown away.  What waits at the
   /// gates is thrown away at both calls.
   void set_muted(bool muted);
@@ -84,6 +87,7 @@ class RunBuses {
   }
 
   std::shared_ptr<bridges::Arrivals> arrivals_ = std::make_shared<bridges::Arrivals>();
+  bool muted_ = false;
   Line main_;
   std::map<std::string, Line, std::less<>> others_;  // destroyed before the main one, whose log they write
 };

@@ -9,9 +9,9 @@
 
 namespace tools {
 
-void Run::leave_branch() {
-  branch_log_.check(control_.branch + 1);
+void Run::leave_branch(std::int64_t to_step, bool ours) {
   journal_.finish();
+  branch_log_.prepare(control_.branch + 1, to_step, ours);
   if (!results_) return;
   Summary left;
   left.ended = "rewound";
@@ -20,16 +20,16 @@ void Run::leave_branch() {
   results_->keep_branch(left, scoring_, loaded_.resolved);
 }
 
-void Run::begin_branch(bool ours) {
-  const std::int64_t step = world_.step_number();
-  branch_log_.branch(control_.branch, step, ours);
+void Run::begin_branch() {
+  branch_log_.branch(control_.branch);
   lockstep_.set_branch(control_.branch);
-  if (results_) results_->cut_tracks(world_.now());
-  progress_.restart(world_.now());
   buses_.set_time(world_.now());
   service_.tell_changes();
   service_.publish_info();
   buses_.end_of_step();
+  branch_log_.mark(world_.step_number(), time_.oldest_step().value_or(world_.step_number()));
+  progress_.restart(world_.now());
+  if (results_) results_->cut_tracks(world_.now());
 }
 
 void Run::take_snapshots() {

@@ -17,6 +17,9 @@ namespace {
 
 constexpr int most_files = 1000;
 constexpr const char* suffix = ".snapshot";
+/// Between two snapshots for going back at least this many times what the last one cost: in a run that is much faster
+/// than real time they are further apart, and the steps between them take the less time to work out again.
+constexpr int rest_per_snapshot = 40;
 
 /// One run of bytes that the ring can compare part by part, and back.  Its last bytes tell the three sizes.
 constexpr std::size_t trailer_bytes = 3 * sizeof(std::uint64_t);
@@ -105,6 +108,8 @@ void TimeControl::after_step() {
   const std::int64_t step = world_.step_number();
   const bool due = step % steps_per_second_ == 0 || ring_.size() == 0;
   if (!due) return;
+  const auto begin = Clock::now();
+  if (ring_.size() > 0 && begin < not_before_) return;
   try {
     const Saved saved = save(History::length);
     ring_.add(step, joined(saved.state, saved.scores, saved.owners), mail_.bytes());
@@ -114,6 +119,8 @@ void TimeControl::after_step() {
     return forget_all();
   }
   mail_.forget_before(*ring_.oldest());
+  const auto end = Clock::now();
+  not_before_ = end + rest_per_snapshot * (end - begin);
 }
 
 void TimeControl::forget_all() {
@@ -154,8 +161,8 @@ std::string TimeControl::place() const {
 std::string TimeControl::what_is_kept() const {
   const auto oldest = ring_.oldest();
   if (!oldest) return "";
-  return fmt::format("; can go back to {:.6g} s, which takes {:.2f} MB",
-                     sim::to_seconds(world_.step_time() * *oldest), static_cast<double>(bytes()) / 1e6);
+  return fmt::format("; can go back to {:.6g} s, which takes {:.2f} MB", sim::to_seconds(world_.step_time() * *oldest),
+                     static_cast<double>(bytes()) / 1e6);
 }
 
 std::string TimeControl::run_until(double time_s) {
@@ -206,7 +213,7 @@ std::string TimeControl::rewind(double seconds, bool run_on) {
         ring_.forget_after(target);
         mail_.forget_from(target);
       },
-      run_on, true);
+      target, run_on, true);
   return place();
 }
 
@@ -220,19 +227,19 @@ void TimeControl::simulate_again(std::int64_t to_step) {
   }
 }
 
-void TimeControl::travel(const std::function<void()>& work, bool run_on, bool ours) {
+void TimeControl::travel(const std::function<void()>& work, std::int64_t to_step, bool run_on, bool ours) {
   const Saved before = save(History::whole);
-  if (hooks_.leaving) hooks_.leaving();
+  try {
+    if (hooks_.leaving) hooks_.leaving(to_step, ours);
+  } catch (const std::exception&) {
+    if (hooks_.stayed) hooks_.stayed();
+    throw;
+  }
   mail_.begin_again(world_.step_number());
   try {
     work();
-  } catch (const std::exception& error) {
-    try {
-      load(before, History::whole);
-    } catch (const std::exception&) {
-      broken_ = error.what();
-    }
-    mail_.end_again();
+  } catch (const std::exception&) {
+    put_back(before);
     throw;
   }
   mail_.end_again();
@@ -240,7 +247,22 @@ void TimeControl::travel(const std::function<void()>& work, bool run_on, bool ou
   control_.forget_until();
   control_.set_paused(!run_on);
   moved_ = true;
-  if (hooks_.arrived) hooks_.arrived(ours);
+  try {
+    if (hooks_.arrived) hooks_.arrived();
+  } catch (const std::exception& error) {  // half of the run is there: it cannot go on
+    broken_ = error.what();
+    throw;
+  }
+}
+
+void TimeControl::put_back(const Saved& before) {
+  try {
+    load(before, History::whole);
+  } catch (const std::exception& error) {
+    broken_ = error.what();
+  }
+  mail_.end_again();
+  if (hooks_.stayed) hooks_.stayed();
 }
 
 void TimeControl::go_on_from(const Snapshot& snapshot) {
@@ -311,10 +333,14 @@ std::string TimeControl::restore(const std::string& name, bool run_on) {
   if (snapshot.resolved_world != options_.resolved_world)
     throw std::runtime_error(path + ": is of another world or other values: " +
                              first_difference(snapshot.resolved_world, options_.resolved_world));
-  travel([&] { load({snapshot.state, snapshot.scores, snapshot.owners}, History::whole); }, run_on, false);
-  options_.scores_from_s = snapshot.from_s;
-  forget_all();
-  after_step();
+  travel(
+      [&] {
+        load({snapshot.state, snapshot.scores, snapshot.owners}, History::whole);
+        options_.scores_from_s = snapshot.from_s;
+        forget_all();
+        after_step();
+      },
+      snapshot.step, run_on, false);
   return place();
 }
 

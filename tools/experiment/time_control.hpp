@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -34,8 +35,11 @@ class TimeControl final : public bridges::TimeMachine {
   };
   /// What the run does when the world goes elsewhere in time.
   struct Hooks {
-    std::function<void()> leaving;           ///< before: the branch is as it was left
-    std::function<void(bool ours)> arrived;  ///< after; `ours`: at a step that this run has been at
+    /// Before: the branch is as it was left.  `ours`: the new one begins at a step that this run has been at.  The
+    /// world stays where it is when this throws.
+    std::function<void(std::int64_t to_step, bool ours)> leaving;
+    std::function<void()> stayed;   ///< the world is where it was after all
+    std::function<void()> arrived;  ///< after
   };
 
   /// All must outlive this.
@@ -47,7 +51,7 @@ class TimeControl final : public bridges::TimeMachine {
   /// Pauses a run that has come where `until` said.  True: it did so now.
   bool stop_when_there();
 
-  /// pause, resume, step, speed and what moves in time.  Throws std::runtime_error that says why it was refused.
+  /// snapshot, restore, rewind, until and where.  Throws std::runtime_error that says why it was refused.
   std::optional<std::string> obey(const std::string& command, const std::string& text, double value) override;
   /// Goes back by so many seconds.
   std::string rewind(double seconds, bool run_on);
@@ -75,6 +79,7 @@ class TimeControl final : public bridges::TimeMachine {
   std::optional<std::int64_t> oldest_step() const { return ring_.oldest(); }
 
  private:
+  using Clock = std::chrono::steady_clock;
   struct Saved {
     sim::Bytes state, scores, owners;
   };
@@ -85,7 +90,8 @@ class TimeControl final : public bridges::TimeMachine {
   void forget_all();
   void simulate_again(std::int64_t to_step);
   /// Carries out `work`, which moves the world; puts the world back when that fails.
-  void travel(const std::function<void()>& work, bool run_on, bool ours);
+  void travel(const std::function<void()>& work, std::int64_t to_step, bool run_on, bool ours);
+  void put_back(const Saved& before);
   std::string what_is_kept() const;
   std::string path_of(const std::string& name) const;
 
@@ -98,6 +104,7 @@ class TimeControl final : public bridges::TimeMachine {
   Hooks hooks_;
   std::int64_t steps_per_second_;
   SnapshotRing ring_;
+  Clock::time_point not_before_;  // the next snapshot for going back
   int files_ = 0;
   bool moved_ = false;
   std::string broken_;

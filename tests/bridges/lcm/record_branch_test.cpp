@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <filesystem>
+
 #include "bridges/lcm/event_log.hpp"
 #include "bridges/lcm/recording_bus.hpp"
 #include "sim/bus/in_process_bus.hpp"
@@ -30,7 +32,8 @@ TEST(RecordBranch, BeginsWithACopyAndGoesOnFromThere) {
   const std::uint64_t events = bus.recorded();
   const std::uint64_t bytes = bus.bytes();
   bus.publish("x", bytes_of("two"), sim::Time{20});
-  bus.go_on_in(folder.file("b.lcm"), events, bytes, bridges::Existing::refuse);
+  bus.prepare(folder.file("b.lcm"), events, bytes, bridges::Existing::refuse);
+  bus.go_on();
   bus.publish("x", bytes_of("other"), sim::Time{15});
   bus.close();
   EXPECT_EQ(bus.error(), std::nullopt);
@@ -43,11 +46,38 @@ TEST(RecordBranch, TheOldRecordGoesOnWhenTheNewOneCannotBeMade) {
   sim::InProcessBus network;
   bridges::RecordingBus bus(network, folder.file("a.lcm"), 0);
   bus.publish("x", bytes_of("one"), sim::Time{10});
-  EXPECT_THROW(bus.go_on_in(folder.file("no/b.lcm"), 0, 0, bridges::Existing::refuse), bridges::BusError);
-  EXPECT_THROW(bus.go_on_in(folder.file("a.lcm"), 0, 0, bridges::Existing::refuse), bridges::BusError);
+  EXPECT_THROW(bus.prepare(folder.file("no/b.lcm"), 0, 0, bridges::Existing::refuse), bridges::BusError);
+  EXPECT_THROW(bus.prepare(folder.file("a.lcm"), 0, 0, bridges::Existing::refuse), bridges::BusError);
   bus.publish("x", bytes_of("two"), sim::Time{20});
   bus.close();
   EXPECT_THAT(events_of(folder.file("a.lcm")), ElementsAre("0 at 10: one", "1 at 20: two"));
+}
+
+TEST(RecordBranch, TheOldRecordGoesOnWhenTheNewOneIsNotWanted) {
+  const ScratchFolder folder;
+  sim::InProcessBus network;
+  bridges::RecordingBus bus(network, folder.file("a.lcm"), 0);
+  bus.publish("x", bytes_of("one"), sim::Time{10});
+  bus.prepare(folder.file("b.lcm"), bus.recorded(), bus.bytes(), bridges::Existing::refuse);
+  EXPECT_TRUE(std::filesystem::exists(folder.file("b.lcm")));
+  bus.give_up();
+  EXPECT_FALSE(std::filesystem::exists(folder.file("b.lcm")));
+  bus.go_on();
+  bus.publish("x", bytes_of("two"), sim::Time{20});
+  bus.close();
+  EXPECT_THAT(events_of(folder.file("a.lcm")), ElementsAre("0 at 10: one", "1 at 20: two"));
+}
+
+TEST(RecordBranch, ACopyThatDoesNotFitOnTheDiskIsRefused) {
+  const ScratchFolder folder;
+  sim::InProcessBus network;
+  bridges::RecordingBus bus(network, folder.file("a.lcm"), 0);
+  bus.publish("x", bytes_of("one"), sim::Time{10});
+  // A link, as what was prepared in vain is removed.
+  std::filesystem::create_symlink("/dev/full", folder.file("full"));
+  EXPECT_THROW(bus.prepare(folder.file("full"), bus.recorded(), bus.bytes(), bridges::Existing::overwrite),
+               bridges::BusError);
+  EXPECT_EQ(bus.error(), std::nullopt);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "shoal/planar_lidar_t.hpp"
 #include "shoal/sim_vehicle_t.hpp"
 #include "shoal/twist_command_t.hpp"
+#include "sim/state/state_archive.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 #include "tests/bridges/lcm/service_fixture.hpp"
 
@@ -221,6 +222,68 @@ TEST(Spawn, AVehicleGoesWhenItsClientIsSilentForTooLong) {
     host.service.handle_requests();
     return host.test.world.find_vehicle("w") == nullptr;
   }));
+}
+
+/// The world and whose vehicles there are, as a snapshot has them.
+struct Moment {
+  explicit Moment(Host& host) : world(host.test.world.snapshot()) {
+    auto archive = sim::StateArchive::saver();
+    archive.section("owners");
+    host.service.visit_state(archive);
+    archive.end();
+    owners = archive.take_bytes();
+  }
+  void restore(Host& host) const {
+    host.test.world.restore(world);
+    auto archive = sim::StateArchive::restorer(owners);
+    archive.section("owners");
+    host.service.visit_state(archive);
+  }
+  sim::Bytes world, owners;
+};
+
+TEST(Rewind, TheWorldHearsOfVehiclesAsItDidTheFirstTime) {
+  Host host;
+  const Moment before(host);
+  const std::string guest =
+      "{name: g, position_m: [0, 0, 5], model: {shoal: 1, bodies: [{name: b, parts: [{shape: sphere, mass_kg: 1}]}]}}";
+  ASSERT_TRUE(host.ask("spawn", guest).ok);
+  ASSERT_TRUE(host.ask("describe", "g").ok);
+  ASSERT_TRUE(host.ask("remove", "g").ok);
+  const auto first = host.vehicles.take_all();
+  ASSERT_EQ(first.size(), 3u);
+  before.restore(host);
+  host.service.set_muted(true);
+  host.service.publish_step();
+  EXPECT_THAT(host.vehicles.take_all(), testing::IsEmpty());
+  for (const auto& [command, text] :
+       {std::pair<std::string, std::string>{"spawn", guest}, {"describe", "g"}, {"remove", "g"}}) {
+    shoal::sim_control_request_t request{};
+    request.client = "pilot";
+    request.command = command;
+    request.text = text;
+    EXPECT_NO_THROW(host.service.obey_again(request)) << command;
+  }
+  const auto again = host.vehicles.take_all();
+  ASSERT_EQ(again.size(), first.size());
+  for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(shoal::encode(again[i]), shoal::encode(first[i])) << i;
+  host.service.set_muted(false);
+  host.service.tell_changes();
+  EXPECT_THAT(host.vehicles.take_all(), testing::IsEmpty());  // others know all that
+}
+
+TEST(Rewind, OthersAreToldWhatIsGoneByIt) {
+  Host host;
+  const Moment before(host);
+  ASSERT_TRUE(host.ask("spawn", "{name: r1, file: rover_small.yaml, position_m: [3, 0, 0]}").ok);
+  host.vehicles.take_all();
+  before.restore(host);
+  host.service.tell_changes();
+  const auto told = host.vehicles.take_all();
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].vehicle, "r1");
+  EXPECT_FALSE(told[0].present);
+  EXPECT_EQ(told[0].client, "pilot");
 }
 
 }  // namespace

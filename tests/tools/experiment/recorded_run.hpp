@@ -48,7 +48,9 @@ class RecordedRun {
       if (clients) clients(world.step_number());
       service.handle_requests();
       recorder.set_time(world.now());
-      journal.admitted("", gate.admit());
+      const auto& mail = gate.admit();
+      recorder.admitted(mail);
+      journal.admitted("", mail);
       world.step();
       service.publish_step();
       journal.after_step();

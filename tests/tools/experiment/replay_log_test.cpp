@@ -1,0 +1,101 @@
+#include "tools/experiment/replay_log.hpp"
+
+#include <gmock/gmock.h>
+
+#include "bridges/lcm/recording_bus.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/sim_mail_t.hpp"
+#include "sim/bus/in_process_bus.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tools/experiment/replay_messages.hpp"
+
+// What a log tells of its run, from logs made by hand.
+
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr std::int64_t step_us = 10'000;
+
+/// A log of a run with steps of 0.01 s from epoch 0.
+class HandMade {
+ public:
+  void info(std::int32_t branch, std::int64_t step, std::int64_t mail_sequence) {
+    shoal::sim_info_t info{};
+    info.world = "w";
+    info.step_us = step_us;
+    info.utime = step * step_us;
+    info.step = step;
+    info.branch = branch;
+    info.mail_sequence = mail_sequence;
+    publish("sim.info", info, step);
+  }
+  void mail(std::int32_t branch, std::int64_t step, std::int64_t sequence) {
+    shoal::sim_mail_t mail{};
+    mail.utime = step * step_us;
+    mail.step = step;
+    mail.branch = branch;
+    mail.sequence = sequence;
+    mail.count = 1;
+    mail.letter.resize(1);
+    mail.letter[0].step = step - 1;
+    mail.letter[0].channel = "a.cmd";
+    publish("sim.mail", mail, step);
+  }
+  template <typename Message>
+  void publish(const std::string& channel, const Message& message, std::int64_t step) {
+    bus_.publish(channel, shoal::encode(message), sim::Time(step * step_us));
+  }
+  void raw(const std::string& channel, const sim::Bytes& payload, std::int64_t step) {
+    bus_.publish(channel, payload, sim::Time(step * step_us));
+  }
+  tools::ReplayLog read() {
+    bus_.close();
+    return tools::read_replay_log(path_);
+  }
+
+ private:
+  test_support::ScratchFolder folder_;
+  std::string path_ = folder_.file("log.lcm");
+  sim::InProcessBus network_;
+  bridges::RecordingBus bus_{network_, path_, 0};
+};
+
+TEST(ReplayLog, WhatIsMissingOfAPartThatWasLeftIsNotMissed) {
+  HandMade log;
+  log.info(0, 0, 0);
+  log.mail(0, 5, 0);
+  log.mail(0, 30, 2);  // 1 is missing, and came after step 10: the branch there begins with 1
+  log.info(1, 10, 1);
+  log.mail(1, 20, 1);
+  const tools::ReplayLog read = log.read();
+  EXPECT_THAT(read.holes, IsEmpty());
+  EXPECT_EQ(read.usable_step(), 20);
+  EXPECT_EQ(read.letters.size(), 2u);
+}
+
+TEST(ReplayLog, WhatIsMissingOfThePartThatIsKeptEndsTheProof) {
+  HandMade log;
+  log.info(0, 0, 0);
+  log.mail(0, 5, 0);
+  log.mail(0, 30, 3);  // 1 and 2 are missing: 1 came up to step 10
+  log.info(1, 10, 2);
+  log.mail(1, 20, 2);
+  const tools::ReplayLog read = log.read();
+  EXPECT_THAT(read.holes, ElementsAre("sim.mail 1 (of a step from 5 to 30) is missing"));
+  EXPECT_EQ(read.usable_step(), 5);
+}
+
+TEST(ReplayLog, MailThatWasLostJustBeforeABranchEndsTheProof) {
+  HandMade log;
+  log.info(0, 0, 0);
+  log.mail(0, 5, 0);
+  log.info(1, 10, 2);
+  log.mail(1, 20, 2);
+  const tools::ReplayLog read = log.read();
+  EXPECT_THAT(read.holes, ElementsAre("sim.mail 1 (of a step from 5 to 10) is missing"));
+  EXPECT_EQ(read.usable_step(), 5);
+}
+
+}  // namespace
