@@ -62,7 +62,7 @@ class ReplayMessages {
     return known == by_name_.end() ? nullptr : known->second;
   }
   Channel& add(std::string_view name);
-  /// Null: the log has no more of them.
+  /// Null: the log has no more of them, or not before what is compared now.
   const sim::Bytes* head(Channel& channel);
   void pop(Channel& channel);
   bool is_mail(Channel& channel, const sim::Bytes& payload);
@@ -72,8 +72,10 @@ class ReplayMessages {
   const ReplayLog& log_;
   bridges::EventLogReader file_;
   bool at_end_ = false;
-  bridges::LogEvent event_;     // the last one that was read
-  Channel* current_ = nullptr;  // whose event it is while it is not yet compared; null: it is, or nobody's
+  std::int64_t look_until_ = 0;   // stamp up to which a record is read
+  std::size_t queued_bytes_ = 0;  // of all channels
+  bridges::LogEvent event_;       // the last one that was read
+  Channel* current_ = nullptr;    // whose event it is while it is not yet compared; null: it is, or nobody's
   std::map<std::string, Channel, std::less<>> channels_;
   std::unordered_map<std::string_view, Channel*> by_name_;  // asked, never iterated
   std::uint64_t equal_ = 0, different_ = 0, missing_ = 0;
