@@ -8,40 +8,40 @@ constexpr char escape = 27;
 
 }  // namespace
 
-std::optional<char> KeySequences::next(char byte, Clock::time_point now) {
+std::string KeySequences::next(char byte, Clock::time_point now) {
   const State before = state_;
   state_ = State::none;
   if (byte == escape) {
     state_ = State::begun;
     begun_ = now;
-    return std::nullopt;
+    return before == State::begun ? std::string{escape} : std::string{};
   }
   switch (before) {
     case State::none:
-      return byte;
+      return {byte};
     case State::begun:
       if (byte == '[') state_ = State::first_parameter;
       if (byte == 'O') state_ = State::one_more;
-      return std::nullopt;  // else Alt and a key, which mean nothing either
+      return state_ == State::none ? std::string{escape, byte} : std::string{};
     case State::one_more:
-      return std::nullopt;
+      return {};
     case State::first_parameter:
       if (byte == '[') {
         state_ = State::one_more;
-        return std::nullopt;
+        return {};
       }
       [[fallthrough]];
     case State::parameters:
       if (byte >= ' ' && byte <= '?') state_ = State::parameters;
-      return std::nullopt;
+      return {};
   }
-  return std::nullopt;
+  return {};
 }
 
-std::optional<char> KeySequences::alone(Clock::time_point now) {
-  if (state_ != State::begun || now - begun_ < patience) return std::nullopt;
+std::string KeySequences::alone(Clock::time_point now) {
+  if (state_ != State::begun || now - begun_ < patience) return {};
   state_ = State::none;
-  return escape;
+  return {escape};
 }
 
 }  // namespace tools

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <chrono>
-#include <optional>
+#include <string>
 
 namespace tools {
 
@@ -14,10 +14,11 @@ class KeySequences {
   /// A key alone is told from the begin of a sequence by what does not follow for so long.
   static constexpr std::chrono::milliseconds patience{50};
 
-  /// The bytes a terminal gave, one by one.  Nothing: it belongs to a sequence, or may.
-  std::optional<char> next(char byte, Clock::time_point now);
+  /// The keys that the bytes of a terminal, given one by one, turn out to be.  None: this one belongs to a sequence, or
+  /// may.
+  std::string next(char byte, Clock::time_point now);
   /// ESC, when it was pressed alone by now.
-  std::optional<char> alone(Clock::time_point now);
+  std::string alone(Clock::time_point now);
 
  private:
   enum class State { none, begun, one_more, parameters, first_parameter };

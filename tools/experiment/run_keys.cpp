@@ -29,8 +29,7 @@ void RunKeys::read() {
   for (int i = 0; i < most_at_once; ++i) {
     const auto now = KeySequences::Clock::now();
     const auto byte = keys_.next();
-    const auto key = byte ? sequences_.next(*byte, now) : sequences_.alone(now);
-    if (key) press(*key);
+    for (const char key : byte ? sequences_.next(*byte, now) : sequences_.alone(now)) press(key);
     if (!byte) return;
   }
 }

@@ -13,10 +13,8 @@ std::string keys_of(const std::string& bytes) {
   KeySequences sequences;
   const KeySequences::Clock::time_point now{};
   std::string keys;
-  for (const char byte : bytes)
-    if (const auto key = sequences.next(byte, now)) keys += *key;
-  if (const auto key = sequences.alone(now + KeySequences::patience)) keys += *key;
-  return keys;
+  for (const char byte : bytes) keys += sequences.next(byte, now);
+  return keys + sequences.alone(now + KeySequences::patience);
 }
 
 TEST(KeySequences, ArrowsAndFunctionKeysAreSwallowedWhole) {
@@ -33,11 +31,13 @@ TEST(KeySequences, EscapeAloneIsAKey) {
   EXPECT_EQ(keys_of("u99\033"), "u99\033");
   KeySequences sequences;
   const KeySequences::Clock::time_point now{};
-  EXPECT_FALSE(sequences.next('\033', now));
-  EXPECT_FALSE(sequences.alone(now));  // more may come
-  EXPECT_EQ(sequences.alone(now + KeySequences::patience), '\033');
-  EXPECT_FALSE(sequences.alone(now + KeySequences::patience));
-  EXPECT_EQ(sequences.next('O', now), 'O');
+  EXPECT_EQ(sequences.next('\033', now), "");
+  EXPECT_EQ(sequences.alone(now), "");  // more may come
+  EXPECT_EQ(sequences.alone(now + KeySequences::patience), "\033");
+  EXPECT_EQ(sequences.alone(now + KeySequences::patience), "");
+  EXPECT_EQ(sequences.next('O', now), "O");
+  EXPECT_EQ(keys_of("\033?"), "\033?");  // one quickly after the other
+  EXPECT_EQ(keys_of("\033\033OA"), "\033");
 }
 
 TEST(KeySequences, ASequenceThatIsBrokenOffDoesNotSwallowWhatFollows) {
