@@ -45,6 +45,7 @@ void SonarBins::change(const SonarPictureParams& params, const SonarParams& sona
   power_uPa2_.assign(size, 0);
   levels_dB_.assign(size, silence_dB);
   pixels_.assign(size, 0);
+  digest_.renew();
   gains_dB_.assign(static_cast<std::size_t>(params.bins), 0);
 }
 

@@ -1,9 +1,11 @@
 #include "bridges/lcm/event_log.hpp"
 
+#include <endian.h>
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 
@@ -15,32 +17,43 @@ constexpr std::uint32_t sync_word = 0xEDA1DA01;
 constexpr std::size_t header_bytes = 28;
 constexpr std::int32_t max_channel_bytes = 1000;  // liblcm's own limit for logs
 constexpr std::size_t max_problems = 100;
+constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
+constexpr std::size_t read_bytes = std::size_t{1} << 17;
 
-template <class T>
-T big_endian(const unsigned char* at) {
-  T value = 0;
-  for (std::size_t i = 0; i < sizeof(T); ++i) value = static_cast<T>(value << 8 | at[i]);
-  return value;
+std::uint32_t number32(const unsigned char* at) {
+  std::uint32_t value;
+  std::memcpy(&value, at, sizeof value);
+  return be32toh(value);
+}
+
+std::uint64_t number64(const unsigned char* at) {
+  std::uint64_t value;
+  std::memcpy(&value, at, sizeof value);
+  return be64toh(value);
 }
 
 }  // namespace
 
-EventLogReader::EventLogReader(const std::string& path) : file_(std::fopen(path.c_str(), "rbe")) {
-  if (!file_) throw BusError(path + ": " + std::strerror(errno));
+FileDescriptor::~FileDescriptor() {
+  if (number_ >= 0) ::close(number_);
+}
+
+EventLogReader::EventLogReader(const std::string& path) : file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+  if (file_.number() < 0) throw BusError(path + ": " + std::strerror(errno));
   struct stat status {};
-  if (fstat(fileno(file_.get()), &status) != 0) throw BusError(path + ": " + std::strerror(errno));
+  if (fstat(file_.number(), &status) != 0) throw BusError(path + ": " + std::strerror(errno));
   if (!S_ISREG(status.st_mode)) throw BusError(path + ": is no regular file");
   file_bytes_ = static_cast<std::uint64_t>(status.st_size);
-  std::setvbuf(file_.get(), buffer_.data(), _IOFBF, buffer_.size());
 }
 
 std::optional<LogEvent> EventLogReader::next() {
-  LogEvent event;
+  LogEventView event;
   if (!next(event)) return std::nullopt;
-  return event;
+  return LogEvent{event.number, event.utime, std::string(event.channel),
+                  sim::Bytes(event.payload.begin(), event.payload.end()), event.offset};
 }
 
-bool EventLogReader::next(LogEvent& event) {
+bool EventLogReader::next(LogEventView& event) {
   const auto report = [this](std::uint64_t offset, const std::string& what) {
     if (problems_.size() < max_problems) problems_.push_back("byte " + std::to_string(offset) + ": " + what);
   };
@@ -65,43 +78,97 @@ bool EventLogReader::next(LogEvent& event) {
   return false;
 }
 
-EventLogReader::Outcome EventLogReader::read_event(LogEvent& event) {
-  std::array<unsigned char, header_bytes> header;
+std::size_t EventLogReader::fill(std::size_t size) {
+  const std::size_t skipped = static_cast<std::size_t>(at_ - buffer_begin_);
+  std::size_t there = skipped <= buffered_ ? buffered_ - skipped : 0;
+  if (there >= size) return there;
+  if (there > 0) std::memmove(buffer_.data(), buffer_.data() + skipped, there);
+  buffer_begin_ = at_;
+  buffered_ = there;
+  if (buffer_.size() < size + read_bytes) buffer_.resize(size + read_bytes);
+  while (buffered_ < size) {
+    const ssize_t got = ::pread(file_.number(), buffer_.data() + buffered_, buffer_.size() - buffered_,
+                                static_cast<off_t>(buffer_begin_ + buffered_));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) break;
+    buffered_ += static_cast<std::size_t>(got);
+  }
+  return buffered_;
+}
+
+EventLogReader::Outcome EventLogReader::read_event(LogEventView& event) {
   const std::uint64_t left = file_bytes_ - at_;
-  const std::size_t got = fread_unlocked(header.data(), 1, std::min<std::uint64_t>(header_bytes, left), file_.get());
-  if (got >= 4 && big_endian<std::uint32_t>(header.data()) != sync_word) return Outcome::garbage;
+  const std::size_t got = std::min<std::uint64_t>(fill(header_bytes), left);
+  const unsigned char* header = here();
+  if (got >= 4 && number32(header) != sync_word) return Outcome::garbage;
   if (got < header_bytes) return Outcome::truncated;
-  const auto channel_bytes = static_cast<std::int32_t>(big_endian<std::uint32_t>(&header[20]));
-  const auto data_bytes = static_cast<std::int32_t>(big_endian<std::uint32_t>(&header[24]));
+  const auto channel_bytes = static_cast<std::int32_t>(number32(header + 20));
+  const auto data_bytes = static_cast<std::int32_t>(number32(header + 24));
   if (channel_bytes < 1 || channel_bytes > max_channel_bytes || data_bytes < 0) return Outcome::garbage;
-  const auto body = static_cast<std::uint64_t>(channel_bytes) + static_cast<std::uint64_t>(data_bytes);
-  if (body > left - header_bytes) return Outcome::truncated;
-  event.number = static_cast<std::int64_t>(big_endian<std::uint64_t>(&header[4]));
-  event.utime = static_cast<std::int64_t>(big_endian<std::uint64_t>(&header[12]));
+  const std::size_t size =
+      header_bytes + static_cast<std::size_t>(channel_bytes) + static_cast<std::size_t>(data_bytes);
+  if (size > left || fill(size) < size) return Outcome::truncated;
+  header = here();  // fill() may have moved it
+  const auto* body = reinterpret_cast<const std::byte*>(header + header_bytes);
+  event.number = static_cast<std::int64_t>(number64(header + 4));
+  event.utime = static_cast<std::int64_t>(number64(header + 12));
   event.offset = at_;
-  event.channel.resize(static_cast<std::size_t>(channel_bytes));
-  event.payload.resize(static_cast<std::size_t>(data_bytes));
-  if (fread_unlocked(event.channel.data(), 1, event.channel.size(), file_.get()) != event.channel.size() ||
-      fread_unlocked(event.payload.data(), 1, event.payload.size(), file_.get()) != event.payload.size())
-    return Outcome::truncated;
-  at_ += header_bytes + body;
+  event.channel = {reinterpret_cast<const char*>(body), static_cast<std::size_t>(channel_bytes)};
+  event.payload = {body + channel_bytes, static_cast<std::size_t>(data_bytes)};
+  at_ += size;
   return Outcome::event;
 }
 
 void EventLogReader::find_sync() {
-  std::uint64_t offset = at_ + 1;
-  at_ = file_bytes_;
-  if (fseeko(file_.get(), static_cast<off_t>(offset), SEEK_SET) != 0) return;
-  std::uint32_t window = 0;
-  std::size_t seen = 0;
-  for (int c = std::getc(file_.get()); c != EOF; c = std::getc(file_.get())) {
-    window = window << 8 | static_cast<std::uint32_t>(c);
-    ++offset;
-    if (++seen < 4 || window != sync_word) continue;
-    at_ = offset - 4;
-    fseeko(file_.get(), static_cast<off_t>(at_), SEEK_SET);
-    return;
+  for (++at_; at_ < file_bytes_; ++at_) {
+    if (fill(4) < 4) break;
+    if (number32(here()) == sync_word) return;
   }
+  at_ = file_bytes_;
+}
+
+bool EventLogWriter::write(std::int64_t number, std::int64_t utime, std::string_view channel,
+                           std::span<const std::byte> payload) {
+  const std::size_t size = header_bytes + channel.size() + payload.size();
+  if (used_ + size > buffer_bytes && !flush()) return false;
+  if (buffer_.size() < used_ + size) buffer_.resize(std::max(buffer_bytes, used_ + size));
+  std::byte* to = buffer_.data() + used_;
+  used_ += size;
+  const auto put = [&to](const void* from, std::size_t bytes) {
+    if (bytes > 0) std::memcpy(to, from, bytes);
+    to += bytes;
+  };
+  const auto put32 = [&put](std::size_t value) {
+    const std::uint32_t ordered = htobe32(static_cast<std::uint32_t>(value));
+    put(&ordered, sizeof ordered);
+  };
+  const auto put64 = [&put](std::int64_t value) {
+    const std::uint64_t ordered = htobe64(static_cast<std::uint64_t>(value));
+    put(&ordered, sizeof ordered);
+  };
+  put32(sync_word);
+  put64(number);
+  put64(utime);
+  put32(channel.size());
+  put32(payload.size());
+  put(channel.data(), channel.size());
+  put(payload.data(), payload.size());
+  return true;
+}
+
+bool EventLogWriter::write(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t done = ::write(file_.number(), bytes.data(), bytes.size());
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(done));
+  }
+  return true;
+}
+
+bool EventLogWriter::flush() {
+  const bool done = write(std::span(buffer_).first(std::exchange(used_, 0)));
+  return done;
 }
 
 }  // namespace bridges

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "bridges/lcm/bus_error.hpp"
@@ -12,11 +14,36 @@
 
 namespace bridges {
 
+/// A file that closes itself.
+class FileDescriptor {
+ public:
+  explicit FileDescriptor(int number = -1) : number_(number) {}
+  FileDescriptor(FileDescriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  ~FileDescriptor();
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
 struct LogEvent {
   std::int64_t number = 0;
   std::int64_t utime = 0;
   std::string channel;
   sim::Bytes payload;
+  std::uint64_t offset = 0;  ///< where in the file it begins
+};
+
+/// An event in the memory of the reader, until it reads on.
+struct LogEventView {
+  std::int64_t number = 0;
+  std::int64_t utime = 0;
+  std::string_view channel;
+  std::span<const std::byte> payload;
   std::uint64_t offset = 0;  ///< where in the file it begins
 };
 
@@ -29,27 +56,46 @@ class EventLogReader {
 
   /// In the order of the file.  Empty at the end.
   std::optional<LogEvent> next();
-  /// The same into an event whose memory is used again.  False at the end.
-  bool next(LogEvent& event);
+  /// The same without a copy.  False at the end.
+  bool next(LogEventView& event);
   /// So far, such as `byte 4711: 28 bytes that are no event were skipped`.
   const std::vector<std::string>& problems() const { return problems_; }
   std::uint64_t file_bytes() const { return file_bytes_; }
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   enum class Outcome { event, garbage, truncated };
 
-  Outcome read_event(LogEvent& event);
+  Outcome read_event(LogEventView& event);
   /// Moves to the next sync word behind here, or to the end.
   void find_sync();
+  /// Has the bytes of the file from at_ on in memory, at least `size` unless it ends before.  How many there are.
+  std::size_t fill(std::size_t size);
+  const unsigned char* here() const { return buffer_.data() + (at_ - buffer_begin_); }
 
-  std::vector<char> buffer_ = std::vector<char>(std::size_t{1} << 20);  // of file_
-  std::unique_ptr<std::FILE, Closer> file_;
+  FileDescriptor file_;
+  std::vector<unsigned char> buffer_;
+  std::uint64_t buffer_begin_ = 0;  // in the file
+  std::size_t buffered_ = 0;
   std::uint64_t file_bytes_ = 0;
   std::uint64_t at_ = 0;
   std::vector<std::string> problems_;
+};
+
+/// Writes an LCM event log: whole events, through a buffer.
+class EventLogWriter {
+ public:
+  explicit EventLogWriter(FileDescriptor file) : file_(std::move(file)) {}
+
+  /// All return false when the file cannot take it; errno says why.
+  bool write(std::int64_t number, std::int64_t utime, std::string_view channel, std::span<const std::byte> payload);
+  /// Bytes of another log.
+  bool write(std::span<const std::byte> bytes);
+  bool flush();
+
+ private:
+  FileDescriptor file_;
+  std::vector<std::byte> buffer_;
+  std::size_t used_ = 0;  // of the buffer
 };
 
 }  // namespace bridges

@@ -243,7 +243,7 @@ void LockstepClient::take_tick(std::span<const std::byte> payload) {
   if (due->sequence == sequence_ && !open_ && sequence_ > 0)
     return send_ack();  // our answer was lost, or is on its way
   if (due->sequence <= sequence_ || (incomplete_ && incomplete_->sequence == due->sequence)) return;
-  const shoal::sim_due_t own = std::move(*due);
+  const shoal::sim_due_t own = *due;
   begin_tick(std::move(*tick), own);
 }
 

@@ -1,44 +1,35 @@
 #include "bridges/lcm/recording_bus.hpp"
 
 #include <fcntl.h>
-#include <lcm/eventlog.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <utility>
 #include <vector>
+
+#include "bridges/lcm/event_log.hpp"
 
 namespace bridges {
 namespace {
 
-// liblcm writes field by field; with stdio's small buffer large images cost seven times as much.
-constexpr std::size_t file_buffer_bytes = std::size_t{1} << 20;
 /// Sync word, number, time, two lengths.
 constexpr std::uint64_t event_head_bytes = 28;
+constexpr std::size_t copied_at_once = std::size_t{1} << 20;
+
+std::unique_ptr<EventLogWriter> create(const std::string& path, Existing existing) {
+  // O_EXCL decides and creates in one go; a device such as /dev/full is never "made".
+  const int flags = O_WRONLY | O_CREAT | O_CLOEXEC | (existing == Existing::refuse ? O_EXCL : O_TRUNC);
+  FileDescriptor file(open(path.c_str(), flags, 0666));
+  if (file.number() < 0 && errno == EEXIST)
+    throw BusError(path + ": exists already; choose another name or pass --overwrite");
+  if (file.number() < 0) throw BusError(path + ": " + std::strerror(errno));
+  return std::make_unique<EventLogWriter>(std::move(file));
+}
 
 }  // namespace
-
-struct RecordingBus::Log {
-  Log(const std::string& path, Existing existing) {
-    // O_EXCL decides and creates in one go; a device such as /dev/full is never "made".
-    const int flags = O_WRONLY | O_CREAT | O_CLOEXEC | (existing == Existing::refuse ? O_EXCL : O_TRUNC);
-    const int fd = open(path.c_str(), flags, 0666);
-    if (fd < 0 && errno == EEXIST) throw BusError(path + ": exists already; choose another name or pass --overwrite");
-    if (fd < 0) throw BusError(path + ": " + std::strerror(errno));
-    ::close(fd);
-    events = lcm_eventlog_create(path.c_str(), "w");
-    if (events == nullptr) throw BusError(path + ": " + std::strerror(errno));
-    std::setvbuf(events->f, buffer.data(), _IOFBF, buffer.size());  // glibc ignores a size without a buffer
-  }
-  ~Log() { lcm_eventlog_destroy(events); }
-  Log(const Log&) = delete;
-  Log& operator=(const Log&) = delete;
-
-  std::vector<char> buffer = std::vector<char>(file_buffer_bytes);
-  lcm_eventlog_t* events = nullptr;
-};
 
 RecordingBus::RecordingBus(std::unique_ptr<sim::Bus> inner, const std::string& path, std::int64_t epoch_utime,
                            Existing existing)
@@ -47,11 +38,7 @@ RecordingBus::RecordingBus(std::unique_ptr<sim::Bus> inner, const std::string& p
 }
 
 RecordingBus::RecordingBus(sim::Bus& inner, const std::string& path, std::int64_t epoch_utime, Existing existing)
-    : inner_(inner),
-      path_(path),
-      epoch_utime_(epoch_utime),
-      utime_(epoch_utime),
-      log_(std::make_unique<Log>(path, existing)) {}
+    : inner_(inner), path_(path), epoch_utime_(epoch_utime), utime_(epoch_utime), log_(create(path, existing)) {}
 
 RecordingBus::RecordingBus(sim::Bus& inner, RecordingBus& first) : inner_(inner), first_(&first) {}
 
@@ -77,39 +64,32 @@ void RecordingBus::set_time(sim::Time at) {
 void RecordingBus::record(std::string_view channel, std::span<const std::byte> payload) {
   if (first_) return first_->record(channel, payload);
   if (!log_ || error_) return;
-  lcm_eventlog_event_t event{};
-  event.timestamp = utime_;
-  event.channellen = static_cast<std::int32_t>(channel.size());
-  event.datalen = static_cast<std::int32_t>(payload.size());
-  event.channel = const_cast<char*>(channel.data());  // only read
-  event.data = const_cast<std::byte*>(payload.data());
   errno = 0;
-  if (lcm_eventlog_write_event(log_->events, &event) != 0) return fail(errno);
+  if (!log_->write(static_cast<std::int64_t>(recorded_), utime_, channel, payload)) return fail(errno);
   ++recorded_;
   bytes_ += event_head_bytes + channel.size() + payload.size();
   // Once a simulated second: a killed run loses little, and `tail` sees it grow.
   if (const std::int64_t second = (utime_ - epoch_utime_) / 1'000'000; second > flushed_s_) {
     flushed_s_ = second;
-    if (std::fflush(log_->events->f) != 0) fail(errno);
+    if (!log_->flush()) fail(errno);
   }
 }
 
 void RecordingBus::prepare(const std::string& path, std::uint64_t events, std::uint64_t bytes, Existing existing) {
   give_up();
   if (!log_ || error_) return;
-  if (std::fflush(log_->events->f) != 0) return fail(errno);
-  auto next = std::make_unique<Log>(path, existing);
-  std::FILE* from = std::fopen(path_.c_str(), "rb");
-  std::vector<char> part(file_buffer_bytes);
-  std::uint64_t left = bytes;
-  while (from != nullptr && left > 0) {
-    const std::size_t got = std::fread(part.data(), 1, std::min<std::uint64_t>(left, part.size()), from);
-    if (got == 0 || std::fwrite(part.data(), 1, got, next->events->f) != got) break;
-    left -= got;
+  if (!log_->flush()) return fail(errno);
+  next_.emplace(Next{path, events, bytes, create(path, existing)});
+  const FileDescriptor from(open(path_.c_str(), O_RDONLY | O_CLOEXEC));
+  sim::Bytes part(copied_at_once);
+  std::uint64_t left = from.number() < 0 ? bytes + 1 : bytes;
+  while (left > 0 && from.number() >= 0) {
+    const ssize_t got = ::read(from.number(), part.data(), std::min<std::uint64_t>(left, part.size()));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0 || !next_->log->write({part.data(), static_cast<std::size_t>(got)})) break;
+    left -= static_cast<std::uint64_t>(got);
   }
-  if (from != nullptr) std::fclose(from);
-  next_.emplace(Next{path, events, bytes, std::move(next)});
-  if (left == 0 && std::fflush(next_->log->events->f) == 0) return;  // a full disk shows here
+  if (left == 0 && next_->log->flush()) return;  // a full disk shows here
   give_up();
   throw BusError(path + ": cannot copy " + path_ + " into it");
 }
@@ -123,7 +103,6 @@ void RecordingBus::give_up() {
 
 void RecordingBus::go_on() {
   if (!next_) return;
-  next_->log->events->eventcount = static_cast<std::int64_t>(next_->events);
   log_ = std::move(next_->log);
   path_ = next_->path;
   recorded_ = next_->events;
@@ -140,7 +119,7 @@ void RecordingBus::fail(int error_number) {
 void RecordingBus::close() {
   if (!log_) return;
   errno = 0;
-  if (!error_ && (std::fflush(log_->events->f) != 0 || std::ferror(log_->events->f) != 0)) fail(errno);
+  if (!error_ && !log_->flush()) fail(errno);
   log_.reset();
 }
 

@@ -13,6 +13,8 @@
 
 namespace bridges {
 
+class EventLogWriter;
+
 enum class Existing { refuse, overwrite };
 
 /// A bus that also writes all it carries into an LCM event log, stamped with epoch + simulated time:
@@ -61,11 +63,10 @@ class RecordingBus final : public sim::Bus {
   sim::Bus& inner() { return inner_; }
 
  private:
-  struct Log;
   struct Next {
     std::string path;
     std::uint64_t events, bytes;
-    std::unique_ptr<Log> log;
+    std::unique_ptr<EventLogWriter> log;
   };
 
   void record(std::string_view channel, std::span<const std::byte> payload);
@@ -78,7 +79,7 @@ class RecordingBus final : public sim::Bus {
   std::int64_t epoch_utime_ = 0;
   std::int64_t utime_ = 0;      // of the last event; never goes back
   std::int64_t flushed_s_ = 0;  // simulated second up to which the file is on disk
-  std::unique_ptr<Log> log_;
+  std::unique_ptr<EventLogWriter> log_;
   std::optional<Next> next_;  // prepared
   std::optional<std::string> error_;
   std::uint64_t recorded_ = 0;

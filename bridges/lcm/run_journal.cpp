@@ -12,16 +12,6 @@ namespace {
 /// What one sim.mail holds, about: LCM carries at most 16 MB.
 constexpr std::size_t most_bytes = std::size_t{1} << 20;
 
-/// By part where the world tells its parts.
-template <typename World>
-void add_parts(const World& world, shoal::sim_hash_t& message) {
-  if constexpr (requires { world.part_hashes(); })
-    for (const auto& part : world.part_hashes()) {
-      message.part.push_back(part.part);
-      message.part_hash.push_back(static_cast<std::int64_t>(part.hash));
-    }
-}
-
 }  // namespace
 
 void SerialMail::add(std::int64_t step, const std::string& path, sim::Bytes bytes) {
@@ -134,13 +124,19 @@ void RunJournal::publish_mail() {
 }
 
 void RunJournal::publish_hash() {
+  if (heard_ && !heard_()) return;
   shoal::sim_hash_t message;
   message.utime = world_->epoch_us() + world_->now().count();
   message.step = world_->step_number();
   message.branch = branch_;
   message.mail_sequence = sequence_;
-  message.hash = static_cast<std::int64_t>(world_->state_hash());
-  add_parts(*world_, message);
+  sim::StateHash whole;  // World::state_hash() is that of the hashes of all parts; so the state is gone through once
+  for (const sim::PartHash& part : world_->part_hashes()) {
+    whole.add(part.hash);
+    message.part.push_back(part.part);
+    message.part_hash.push_back(static_cast<std::int64_t>(part.hash));
+  }
+  message.hash = static_cast<std::int64_t>(whole.value());
   message.count = static_cast<std::int32_t>(message.part.size());
   shoal::encode_into(message, buffer_);
   bus_.publish("sim.hash", buffer_, world_->now());

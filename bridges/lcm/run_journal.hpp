@@ -57,6 +57,9 @@ class RunJournal {
   /// The first reports go out next.
   void start() { started_ = true; }
 
+  /// Hashes are worked out while `heard` says that somebody may read them; empty: always.
+  void set_heard(std::function<bool()> heard) { heard_ = std::move(heard); }
+
   /// Mail that was admitted at the begin of a step.
   void admitted(const std::string& bus, std::span<const sim::MailGate::Mail> mail);
   /// A request that is about to change the world.
@@ -102,6 +105,7 @@ class RunJournal {
   std::size_t waiting_bytes_ = 0;
   sim::Bytes buffer_;
   Listener listener_;
+  std::function<bool()> heard_;
   SerialMail serial_mail_;
 };
 

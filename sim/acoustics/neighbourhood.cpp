@@ -19,6 +19,12 @@ void Neighbourhood::build(std::span<const Member> members, double reach_m) {
   });
 }
 
+bool Neighbourhood::numbers_are_below(std::size_t count) const {
+  return std::all_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+    return entry.number >= 0 && static_cast<std::size_t>(entry.number) < count;
+  });
+}
+
 void Neighbourhood::near(const Vector3d& p_W, double reach_m, std::vector<int>& numbers) const {
   numbers.clear();
   const std::int64_t first = cell(p_W.x() - reach_m), last = cell(p_W.x() + reach_m);

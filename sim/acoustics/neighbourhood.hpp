@@ -19,8 +19,10 @@ class Neighbourhood {
   /// `reach_m`: about how far queries will look.
   void build(std::span<const Member> members, double reach_m);
   /// Numbers of all members no farther from the place than this in the plane, in rising order; perhaps some more.
-  void visit_state(StateArchive& archive) { archive(cell_m_, entries_); }
   void near(const Vector3d& p_W, double reach_m, std::vector<int>& numbers) const;
+  void visit_state(StateArchive& archive) { archive(cell_m_, entries_); }
+  /// All members have numbers from 0 to below this.
+  bool numbers_are_below(std::size_t count) const;
 
  private:
   struct Entry {

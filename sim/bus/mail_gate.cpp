@@ -70,18 +70,34 @@ MailGate::~MailGate() = default;
 
 void MailGate::publish(std::string_view channel, std::span<const std::byte> payload, Time at) {
   if (watch_) watch_(channel, payload);
+  if (!may_be_read(channel)) return network_.publish(channel, payload, at);
   const auto known = by_name_.find(channel);
   if (known == by_name_.end()) return network_.publish(channel, payload, at);
   Channel& read = *known->second;
-  collect_from(read);  // what came before keeps its place
+  if (something_came(read)) collect_from(read);  // what came before keeps its place
   network_.publish(channel, payload, at);
   // The network has given this back by now, and nobody of this process can have published in between.
-  while (auto message = read.inner->take()) {
-    if (!message->from_outside) continue;
-    waiting_.push_back({std::move(message->channel), std::move(message->payload)});
-    ++read.waiting;
+  if (something_came(read)) {
+    while (auto message = read.inner->take()) {
+      if (!message->from_outside) continue;
+      waiting_.push_back({std::move(message->channel), std::move(message->payload)});
+      ++read.waiting;
+    }
   }
   give(read, payload, false);
+}
+
+bool MailGate::something_came(Channel& channel) {
+  return channel.flag->load(std::memory_order_relaxed) && channel.flag->exchange(false, std::memory_order_acquire);
+}
+
+/// Channels of one bit are asked for by name; most have a bit that no channel that is read has.
+std::size_t MailGate::bit_of(std::string_view channel) {
+  const auto letter = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(channel[i])); };
+  if (channel.empty()) return 0;
+  const std::size_t last = channel.size() - 1;
+  return (channel.size() * 131 + letter(last) * 31 + letter(last - last / 4) * 17 + letter(last / 2) * 7 + letter(0)) %
+         most_bits;
 }
 
 std::unique_ptr<Mailbox> MailGate::open_mailbox(const std::string& channel, std::size_t capacity) {
@@ -103,6 +119,7 @@ std::unique_ptr<Mailbox> MailGate::open_mailbox(const std::string& channel, std:
     read->inner = std::move(inner);
     read->inner->raise_on_arrival(read->flag);
     by_name_.emplace(channel, read);
+    bits_.set(bit_of(channel));
   }
   auto mailbox = std::make_unique<GateMailbox>(*this, *read, capacity);
   read->mailboxes.push_back(mailbox.get());
@@ -124,9 +141,7 @@ void MailGate::close(GateMailbox& mailbox) {
 
 bool MailGate::collect() {
   for (const auto& channel : channels_)
-    if (channel && channel->flag->load(std::memory_order_relaxed) &&
-        channel->flag->exchange(false, std::memory_order_acquire))
-      collect_from(*channel);
+    if (channel && something_came(*channel)) collect_from(*channel);
   return !waiting_.empty();
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <bitset>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <span>
@@ -67,6 +69,11 @@ class MailGate final : public Bus {
   };
 
   void collect_from(Channel& channel);
+  /// Something may have come; asked again: since then.
+  static bool something_came(Channel& channel);
+  static constexpr std::size_t most_bits = 1024;
+  static std::size_t bit_of(std::string_view channel);
+  bool may_be_read(std::string_view channel) const { return bits_[bit_of(channel)]; }
   void drop_oldest(Channel& channel);
   void give(Channel& channel, std::span<const std::byte> payload, bool from_outside);
   void close(GateMailbox& mailbox);
@@ -78,6 +85,7 @@ class MailGate final : public Bus {
   std::vector<std::unique_ptr<Channel>> channels_;  // by slot; null: the slot is free
   std::vector<std::size_t> free_slots_;
   std::unordered_map<std::string, Channel*, NameHash, std::equal_to<>> by_name_;  // asked, never iterated
+  std::bitset<most_bits> bits_;  // of the names that are or were read
   std::vector<Mail> waiting_, admitted_;
   std::uint64_t dropped_ = 0;
 };

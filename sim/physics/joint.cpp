@@ -46,14 +46,6 @@ void tell_ball_angles(dJointID motor, double sign, std::span<const double> posit
     dJointSetAMotorAngle(motor, axis, sign * position[static_cast<std::size_t>(axis)]);
 }
 
-/// ODE's frame of a body, at its centre of mass.
-Pose ode_pose(dBodyID body) {
-  Pose X_WC = Pose::Identity();
-  X_WC.linear() = rotation_to_eigen(dBodyGetRotation(body));
-  X_WC.translation() = to_eigen(dBodyGetPosition(body));
-  return X_WC;
-}
-
 void set_ode_pose(dBodyID body, const Vector3d& p_WC, const dQuaternion q_WC) {
   dBodySetPosition(body, p_WC.x(), p_WC.y(), p_WC.z());
   dBodySetQuaternion(body, q_WC);
@@ -73,7 +65,10 @@ Joint::Joint(dWorldID world, std::string name, const JointConfig& config, dBodyI
   p_CA_C_ = X_WC.inverse() * (X_WV * config.anchor_m);
   if (second == nullptr) world_side_ = std::make_unique<WorldSide>(WorldSide{config, X_WV, X_WC});
   for (int axis = 0; axis < axes_; ++axis) configure_axis(axis_config(config, axis), axis);
-  for (int axis = 0; axis < axes_; ++axis) wrapped_[axis] = wrapped_position(axis);
+  for (int axis = 0; axis < axes_; ++axis) {
+    wrapped_[axis] = wrapped_position(axis);
+    configured_stops_[static_cast<std::size_t>(axis)] = stops_of(axis);
+  }
 }
 
 void Joint::create(dWorldID world, const JointConfig& config, const Pose& X_WV, dBodyID first, dBodyID second) {
@@ -154,17 +149,33 @@ void Joint::configure_axis(const JointAxisConfig& config, int axis) {
 void Joint::place_stops(std::optional<double> low, std::optional<double> high, int axis) {
   // Counted the other way round, the low stop is the high one.
   if (sign_ < 0) std::swap(low, high);
-  set_parameter(dParamLoStop, low ? sign_ * *low : -dInfinity, axis);
-  set_parameter(dParamHiStop, high ? sign_ * *high : dInfinity, axis);
+  put_stops({low ? sign_ * *low : -dInfinity, high ? sign_ * *high : dInfinity}, axis);
+}
+
+void Joint::put_stops(const OdeStops& stops, int axis) {
+  const OdeStops before = stops_of(axis);
+  set_parameter(dParamLoStop, stops.low, axis);
+  set_parameter(dParamHiStop, stops.high, axis);
+  // ODE moves the one stop when the other would come to lie beyond it.
+  if (stops.low <= stops.high) set_parameter(dParamLoStop, stops.low, axis);
+  const OdeStops after = stops_of(axis);
+  const bool had_stops = before.low > -dInfinity || before.high < dInfinity;
+  if (!had_stops || after.low > -dInfinity || after.high < dInfinity) return;
+  // ODE forgets that an axis is at a stop only when it looks again, and without any stop it does not look.
+  set_parameter(dParamHiStop, dInfinity, axis);
+  set_parameter(dParamLoStop, stop_never_reached(), axis);
+}
+
+Joint::OdeStops Joint::stops_of(int axis) const {
+  const OdeStops stops{get_parameter(dParamLoStop, axis), get_parameter(dParamHiStop, axis)};
+  if (stops.low > stops.high || (stops.low <= stop_never_reached() && stops.high == dInfinity)) return {};
+  return stops;
 }
 
 void Joint::set_stops(std::optional<double> low, std::optional<double> high, int axis) {
   if (std::isnan(low.value_or(0)) || std::isnan(high.value_or(0)))
     throw PhysicsFault("joint '" + name_ + "': its stop is not a number");
   place_stops(low, high, axis);
-  // ODE forgets that an axis is at a stop only when it looks again, and without any stop it does not look.
-  const double never_reached = kind_ == dJointTypeSlider ? -1e300 : -std::numbers::pi;
-  if (!low && !high) set_parameter(dParamLoStop, never_reached, axis);
   stops_were_set_ = true;
 }
 
@@ -272,27 +283,6 @@ void Joint::set_motor(double velocity, double max_force, int axis) {
   set_parameter(dParamFMax, max_force, axis);
 }
 
-void Joint::add_effort(double effort, int axis) {
-  if (!std::isfinite(effort)) throw PhysicsFault("joint '" + name_ + "': an effort on it is not finite");
-  if (load_) load_->added[axis] += effort;
-  const double torque1 = axis == 0 ? sign_ * effort : 0, torque2 = axis == 1 ? sign_ * effort : 0;
-  switch (kind_) {
-    case dJointTypeHinge:
-      return dJointAddHingeTorque(ode_.get(), sign_ * effort);
-    case dJointTypeSlider:
-      return dJointAddSliderForce(ode_.get(), sign_ * effort);
-    case dJointTypeHinge2:
-      return dJointAddHinge2Torques(ode_.get(), torque1, torque2);
-    case dJointTypeUniversal:
-      return dJointAddUniversalTorques(ode_.get(), torque1, torque2);
-    case dJointTypeBall:
-      if (ball_motor_) dJointAddAMotorTorques(ball_motor_.get(), torque1, torque2, axis == 2 ? sign_ * effort : 0);
-      return;
-    default:
-      return;
-  }
-}
-
 double Joint::get_parameter(int parameter, int axis) const {
   parameter += dParamGroup * axis;
   switch (kind_) {
@@ -326,71 +316,6 @@ Vector3d Joint::axis_W(int axis) const {
   return to_eigen(out);
 }
 
-void Joint::measure_load() {
-  if (load_) return;
-  load_ = std::make_unique<Load>();
-  ask_for_load();
-  measured_joints_->push_back(this);
-}
-
-void Joint::ask_for_load() {
-  dJointSetFeedback(ode_.get(), &load_->feedback);
-  if (ball_motor_) dJointSetFeedback(ball_motor_.get(), &load_->motor_feedback);
-}
-
-void Joint::note_before_step() {
-  const Pose X_WC = ode_pose(loaded_);
-  load_->p_CA_W = X_WC.linear() * p_CA_C_;
-  // ODE lets forces along a slider act half way between the two bodies, so that none of them is turned.
-  const dBodyID other = world_side_ ? loaded_ : dJointGetBody(ode_.get(), 0);
-  load_->p_AM_W = (to_eigen(dBodyGetPosition(other)) - X_WC.translation()) / 2 - load_->p_CA_W;
-  for (int axis = 0; axis < axes_; ++axis) {
-    load_->axis_W[axis] = axis_W(axis);
-    load_->beside[axis] = std::exchange(load_->added[axis], 0.0) + motor_at_stop(axis);
-  }
-}
-
-/// Where an axis is at a stop, ODE gives the row of its motor to the stop and lets the motor act as a force from
-/// outside, so that it is not in the feedback (dxJointLimitMotor::addLimot).
-double Joint::motor_at_stop(int axis) const {
-  const double max_force = get_parameter(dParamFMax, axis);
-  const double low = get_parameter(dParamLoStop, axis), high = get_parameter(dParamHiStop, axis);
-  const double bound = kind_ == dJointTypeSlider ? dInfinity : std::numbers::pi;
-  const bool has_stops = kind_ == dJointTypeSlider ? low > -bound || high < bound : low >= -bound || high <= bound;
-  if (!(max_force > 0) || !has_stops || low >= high || (kind_ == dJointTypeHinge2 && axis == 1)) return 0;
-  const double position = sign_ * wrapped_position(axis), velocity = get_parameter(dParamVel, axis);
-  const bool at_low = position <= low, at_high = !at_low && position >= high;
-  if (!at_low && !at_high) return 0;
-  const bool upwards = velocity > 0 || (velocity == 0 && at_high);
-  const bool away = (at_low && velocity > 0) || (at_high && velocity < 0);
-  return sign_ * (upwards ? max_force : -max_force) * (away ? get_parameter(dParamFudgeFactor, axis) : 1);
-}
-
-void Joint::note_load() {
-  Load& load = *load_;
-  const bool first = world_side_ != nullptr;
-  load.force_W_N = to_eigen(first ? load.feedback.f1 : load.feedback.f2);
-  load.torque_W_Nm = to_eigen(first ? load.feedback.t1 : load.feedback.t2) - load.p_CA_W.cross(load.force_W_N);
-  if (ball_motor_) load.torque_W_Nm += to_eigen(first ? load.motor_feedback.t1 : load.motor_feedback.t2);
-  for (int axis = 0; axis < axes_; ++axis) {
-    const Vector3d beside_W = load.beside[axis] * load.axis_W[axis];
-    if (kind_ == dJointTypeSlider) load.force_W_N += beside_W;
-    load.torque_W_Nm += kind_ == dJointTypeSlider ? Vector3d(load.p_AM_W.cross(beside_W)) : beside_W;
-  }
-  const Vector3d& along = kind_ == dJointTypeSlider ? load.force_W_N : load.torque_W_Nm;
-  if (kind_ == dJointTypeBall) {
-    for (int axis = 0; axis < axes_; ++axis) load.effort[axis] = along.dot(load.axis_W[axis]);
-    return;
-  }
-  const Vector3d &a = load.axis_W[0], &b = load.axis_W[1];
-  load.effort[0] = axes_ > 0 ? along.dot(a) : 0;
-  if (axes_ < 2) return;
-  // The constraint's torque is at right angles to both axes, the axes not always to each other.
-  const double cosine = a.dot(b), scale = 1 / (1 - cosine * cosine);
-  load.effort[0] = scale * (along.dot(a) - cosine * along.dot(b));
-  load.effort[1] = scale * (along.dot(b) - cosine * along.dot(a));
-}
-
 /// ODE keeps the world's side of a joint in the world's frame and counts from the pose at which the joint was made.
 /// So the joint is made anew, with its body moved to where it was then.
 void Joint::move_world_side(const Pose& X_move_W) {
@@ -398,10 +323,13 @@ void Joint::move_world_side(const Pose& X_move_W) {
   WorldSide& side = *world_side_;
   side.X_WV = X_move_W * side.X_WV;
   side.X_WC = X_move_W * side.X_WC;
-  constexpr int kept[] = {dParamLoStop, dParamHiStop, dParamVel, dParamFMax};
-  double values[most_axes][4] = {};
-  for (int axis = 0; axis < axes_; ++axis)
-    for (int i = 0; i < 4; ++i) values[axis][i] = get_parameter(kept[i], axis);
+  OdeStops stops[most_axes];
+  double velocity[most_axes], max_force[most_axes];
+  for (int axis = 0; axis < axes_; ++axis) {
+    stops[axis] = stops_of(axis);
+    velocity[axis] = motor_velocity_[axis];
+    max_force[axis] = motor_max_force_[axis];
+  }
   const Vector3d p_now = to_eigen(dBodyGetPosition(loaded_));
   dQuaternion q_now, q_made;
   dBodyCopyQuaternion(loaded_, q_now);
@@ -411,33 +339,42 @@ void Joint::move_world_side(const Pose& X_move_W) {
   set_ode_pose(loaded_, p_now, q_now);
   for (int axis = 0; axis < axes_; ++axis) {
     configure_axis(axis_config(side.config, axis), axis);
-    for (int i = 0; i < 4; ++i) set_parameter(kept[i], values[axis][i], axis);
+    put_stops(stops[axis], axis);
+    set_motor(velocity[axis], max_force[axis], axis);
+    // ODE's joint is another one, also where the configuration has no motor.
+    set_parameter(dParamVel, sign_ * velocity[axis], axis);
+    set_parameter(dParamFMax, max_force[axis], axis);
   }
+  tell_ball_angles(ball_motor_.get(), sign_, position_);
   if (load_) ask_for_load();
 }
 
 void Joint::visit_state(StateArchive& archive) {
   archive.unhashed(stops_were_set_);
   for (int axis = 0; axis < axes_; ++axis) {
-    double low = get_parameter(dParamLoStop, axis), high = get_parameter(dParamHiStop, axis);
-    if (stops_were_set_)
-      archive(low, high);
-    else
-      archive.unhashed(low, high);
+    visit_stops(archive, axis);
     archive(position_[axis], wrapped_[axis], motor_velocity_[axis], motor_max_force_[axis]);
     if (!archive.restoring()) continue;
-    // ODE moves the one stop when the other would come to lie beyond it.
-    set_parameter(dParamLoStop, low, axis);
-    set_parameter(dParamHiStop, high, axis);
-    set_parameter(dParamLoStop, low, axis);
+    for (const double number : {position_[axis], wrapped_[axis], motor_velocity_[axis], motor_max_force_[axis]})
+      if (!std::isfinite(number)) archive.fail("joint '" + name_ + "' has a number that is not finite");
     set_parameter(dParamVel, sign_ * motor_velocity_[axis], axis);
     set_parameter(dParamFMax, motor_max_force_[axis], axis);
   }
   if (archive.restoring()) tell_ball_angles(ball_motor_.get(), sign_, position_);
-  bool measured = load_ != nullptr;
-  archive.unhashed(measured);
-  if (measured) measure_load();
-  if (load_) archive.unhashed(load_->added, load_->force_W_N, load_->torque_W_Nm, load_->effort);
+  visit_load(archive);
+}
+
+/// State only since they were set at run time; else they are those of the configuration.
+void Joint::visit_stops(StateArchive& archive, int axis) {
+  OdeStops stops = stops_of(axis);
+  if (stops_were_set_) {
+    archive(stops.low, stops.high);
+    if (std::isnan(stops.low) || std::isnan(stops.high))
+      archive.fail("joint '" + name_ + "' has a stop that is not a number");
+  } else if (archive.restoring()) {
+    stops = configured_stops_[static_cast<std::size_t>(axis)];
+  }
+  if (archive.restoring()) put_stops(stops, axis);
 }
 
 }  // namespace sim

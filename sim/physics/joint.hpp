@@ -2,7 +2,9 @@
 
 #include <ode/ode.h>
 
+#include <array>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -80,6 +82,10 @@ class Joint {
     Pose X_WV;
     Pose X_WC;  // of the body that moves, when the joint was made
   };
+  /// As ODE counts and signs them.
+  struct OdeStops {
+    double low = -dInfinity, high = dInfinity;
+  };
   /// Attaches at the poses the bodies have now.  `second` null: the world.
   Joint(dWorldID world, std::string name, const JointConfig& config, dBodyID first, dBodyID second, const Pose& X_WV);
   void create(dWorldID world, const JointConfig& config, const Pose& X_WV, dBodyID first, dBodyID second);
@@ -87,6 +93,12 @@ class Joint {
   Vector3d rotation_of_ball() const;
   void configure_axis(const JointAxisConfig& config, int axis);
   void place_stops(std::optional<double> low, std::optional<double> high, int axis);
+  void put_stops(const OdeStops& stops, int axis);
+  OdeStops stops_of(int axis) const;  ///< stops that do nothing are told as none
+  double stop_never_reached() const { return kind_ == dJointTypeSlider ? -1e300 : -std::numbers::pi; }
+  void visit_stops(StateArchive& archive, int axis);
+  void visit_load(StateArchive& archive);
+  void measure_no_load();
   void set_parameter(int parameter, double value, int axis);
   int max_rows() const;  ///< constraint rows, with motors and stops all at work
   double wrapped_position(int axis) const;
@@ -112,7 +124,8 @@ class Joint {
   double wrapped_[most_axes] = {};
   double motor_velocity_[most_axes] = {};
   double motor_max_force_[most_axes] = {};
-  bool stops_were_set_ = false;
+  std::array<OdeStops, most_axes> configured_stops_;
+  bool stops_were_set_ = false;                     ///< at run time
   dBodyID loaded_ = nullptr;                        // whose load is measured
   Vector3d p_CA_C_ = Vector3d::Zero();              // the anchor in ODE's frame of the loaded body
   std::unique_ptr<Load> load_;                      // when it is measured

@@ -37,4 +37,12 @@ inline Quaterniond to_quaternion(const Matrix3d& R) {
   return Quaterniond(R).normalized();
 }
 
+/// ODE's frame of a body, at its centre of mass.
+inline Pose ode_pose(dBodyID body) {
+  Pose X_WC = Pose::Identity();
+  X_WC.linear() = rotation_to_eigen(dBodyGetRotation(body));
+  X_WC.translation() = to_eigen(dBodyGetPosition(body));
+  return X_WC;
+}
+
 }  // namespace sim

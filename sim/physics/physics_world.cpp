@@ -70,10 +70,13 @@ bool PhysicsWorld::anchored(int group) const {
 
 void PhysicsWorld::visit_state(StateArchive& archive) {
   double gravity = gravity_mps2();
+  bool was_set = impl_->gravity_was_set;
+  archive.unhashed(was_set);
   archive(gravity);
   if (archive.restoring()) {
     if (!std::isfinite(gravity)) archive.fail("gravity that is not finite");
-    set_gravity(gravity);
+    set_gravity(was_set ? gravity : impl_->config.gravity_mps2);
+    impl_->gravity_was_set = was_set;
     ++impl_->moves.moving;
   }
   archive.unhashed(impl_->contact_reports, impl_->counts, impl_->quick_steps);
@@ -98,6 +101,7 @@ void PhysicsWorld::add_categories(const std::vector<std::string>& names) {
 void PhysicsWorld::set_gravity(double gravity_mps2) {
   if (!std::isfinite(gravity_mps2)) throw std::invalid_argument("gravity is not finite");
   impl_->gravity_mps2 = gravity_mps2;
+  impl_->gravity_was_set = true;
   impl_->collider.set_gravity(gravity_mps2);
   dWorldSetGravity(impl_->world.get(), 0, 0, -gravity_mps2);
 }

@@ -32,11 +32,14 @@ bool NoiseParams::any() const {
 Noise::Noise(const NoiseParams& params, int values, Random bias_source, const NoiseFault* fault)
     : params_(params), fault_(fault), slow_(static_cast<std::size_t>(std::max(values, 1))) {
   assert(values >= 1);
-  for (Slow& slow : slow_) slow.bias = params_.bias + params_.bias_std * bias_source.gaussian();
+  for (Slow& slow : slow_) {
+    slow.drawn = params_.bias_std * bias_source.gaussian();
+    slow.bias = params_.bias + slow.drawn;
+  }
 }
 
 void Noise::change(const NoiseParams& params) {
-  for (Slow& slow : slow_) slow.bias += params.bias - params_.bias;
+  for (Slow& slow : slow_) slow.bias = params.bias + slow.drawn;
   params_ = params;
   planned_dt_s_ = -1;
 }

@@ -56,12 +56,21 @@ class Noise {
   void visit_state(StateArchive& archive) {
     archive(started_);
     archive.expect_count(slow_.size(), "slow errors of a quantity");
-    for (Slow& slow : slow_) archive(slow.bias, slow.walk, slow.gauss_markov);
+    for (Slow& slow : slow_) {
+      // The constant part is no state, so that another one holds when a snapshot is restored.
+      if (archive.hashing())
+        archive(slow.bias);
+      else
+        archive(slow.drawn);
+      archive(slow.walk, slow.gauss_markov);
+      if (archive.restoring()) slow.bias = params_.bias + slow.drawn;
+    }
   }
 
  private:
   struct Slow {
-    double bias = 0;
+    double drawn = 0;  ///< of the bias, once
+    double bias = 0;   ///< constant and drawn
     double walk = 0;
     double gauss_markov = 0;
   };

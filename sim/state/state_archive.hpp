@@ -261,8 +261,11 @@ class StateArchive {
   template <typename Sequence>
   void sequence(Sequence& values) {
     const std::size_t size = count(values.size(), 1);
-    if (restoring()) values.resize(size);
-    for (auto& value : values) visit(value);
+    if (values.size() > size) values.resize(size);
+    for (std::size_t i = 0; i < size; ++i) {
+      if (i == values.size()) values.emplace_back();  // as they are read: a size that is wrong asks for no memory
+      visit(values[i]);
+    }
   }
   /// How many follow.  Restoring throws when so many elements of at least `bytes_each` cannot be there.
   std::size_t count(std::size_t size, std::size_t bytes_each);

@@ -72,6 +72,7 @@ Pose SweepContext::X_WS_at(Time at) const {
 
 MountedDevice::MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig& config, DeviceHost& host, int number)
     : config_(config),
+      world_(world),
       type_(*config.device_type),
       host_(host),
       bus_(vehicle.bus()),
@@ -102,6 +103,7 @@ MountedDevice::MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig&
 }
 
 void MountedDevice::plan_schedule() {
+  period_us_ = phase_us_ = 0;
   if (config_.rate_hz > 0) {
     period_us_ = 1e6 / config_.rate_hz;
     // The top 32 bits of the name's hash as a fraction of the period.
@@ -282,8 +284,11 @@ void MountedDevice::change(const DeviceConfig& changed, Time now) {
   acting_->watchdog = from_seconds(config_.watchdog_s);
   acting_->safe_state = config_.safe;
   if (built_.change) built_.change(*changed.params);
-  if (!other_rate) return;
-  // The new rate counts from time 0 as the old one did; the next sample is the first one after now.
+  if (other_rate) plan_again(now);
+}
+
+/// The new rate counts from time 0 as the old one did; the next sample is the first one after now.
+void MountedDevice::plan_again(Time now) {
   samples_planned_ = 1;
   next_sample_step_ = now / host_.step;
   plan_schedule();
@@ -292,7 +297,11 @@ void MountedDevice::change(const DeviceConfig& changed, Time now) {
 void MountedDevice::visit_state(StateArchive& archive) {
   archive(samples_planned_, next_sample_step_, last_sample_, X_WS_before_, faults_, frozen_, frozen_utime_);
   archive(acting_->last_command, acting_->safe);
+  double period_us = period_us_, phase_us = phase_us_;
+  archive.unhashed(period_us, phase_us);
   if (archive.restoring()) {
+    // The world that is restored may give the device another rate.
+    if (period_us != period_us_ || phase_us != phase_us_) plan_again(world_.now());
     acting_->effectiveness = faults_.effectiveness();
     acting_->stuck = faults_.stuck();
   }

@@ -108,9 +108,11 @@ class MountedDevice {
   bool works() const;
   Time next_latency();
   void plan_schedule();
+  void plan_again(Time now);
   void plan_next_sample();
 
   DeviceConfig config_;
+  const World& world_;
   const DeviceType& type_;
   DeviceHost& host_;
   Bus& bus_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 namespace sim {
 
@@ -19,7 +21,6 @@ struct VehicleClock::State {
   struct Node {
     Time at;
     double wander_s;
-    void visit_state(StateArchive& archive) { archive(at, wander_s); }
   };
   /// Of the correction: it holds after a time, and grows from there.
   struct Steer {
@@ -31,6 +32,25 @@ struct VehicleClock::State {
   State(const ClockConfig& config_in, std::uint64_t seed, const std::string& vehicle, Time start_in)
       : config(config_in), oscillator(config_in, seed, vehicle + "#clock"), start(start_in), now(start_in) {
     nodes.push_back({start, 0});
+  }
+
+  /// As two blocks: there are many, and the state is hashed often.
+  void visit_nodes(StateArchive& archive) {
+    std::vector<std::int64_t> times_us;
+    std::vector<double> wanders_s;
+    if (!archive.restoring()) {
+      times_us.reserve(nodes.size());
+      wanders_s.reserve(nodes.size());
+      for (const Node& node : nodes) {
+        times_us.push_back(node.at.count());
+        wanders_s.push_back(node.wander_s);
+      }
+    }
+    archive(times_us, wanders_s);
+    if (!archive.restoring()) return;
+    if (times_us.size() != wanders_s.size()) archive.fail("a clock whose past has holes");
+    nodes.clear();
+    for (std::size_t i = 0; i < times_us.size(); ++i) nodes.push_back({Time{times_us[i]}, wanders_s[i]});
   }
 
   double wander_s(Time at) const {
@@ -220,7 +240,9 @@ double VehicleClock::estimated_std_s(Time now) const {
 void VehicleClock::visit_state(StateArchive& archive) {
   if (!state_) return;
   State& s = *state_;
-  archive(s.oscillator, s.now, s.nodes, s.steers, s.forgot_steers, s.first_fix, s.last_fix);
+  archive(s.oscillator, s.now);
+  s.visit_nodes(archive);
+  archive(s.steers, s.forgot_steers, s.first_fix, s.last_fix);
   archive(s.loop.time_constant_s, s.loop.step_above_s, s.loop.pps_std_s, s.loop.interval_s);
   archive(s.learnt_rate, s.last_measured_s, s.rate_is_unknown, s.start);
   if (archive.restoring() && (s.nodes.empty() || (s.forgot_steers && s.steers.empty())))

@@ -55,7 +55,6 @@ SpawnRequest read_journalled_spawn(const WorldConfig& world, const std::string& 
 /// file cannot be read or the request is wrong.
 std::string self_contained_spawn(const WorldConfig& world, const std::string& text);
 
-
 /// A stranger may not reach for files or ports: reports keys such as `mesh` and `serial`.
 void check_untrusted(const ConfigNode& node, const std::string& who, Diagnostics& diagnostics);
 /// YAML that comes over the bus, at most 1 MiB.  Throws ConfigError, with places such as `spawn:3:7`.

@@ -173,7 +173,8 @@ class World {
   /// with the same bits.  When vehicles, objects or the parameters of devices are not those of the snapshot, the world
   /// is built anew in place: references to vehicles, bodies, devices and scene are then void, and generation() has
   /// grown; those to World and PhysicsWorld hold.  Throws SnapshotError when it does not fit; the world is then as
-  /// before, or where that is not possible as well the error says so.
+  /// before, or where that is not possible as well the error says so.  It may have been built anew on the way there:
+  /// see generation().
   void restore(std::span<const std::byte> snapshot);
 
  private:

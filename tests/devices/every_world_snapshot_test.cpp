@@ -1,4 +1,5 @@
-// Every world that comes with the simulator is saved at random steps, and goes on alike wherever it is restored.
+// Every world that comes with the simulator is saved at its start and at random steps, and goes on alike wherever it is
+// restored.
 #include <algorithm>
 #include <filesystem>
 
@@ -68,8 +69,23 @@ class EveryWorld : public testing::TestWithParam<std::string> {
     loaded = sim::load_world(SHOAL_SOURCE_DIR "/worlds/" + GetParam() + ".yaml", options);
     sim::Random random(1, GetParam());
     random.begin_step(0);
+    saved_at.push_back(0);
     for (int i = 0; i < 3; ++i) saved_at.push_back(static_cast<int>(random.integer_below(1500)));
     std::sort(saved_at.begin(), saved_at.end());
+  }
+
+  /// Sets a value of the first device of the world, as an event's `set` does; false: it has none.
+  static bool change_a_device(sim::World& world) {
+    for (const auto& device : world.devices()) {
+      if (!device || !device->senses()) continue;
+      sim::Diagnostics diagnostics;
+      EXPECT_TRUE(world.change_device(device->full_name(),
+                                      sim::parse_config_text("{latency_s: 0.013, rate_hz: 7}", "set", diagnostics),
+                                      diagnostics))
+          << diagnostics.lines().front();
+      return true;
+    }
+    return false;
   }
 
   /// Restored, it is the world that was saved, and goes on like it.
@@ -108,6 +124,29 @@ TEST_P(EveryWorld, GoesOnFromASnapshotBitForBit) {
     }
     SCOPED_TRACE("restored in the world that went on");
     ASSERT_NO_FATAL_FAILURE(expect_goes_on(original, i));
+  }
+}
+
+/// To before a value was set, and to after it: both times the world is built again.
+TEST_P(EveryWorld, GoesOnFromBeforeAndAfterAValueWasSet) {
+  SteppedWorld original(loaded);
+  saved_at = {20, 60};
+  const int set_at = 40;
+  for (int step = 0; step < saved_at.back() + more_steps; ++step) {
+    if (step == saved_at[0] || step == saved_at[1]) snapshots.push_back(original.world.snapshot());
+    if (step == set_at && !change_a_device(original.world)) GTEST_SKIP() << "it has no sensor";
+    results.push_back(original.step());
+  }
+  for (const std::size_t i : {0u, 1u, 0u}) {
+    SCOPED_TRACE("saved after " + std::to_string(saved_at[i]) + " steps");
+    const auto at = static_cast<std::size_t>(saved_at[i]);
+    original.world.restore(snapshots[i]);
+    ASSERT_TRUE(original.world.snapshot() == snapshots[i]) << "saved again it is not the same";
+    original.bus.take_hash();
+    for (std::size_t step = at; step < at + more_steps / 3; ++step) {
+      if (step == set_at) change_a_device(original.world);
+      ASSERT_TRUE(original.step() == results[step]) << "after step " << step;
+    }
   }
 }
 

@@ -24,9 +24,10 @@ TEST(SegwayRun, AnotherProcessBalancesItForTenMinutesOnCommand) {
 }
 
 TEST(SegwayRun, FallsWhenItIsTooLate) {
-  const Ended ended = run_segway({"--duration", "20", "--set", "vehicles.segway1.actuator_latency_s=0.12"});
+  const Ended ended = run_segway({"--duration", "20", "--set", "vehicles.segway1.actuator_latency_s=0.14"});
   EXPECT_EQ(ended.exit_code, 1);
   EXPECT_THAT(ended.output + ended.errors, HasSubstr("lean.max_deg"));
+  EXPECT_THAT(ended.output + ended.errors, HasSubstr("fallen.count"));
 }
 
 TEST(SegwayRun, IsTheSameAtAnySpeed) {

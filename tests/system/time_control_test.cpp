@@ -116,10 +116,16 @@ TEST(Snapshot, ValuesCanBeSetAndStructureCannot) {
     return run_shoal({"run", "--from", snapshot, "--bus", "none", "--duration", "3", "--set", set});
   };
   const Ended same = run_shoal({"run", "--from", snapshot, "--bus", "none", "--duration", "3"});
-  const Ended lighter = from("physics.gravity_mps2=5");
-  EXPECT_EQ(lighter.exit_code, 0) << lighter.errors;
-  // What is state comes from the snapshot, and gravity is: only what is no state follows --set.
-  EXPECT_EQ(state_hash_in(lighter), state_hash_in(same));
+  const std::string hash = state_hash_in(same);
+  EXPECT_EQ(state_hash_in(from("vehicles.r1.devices.lidar.rate_hz=10")), hash) << "as it was";
+  // Each changes what happens from the snapshot on.
+  for (const char* set :
+       {"physics.gravity_mps2=5", "vehicles.r1.devices.lidar.rate_hz=5", "vehicles.r1.devices.lidar.range_max_m=1.5",
+        "vehicles.r1.devices.lidar.noise.bias=0.1", "vehicles.r1.devices.odometry.noise.gaussian_std=0.1"}) {
+    const Ended ended = from(set);
+    EXPECT_EQ(ended.exit_code, 0) << set << ended.errors;
+    EXPECT_NE(state_hash_in(ended), hash) << set;
+  }
   const Ended other = from("objects.ball.present=false");
   EXPECT_EQ(other.exit_code, 2) << other.output;
   EXPECT_THAT(other.errors, HasSubstr("snapshot"));

@@ -32,6 +32,11 @@ SpeedPoint parse_point(const std::string& text) {
   return {numbers[0], numbers[1], numbers.size() == 3 ? numbers[2] : 0};
 }
 
+/// A lean that is later than this does not belong to the same clock.
+constexpr double most_late_s = 0.1;
+/// From one lean to the next; after more than this their difference is no rate.
+constexpr double longest_gap_s = 1;
+
 /// The share of the way to a new value that a low pass goes in a time.
 double share(double time_s, double time_constant_s) {
   return time_s / (time_s + time_constant_s);
@@ -56,9 +61,12 @@ Balance::Balance(const Params& params) : params_(params) {
 }
 
 void Balance::receive(const shoal::inclination_t& message) {
-  if (lean_known_ && message.utime <= lean_utime_) return;  // came late
-  if (lean_known_) {
-    const double dt_s = static_cast<double>(message.utime - lean_utime_) * 1e-6;
+  // As floating point numbers: the difference of any two whole ones may be too large for one.
+  const double dt_s = (static_cast<double>(message.utime) - static_cast<double>(lean_utime_)) * 1e-6;
+  const bool late = dt_s <= 0 && dt_s > -most_late_s;
+  if (lean_known_ && late) return;
+  // Other times: the clock was set, or the last message had a time of its own.  The rate stays what it was.
+  if (lean_known_ && dt_s > 0 && dt_s < longest_gap_s) {
     const double rate_radps = (message.pitch_rad - lean_rad_) / dt_s;
     rate_radps_ += share(dt_s, params_.rate_filter_s) * (rate_radps - rate_radps_);
   }

@@ -213,8 +213,8 @@ class Replay {
   void after_step() {
     service_.publish_step();
     if (!outcome_.first) tell_first_messages();
-    const auto logged = log_.hashes.find(world_.step_number());
-    if (logged != log_.hashes.end()) compare_hashes(logged->second);
+    while (next_hash_ != log_.hashes.end() && next_hash_->first < world_.step_number()) ++next_hash_;
+    if (next_hash_ != log_.hashes.end() && next_hash_->first == world_.step_number()) compare_hashes(next_hash_->second);
   }
 
   /// All that differ by now differ since this step.
@@ -347,6 +347,7 @@ class Replay {
   bridges::LockstepService lockstep_{world_, control_};  // nobody joins
   bridges::SimService service_;
   std::size_t next_letter_ = 0;
+  std::map<std::int64_t, ReplayLog::Hashes>::const_iterator next_hash_ = log_.hashes.begin();
   bool cut_ = false;
   std::vector<std::string> parts_;
   std::int64_t parts_step_ = 0;

@@ -3,7 +3,10 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <deque>
+#include <span>
 #include <stdexcept>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -21,7 +24,7 @@ namespace {
 constexpr std::size_t most_problems = 20;
 
 /// The big-endian number behind the fingerprint and `index` others.
-std::int64_t number_at(const sim::Bytes& payload, std::size_t index) {
+std::int64_t number_at(std::span<const std::byte> payload, std::size_t index) {
   std::uint64_t value = 0;
   for (std::size_t i = 0; i < 8; ++i) value = value << 8 | std::to_integer<std::uint64_t>(payload[8 + 8 * index + i]);
   return static_cast<std::int64_t>(value);
@@ -32,17 +35,17 @@ class Reader {
   explicit Reader(const std::string& path) : file_(path) { log_.path = path; }
 
   ReplayLog read() {
-    std::unordered_map<std::string, std::uint64_t> events;  // copied into order below
-    bridges::LogEvent event;
+    bridges::LogEventView event;
     while (file_.next(event)) {
-      ++events[event.channel];
+      count(event.channel);
+      if (!event.channel.starts_with("sim.")) continue;
       try {
         take(event);
       } catch (const shoal::MessageError& error) {
         problem(fmt::format("byte {}: {}: {}", event.offset, event.channel, error.what()));
       }
     }
-    log_.events.insert(events.begin(), events.end());
+    for (const Count& count : counts_) log_.events.emplace(count.channel, count.events);
     for (const std::string& text : file_.problems()) problem(text);
     if (!informed_) fail_without_info();
     for (const Hole& hole : holes_) tell(hole);
@@ -59,9 +62,8 @@ class Reader {
   void tell(const Hole& hole) {
     const auto& [first, last, from, to] = hole;
     log_.holes.push_back(
-        first == last
-            ? fmt::format("sim.mail {} (of a step from {} to {}) is missing", first, from, to)
-            : fmt::format("sim.mail {} to {} (of steps from {} to {}) are missing", first, last, from, to));
+        first == last ? fmt::format("sim.mail {} (of a step from {} to {}) is missing", first, from, to)
+                      : fmt::format("sim.mail {} to {} (of steps from {} to {}) are missing", first, last, from, to));
     log_.proven_step = std::min({log_.proven_step.value_or(from), from, log_.last_step});
   }
 
@@ -79,15 +81,34 @@ class Reader {
     if (log_.problems.size() < most_problems) log_.problems.push_back(text);
   }
 
-  void take(const bridges::LogEvent& event) {
-    if (!event.channel.starts_with("sim.")) return;
+  struct Count {
+    std::string channel;
+    std::uint64_t events = 0;
+    std::size_t next = 0;  ///< the channel that came after this one the last time
+  };
+
+  /// Steps are like each other: the channel is mostly the one that came after this one before, and the names need not
+  /// be looked for.
+  void count(std::string_view channel) {
+    std::size_t found = counts_.empty() ? 0 : counts_[last_].next;
+    if (counts_.empty() || counts_[found].channel != channel) {
+      const auto known = by_name_.find(channel);
+      found = known != by_name_.end() ? known->second : counts_.size();
+      if (known == by_name_.end()) by_name_.emplace(counts_.emplace_back(Count{std::string(channel)}).channel, found);
+      counts_[last_].next = found;
+    }
+    ++counts_[found].events;
+    last_ = found;
+  }
+
+  void take(const bridges::LogEventView& event) {
     if (event.channel == "sim.info") return take_info(event);
     if (event.channel == "sim.mail") return take_mail(event);
     if (event.channel == "sim.hash") return take_hash(event);
     if (event.channel == "sim.state") take_state(event);
   }
 
-  void take_state(const bridges::LogEvent& event) {
+  void take_state(const bridges::LogEventView& event) {
     if (shoal::fingerprint(event.payload) != shoal::sim_state_t::getHash() || event.payload.size() < 24) return;
     const std::int64_t step = number_at(event.payload, 1);
     if (!informed_ || !is_time_of(step, number_at(event.payload, 0))) return;  // of somebody else
@@ -109,7 +130,7 @@ class Reader {
   }
 
   /// A stamp that is not that of its step is of another run, or of another epoch.
-  void check_stamp(const bridges::LogEvent& event, std::int64_t utime, std::int64_t step) const {
+  void check_stamp(const bridges::LogEventView& event, std::int64_t utime, std::int64_t step) const {
     if (!informed_) return;
     const shoal::sim_info_t& info = log_.info;
     if (!is_time_of(step, utime))
@@ -117,7 +138,7 @@ class Reader {
                        event.offset, event.channel, utime, step, info.epoch_utime, info.step_us));
   }
 
-  void take_info(const bridges::LogEvent& event) {
+  void take_info(const bridges::LogEventView& event) {
     auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
     if (event.utime != info.utime) log_.own_stamps = false;
     if (!informed_) {
@@ -164,7 +185,7 @@ class Reader {
     next_sequence_ = next;
   }
 
-  void take_mail(const bridges::LogEvent& event) {
+  void take_mail(const bridges::LogEventView& event) {
     auto mail = shoal::decode<shoal::sim_mail_t>(event.payload, shoal::Finite::any);
     check_stamp(event, mail.utime, mail.step);
     if (mail.branch != branch_ && informed_)
@@ -184,7 +205,7 @@ class Reader {
     note_step(mail.step);
   }
 
-  void take_hash(const bridges::LogEvent& event) {
+  void take_hash(const bridges::LogEventView& event) {
     auto message = shoal::decode<shoal::sim_hash_t>(event.payload, shoal::Finite::any);
     check_stamp(event, message.utime, message.step);
     check_sequence(message.mail_sequence, message.step);
@@ -198,6 +219,9 @@ class Reader {
 
   bridges::EventLogReader file_;
   ReplayLog log_;
+  std::deque<Count> counts_;  // whose names do not move
+  std::unordered_map<std::string_view, std::size_t> by_name_;
+  std::size_t last_ = 0;  // in counts_
   std::vector<Hole> holes_;
   bool informed_ = false, stepped_ = false;
   std::int32_t branch_ = 0;

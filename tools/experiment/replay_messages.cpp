@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -36,7 +37,7 @@ std::size_t hash_of(std::span<const std::byte> payload) {
 }
 
 bool same(std::span<const std::byte> a, std::span<const std::byte> b) {
-  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin());
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size()) == 0);
 }
 
 /// The first member, when it is a time stamp.
@@ -109,28 +110,39 @@ ReplayMessages::ReplayMessages(const ReplayLog& log) : log_(log), file_(log.path
 
 ReplayMessages::Channel& ReplayMessages::add(std::string_view name) {
   const auto known = channels_.try_emplace(std::string(name)).first;
+  known->second.name = known->first;
   by_name_.emplace(known->first, &known->second);
   return known->second;
 }
 
-const sim::Bytes* ReplayMessages::head(Channel& channel) {
-  if (channel.left == 0) return nullptr;
-  if (current_ == &channel) return &event_.payload;
+ReplayMessages::Channel* ReplayMessages::find_next(std::string_view name, Channel*& last, Channel* Channel::*next) {
+  Channel* found = last != nullptr ? last->*next : nullptr;
+  if (found == nullptr || found->name != name) {
+    found = find(name);
+    if (found == nullptr) return nullptr;
+    if (last != nullptr) last->*next = found;
+  }
+  return last = found;
+}
+
+std::optional<ReplayMessages::Payload> ReplayMessages::head(Channel& channel) {
+  if (channel.left == 0) return std::nullopt;
+  if (current_ == &channel) return event_.payload;
   while (channel.queue.empty() && !at_end_) {
     if (current_ != nullptr) {
-      if (log_.own_stamps ? event_.utime > look_until_ : queued_bytes_ > most_queued_bytes) return nullptr;
+      if (log_.own_stamps ? event_.utime > look_until_ : queued_bytes_ > most_queued_bytes) return std::nullopt;
       queued_bytes_ += event_.payload.size();
-      current_->queue.push_back(event_.payload);
+      current_->queue.emplace_back(event_.payload.begin(), event_.payload.end());
     }
     current_ = nullptr;
     if (!file_.next(event_)) {
       at_end_ = true;
       break;
     }
-    current_ = find(event_.channel);
-    if (current_ == &channel) return &event_.payload;
+    current_ = find_next(event_.channel, last_read_, &Channel::next_read);
+    if (current_ == &channel) return event_.payload;
   }
-  return channel.queue.empty() ? nullptr : &channel.queue.front();
+  return channel.queue.empty() ? std::nullopt : std::optional<Payload>(channel.queue.front());
 }
 
 void ReplayMessages::pop(Channel& channel) {
@@ -143,7 +155,7 @@ void ReplayMessages::pop(Channel& channel) {
   channel.queue.pop_front();
 }
 
-bool ReplayMessages::is_mail(Channel& channel, const sim::Bytes& payload) {
+bool ReplayMessages::is_mail(Channel& channel, Payload payload) {
   if (channel.mail.empty()) return false;
   const auto found = channel.mail.find(hash_of(payload));
   if (found == channel.mail.end()) return false;
@@ -152,12 +164,13 @@ bool ReplayMessages::is_mail(Channel& channel, const sim::Bytes& payload) {
 }
 
 void ReplayMessages::published(std::string_view name, std::span<const std::byte> payload, std::int64_t step) {
-  if (log_.goes_back || is_of_the_run(name)) return;
-  Channel* known = find(name);
+  if (log_.goes_back) return;
+  Channel* known = find_next(name, last_published_, &Channel::next_published);
+  if (known == nullptr && is_of_the_run(name)) return;
   Channel& channel = known != nullptr ? *known : add(name);
   channel.published = true;
   look_until_ = log_.info.epoch_utime + (step + steps_ahead) * log_.info.step_us;
-  while (const sim::Bytes* logged = head(channel)) {
+  while (const std::optional<Payload> logged = head(channel)) {
     if (same(*logged, payload)) {
       ++equal_;
       return pop(channel);
@@ -194,7 +207,7 @@ void ReplayMessages::differ(std::string_view channel, std::int64_t step, const s
   if (!first_) first_ = difference;
 }
 
-void ReplayMessages::compare_states(const sim::Bytes& logged, std::span<const std::byte> here, std::int64_t step) {
+void ReplayMessages::compare_states(Payload logged, Payload here, std::int64_t step) {
   shoal::sim_state_t there, own;
   try {
     there = shoal::decode<shoal::sim_state_t>(logged, shoal::Finite::any);

@@ -50,32 +50,39 @@ class ReplayMessages {
   const std::map<std::string, Distance>& distances() const { return distances_; }
 
  private:
+  using Payload = std::span<const std::byte>;
   struct Channel {
+    std::string_view name;
     std::deque<sim::Bytes> queue;     // read from the log and not yet compared
     std::uint64_t left = 0;           // in the log, also those in the queue
     std::multiset<std::size_t> mail;  // hashes of what came from outside on it
     bool published = false;
+    /// Which came after this one the last time: steps are like each other, and the name need not be looked for.
+    Channel *next_published = nullptr, *next_read = nullptr;
   };
 
   Channel* find(std::string_view name) const {
     const auto known = by_name_.find(name);
     return known == by_name_.end() ? nullptr : known->second;
   }
+  /// Tries the one that came after `last` before.  The one that is found is the last one then.
+  Channel* find_next(std::string_view name, Channel*& last, Channel* Channel::*next);
   Channel& add(std::string_view name);
   /// Null: the log has no more of them, or not before what is compared now.
-  const sim::Bytes* head(Channel& channel);
+  std::optional<Payload> head(Channel& channel);
   void pop(Channel& channel);
-  bool is_mail(Channel& channel, const sim::Bytes& payload);
+  bool is_mail(Channel& channel, Payload payload);
   void differ(std::string_view channel, std::int64_t step, const std::string& what);
-  void compare_states(const sim::Bytes& logged, std::span<const std::byte> here, std::int64_t step);
+  void compare_states(Payload logged, Payload here, std::int64_t step);
 
   const ReplayLog& log_;
   bridges::EventLogReader file_;
   bool at_end_ = false;
   std::int64_t look_until_ = 0;   // stamp up to which a record is read
   std::size_t queued_bytes_ = 0;  // of all channels
-  bridges::LogEvent event_;       // the last one that was read
-  Channel* current_ = nullptr;    // whose event it is while it is not yet compared; null: it is, or nobody's
+  bridges::LogEventView event_;   // the last one that was read
+  Channel *last_published_ = nullptr, *last_read_ = nullptr;
+  Channel* current_ = nullptr;  // whose event it is while it is not yet compared; null: it is, or nobody's
   std::map<std::string, Channel, std::less<>> channels_;
   std::unordered_map<std::string_view, Channel*> by_name_;  // asked, never iterated
   std::uint64_t equal_ = 0, different_ = 0, missing_ = 0;

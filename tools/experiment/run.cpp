@@ -40,6 +40,9 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       progress_(duration_s_, options.quiet),
       programs_(loaded.config, options, buses_) {
   journal_.attach(world_);
+  journal_.set_heard([this] {
+    return buses_.over_lcm() || !options_.record.empty() || buses_.gate().reads("sim.hash");
+  });
   service_.use_journal(journal_);
   world_.use_threads(options.threads);
   lockstep_.add_line(buses_.network(), buses_.gate());
@@ -212,7 +215,7 @@ void Run::end_of_step() {
   if (results_ && steps_taken_ > 0) results_->after_step();
   buses_.end_of_step();
   time_.after_step();
-  branch_log_.mark(world_.step_number(), time_.oldest_step().value_or(world_.step_number()));
+  if (const auto oldest = time_.oldest_step()) branch_log_.mark(world_.step_number(), *oldest);
   take_snapshots();
   if (time_.stop_when_there()) progress_.restart(world_.now());
   synchronize();

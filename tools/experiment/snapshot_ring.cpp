@@ -93,7 +93,8 @@ std::size_t SnapshotRing::Family::bytes() const {
 void SnapshotRing::add(std::int64_t step, const sim::Bytes& snapshot, std::size_t bytes_beside) {
   assert(families_.empty() ||
          step > (families_.back().others.empty() ? families_.back().step : families_.back().others.back().step));
-  const bool full = !families_.empty() && families_.back().others.size() + 1 >= most_in_family;
+  const bool full = !families_.empty() && (families_.back().others.size() + 1 >= most_in_family ||
+                                           step - families_.back().step >= std::max<std::int64_t>(steps_ / 2, 1));
   if (families_.empty() || full || whole_.empty()) {
     families_.push_back({step, compressed(snapshot), snapshot.size(), {}});
     whole_ = snapshot;

@@ -17,6 +17,9 @@ namespace {
 
 constexpr int most_files = 1000;
 constexpr const char* suffix = ".snapshot";
+/// Between two snapshots for going back at least this many times what the last one cost: in a run that is much faster
+/// than real time they are further apart, and the steps between them take the less time to work out again.
+constexpr int rest_per_snapshot = 40;
 
 /// One run of bytes that the ring can compare part by part, and back.  Its last bytes tell the three sizes.
 constexpr std::size_t trailer_bytes = 3 * sizeof(std::uint64_t);
@@ -105,6 +108,8 @@ void TimeControl::after_step() {
   const std::int64_t step = world_.step_number();
   const bool due = step % steps_per_second_ == 0 || ring_.size() == 0;
   if (!due) return;
+  const auto begin = Clock::now();
+  if (ring_.size() > 0 && begin < not_before_) return;
   try {
     const Saved saved = save(History::length);
     ring_.add(step, joined(saved.state, saved.scores, saved.owners), mail_.bytes());
@@ -114,6 +119,8 @@ void TimeControl::after_step() {
     return forget_all();
   }
   mail_.forget_before(*ring_.oldest());
+  const auto end = Clock::now();
+  not_before_ = end + rest_per_snapshot * (end - begin);
 }
 
 void TimeControl::forget_all() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -81,6 +82,7 @@ class TimeControl final : public bridges::TimeMachine {
   std::optional<std::int64_t> oldest_step() const { return ring_.oldest(); }
 
  private:
+  using Clock = std::chrono::steady_clock;
   struct Saved {
     sim::Bytes state, scores, owners;
   };
@@ -106,6 +108,7 @@ class TimeControl final : public bridges::TimeMachine {
   Hooks hooks_;
   std::int64_t steps_per_second_;
   SnapshotRing ring_;
+  Clock::time_point not_before_;  // the next snapshot for going back
   int files_ = 0;
   bool moved_ = false;
   std::string broken_;

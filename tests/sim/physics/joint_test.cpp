@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
+#include "sim/state/state_archive.hpp"
 #include "tests/sim/physics/small_worlds.hpp"
 
 namespace {
@@ -242,13 +244,101 @@ TEST(BallJoint, ABodyThatIsMovedTakesItsTurnedBallAlong) {
   sim::Joint& shoulder = world->add_joint(group, ball, arm, nullptr, Pose::Identity());
   world->close_group(group);
   for (int axis = 0; axis < 3; ++axis) shoulder.set_motor(axis == 2 ? 0.5 : 0, 1000, axis);
-  for (int i = 0; i < 100; ++i) world->step(i);
+  shoulder.set_stops(-0.1, 0.5, 2);  // it comes to the upper one
+  for (int i = 0; i < 105; ++i) world->step(i);
   world->move_group(group, sim::make_pose({5, 6, 7}, {0.3, -0.2, 1}), false);
+  EXPECT_EQ(shoulder.motor_velocity(2), 0.5);
+  world->step(105);
+  EXPECT_NEAR(shoulder.velocity(2), 0, 1e-6) << "it is at its stop";
+  shoulder.set_stops(-0.1, std::nullopt, 2);
   for (int axis = 0; axis < 3; ++axis) shoulder.set_motor(0, 1000, axis);
-  for (int i = 100; i < 200; ++i) world->step(i);
+  for (int i = 106; i < 200; ++i) world->step(i);
   EXPECT_NEAR(shoulder.position(2), 0.5, 6e-3);
   EXPECT_NEAR(shoulder.position(0), 0, 1e-6);
   EXPECT_NEAR(arm.w_WB_W().norm(), 0, 1e-6);
+}
+
+sim::Bytes saved(sim::Joint& joint) {
+  sim::StateArchive archive = sim::StateArchive::saver();
+  archive(joint);
+  return archive.take_bytes();
+}
+
+void restore(sim::Joint& joint, const sim::Bytes& bytes) {
+  sim::StateArchive archive = sim::StateArchive::restorer(bytes);
+  archive(joint);
+  EXPECT_EQ(archive.bytes_left(), 0u);
+}
+
+JointConfig joint_of_type(const std::string& type) {
+  JointConfig config = joint("j", type, {1, 0, 0}, Vector3d::UnitY());
+  config.axis2.axis = Vector3d::UnitZ();
+  config.motor = type == "ball";
+  return config;
+}
+
+TEST(RestoredJoint, StandsAtNoStopThatItGotLater) {
+  for (const char* type : {"hinge", "slider", "universal", "hinge2", "ball"}) {
+    SCOPED_TRACE(type);
+    Pair rig(joint_of_type(type));
+    const sim::Bytes before = saved(*rig.joint);
+    rig.joint->set_stops(-0.1, 0.2);
+    rig.joint->set_motor(0.5, 10);
+    rig.run(100);
+    EXPECT_NEAR(rig.joint->position(), 0.2, 1e-3);
+    restore(*rig.joint, before);
+    EXPECT_TRUE(saved(*rig.joint) == before);
+    rig.joint->set_motor(0.5, 10);
+    rig.run(20);
+    EXPECT_NEAR(rig.joint->velocity(), 0.5, 1e-3);
+  }
+}
+
+TEST(RestoredJoint, HasTheStopsOfItsConfigurationUnlessTheyWereSet) {
+  JointConfig config = joint_of_type("hinge");
+  config.axis1.low_stop = -0.1;
+  config.axis1.high_stop = 0.2;
+  Pair original(config);
+  const sim::Bytes as_configured = saved(*original.joint);
+  original.joint->set_stops(-0.1, 0.25);
+  const sim::Bytes as_set = saved(*original.joint);
+  config.axis1.high_stop = 0.3;
+  for (const bool set : {false, true}) {
+    Pair other(config);
+    restore(*other.joint, set ? as_set : as_configured);
+    other.joint->set_motor(0.5, 10);
+    other.run(100);
+    EXPECT_NEAR(other.joint->position(), set ? 0.25 : 0.3, 1e-3);
+  }
+}
+
+TEST(RestoredJoint, MeasuresNoLoadWhereNoneWasMeasured) {
+  Pair rig(joint_of_type("hinge"));
+  const sim::Bytes before = saved(*rig.joint);
+  rig.joint->measure_load();
+  rig.joint->set_motor(0.5, 10);
+  rig.run(3);
+  const sim::Bytes measured = saved(*rig.joint);
+  EXPECT_NE(rig.joint->force_W_N().norm() + rig.joint->torque_W_Nm().norm(), 0);
+  const Vector3d torque_Nm = rig.joint->torque_W_Nm();
+  restore(*rig.joint, before);
+  rig.run(3);
+  EXPECT_EQ(rig.joint->torque_W_Nm(), Vector3d(0, 0, 0));
+  restore(*rig.joint, measured);
+  EXPECT_EQ(rig.joint->torque_W_Nm(), torque_Nm);
+  rig.joint->add_effort(0.01);
+  rig.run(1);
+  EXPECT_NE(rig.joint->effort(), 0);
+}
+
+TEST(RestoredJoint, RefusesNumbersThatAreNotFinite) {
+  Pair rig(joint_of_type("hinge"));
+  const sim::Bytes good = saved(*rig.joint);
+  const double nan_ = std::nan("");
+  sim::Bytes bad = good;
+  std::memcpy(bad.data() + 1, &nan_, sizeof nan_);  // its position, after the flag of its stops
+  sim::StateArchive archive = sim::StateArchive::restorer(bad);
+  EXPECT_THROW(archive(*rig.joint), sim::SnapshotError);
 }
 
 TEST(UniversalJoint, EachAxisHasItsMotor) {

@@ -1,5 +1,4 @@
 #include "sim/random/noise.hpp"
-#include "tests/state_hash_of.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include "tests/state_hash_of.hpp"
 
 namespace {
 
@@ -254,6 +255,27 @@ TEST(Noise, TheHashSeesTheSlowState) {
   EXPECT_EQ(hash_of(), before);
   noise.apply(value, 0.1, random);
   EXPECT_NE(hash_of(), before);
+}
+
+TEST(Noise, RestoredWithOtherParametersItKeepsWhatWasDrawnOnly) {
+  NoiseParams params;
+  params.bias = 5;
+  params.bias_std = 1;
+  Noise original(params, 1, Random(1, "bias"));
+  sim::StateArchive saver = sim::StateArchive::saver();
+  saver(original);
+  const std::vector<std::byte> bytes = saver.take_bytes();
+  Random random(1, "values");
+  double before = 0, after = 0;
+  original.apply(before, 0, random);
+  params.bias = 7;
+  params.bias_std = 0;
+  Noise restored(params, 1, Random(1, "bias"));
+  sim::StateArchive restorer = sim::StateArchive::restorer(bytes);
+  restorer(restored);
+  restored.apply(after, 0, random);
+  EXPECT_NE(before, 5);
+  EXPECT_NEAR(after, before + 2, 1e-12);
 }
 
 NoiseParams read(const std::string& yaml, std::string& errors) {

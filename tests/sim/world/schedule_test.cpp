@@ -104,4 +104,24 @@ TEST(Schedule, TruthIsPublishedOnlyWhenAskedFor) {
   EXPECT_EQ(report_times_us(", rate_hz: 10, truth: true, dropout: 1", 1, "r1.lidar.truth").size(), 10u);
 }
 
+TEST(Schedule, ASensorTakesTheRateOfTheWorldThatASnapshotIsRestoredIn) {
+  TestWorld before(test::rover_world(lidar(", rate_hz: 20, phase_s: 0")));
+  before.run_for(5);
+  const sim::Bytes snapshot = before.world.snapshot();
+  for (const auto& [keys, period_us] : {std::pair{", rate_hz: 5, phase_s: 0", 200000},
+                                        {", rate_hz: 50", 20000},
+                                        {", rate_hz: 0", 1000},
+                                        {", rate_hz: 20, phase_s: 0", 50000}}) {
+    TestWorld after(test::rover_world(lidar(keys)));
+    after.world.restore(snapshot);
+    Listener<shoal::planar_lidar_t> scans(after, "r1.lidar");
+    after.run_for(1);
+    std::vector<std::int64_t> times;
+    for (const auto& scan : scans.take_all()) times.push_back(scan.utime - after.world.epoch_us());
+    ASSERT_EQ(times.size(), 1000000u / static_cast<unsigned>(period_us)) << keys;
+    EXPECT_LE(times.front(), 5000000 + period_us) << keys;
+    EXPECT_EQ(times[1] - times[0], period_us) << keys;
+  }
+}
+
 }  // namespace

@@ -53,7 +53,7 @@ TEST(VehicleClock, WithoutConfigurationReadsTheTrueTime) {
   EXPECT_EQ(clock.rate_error(), 0);
   EXPECT_EQ(clock.estimated_std_s(hour), 0);
   EXPECT_TRUE(made({}).perfect());
-  EXPECT_EQ(hash_of(clock), sim::StateHash().value());
+  EXPECT_EQ(hash_of(clock), sim::StateArchive::hasher().hash());
 }
 
 TEST(VehicleClock, OnePartInAMillionGains3600MicrosecondsInAnHour) {

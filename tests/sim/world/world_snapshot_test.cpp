@@ -101,6 +101,23 @@ TEST(WorldSnapshot, VisitorsFaultsMovesAndChangesComeBack) {
   SavedRun(busy_world, meddle).expect_restored_worlds_go_on_alike({10, 45, 55, 75, 95, 115, 125, 145, 170}, 100);
 }
 
+TEST(WorldSnapshot, GravityIsThatOfTheWorldItIsRestoredInUnlessItWasSet) {
+  TappedWorld original(busy_world);
+  original.world.step();
+  const sim::Bytes as_configured = original.world.snapshot();
+  original.world.physics().set_gravity(3);
+  const sim::Bytes as_set = original.world.snapshot();
+  TappedWorld moon(
+      std::string(busy_world)
+          .replace(std::string(busy_world).find("{step_s: 0.005}"), 15, "{step_s: 0.005, gravity_mps2: 1.6}"));
+  moon.world.restore(as_configured);
+  EXPECT_EQ(moon.world.physics().gravity_mps2(), 1.6);
+  moon.world.restore(as_set);
+  EXPECT_EQ(moon.world.physics().gravity_mps2(), 3);
+  moon.world.restore(as_configured);
+  EXPECT_EQ(moon.world.physics().gravity_mps2(), 1.6);
+}
+
 /// Each comes and goes often, alone or while others are there; values are changed again and again.
 TEST(WorldSnapshot, WhatLeavesNoTraceIsNotKept) {
   TappedWorld test(busy_world);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "shoal/inclination_t.hpp"
@@ -171,6 +172,24 @@ TEST(Balance, TorqueIsThatOfThePdLaw) {
   law.receive(lean);
   EXPECT_EQ(law.step()->left_Nm, 0);
   EXPECT_TRUE(law.fallen());
+}
+
+TEST(Balance, AMessageOfAnotherTimeDoesNotMakeItDeaf) {
+  constexpr std::int64_t latest = std::numeric_limits<std::int64_t>::max(), first = -latest - 1;
+  for (const std::int64_t strange : {latest, first, std::int64_t{3'000'000}, std::int64_t{1}}) {
+    Balance law({});
+    shoal::inclination_t lean{};
+    for (int i = 0; i < 100; ++i) {
+      lean.utime = 2'000'000 + 10'000 * i;
+      lean.pitch_rad = 0.001 * i;
+      law.receive(lean);
+      shoal::inclination_t other = lean;
+      other.utime = strange;
+      if (i == 50) law.receive(other);
+    }
+    EXPECT_EQ(law.lean_rad(), lean.pitch_rad) << strange;
+    EXPECT_NEAR(law.rate_radps(), 0.1, 1e-6) << strange;  // the low pass has seen 0.49 s of it since
+  }
 }
 
 TEST(Balance, RefusesWheelsThatAreNotTwo) {

@@ -67,6 +67,7 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   summary.seed = 3;
   summary.steps = 1000;
   summary.sim_time_s = 10;
+  summary.stepped_s = 10;
   summary.wall_s = 2;
   summary.state_hash = 0x0123456789abcdef;
   summary.metrics["position.rms_m"] = 0.25;

@@ -1,0 +1,117 @@
+#include <numbers>
+#include <utility>
+
+#include "sim/physics/joint.hpp"
+#include "sim/physics/ode_math.hpp"
+#include "sim/physics/physics_world.hpp"
+#include "sim/state/state_archive.hpp"
+
+// Efforts on a joint, and what goes through it.
+
+namespace sim {
+
+void Joint::add_effort(double effort, int axis) {
+  if (!std::isfinite(effort)) throw PhysicsFault("joint '" + name_ + "': an effort on it is not finite");
+  if (load_) load_->added[axis] += effort;
+  const double torque1 = axis == 0 ? sign_ * effort : 0, torque2 = axis == 1 ? sign_ * effort : 0;
+  switch (kind_) {
+    case dJointTypeHinge:
+      return dJointAddHingeTorque(ode_.get(), sign_ * effort);
+    case dJointTypeSlider:
+      return dJointAddSliderForce(ode_.get(), sign_ * effort);
+    case dJointTypeHinge2:
+      return dJointAddHinge2Torques(ode_.get(), torque1, torque2);
+    case dJointTypeUniversal:
+      return dJointAddUniversalTorques(ode_.get(), torque1, torque2);
+    case dJointTypeBall:
+      if (ball_motor_) dJointAddAMotorTorques(ball_motor_.get(), torque1, torque2, axis == 2 ? sign_ * effort : 0);
+      return;
+    default:
+      return;
+  }
+}
+
+void Joint::measure_load() {
+  if (load_) return;
+  load_ = std::make_unique<Load>();
+  ask_for_load();
+  measured_joints_->push_back(this);
+}
+
+void Joint::measure_no_load() {
+  if (!load_) return;
+  std::erase(*measured_joints_, this);
+  dJointSetFeedback(ode_.get(), nullptr);
+  if (ball_motor_) dJointSetFeedback(ball_motor_.get(), nullptr);
+  load_.reset();
+}
+
+void Joint::ask_for_load() {
+  dJointSetFeedback(ode_.get(), &load_->feedback);
+  if (ball_motor_) dJointSetFeedback(ball_motor_.get(), &load_->motor_feedback);
+}
+
+void Joint::note_before_step() {
+  const Pose X_WC = ode_pose(loaded_);
+  load_->p_CA_W = X_WC.linear() * p_CA_C_;
+  // ODE lets forces along a slider act half way between the two bodies, so that none of them is turned.
+  const dBodyID other = world_side_ ? loaded_ : dJointGetBody(ode_.get(), 0);
+  load_->p_AM_W = (to_eigen(dBodyGetPosition(other)) - X_WC.translation()) / 2 - load_->p_CA_W;
+  for (int axis = 0; axis < axes_; ++axis) {
+    load_->axis_W[axis] = axis_W(axis);
+    load_->beside[axis] = std::exchange(load_->added[axis], 0.0) + motor_at_stop(axis);
+  }
+}
+
+/// Where an axis is at a stop, ODE gives the row of its motor to the stop and lets the motor act as a force from
+/// outside, so that it is not in the feedback (dxJointLimitMotor::addLimot).
+double Joint::motor_at_stop(int axis) const {
+  const double max_force = get_parameter(dParamFMax, axis);
+  const double low = get_parameter(dParamLoStop, axis), high = get_parameter(dParamHiStop, axis);
+  const double bound = kind_ == dJointTypeSlider ? dInfinity : std::numbers::pi;
+  const bool has_stops = kind_ == dJointTypeSlider ? low > -bound || high < bound : low >= -bound || high <= bound;
+  if (!(max_force > 0) || !has_stops || low >= high || (kind_ == dJointTypeHinge2 && axis == 1)) return 0;
+  const double position = sign_ * wrapped_position(axis), velocity = get_parameter(dParamVel, axis);
+  const bool at_low = position <= low, at_high = !at_low && position >= high;
+  if (!at_low && !at_high) return 0;
+  const bool upwards = velocity > 0 || (velocity == 0 && at_high);
+  const bool away = (at_low && velocity > 0) || (at_high && velocity < 0);
+  return sign_ * (upwards ? max_force : -max_force) * (away ? get_parameter(dParamFudgeFactor, axis) : 1);
+}
+
+void Joint::note_load() {
+  Load& load = *load_;
+  const bool first = world_side_ != nullptr;
+  load.force_W_N = to_eigen(first ? load.feedback.f1 : load.feedback.f2);
+  load.torque_W_Nm = to_eigen(first ? load.feedback.t1 : load.feedback.t2) - load.p_CA_W.cross(load.force_W_N);
+  if (ball_motor_) load.torque_W_Nm += to_eigen(first ? load.motor_feedback.t1 : load.motor_feedback.t2);
+  for (int axis = 0; axis < axes_; ++axis) {
+    const Vector3d beside_W = load.beside[axis] * load.axis_W[axis];
+    if (kind_ == dJointTypeSlider) load.force_W_N += beside_W;
+    load.torque_W_Nm += kind_ == dJointTypeSlider ? Vector3d(load.p_AM_W.cross(beside_W)) : beside_W;
+  }
+  const Vector3d& along = kind_ == dJointTypeSlider ? load.force_W_N : load.torque_W_Nm;
+  if (kind_ == dJointTypeBall) {
+    for (int axis = 0; axis < axes_; ++axis) load.effort[axis] = along.dot(load.axis_W[axis]);
+    return;
+  }
+  const Vector3d &a = load.axis_W[0], &b = load.axis_W[1];
+  load.effort[0] = axes_ > 0 ? along.dot(a) : 0;
+  if (axes_ < 2) return;
+  // The constraint's torque is at right angles to both axes, the axes not always to each other.
+  const double cosine = a.dot(b), scale = 1 / (1 - cosine * cosine);
+  load.effort[0] = scale * (along.dot(a) - cosine * along.dot(b));
+  load.effort[1] = scale * (along.dot(b) - cosine * along.dot(a));
+}
+
+void Joint::visit_load(StateArchive& archive) {
+  bool measured = load_ != nullptr;
+  archive.unhashed(measured);
+  if (measured)
+    measure_load();
+  else
+    measure_no_load();
+  if (load_) archive.unhashed(load_->added, load_->force_W_N, load_->torque_W_Nm, load_->effort);
+}
+
+}  // namespace sim
