@@ -196,6 +196,7 @@ TEST_F(Policy, ContinueGoesOnWithoutAKilledClientAtOnce) {
 TEST_F(Policy, EndThatWasAgreedEndsTheRunWithAKilledClientAtOnce) {
   start("--die-at, '5'", "lockstep: {on_timeout: end, timeout_s: 1000}\n");
   EXPECT_EQ(shoal_->wait(), 5);
+  EXPECT_THAT(shoal_->errors(), HasSubstr("; its `on_timeout` decides what follows"));
 }
 
 TEST_F(Policy, KilledClientThatAgreedNothingIsGoneAndTheRunGoesOn) {
