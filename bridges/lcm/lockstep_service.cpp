@@ -158,13 +158,16 @@ bool LockstepService::leave(const shoal::sim_control_request_t& request) {
   const sim::LockstepMember* member = lockstep_.find(request.client);
   if (member == nullptr)
     throw std::runtime_error("no client of the name '" + sim::shortened(request.client) + "' has joined");
-  const sim::LockstepTerms terms = sim::read_lockstep_terms(request.text, {});
+  const sim::LeaveTerms terms = sim::read_leave_terms(request.text);
   if (terms.session != 0 && terms.session != member->terms.session)
     throw std::runtime_error("the client '" + member->name + "' that has joined is another one");
-  // What it said before it leaves counts, if it takes a while to arrive.
-  const bool unfinished =
-      !member->answered || !lines_[static_cast<std::size_t>(member->line)]->mail.is_complete(member->name);
-  if (terms.session != 0 && unfinished) return false;
+  if (terms.acknowledged > member->sequence)
+    throw std::runtime_error("the client '" + member->name + "' leaves after tick " +
+                             std::to_string(terms.acknowledged) + ", which it was not sent");
+  // What it said before it leaves counts, if it takes a while to arrive.  It does not answer ticks that come later.
+  const bool answered = member->answered || (terms.acknowledged >= 0 && terms.acknowledged < member->sequence);
+  const bool complete = lines_[static_cast<std::size_t>(member->line)]->mail.is_complete(member->name);
+  if (terms.session != 0 && !(answered && complete)) return false;
   forget(request.client, "left");
   return true;
 }

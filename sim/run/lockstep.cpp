@@ -9,6 +9,21 @@
 #include "sim/world/vehicle_loader.hpp"
 
 namespace sim {
+namespace {
+
+template <class Terms>
+Terms terms_in(const std::string& text, const char* command, Terms terms) {
+  if (text.empty()) return terms;
+  const ConfigNode node = parse_untrusted(text, command);
+  Diagnostics diagnostics;
+  ParamReader in(node, "", diagnostics);
+  terms.read(in);
+  in.finish();
+  diagnostics.throw_if_any();
+  return terms;
+}
+
+}  // namespace
 
 void LockstepTerms::read(ParamReader& in) {
   in.read("session", session, between(0, 9e18), "random number of the client, its own at each start; 0: none");
@@ -31,15 +46,16 @@ OnTimeout LockstepTerms::policy() const {
 }
 
 LockstepTerms read_lockstep_terms(const std::string& text, const LockstepTerms& defaults) {
-  LockstepTerms terms = defaults;
-  if (text.empty()) return terms;
-  const ConfigNode node = parse_untrusted(text, "join");
-  Diagnostics diagnostics;
-  ParamReader in(node, "", diagnostics);
-  terms.read(in);
-  in.finish();
-  diagnostics.throw_if_any();
-  return terms;
+  return terms_in(text, "join", defaults);
+}
+
+void LeaveTerms::read(ParamReader& in) {
+  in.read("session", session, between(0, 9e18), "that of the join; 0: whichever it is");
+  in.read("acknowledged", acknowledged, between(-1, 9e18), "sequence of the last tick it acknowledged; -1: unknown");
+}
+
+LeaveTerms read_leave_terms(const std::string& text) {
+  return terms_in(text, "leave", LeaveTerms{});
 }
 
 void Lockstep::join(const std::string& client, const LockstepTerms& terms, std::int64_t period_steps, std::int64_t step,
@@ -53,8 +69,8 @@ void Lockstep::join(const std::string& client, const LockstepTerms& terms, std::
     if (known->period_steps != period_steps) {  // a request that was sent twice moves no tick
       known->period_steps = period_steps;
       known->joined = step;
-      known->answered = true;
-      if (terms.session == 0) known->asked = -1;
+      // A tick that waits for its answer goes on doing so; the new period begins with it.
+      if (terms.session == 0 && known->answered) known->asked = -1;
     }
   } else {
     LockstepMember& member = members_[client];

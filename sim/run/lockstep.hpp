@@ -38,6 +38,16 @@ struct LockstepTerms {
 /// Reads the `text` of a join; what it does not say is as in `defaults`.  Throws ConfigError.
 LockstepTerms read_lockstep_terms(const std::string& text, const LockstepTerms& defaults);
 
+/// The `text` of `leave`, a YAML map.
+struct LeaveTerms {
+  std::int64_t session = 0;        ///< 0: whichever has joined
+  std::int64_t acknowledged = -1;  ///< sequence of the last tick that it acknowledged; -1: it does not say
+  void read(ParamReader& in);
+};
+
+/// Throws ConfigError.
+LeaveTerms read_leave_terms(const std::string& text);
+
 /// A message that a client must have.
 struct PostedMessage {
   std::int32_t channel = 0;  ///< place in its `receives`
@@ -79,8 +89,8 @@ struct LockstepMember {
 class Lockstep {
  public:
   /// From `step` on the world waits for this client every `period_steps` (at least 1).  Joining again in the same
-  /// session changes period and terms; the list of channels may only grow.  Throws std::invalid_argument when it does
-  /// not.  Another session begins anew.
+  /// session changes period and terms, and leaves a tick open that was not answered; the list of channels may only
+  /// grow.  Throws std::invalid_argument when it does not.  Another session begins anew.
   void join(const std::string& client, const LockstepTerms& terms, std::int64_t period_steps, std::int64_t step,
             int line = 0);
   /// False when there is no such client.

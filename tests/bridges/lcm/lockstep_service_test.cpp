@@ -257,6 +257,42 @@ TEST(LockstepService, ALeaveWaitsForTheAcknowledgementBeforeIt) {
   EXPECT_EQ(s.lockstep.summaries().at(0).ended, "left");
 }
 
+TEST(LockstepService, ALeaveIsGrantedThoughTheNextTickHasGoneOut) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
+  s.synchronize([&] { s.acknowledge(0, "pilot", 5, 1); });
+  s.test.world.step();
+  s.synchronize([&] {
+    EXPECT_TRUE(s.is_undecided("leave", "pilot", "{session: 5, acknowledged: 2}"));  // its answer is on its way
+    EXPECT_THAT(s.ask("leave", 0, "{session: 5, acknowledged: 3}").text, HasSubstr("after tick 3, which it was not"));
+    EXPECT_TRUE(s.ask("leave", 0, "{session: 5, acknowledged: 1}").ok);
+  });
+  EXPECT_FALSE(s.lockstep.has("pilot"));
+}
+
+TEST(LockstepService, JoiningAgainLeavesTheOpenTickOpen) {
+  Service s;
+  const auto reader = s.gate.open_mailbox("cmd");
+  ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
+  int waited = 0;
+  s.synchronize([&] {
+    ++waited;
+    if (waited == 1) {
+      ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}", 0.02).ok);
+    } else if (waited == 3) {
+      s.test.bus.publish("cmd", bytes_of("1"), sim::Time(0));
+      s.acknowledge(0, "pilot", 5, 1, {{"cmd", "1"}});
+    }
+  });
+  EXPECT_EQ(waited, 3);
+  EXPECT_EQ(s.admitted(), "1");
+  s.test.world.step();
+  s.synchronize([] { ADD_FAILURE() << "its period is two steps now"; });
+  s.test.world.step();
+  s.synchronize([&] { s.acknowledge(2, "pilot", 5, 2); });
+  EXPECT_EQ(s.lockstep.bad_messages(), 0);
+}
+
 TEST(LockstepService, WithoutALateClientTheWorldGoesOnAndTellsItSo) {
   Service s;
   ASSERT_TRUE(s.join("pilot", "{session: 5, on_timeout: continue, timeout_s: 0.001}").ok);
