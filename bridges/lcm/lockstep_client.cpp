@@ -10,6 +10,7 @@
 #include "shoal/sim_control_reply_t.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "sim/bus/crc32.hpp"
+#include "sim/run/lockstep.hpp"
 
 namespace bridges {
 namespace {
@@ -95,6 +96,9 @@ void LockstepClient::send(std::string_view channel, std::span<const std::byte> p
 
 void LockstepClient::publish(std::string_view channel, std::span<const std::byte> payload) {
   if (!joined_ || !is_named(channel)) return send(channel, payload);
+  if (published_.size() + delayed_.size() >= sim::most_named_messages)
+    throw BusError("'" + name_ + "' publishes more than " + std::to_string(sim::most_named_messages) +
+                   " messages between two ticks");
   Published message{std::string(channel), sim::crc32(payload), sim::Bytes(payload.begin(), payload.end())};
   if (!open_) {
     delayed_.push_back(std::move(message));

@@ -120,7 +120,15 @@ void Lockstep::post(int line, std::string_view channel, std::span<const std::byt
       shared = std::make_shared<const Bytes>(payload.begin(), payload.end());
       crc = crc32(payload);
     }
-    receiver.member->pending.push_back({receiver.channel, crc, shared});
+    LockstepMember& member = *receiver.member;
+    if (member.too_much) continue;
+    member.pending_bytes += payload.size() + sizeof(PostedMessage);
+    if (member.pending_bytes > most_pending_bytes) {
+      member.too_much = true;
+      member.pending = {};
+    } else {
+      member.pending.push_back({receiver.channel, crc, shared});
+    }
   }
 }
 
@@ -130,6 +138,7 @@ void Lockstep::close_list(LockstepMember& member, std::int64_t step) {
   member.answered = false;
   member.list.clear();
   member.list.swap(member.pending);
+  member.pending_bytes = 0;
 }
 
 void Lockstep::ask(std::int64_t step) {
@@ -151,6 +160,12 @@ std::vector<LockstepMember*> Lockstep::missing(std::int64_t step) {
 Lockstep::Verdict Lockstep::acknowledge(const LockstepAck& ack, std::int64_t step, std::string& why) {
   const std::string who = "client '" + printable(shortened(ack.client)) + "'";
   LockstepMember* member = find(ack.client);
+  if (member != nullptr && member->terms.session == ack.session) {
+    const bool abandoned = ack.session != 0 ? member->left_open > 0 && ack.sequence == member->left_open
+                                            : ack.step == member->left_step && ack.step != member->asked;
+    if (abandoned) return Verdict::abandoned;
+    if (ack.session != 0 && ack.sequence < member->sequence) return Verdict::repeated;
+  }
   if (ack.step > step)
     why = who + " acknowledges step " + std::to_string(ack.step) + ", which is still to come";
   else if (member == nullptr)
@@ -174,10 +189,16 @@ void Lockstep::rewound(std::int64_t step) {
     // The phase stays, also for one that joined later than this.
     if (member.joined > step)
       member.joined -= (member.joined - step + member.period_steps - 1) / member.period_steps * member.period_steps;
+    if (!member.answered) {
+      member.left_open = member.sequence;
+      member.left_step = member.asked;
+    }
     member.asked = -1;
     member.answered = true;
     member.list.clear();
     member.pending.clear();
+    member.pending_bytes = 0;
+    member.too_much = false;
   }
 }
 

@@ -68,6 +68,9 @@ struct LockstepAck {
   std::int64_t sequence = 0;
 };
 
+/// Most messages that an acknowledgement may name.
+constexpr std::size_t most_named_messages = 10'000;
+
 /// A client as the world knows it.
 struct LockstepMember {
   std::string name;
@@ -81,6 +84,10 @@ struct LockstepMember {
   bool gone = false;                   ///< its process is known to have ended
   std::vector<PostedMessage> list;     ///< of its last tick
   std::vector<PostedMessage> pending;  ///< for the next
+  std::size_t pending_bytes = 0;
+  bool too_much = false;        ///< to keep: what it must have is lost
+  std::int64_t left_open = 0;   ///< sequence of its tick that was open when the world went back; 0: none
+  std::int64_t left_step = -1;  ///< step of that
   bool due(std::int64_t step) const { return step >= joined && (step - joined) % period_steps == 0; }
 };
 
@@ -104,6 +111,8 @@ class Lockstep {
   /// Some client of this line must have every message of this channel.
   bool somebody_receives(int line, std::string_view channel) const;
 
+  /// What is kept of messages that a client must have, until its next tick.
+  static constexpr std::size_t most_pending_bytes = 256'000'000;
   /// A message was published on a line: it is put on the lists of those who must have it.
   void post(int line, std::string_view channel, std::span<const std::byte> payload);
   /// Asks those who are due at this step and were not asked yet; their lists are closed.
@@ -113,7 +122,8 @@ class Lockstep {
   /// Those due at this step that have not answered, in the order of their names.
   std::vector<LockstepMember*> missing(std::int64_t step);
 
-  enum class Verdict { accepted, repeated, refused };
+  /// Abandoned: it answers a tick that was open when the world went back.
+  enum class Verdict { accepted, repeated, refused, abandoned };
   /// `why` says what is wrong with one that is refused.
   Verdict acknowledge(const LockstepAck& ack, std::int64_t step, std::string& why);
   /// The world went back to `step`: lists are empty, and all are asked by their periods from there.
