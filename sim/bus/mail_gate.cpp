@@ -139,11 +139,12 @@ void MailGate::collect_from(Channel& channel) {
 }
 
 void MailGate::drop_oldest(Channel& channel) {
-  const auto oldest =
-      std::find_if(waiting_.begin(), waiting_.end(), [&](const Mail& mail) { return mail.channel == channel.name; });
+  const auto is_of_channel = [&](const Mail& mail) { return mail.channel == channel.name; };
+  // The user of waiting() may have taken some out.
+  channel.waiting = static_cast<std::size_t>(std::count_if(waiting_.begin(), waiting_.end(), is_of_channel));
+  if (channel.waiting < channel.capacity) return;
+  waiting_.erase(std::find_if(waiting_.begin(), waiting_.end(), is_of_channel));
   --channel.waiting;
-  if (oldest == waiting_.end()) return;
-  waiting_.erase(oldest);
   ++dropped_;
 }
 
