@@ -160,10 +160,14 @@ void MailGate::take_from(Channel& channel, const Wanted& wanted) {
 
 /// All that are too many, in one pass.
 void MailGate::drop_oldest(Channel& channel) {
+  const auto is_of_channel = [&](const Mail& mail) { return mail.channel == channel.name; };
+  // The user of waiting() may have taken some out.
+  channel.waiting = static_cast<std::size_t>(std::count_if(waiting_.begin(), waiting_.end(), is_of_channel));
+  if (channel.waiting <= channel.capacity) return;
   std::size_t too_many = channel.waiting - channel.capacity;
   channel.waiting = channel.capacity;
   dropped_ += std::erase_if(waiting_, [&](const Mail& mail) {
-    if (too_many == 0 || mail.channel != channel.name) return false;
+    if (too_many == 0 || !is_of_channel(mail)) return false;
     --too_many;
     return true;
   });
