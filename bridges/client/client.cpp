@@ -105,8 +105,7 @@ void Client::join(double period_s, std::chrono::milliseconds timeout) {
 void Client::join(double period_s, const JoinOptions& options) {
   with_own_errors([&] { connection_->lcm.join(period_s, options.timeout, {options.on_timeout, options.timeout_s}); });
   connection_->end = End::none;
-  connection_->unanswered.reset();
-  connection_->joined = true;
+  connection_->joined = true;  // a tick that was open before stays so, in the same session
 }
 
 void Client::follow(double period_s) {

@@ -10,6 +10,7 @@
 #include "shoal/sim_control_reply_t.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "sim/bus/crc32.hpp"
+#include "sim/run/lockstep.hpp"
 
 namespace bridges {
 namespace {
@@ -34,7 +35,7 @@ constexpr std::size_t bundle_bytes = 60'000;
 constexpr std::size_t most_recent = 8192;
 constexpr std::size_t most_held = 100'000;
 /// What a client waits, at most, for the simulator to let it go.
-constexpr milliseconds time_to_leave{300};
+constexpr milliseconds time_to_leave{1000};
 
 bool is_named(std::string_view channel) {
   return std::find(std::begin(unnamed_channels), std::end(unnamed_channels), channel) == std::end(unnamed_channels);
@@ -95,6 +96,9 @@ void LockstepClient::send(std::string_view channel, std::span<const std::byte> p
 
 void LockstepClient::publish(std::string_view channel, std::span<const std::byte> payload) {
   if (!joined_ || !is_named(channel)) return send(channel, payload);
+  if (published_.size() + delayed_.size() >= sim::most_named_messages)
+    throw BusError("'" + name_ + "' publishes more than " + std::to_string(sim::most_named_messages) +
+                   " messages between two ticks");
   Published message{std::string(channel), sim::crc32(payload), sim::Bytes(payload.begin(), payload.end())};
   if (!open_) {
     delayed_.push_back(std::move(message));
@@ -370,7 +374,12 @@ void LockstepClient::handle_tick() {
   tick_ = std::move(now.tick);
   open_ = true;
   if (first) branch_ = tick_.branch;
-  if (tick_.branch != branch_ && !rewind(tick_)) return;
+  if (tick_.branch != branch_ && !rewind(tick_)) {
+    // Not handled: after another join() it comes again.
+    --sequence_;
+    open_ = false;
+    return;
+  }
   for (Published& message : std::exchange(delayed_, {})) {
     send(message.channel, message.payload);
     published_.push_back(std::move(message));
@@ -466,7 +475,9 @@ void LockstepClient::leave() {
   }
   joined_ = false;
   try {
-    request("leave", 0, "{session: " + std::to_string(session_) + "}", deadline, false);
+    const std::string text =
+        "{session: " + std::to_string(session_) + ", acknowledged: " + std::to_string(sequence_) + "}";
+    request("leave", 0, text, deadline, false);
   } catch (const BusError&) {
     // The world notices when it waits for this client.
   }

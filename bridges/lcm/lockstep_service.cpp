@@ -29,6 +29,8 @@ constexpr std::chrono::seconds alive_for{1};
 constexpr std::size_t bundle_bytes = 60'000;
 /// Messages of a kind that are looked at before the world looks at something else.
 constexpr int most_at_once = 1000;
+/// Of clients; at most 1000 of them take part at the same time.
+constexpr std::size_t most_summaries = 2000;
 
 }  // namespace
 
@@ -67,7 +69,8 @@ void LockstepService::add_line(sim::Bus& network, sim::MailGate& gate) {
   const int index = static_cast<int>(lines_.size());
   lines_.push_back(std::make_unique<Line>(network, gate));
   gate.set_order([this, index, line = lines_.back().get()](std::vector<sim::MailGate::Mail>& mail) {
-    if (!suspended_) line->mail.order(mail);
+    if (suspended_) return;
+    line->mail.order(mail);
     for (const sim::MailGate::Mail& each : mail) lockstep_.post(index, each.channel, each.payload);
   });
 }
@@ -80,7 +83,7 @@ void LockstepService::watch_gates() {
       lines_[i]->gate.set_watch({});
     else
       lines_[i]->gate.set_watch([this, i](std::string_view channel, std::span<const std::byte> payload) {
-        lockstep_.post(static_cast<int>(i), channel, payload);
+        if (!suspended_) lockstep_.post(static_cast<int>(i), channel, payload);
       });
   }
 }
@@ -93,6 +96,11 @@ void LockstepService::publish(sim::Bus& bus, const char* channel, const Message&
 }
 
 LockstepSummary& LockstepService::summary_of(const std::string& client) {
+  if (summaries_.size() >= most_summaries && !summaries_.contains(client)) {
+    const auto gone = std::find_if(summaries_.begin(), summaries_.end(),
+                                   [&](const auto& entry) { return !lockstep_.has(entry.first); });
+    if (gone != summaries_.end()) summaries_.erase(gone);
+  }
   LockstepSummary& summary = summaries_[client];
   summary.client = client;
   return summary;
@@ -102,6 +110,12 @@ std::vector<LockstepSummary> LockstepService::summaries() const {
   std::vector<LockstepSummary> all;
   for (const auto& [client, summary] : summaries_) all.push_back(summary);
   return all;
+}
+
+std::uint64_t LockstepService::dropped_messages() const {
+  std::uint64_t dropped = 0;
+  for (const auto& line : lines_) dropped += line->mail.dropped();
+  return dropped;
 }
 
 void LockstepService::complain(const std::string& client, const std::string& text) {
@@ -122,7 +136,7 @@ bool LockstepService::join(int line, const shoal::sim_control_request_t& request
                              std::to_string(sim::to_seconds(world_.step_time())) + " s");
   const sim::LockstepTerms terms = sim::read_lockstep_terms(request.text, defaults_);
   if (const sim::LockstepMember* first = lockstep_.find(request.client);
-      first && first->terms.session != terms.session) {
+      first && (first->terms.session != terms.session || first->line != line)) {
     if (!may_join(*first, terms)) return false;
     forget(request.client, "another client of its name took its place");
   }
@@ -158,13 +172,16 @@ bool LockstepService::leave(const shoal::sim_control_request_t& request) {
   const sim::LockstepMember* member = lockstep_.find(request.client);
   if (member == nullptr)
     throw std::runtime_error("no client of the name '" + sim::shortened(request.client) + "' has joined");
-  const sim::LockstepTerms terms = sim::read_lockstep_terms(request.text, {});
+  const sim::LeaveTerms terms = sim::read_leave_terms(request.text);
   if (terms.session != 0 && terms.session != member->terms.session)
     throw std::runtime_error("the client '" + member->name + "' that has joined is another one");
-  // What it said before it leaves counts, if it takes a while to arrive.
-  const bool unfinished =
-      !member->answered || !lines_[static_cast<std::size_t>(member->line)]->mail.is_complete(member->name);
-  if (terms.session != 0 && unfinished) return false;
+  if (terms.acknowledged > member->sequence)
+    throw std::runtime_error("the client '" + member->name + "' leaves after tick " +
+                             std::to_string(terms.acknowledged) + ", which it was not sent");
+  // What it said before it leaves counts, if it takes a while to arrive.  It does not answer ticks that come later.
+  const bool answered = member->answered || (terms.acknowledged >= 0 && terms.acknowledged < member->sequence);
+  const bool complete = lines_[static_cast<std::size_t>(member->line)]->mail.is_complete(member->name);
+  if (terms.session != 0 && !(answered && complete)) return false;
   forget(request.client, "left");
   return true;
 }
@@ -178,10 +195,15 @@ void LockstepService::client_gone(const std::string& client) {
 }
 
 void LockstepService::forget(const std::string& client, const std::string& why) {
-  if (const sim::LockstepMember* member = lockstep_.find(client))
-    lines_[static_cast<std::size_t>(member->line)]->mail.give_up(client);
+  if (const sim::LockstepMember* member = lockstep_.find(client)) {
+    Line& line = *lines_[static_cast<std::size_t>(member->line)];
+    line.mail.give_up(client);
+    line.mail.release(client);
+  }
   lockstep_.leave(client);
   asked_.erase(client);
+  join_ids_.erase(client);
+  challenges_.erase(client);
   summary_of(client).ended = why;
   watch_gates();
 }
@@ -208,9 +230,28 @@ void LockstepService::tell_dropped(const Dropped& dropped, const std::string& cl
 
 void LockstepService::set_branch(std::int32_t branch) {
   branch_ = branch;
+  std::set<std::string> open;
+  for (const auto& [name, member] : lockstep_.members())
+    if (!member.answered && member.terms.session != 0) open.insert(name);
   lockstep_.rewound(world_.step_number());
   for (const auto& line : lines_) line->mail.clear();
+  // What a client published for a tick of the branch that was left may still come.
+  for (const auto& [name, member] : lockstep_.members())
+    if (open.contains(name)) lines_[static_cast<std::size_t>(member.line)]->mail.hold(name);
   asked_.clear();
+  paused_here_ = false;
+}
+
+void LockstepService::drop_overflowing() {
+  std::vector<std::string> names;
+  for (const auto& [name, member] : lockstep_.members())
+    if (member.too_much) names.push_back(name);
+  for (const std::string& name : names) {
+    drop(name, "client '" + name + "' must have more than " +
+                   std::to_string(sim::Lockstep::most_pending_bytes / 1'000'000) +
+                   " MB of messages until its next tick");
+    if (const auto dropped = dropped_.find(name); dropped != dropped_.end()) tell_dropped(dropped->second, name);
+  }
 }
 
 std::vector<std::string> LockstepService::late() {
@@ -224,6 +265,7 @@ std::vector<std::string> LockstepService::late() {
 
 LockstepOutcome LockstepService::synchronize(const Wait& wait, const std::function<bool()>& idle) {
   take_messages();  // also when nobody is due: what comes is checked, and does not pile up
+  drop_overflowing();
   while (true) {
     std::vector<std::string> names = late();
     if (names.empty()) break;
@@ -243,6 +285,7 @@ LockstepOutcome LockstepService::synchronize(const Wait& wait, const std::functi
 void LockstepService::resume() {
   if (!paused_here_) return;
   paused_here_ = false;
+  if (control_.pause_requests != pause_requests_) return;  // somebody else wants it so
   control_.paused = false;
   ++control_.changes;
   spdlog::info("lockstep: the world goes on");
@@ -297,6 +340,7 @@ void LockstepService::check_time(const std::string& client, Asked& asked, Clock:
         spdlog::warn("lockstep: {}; the world pauses", why);
         if (!control_.paused) {
           paused_here_ = control_.paused = true;
+          pause_requests_ = control_.pause_requests;
           ++control_.changes;
         }
       } else if (control_.may_step()) {
@@ -382,6 +426,9 @@ void LockstepService::take_ack(int line_index, const sim::Message& message) {
   try {
     const auto ack = shoal::decode<shoal::sim_ack_t>(message.payload, shoal::Finite::any);
     who = ack.client.substr(0, 60);
+    if (ack.channel.size() > sim::most_named_messages)
+      throw std::runtime_error("client '" + ack.client + "' names " + std::to_string(ack.channel.size()) +
+                               " messages; at most " + std::to_string(sim::most_named_messages) + " are allowed");
     std::string why;
     const auto verdict =
         lockstep_.acknowledge({ack.client, ack.step, ack.session, ack.sequence}, world_.step_number(), why);
@@ -392,10 +439,20 @@ void LockstepService::take_ack(int line_index, const sim::Message& message) {
       throw std::runtime_error(why);
     }
     if (heard_) heard_(ack.client);
-    if (verdict != sim::Lockstep::Verdict::accepted || !ack.listed) return;
-    const sim::LockstepMember& member = *lockstep_.find(ack.client);
+    if (verdict == sim::Lockstep::Verdict::repeated) return;
+    sim::LockstepMember& member = *lockstep_.find(ack.client);
     Line& line = *lines_[static_cast<std::size_t>(member.line)];
     std::vector<sim::NamedMessage> named;
+    if (verdict == sim::Lockstep::Verdict::abandoned) {
+      for (std::size_t i = 0; i < ack.channel.size(); ++i)
+        named.push_back({ack.channel[i], static_cast<std::uint32_t>(ack.crc[i])});
+      line.mail.drop(named);
+      line.mail.release(ack.client);
+      member.left_open = 0;  // once
+      return;
+    }
+    line.mail.release(ack.client);
+    if (!ack.listed) return;
     for (std::size_t i = 0; i < ack.channel.size(); ++i) {
       const std::string& channel = ack.channel[i];
       if (!line.gate.reads(channel) && lockstep_.somebody_receives(line_index, channel) && !channel.empty() &&

@@ -81,7 +81,9 @@ class LockstepService {
   void suspend(bool suspended) { suspended_ = suspended; }
   /// Bad acknowledgements and questions so far.
   std::int64_t bad_messages() const { return bad_messages_; }
-  /// By name, with those that are gone.
+  /// Messages from outside that had to make room before they were admitted.
+  std::uint64_t dropped_messages() const;
+  /// By name, with those that are gone, up to 2000.
   std::vector<LockstepSummary> summaries() const;
 
  private:
@@ -102,6 +104,7 @@ class LockstepService {
   };
 
   bool may_join(const sim::LockstepMember& first, const sim::LockstepTerms& terms);
+  void drop_overflowing();
   std::vector<std::string> late();
   void serve(const std::vector<std::string>& late);
   void check_time(const std::string& client, Asked& asked, Clock::time_point now);
@@ -138,6 +141,7 @@ class LockstepService {
   std::set<std::string, std::less<>> told_;  // whose bad messages were told of
   std::function<void(const std::string&)> heard_;
   bool paused_here_ = false;
+  std::int64_t pause_requests_ = 0;  // as they were then
   bool suspended_ = false;
   std::int32_t branch_ = 0;
   std::int64_t bad_messages_ = 0;

@@ -112,8 +112,11 @@ void Visitors::know_all() {
 }
 
 std::string Visitors::spawn(const std::string& client, const std::string& text) {
+  // A request that is refused here changes nothing and is not written down: with its file in it, a run from the
+  // journal would allow more, and whoever listens would read the file.
+  const sim::SpawnRequest request = sim::read_spawn_request(world_.config(), text);
   if (journal_ != nullptr) write_down(client, "spawn", sim::self_contained_spawn(world_.config(), text));
-  return add(client, sim::read_spawn_request(world_.config(), text));
+  return add(client, request);
 }
 
 std::string Visitors::spawn_again(const std::string& client, const std::string& text) {

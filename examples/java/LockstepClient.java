@@ -34,6 +34,8 @@ import shoal.twist_command_t;
 public class LockstepClient implements LCMSubscriber {
   record Message(String channel, byte[] data) {}
 
+  private static final long SILENCE_S = 600;
+
   private final LCM lcm = new LCM();
   private final String name;
   private final long session = 1 + (long) (Math.random() * (1L << 52));
@@ -46,6 +48,7 @@ public class LockstepClient implements LCMSubscriber {
   private sim_due_t due;
   private byte[][] messages;
   private long sequence; // of the last tick that was handled
+  private int branch;
   private sim_ack_t ack;
   private boolean joined, over;
 
@@ -90,13 +93,19 @@ public class LockstepClient implements LCMSubscriber {
       request.value = periodS;
       request.text = "{session: " + session + ", receives: ['" + String.join("', '", receives) + "']}";
       lcm.publish("sim.control", request);
-      take(arrived.poll(200, TimeUnit.MILLISECONDS));
+      long again = System.nanoTime() + 200_000_000;
+      for (long left = 200_000_000; !joined && left > 0; left = again - System.nanoTime())
+        take(arrived.poll(left, TimeUnit.NANOSECONDS));
     }
     held.values().forEach(ArrayDeque::clear); // it was not for a member of the lockstep
     long pauseMs = 1;
+    long heard = System.nanoTime();
     while (!over) {
       Message message = arrived.poll(tick == null ? 1000 : pauseMs, TimeUnit.MILLISECONDS);
       take(message);
+      if (message != null) heard = System.nanoTime();
+      if (System.nanoTime() - heard > SILENCE_S * 1_000_000_000L)
+        throw new IllegalStateException("the simulator fell silent");
       if (message == null && tick != null) {
         ask();
         pauseMs = Math.min(Math.max(20, 2 * pauseMs), 250);
@@ -110,6 +119,15 @@ public class LockstepClient implements LCMSubscriber {
 
   private void take(Message message) throws IOException {
     if (message == null) return;
+    try {
+      takeValid(message);
+    } catch (IOException | IndexOutOfBoundsException | NegativeArraySizeException error) {
+      // Anybody may publish anything: what is no message of its type is as if it had not come.
+      System.err.println(message.channel() + ": " + error + " (ignored)");
+    }
+  }
+
+  private void takeValid(Message message) throws IOException {
     switch (message.channel()) {
       case "sim.control.reply" -> onReply(new sim_control_reply_t(message.data()));
       case "sim.tick" -> onTick(new sim_tick_t(message.data()));
@@ -135,6 +153,10 @@ public class LockstepClient implements LCMSubscriber {
       if (each.sequence == sequence && ack != null) {
         lcm.publish("sim.ack", ack); // ours was lost
       } else if (each.sequence > sequence && tick == null) {
+        if (next.branch != branch && sequence > 0) throw new IllegalStateException("the world went back in time");
+        for (int channel : each.channel)
+          if (channel < 0 || channel >= receives.size()) return; // not what we asked for
+        branch = next.branch;
         tick = next;
         due = each;
         messages = new byte[each.count][];
@@ -198,7 +220,7 @@ public class LockstepClient implements LCMSubscriber {
 
   private void onResend(sim_resend_t question) throws IOException {
     if (!question.of_client || question.session != session || question.sequence != sequence) return;
-    for (int i = question.first; i < published.size(); ++i) {
+    for (int i = Math.max(0, question.first); i < published.size(); ++i) {
       sim_payload_t message = new sim_payload_t();
       message.channel = published.get(i).channel();
       message.data = published.get(i).data();

@@ -6,6 +6,7 @@ drives rover1 of worlds/minimal.yaml towards the wall, and stops before it.
 """
 import binascii
 import random
+import struct
 import sys
 import time
 
@@ -30,9 +31,20 @@ class LockstepClient:
         self.published, self.ack = [], None
         self.joined = self.over = False
         self.decide = lambda utime: None
-        for channel, handler in (("sim.control.reply", self.on_reply), ("sim.tick", self.on_tick),
-                                 ("sim.resend", self.on_resend), ("sim.resent", self.on_resent)):
-            self.lc.subscribe(channel.replace(".", "\\."), handler)
+        self.protocol = {"sim.control.reply": self.on_reply, "sim.tick": self.on_tick,
+                         "sim.resend": self.on_resend, "sim.resent": self.on_resent}
+        for channel, handler in self.protocol.items():
+            self.lc.subscribe(channel.replace(".", "\\."), self.only_valid(handler))
+
+    @staticmethod
+    def only_valid(handler):
+        """Anybody may publish anything: what is no message of its type is as if it had not come."""
+        def handle(channel, data):
+            try:
+                handler(channel, data)
+            except (ValueError, struct.error, IndexError) as error:
+                print(f"{channel}: {error!r} (ignored)", file=sys.stderr)
+        return handle
 
     def subscribe(self, channel, message, handler):
         if channel not in self.receives:
@@ -55,7 +67,9 @@ class LockstepClient:
             request.id, request.client, request.command, request.value = 1, self.name, "join", self.period_s
             request.text = f"{{session: {self.session}, receives: {self.receives}{self.terms}}}"
             self.lc.publish("sim.control", request.encode())
-            self.lc.handle_timeout(200)
+            again = time.monotonic() + 0.2
+            while not self.joined and time.monotonic() < again:
+                self.lc.handle_timeout(max(1, round(1000 * (again - time.monotonic()))))
         self.held.clear()  # it was not for a member of the lockstep
         heard, pause_s = time.monotonic(), 0.001
         while not self.over:
@@ -87,6 +101,8 @@ class LockstepClient:
         elif mine[0].sequence > self.sequence and not self.tick:
             if tick.branch != self.branch and self.sequence > 0:
                 raise SystemExit("the world went back in time")
+            if any(not 0 <= channel < len(self.receives) for channel in mine[0].channel):
+                return  # not what we asked for
             self.tick, self.due, self.branch = tick, mine[0], tick.branch
             self.messages = [None] * mine[0].count
 
@@ -110,7 +126,7 @@ class LockstepClient:
         if (self.tick and not bundle.of_client and bundle.session == self.session
                 and bundle.sequence == self.due.sequence):
             for place, message in enumerate(bundle.message, bundle.first):
-                if binascii.crc32(message.data) == self.due.crc[place]:
+                if 0 <= place < len(self.messages) and binascii.crc32(message.data) == self.due.crc[place]:
                     self.messages[place] = message.data
 
     def handle(self):
@@ -136,7 +152,7 @@ class LockstepClient:
         question = shoal.sim_resend_t.decode(data)
         if not question.of_client or question.session != self.session or question.sequence != self.sequence:
             return
-        for place in range(question.first, len(self.published)):
+        for place in range(max(0, question.first), len(self.published)):
             bundle, message = shoal.sim_resent_t(), shoal.sim_payload_t()
             bundle.client, bundle.session, bundle.sequence = self.name, self.session, self.sequence
             bundle.of_client, bundle.first, bundle.count = True, place, 1

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,9 @@ class AcousticChannel {
   std::int64_t flights() const { return flights_made_; }
   /// With the transducers and continuous sounds, whose devices do not.
   void visit_state(StateArchive& archive);
+  /// `events`: all that are due later, of whomever.  Throws SnapshotError when those of the channel do not fit its
+  /// signals.
+  void check_events(std::span<const Event> events, const StateArchive& archive) const;
 
  private:
   friend class Transducer;

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "sim/acoustics/channel.hpp"
 
 // The state of the channel, for hashes and snapshots.
@@ -30,35 +32,83 @@ void AcousticChannel::visit_state(StateArchive& archive) {
   auto sendings = static_cast<std::uint64_t>(sendings_.size()), flights = static_cast<std::uint64_t>(flights_.size());
   archive(sendings, flights);
   if (archive.restoring()) {
-    constexpr std::uint64_t most = 1 << 24;
-    if (sendings > most || flights > most) archive.fail("more signals than there can be");
-    sendings_.resize(sendings);
-    for (auto& sending : sendings_) sending = std::make_unique<Sending>();
-    flights_.assign(flights, {});
+    sendings_.clear();
+    flights_.clear();
   }
-  for (const auto& sending : sendings_) {
-    archive(*sending);
-    visit_transducer(archive, sending->from);
+  // They grow as they are read: a number that is wrong asks for no memory.
+  for (std::uint64_t i = 0; i < sendings; ++i) {
+    if (archive.restoring()) sendings_.push_back(std::make_unique<Sending>());
+    archive(*sendings_[i]);
+    visit_transducer(archive, sendings_[i]->from);
   }
-  for (Flight& flight : flights_) {
-    archive(flight);
-    visit_transducer(archive, flight.to);
+  for (std::uint64_t i = 0; i < flights; ++i) {
+    if (archive.restoring()) flights_.emplace_back();
+    archive(flights_[i]);
+    visit_transducer(archive, flights_[i].to);
   }
   archive.unhashed(free_sendings_, free_flights_, flights_made_, step_end_, neighbours_, neighbours_age_, watching_,
                    gone_);
   if (archive.restoring()) check_numbers(archive);
 }
 
+namespace {
+
+[[noreturn]] void fail_for_signal(const StateArchive& archive) {
+  archive.fail("a signal that is not there");
+}
+
+/// Which of `count` items are in use.  A free one may be listed once.
+std::vector<char> in_use(const std::vector<int>& free, std::size_t count, const StateArchive& archive) {
+  std::vector<char> used(count, 1);
+  for (const int number : free) {
+    if (number < 0 || static_cast<std::size_t>(number) >= count) fail_for_signal(archive);
+    if (!std::exchange(used[static_cast<std::size_t>(number)], 0)) archive.fail("a signal that is free twice");
+  }
+  return used;
+}
+
+}  // namespace
+
 /// Numbers that are used to look things up.
 void AcousticChannel::check_numbers(const StateArchive& archive) const {
-  const auto check = [&](std::int64_t number, std::size_t count) {
-    if (number < -1 || number >= static_cast<std::int64_t>(count)) archive.fail("a signal that is not there");
+  const std::vector<char> sending_used = in_use(free_sendings_, sendings_.size(), archive);
+  const std::vector<char> flight_used = in_use(free_flights_, flights_.size(), archive);
+  const auto sends = [&](int number) {
+    return number >= 0 && static_cast<std::size_t>(number) < sendings_.size() &&
+           sending_used[static_cast<std::size_t>(number)];
   };
-  for (const int number : free_sendings_) check(number, sendings_.size());
-  for (const int number : free_flights_) check(number, flights_.size());
-  for (const Flight& flight : flights_) check(flight.sending, sendings_.size());
-  for (const Transducer* transducer : transducers_)
-    if (transducer != nullptr) check(transducer->sending_, sendings_.size());
+  for (std::size_t i = 0; i < flights_.size(); ++i)
+    if (flight_used[i] && !sends(flights_[i].sending)) fail_for_signal(archive);
+  for (const Transducer* each : transducers_) {
+    if (each == nullptr) continue;
+    const bool in_range = each->sending_ >= -1 && each->sending_ < static_cast<int>(sendings_.size());
+    if (!in_range || !each->receiver_.flights_are_below(flights_.size())) fail_for_signal(archive);
+  }
+  if (!neighbours_.numbers_are_below(transducers_.size())) archive.fail("a neighbour that is not there");
+}
+
+/// A signal in use has just the events and flights that it counts, and a flight one event; else one would be let go of
+/// while another still needs it.
+void AcousticChannel::check_events(std::span<const Event> events, const StateArchive& archive) const {
+  std::vector<int> users(sendings_.size(), 0), flight_events(flights_.size(), 0);
+  const std::vector<char> flight_used = in_use(free_flights_, flights_.size(), archive);
+  for (std::size_t i = 0; i < flights_.size(); ++i)
+    if (flight_used[i]) ++users[static_cast<std::size_t>(flights_[i].sending)];
+  for (const Event& event : events) {
+    if (event.device != Event::of_acoustics) continue;
+    const bool of_sending = event.kind == emission_event || event.kind == emission_end_event;
+    const bool of_flight = event.kind == near_event || event.kind == begin_event || event.kind == end_event;
+    if (!of_sending && !of_flight) continue;
+    std::vector<int>& counts = of_sending ? users : flight_events;
+    const std::int64_t item = event.stamp.count();
+    if (item < 0 || static_cast<std::uint64_t>(item) >= counts.size()) fail_for_signal(archive);
+    ++counts[static_cast<std::size_t>(item)];
+  }
+  const std::vector<char> sending_used = in_use(free_sendings_, sendings_.size(), archive);
+  for (std::size_t i = 0; i < sendings_.size(); ++i)
+    if (users[i] != (sending_used[i] ? sendings_[i]->users : 0)) archive.fail("a signal whose users are not there");
+  for (std::size_t i = 0; i < flights_.size(); ++i)
+    if (flight_events[i] != flight_used[i]) archive.fail("a signal on its way that never arrives, or twice");
 }
 
 }  // namespace sim

@@ -87,6 +87,14 @@ void SignalReceiver::set_noise(std::int64_t flight, PowerRatio noise, Time at) {
     }
 }
 
+bool SignalReceiver::flights_are_below(std::size_t count) const {
+  const auto below = [&](const PresentSound& sound) {
+    return sound.flight >= 0 && static_cast<std::uint64_t>(sound.flight) < count;
+  };
+  return std::all_of(present_.begin(), present_.end(), below) &&
+         std::all_of(taken_.begin(), taken_.end(), [&](const Taken& taken) { return below(taken.signal.sound); });
+}
+
 bool SignalReceiver::takes(std::int64_t flight) const {
   return std::any_of(taken_.begin(), taken_.end(),
                      [&](const Taken& taken) { return taken.signal.sound.flight == flight; });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -62,6 +63,8 @@ class SignalReceiver {
   /// Lets go of the last signal that is taken; its flight, or -1 when there was none.
   std::int64_t drop();
   bool taking() const { return !taken_.empty(); }
+  /// All flights it knows of have numbers from 0 to below this.
+  bool flights_are_below(std::size_t count) const;
   void visit_state(StateArchive& archive) { archive(present_, taken_); }
 
  private:

@@ -77,13 +77,7 @@ void MailGate::publish(std::string_view channel, std::span<const std::byte> payl
   if (something_came(read)) collect_from(read);  // what came before keeps its place
   network_.publish(channel, payload, at);
   // The network has given this back by now, and nobody of this process can have published in between.
-  if (something_came(read)) {
-    while (auto message = read.inner->take()) {
-      if (!message->from_outside) continue;
-      waiting_.push_back({std::move(message->channel), std::move(message->payload)});
-      ++read.waiting;
-    }
-  }
+  if (something_came(read)) take_from(read, [](const Message& message) { return message.from_outside; });
   give(read, payload, false);
 }
 
@@ -146,20 +140,37 @@ bool MailGate::collect() {
 }
 
 void MailGate::collect_from(Channel& channel) {
-  while (auto message = channel.inner->take()) {
-    if (channel.waiting >= channel.capacity) drop_oldest(channel);
+  take_from(channel, [](const Message&) { return true; });
+}
+
+/// As many as the mailbox at the network held at the call: who goes on sending meanwhile cannot hold up the step.
+template <typename Wanted>
+void MailGate::take_from(Channel& channel, const Wanted& wanted) {
+  std::size_t left = default_mailbox_capacity;
+  for (; left > 0; --left) {
+    auto message = channel.inner->take();
+    if (!message) break;
+    if (!wanted(*message)) continue;
     waiting_.push_back({std::move(message->channel), std::move(message->payload)});
     ++channel.waiting;
   }
+  if (left == 0) channel.flag->store(true, std::memory_order_relaxed);  // there may be more
+  if (channel.waiting > channel.capacity) drop_oldest(channel);
 }
 
+/// All that are too many, in one pass.
 void MailGate::drop_oldest(Channel& channel) {
-  const auto oldest =
-      std::find_if(waiting_.begin(), waiting_.end(), [&](const Mail& mail) { return mail.channel == channel.name; });
-  --channel.waiting;
-  if (oldest == waiting_.end()) return;
-  waiting_.erase(oldest);
-  ++dropped_;
+  const auto is_of_channel = [&](const Mail& mail) { return mail.channel == channel.name; };
+  // The user of waiting() may have taken some out.
+  channel.waiting = static_cast<std::size_t>(std::count_if(waiting_.begin(), waiting_.end(), is_of_channel));
+  if (channel.waiting <= channel.capacity) return;
+  std::size_t too_many = channel.waiting - channel.capacity;
+  channel.waiting = channel.capacity;
+  dropped_ += std::erase_if(waiting_, [&](const Mail& mail) {
+    if (too_many == 0 || !is_of_channel(mail)) return false;
+    --too_many;
+    return true;
+  });
 }
 
 const std::vector<MailGate::Mail>& MailGate::admit() {

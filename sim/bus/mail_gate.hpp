@@ -69,6 +69,8 @@ class MailGate final : public Bus {
   };
 
   void collect_from(Channel& channel);
+  template <typename Wanted>
+  void take_from(Channel& channel, const Wanted& wanted);
   /// Something may have come; asked again: since then.
   static bool something_came(Channel& channel);
   static constexpr std::size_t most_bits = 1024;

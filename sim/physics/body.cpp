@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <span>
 
 #include "sim/physics/ode_math.hpp"
 #include "sim/physics/physics_world.hpp"
@@ -145,12 +147,33 @@ void Body::set_gravity(bool on) {
   if (free()) dBodySetGravityMode(ode_.get(), on);
 }
 
+namespace {
+
+/// ODE aborts in mid-step on what is no number, and squares what is huge.
+bool is_usable(std::span<const double> numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::abs(number) < 1e30; });
+}
+
+/// Rounding makes far smaller errors: ODE normalizes in each step.
+constexpr double rotation_tolerance = 1e-6;
+
+bool is_rotation(const Matrix3d& R) {
+  return (R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() < rotation_tolerance && R.determinant() > 0;
+}
+
+bool is_pose(const Pose& X) {
+  return is_usable({X.matrix().data(), 16}) && is_rotation(X.linear());
+}
+
+}  // namespace
+
 // ODE's setters normalize the quaternion, which is not idempotent: a restored world would go on from other bits.  So
 // they are written where ODE has them; dBodySetPosition then tells ODE that geoms moved.
 void Body::visit_state(StateArchive& archive) {
   if (fixed()) {
     Pose X_WB = seat_X_WB_;
     archive(X_WB);
+    if (archive.restoring() && !is_pose(X_WB)) archive.fail("'" + name_ + "' is at a pose that cannot be");
     if (archive.restoring() && X_WB.matrix() != seat_X_WB_.matrix()) set_pose(X_WB);
     return;
   }
@@ -179,6 +202,14 @@ void Body::visit_state(StateArchive& archive) {
   archive.unhashed(rest.force_N, rest.torque_Nm, rest.enabled, rest.move_is_due);
   if (kinematic()) archive.unhashed(rest.seat_X_WB);
   if (!archive.restoring()) return;
+  const Eigen::Map<const Eigen::Vector4d> q_WB(motion.q_WB);
+  Pose seat_X_WB = Pose::Identity();
+  seat_X_WB.matrix() = rest.seat_X_WB;
+  if (!is_usable(motion.p_WC) || !is_usable(motion.R_WB) || !is_rotation(rotation_to_eigen(motion.R_WB)) ||
+      !(std::abs(q_WB.norm() - 1) < rotation_tolerance) || (kinematic() && !is_pose(seat_X_WB)))
+    archive.fail("'" + name_ + "' is at a pose that cannot be");
+  if (!is_usable(motion.v_WC_W) || !is_usable(motion.w_WB_W) || !is_usable(rest.force_N) || !is_usable(rest.torque_Nm))
+    archive.fail("'" + name_ + "' has a velocity or force that cannot be");
   each([](const double* from, const dReal* to, int count) { std::copy_n(from, count, const_cast<dReal*>(to)); });
   dBodySetPosition(ode_.get(), motion.p_WC[0], motion.p_WC[1], motion.p_WC[2]);
   dBodySetForce(ode_.get(), rest.force_N[0], rest.force_N[1], rest.force_N[2]);

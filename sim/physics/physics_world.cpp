@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <mutex>
 #include <utility>
 
 #include "sim/physics/ode_math.hpp"
@@ -56,8 +57,12 @@ PhysicsWorld::~PhysicsWorld() {
 
 void PhysicsWorld::forget() {
   if (!impl_ || !impl_->broken) return impl_.reset();
-  // A world that was left in mid-step trips ODE's asserts when it is destroyed.  It stays, where leak checkers see it.
+  // A world that was left in mid-step trips ODE's asserts when it is destroyed.  What is ODE's of it stays, where leak
+  // checkers see it.
+  impl_->scene.reset();
+  static std::mutex mutex;
   static std::vector<Impl*> left_behind;
+  const std::lock_guard lock(mutex);
   left_behind.push_back(impl_.release());
 }
 

@@ -22,23 +22,45 @@ void ClientMail::collect() {
 void ClientMail::take(std::vector<MailGate::Mail>& mail) {
   for (MailGate::Mail& each : mail) {
     const std::uint32_t crc = crc32(each.payload);
-    strays_.push_back({std::move(each), crc});
-    if (strays_.size() > most_strangers) strays_.pop_front();
+    const std::uint64_t arrival = arrivals_++;
+    stray_bytes_ += each.payload.size();
+    std::set<std::uint64_t>& of_channel = by_channel_[each.channel];
+    of_channel.insert(arrival);
+    by_key_[{each.channel, crc}].insert(arrival);
+    strays_.emplace(arrival, Stray{std::move(each), crc});
+    if (of_channel.size() > most_of_channel) drop_oldest(*of_channel.begin());
+    while (stray_bytes_ > most_bytes) drop_oldest(strays_.begin()->first);
   }
   mail.clear();
+}
+
+ClientMail::Stray ClientMail::take_out(Strays::iterator stray) {
+  const std::uint64_t arrival = stray->first;
+  Stray taken = std::move(stray->second);
+  strays_.erase(stray);
+  stray_bytes_ -= taken.mail.payload.size();
+  const auto channel = by_channel_.find(taken.mail.channel);
+  channel->second.erase(arrival);
+  if (channel->second.empty()) by_channel_.erase(channel);
+  const auto key = by_key_.find({taken.mail.channel, taken.crc});
+  key->second.erase(arrival);
+  if (key->second.empty()) by_key_.erase(key);
+  return taken;
+}
+
+void ClientMail::drop_oldest(std::uint64_t arrival) {
+  take_out(strays_.find(arrival));
+  ++dropped_;
 }
 
 void ClientMail::match(std::vector<Expected>& list) {
   if (strays_.empty()) return;
   for (Expected& expected : list) {
     if (!expected.wanted || expected.there) continue;
-    const auto found = std::find_if(strays_.begin(), strays_.end(), [&](const Stray& stray) {
-      return stray.crc == expected.named.crc && stray.mail.channel == expected.named.channel;
-    });
-    if (found == strays_.end()) continue;
-    expected.payload = std::move(found->mail.payload);
+    const auto found = by_key_.find({expected.named.channel, expected.named.crc});
+    if (found == by_key_.end()) continue;
+    expected.payload = take_out(strays_.find(*found->second.begin())).mail.payload;
     expected.there = true;
-    strays_.erase(found);
   }
 }
 
@@ -71,22 +93,49 @@ void ClientMail::give_up(const std::string& client) {
   for (Expected& expected : found->second) expected.wanted = expected.there;
 }
 
+void ClientMail::drop(const std::vector<NamedMessage>& named) {
+  for (const NamedMessage& each : named) {
+    const auto found = by_key_.find({each.channel, each.crc});
+    if (found != by_key_.end())
+      take_out(strays_.find(*found->second.begin()));
+    else
+      remember(each);
+  }
+}
+
 void ClientMail::clear() {
+  recent_.clear();
+  recent_order_.clear();
+  for (const auto& [client, list] : expected_)
+    for (const Expected& expected : list)
+      if (expected.wanted) remember(expected.named);
   expected_.clear();
   strays_.clear();
+  by_key_.clear();
+  by_channel_.clear();
+  stray_bytes_ = 0;
   gate_.waiting().clear();
 }
 
 void ClientMail::remember(const NamedMessage& named) {
-  recent_order_.emplace_back(named.channel, named.crc);
-  recent_.insert(recent_order_.back());
-  if (recent_order_.size() <= most_recent) return;
-  recent_.erase(recent_.find(recent_order_.front()));
-  recent_order_.pop_front();
+  recent_order_.push_back({{named.channel, named.crc}, step_});
+  recent_.insert(recent_order_.back().key);
+  forget_old();
+}
+
+void ClientMail::forget_old() {
+  while (!recent_order_.empty() &&
+         (recent_order_.size() > most_recent || recent_order_.front().step + recent_steps < step_)) {
+    recent_.erase(recent_.find(recent_order_.front().key));
+    recent_order_.pop_front();
+  }
 }
 
 void ClientMail::order(std::vector<MailGate::Mail>& mail) {
-  if (expected_.empty() && strays_.empty() && recent_order_.empty()) return;  // nobody lists what it publishes
+  ++step_;
+  forget_old();
+  if (expected_.empty() && strays_.empty() && recent_order_.empty() && held_.empty())
+    return;  // nobody lists what it publishes
   take(mail);
   for (auto& [client, list] : expected_) {
     match(list);
@@ -97,13 +146,17 @@ void ClientMail::order(std::vector<MailGate::Mail>& mail) {
     }
   }
   expected_.clear();
-  for (Stray& stray : strays_) {
+  if (!held_.empty()) return;
+  for (auto& [arrival, stray] : strays_) {
     if (recent_.contains({stray.mail.channel, stray.crc}))
       ++repeated_;
     else
       mail.push_back(std::move(stray.mail));
   }
   strays_.clear();
+  by_key_.clear();
+  by_channel_.clear();
+  stray_bytes_ = 0;
 }
 
 }  // namespace sim

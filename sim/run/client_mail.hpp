@@ -34,13 +34,27 @@ class ClientMail {
   void give_up(const std::string& client);
   /// The mail of the step that begins; for MailGate::set_order.
   void order(std::vector<MailGate::Mail>& mail);
-  /// Forgets what has come.
+  /// Forgets what has come.  What clients have named and is still on its way is dropped when it comes.
   void clear();
+  /// What a client named for a tick that counts no more: dropped, also when it comes later.
+  void drop(const std::vector<NamedMessage>& named);
+  /// Until release() nobody's mail is admitted that no client has named: it may be this client's, of a tick that counts
+  /// no more.
+  void hold(const std::string& client) { held_.insert(client); }
+  void release(const std::string& client) { held_.erase(client); }
+  /// Messages that came twice.  Nothing is lost with them.
   std::uint64_t repeated() const { return repeated_; }
+  /// Messages that had to make room before they were admitted.
+  std::uint64_t dropped() const { return dropped_; }
+
+  /// Unnamed messages that wait: of one channel, and bytes of all.
+  static constexpr std::size_t most_of_channel = 10'000;
+  static constexpr std::size_t most_bytes = 256'000'000;
+  /// So long what was admitted from a client is known, to drop what the network repeats.
+  static constexpr std::int64_t recent_steps = 200;
 
  private:
-  static constexpr std::size_t most_strangers = 20'000;
-  static constexpr std::size_t most_recent = 8192;
+  static constexpr std::size_t most_recent = 20'000;
 
   struct Expected {
     NamedMessage named;
@@ -52,17 +66,33 @@ class ClientMail {
     MailGate::Mail mail;
     std::uint32_t crc;
   };
+  using Key = std::pair<std::string, std::uint32_t>;  // channel and CRC-32
+  struct Recent {
+    Key key;
+    std::int64_t step;
+  };
+  using Strays = std::map<std::uint64_t, Stray>;  // by arrival
 
   void take(std::vector<MailGate::Mail>& mail);
   void match(std::vector<Expected>& list);
   void remember(const NamedMessage& named);
+  void forget_old();
+  /// Takes it out.
+  Stray take_out(Strays::iterator stray);
+  void drop_oldest(std::uint64_t arrival);
 
   MailGate& gate_;
   std::map<std::string, std::vector<Expected>, std::less<>> expected_;
-  std::deque<Stray> strays_;                                     // came, and nobody named them yet
-  std::multiset<std::pair<std::string, std::uint32_t>> recent_;  // admitted from clients a short time ago
-  std::deque<std::pair<std::string, std::uint32_t>> recent_order_;
-  std::uint64_t repeated_ = 0;
+  Strays strays_;  // came, and nobody named them yet
+  std::map<Key, std::set<std::uint64_t>> by_key_;
+  std::map<std::string, std::set<std::uint64_t>, std::less<>> by_channel_;
+  std::size_t stray_bytes_ = 0;
+  std::uint64_t arrivals_ = 0;
+  std::multiset<Key> recent_;  // admitted from clients a short time ago
+  std::deque<Recent> recent_order_;
+  std::set<std::string> held_;
+  std::int64_t step_ = 0;  // counts what order() has sorted
+  std::uint64_t repeated_ = 0, dropped_ = 0;
 };
 
 }  // namespace sim

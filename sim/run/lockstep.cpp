@@ -9,6 +9,21 @@
 #include "sim/world/vehicle_loader.hpp"
 
 namespace sim {
+namespace {
+
+template <class Terms>
+Terms terms_in(const std::string& text, const char* command, Terms terms) {
+  if (text.empty()) return terms;
+  const ConfigNode node = parse_untrusted(text, command);
+  Diagnostics diagnostics;
+  ParamReader in(node, "", diagnostics);
+  terms.read(in);
+  in.finish();
+  diagnostics.throw_if_any();
+  return terms;
+}
+
+}  // namespace
 
 void LockstepTerms::read(ParamReader& in) {
   in.read("session", session, between(0, 9e18), "random number of the client, its own at each start; 0: none");
@@ -31,15 +46,16 @@ OnTimeout LockstepTerms::policy() const {
 }
 
 LockstepTerms read_lockstep_terms(const std::string& text, const LockstepTerms& defaults) {
-  LockstepTerms terms = defaults;
-  if (text.empty()) return terms;
-  const ConfigNode node = parse_untrusted(text, "join");
-  Diagnostics diagnostics;
-  ParamReader in(node, "", diagnostics);
-  terms.read(in);
-  in.finish();
-  diagnostics.throw_if_any();
-  return terms;
+  return terms_in(text, "join", defaults);
+}
+
+void LeaveTerms::read(ParamReader& in) {
+  in.read("session", session, between(0, 9e18), "that of the join; 0: whichever it is");
+  in.read("acknowledged", acknowledged, between(-1, 9e18), "sequence of the last tick it acknowledged; -1: unknown");
+}
+
+LeaveTerms read_leave_terms(const std::string& text) {
+  return terms_in(text, "leave", LeaveTerms{});
 }
 
 void Lockstep::join(const std::string& client, const LockstepTerms& terms, std::int64_t period_steps, std::int64_t step,
@@ -53,8 +69,8 @@ void Lockstep::join(const std::string& client, const LockstepTerms& terms, std::
     if (known->period_steps != period_steps) {  // a request that was sent twice moves no tick
       known->period_steps = period_steps;
       known->joined = step;
-      known->answered = true;
-      if (terms.session == 0) known->asked = -1;
+      // A tick that waits for its answer goes on doing so; the new period begins with it.
+      if (terms.session == 0 && known->answered) known->asked = -1;
     }
   } else {
     LockstepMember& member = members_[client];
@@ -104,7 +120,15 @@ void Lockstep::post(int line, std::string_view channel, std::span<const std::byt
       shared = std::make_shared<const Bytes>(payload.begin(), payload.end());
       crc = crc32(payload);
     }
-    receiver.member->pending.push_back({receiver.channel, crc, shared});
+    LockstepMember& member = *receiver.member;
+    if (member.too_much) continue;
+    member.pending_bytes += payload.size() + sizeof(PostedMessage);
+    if (member.pending_bytes > most_pending_bytes) {
+      member.too_much = true;
+      member.pending = {};
+    } else {
+      member.pending.push_back({receiver.channel, crc, shared});
+    }
   }
 }
 
@@ -114,6 +138,7 @@ void Lockstep::close_list(LockstepMember& member, std::int64_t step) {
   member.answered = false;
   member.list.clear();
   member.list.swap(member.pending);
+  member.pending_bytes = 0;
 }
 
 void Lockstep::ask(std::int64_t step) {
@@ -135,6 +160,12 @@ std::vector<LockstepMember*> Lockstep::missing(std::int64_t step) {
 Lockstep::Verdict Lockstep::acknowledge(const LockstepAck& ack, std::int64_t step, std::string& why) {
   const std::string who = "client '" + printable(shortened(ack.client)) + "'";
   LockstepMember* member = find(ack.client);
+  if (member != nullptr && member->terms.session == ack.session) {
+    const bool abandoned = ack.session != 0 ? member->left_open > 0 && ack.sequence == member->left_open
+                                            : ack.step == member->left_step && ack.step != member->asked;
+    if (abandoned) return Verdict::abandoned;
+    if (ack.session != 0 && ack.sequence < member->sequence) return Verdict::repeated;
+  }
   if (ack.step > step)
     why = who + " acknowledges step " + std::to_string(ack.step) + ", which is still to come";
   else if (member == nullptr)
@@ -158,10 +189,16 @@ void Lockstep::rewound(std::int64_t step) {
     // The phase stays, also for one that joined later than this.
     if (member.joined > step)
       member.joined -= (member.joined - step + member.period_steps - 1) / member.period_steps * member.period_steps;
+    if (!member.answered) {
+      member.left_open = member.sequence;
+      member.left_step = member.asked;
+    }
     member.asked = -1;
     member.answered = true;
     member.list.clear();
     member.pending.clear();
+    member.pending_bytes = 0;
+    member.too_much = false;
   }
 }
 

@@ -38,6 +38,16 @@ struct LockstepTerms {
 /// Reads the `text` of a join; what it does not say is as in `defaults`.  Throws ConfigError.
 LockstepTerms read_lockstep_terms(const std::string& text, const LockstepTerms& defaults);
 
+/// The `text` of `leave`, a YAML map.
+struct LeaveTerms {
+  std::int64_t session = 0;        ///< 0: whichever has joined
+  std::int64_t acknowledged = -1;  ///< sequence of the last tick that it acknowledged; -1: it does not say
+  void read(ParamReader& in);
+};
+
+/// Throws ConfigError.
+LeaveTerms read_leave_terms(const std::string& text);
+
 /// A message that a client must have.
 struct PostedMessage {
   std::int32_t channel = 0;  ///< place in its `receives`
@@ -58,6 +68,9 @@ struct LockstepAck {
   std::int64_t sequence = 0;
 };
 
+/// Most messages that an acknowledgement may name.
+constexpr std::size_t most_named_messages = 10'000;
+
 /// A client as the world knows it.
 struct LockstepMember {
   std::string name;
@@ -71,6 +84,10 @@ struct LockstepMember {
   bool gone = false;                   ///< its process is known to have ended
   std::vector<PostedMessage> list;     ///< of its last tick
   std::vector<PostedMessage> pending;  ///< for the next
+  std::size_t pending_bytes = 0;
+  bool too_much = false;        ///< to keep: what it must have is lost
+  std::int64_t left_open = 0;   ///< sequence of its tick that was open when the world went back; 0: none
+  std::int64_t left_step = -1;  ///< step of that
   bool due(std::int64_t step) const { return step >= joined && (step - joined) % period_steps == 0; }
 };
 
@@ -79,8 +96,8 @@ struct LockstepMember {
 class Lockstep {
  public:
   /// From `step` on the world waits for this client every `period_steps` (at least 1).  Joining again in the same
-  /// session changes period and terms; the list of channels may only grow.  Throws std::invalid_argument when it does
-  /// not.  Another session begins anew.
+  /// session changes period and terms, and leaves a tick open that was not answered; the list of channels may only
+  /// grow.  Throws std::invalid_argument when it does not.  Another session begins anew.
   void join(const std::string& client, const LockstepTerms& terms, std::int64_t period_steps, std::int64_t step,
             int line = 0);
   /// False when there is no such client.
@@ -94,6 +111,8 @@ class Lockstep {
   /// Some client of this line must have every message of this channel.
   bool somebody_receives(int line, std::string_view channel) const;
 
+  /// What is kept of messages that a client must have, until its next tick.
+  static constexpr std::size_t most_pending_bytes = 256'000'000;
   /// A message was published on a line: it is put on the lists of those who must have it.
   void post(int line, std::string_view channel, std::span<const std::byte> payload);
   /// Asks those who are due at this step and were not asked yet; their lists are closed.
@@ -103,7 +122,8 @@ class Lockstep {
   /// Those due at this step that have not answered, in the order of their names.
   std::vector<LockstepMember*> missing(std::int64_t step);
 
-  enum class Verdict { accepted, repeated, refused };
+  /// Abandoned: it answers a tick that was open when the world went back.
+  enum class Verdict { accepted, repeated, refused, abandoned };
   /// `why` says what is wrong with one that is refused.
   Verdict acknowledge(const LockstepAck& ack, std::int64_t step, std::string& why);
   /// The world went back to `step`: lists are empty, and all are asked by their periods from there.

@@ -12,13 +12,14 @@ namespace sim {
 struct RunControl {
   bool paused = false;
   bool quit = false;
-  double speed = 0;                ///< times real time; 0: as fast as possible
-  std::int64_t single_steps = 0;   ///< to take although paused
-  std::int64_t changes = 0;        ///< counts changes of paused and speed, so that pacing starts anew
-  std::optional<Time> until;       ///< the run pauses at the first step at or after this
-  std::string until_event;         ///< the run pauses when this event has fired; empty: none
-  std::int64_t until_firings = 0;  ///< how often it had fired before
-  std::int32_t branch = 0;         ///< grows with every rewind and restore
+  double speed = 0;                 ///< times real time; 0: as fast as possible
+  std::int64_t single_steps = 0;    ///< to take although paused
+  std::int64_t changes = 0;         ///< counts changes of paused and speed, so that pacing starts anew
+  std::int64_t pause_requests = 0;  ///< counts those of people and programs, whether to pause or to go on
+  std::optional<Time> until;        ///< the run pauses at the first step at or after this
+  std::string until_event;          ///< the run pauses when this event has fired; empty: none
+  std::int64_t until_firings = 0;   ///< how often it had fired before
+  std::int32_t branch = 0;          ///< grows with every rewind and restore
 
   bool may_step() const { return !quit && (!paused || single_steps > 0); }
   void step_taken() {
@@ -26,6 +27,7 @@ struct RunControl {
   }
   void set_paused(bool pause) {
     paused = pause;
+    ++pause_requests;
     single_steps = 0;
     ++changes;
   }

@@ -191,6 +191,7 @@ void Script::run_now(const ConfigNode& action, Diagnostics& diagnostics) {
 void Script::EventState::visit_state(StateArchive& archive) {
   archive(fired, planned);
   archive.unhashed(next, random, random_step, told_of_cut);
+  if (archive.restoring() && (fired < 0 || planned < 0)) archive.fail("an event that fired less often than never");
 }
 
 void Script::visit_state(StateArchive& archive) {

@@ -69,7 +69,10 @@ void EventQueue::visit_state(StateArchive& archive) {
     events_.clear();
     free_slots_.clear();
     size_ = 0;
-    for (Event& event : events) insert(std::move(event));
+    for (Event& event : events) {
+      if (event.device < 0 && event.device != Event::of_acoustics) archive.fail("an event of nobody");
+      insert(std::move(event));
+    }
     return;
   }
   std::vector<Event*> ordered;

@@ -247,6 +247,11 @@ void VehicleClock::visit_state(StateArchive& archive) {
   archive(s.learnt_rate, s.last_measured_s, s.rate_is_unknown, s.start);
   if (archive.restoring() && (s.nodes.empty() || (s.forgot_steers && s.steers.empty())))
     archive.fail("a clock without its past");
+  if (!archive.restoring()) return;
+  const bool in_order = std::is_sorted(s.nodes.begin(), s.nodes.end(),
+                                       [](const State::Node& a, const State::Node& b) { return a.at < b.at; });
+  if (s.now < Time{0} || !in_order || (s.config.wanders() && s.nodes.back().at <= s.now + look_ahead))
+    archive.fail("a clock that stands at another time than its past");
 }
 
 }  // namespace sim

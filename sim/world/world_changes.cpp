@@ -118,6 +118,7 @@ void World::bring_surfaces(const VehicleConfig& config) {
 const Vehicle& World::add_vehicle(const VehicleInstance& instance) {
   check_new_vehicle(instance);
   check_new_surfaces(instance);
+  const bool new_surfaces = journal_->has_new_surfaces(*instance.config);
   try {
     physics_->add_categories(instance.config->categories);
   } catch (const std::length_error& error) {
@@ -128,10 +129,10 @@ const Vehicle& World::add_vehicle(const VehicleInstance& instance) {
   try {
     check_place_is_free(build_vehicle(instance), instance.place);
   } catch (...) {
-    journal_->vehicle_failed(instance);
+    journal_->vehicle_failed(instance, new_surfaces);
     throw;
   }
-  journal_->vehicle_came(instance, number);
+  journal_->vehicle_came(instance, number, new_surfaces);
   const Vehicle& vehicle = *vehicles_.back();
   for (const std::string& warning : hydrodynamics_->take_warnings()) spdlog::warn("{}", warning);
   for (const std::string& warning : bottom_warnings(*this, vehicle)) spdlog::warn("{}", warning);

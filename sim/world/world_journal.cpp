@@ -1,6 +1,8 @@
 #include "sim/world/world_journal.hpp"
 
 #include <algorithm>
+#include <set>
+#include <stdexcept>
 
 #include "sim/acoustics/channel.hpp"
 #include "sim/config/diagnostics.hpp"
@@ -29,7 +31,7 @@ std::string text_of(const ConfigNode& source) {
 }  // namespace
 
 void WorldJournal::Entry::visit_state(StateArchive& archive) {
-  archive(kind, step, name, text, keys, in_file, text_number, bus, X_W, number, free_numbers, devices);
+  archive(kind, step, name, text, in_file, text_number, bus, X_W, number, new_surfaces, free_numbers, devices);
 }
 
 WorldJournal::Entry WorldJournal::entry(Kind kind, const std::string& name) const {
@@ -41,11 +43,20 @@ WorldJournal::Entry WorldJournal::entry(Kind kind, const std::string& name) cons
 }
 
 void WorldJournal::append(Entry entry) {
+  if (full_) return;
   StateArchive archive = StateArchive::saver();
   archive(entry);
   const std::vector<std::byte> bytes = archive.take_bytes();
-  noted_.push_back({entry.kind, entry.name, entry.keys, entry.text_number, bytes.size()});
   bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+  const std::int64_t text_number = entry.kind == Kind::text ? entry.number : entry.text_number;
+  noted_.push_back(
+      {entry.kind, std::move(entry.name), std::move(entry.text), text_number, entry.new_surfaces, bytes.size()});
+  if (bytes_.size() <= most_bytes) return;
+  full_ = true;
+  if (gap_.empty()) gap_ = "more came, went and was changed than can be told in 16 MiB";
+  bytes_ = {};
+  noted_ = {};
+  texts_.clear();
 }
 
 void WorldJournal::drop(std::size_t number) {
@@ -71,13 +82,46 @@ std::optional<std::size_t> WorldJournal::came_last(Kind kind, const std::string&
 }
 
 std::int64_t WorldJournal::number_of(const std::string& text) {
-  const auto [known, fresh] = texts_.try_emplace(text, static_cast<std::int64_t>(texts_.size()));
-  if (fresh) {
-    Entry noted = entry(Kind::text, "");
-    noted.text = text;
-    append(std::move(noted));
-  }
-  return known->second;
+  if (full_) return 0;
+  const auto known = texts_.find(text);
+  if (known != texts_.end()) return known->second;
+  std::set<std::int64_t> taken;
+  for (const auto& [other, number] : texts_) taken.insert(number);
+  Entry noted = entry(Kind::text, "");
+  while (taken.contains(noted.number)) ++noted.number;
+  noted.text = text;
+  const std::int64_t number = noted.number;
+  texts_.emplace(text, number);
+  append(std::move(noted));
+  return number;
+}
+
+void WorldJournal::drop_unused_texts() {
+  std::set<std::int64_t> used;
+  for (const Noted& noted : noted_)
+    if (noted.kind != Kind::text) used.insert(noted.text_number);
+  for (std::size_t i = noted_.size(); i-- > 0;)
+    if (noted_[i].kind == Kind::text && !used.contains(noted_[i].text_number)) drop(i);
+  std::erase_if(texts_, [&](const auto& text) { return !used.contains(text.second); });
+}
+
+bool WorldJournal::has_new_surfaces(const VehicleConfig& config) const {
+  const auto new_category = [&](const std::string& name) {
+    try {
+      world_.physics_->category_bit(name);
+      return false;
+    } catch (const std::out_of_range&) {
+      return true;
+    }
+  };
+  const auto new_material = [&](const MaterialConfig& each) { return !world_.known_materials_.contains(each.name); };
+  const std::vector<ContactConfig>& known = world_.known_contacts_;
+  const auto new_contact = [&](const ContactConfig& each) {
+    return std::find(known.begin(), known.end(), each) == known.end();
+  };
+  return std::any_of(config.categories.begin(), config.categories.end(), new_category) ||
+         std::any_of(config.materials.begin(), config.materials.end(), new_material) ||
+         std::any_of(config.contacts.begin(), config.contacts.end(), new_contact);
 }
 
 void WorldJournal::note_vehicle(Entry& entry, const VehicleInstance& instance) {
@@ -92,30 +136,30 @@ void WorldJournal::note_vehicle(Entry& entry, const VehicleInstance& instance) {
   if (entry.in_file < 0 && gap_.empty()) gap_ = "vehicle '" + instance.name + "' did not come from YAML";
 }
 
-void WorldJournal::vehicle_came(const VehicleInstance& instance, int number) {
+void WorldJournal::vehicle_came(const VehicleInstance& instance, int number, bool new_surfaces) {
   Entry came = entry(Kind::vehicle_came, instance.name);
   note_vehicle(came, instance);
   came.number = number;
+  came.new_surfaces = new_surfaces;
   append(std::move(came));
 }
 
-void WorldJournal::vehicle_failed(const VehicleInstance& instance) {
+void WorldJournal::vehicle_failed(const VehicleInstance& instance, bool new_surfaces) {
   Entry failed = entry(Kind::surfaces, instance.name);
-  note_vehicle(failed, instance);
-  note_what_stayed(instance.name, failed.text_number, failed.in_file);
+  if (new_surfaces) note_vehicle(failed, instance);
+  // What is in the world file has brought its surfaces at the start.
+  if (failed.text_number >= 0) note_surfaces(instance.name, failed.text_number);
+  note_numbers();
 }
 
-void WorldJournal::note_what_stayed(const std::string& name, std::int64_t text_number, std::int64_t in_file) {
-  const auto brought = [&](const Noted& noted) {
-    return (noted.kind == Kind::surfaces || noted.kind == Kind::vehicle_came) && noted.text_number == text_number;
-  };
-  // What is in the world file has brought its surfaces at the start.
-  if (in_file < 0 && std::none_of(noted_.begin(), noted_.end(), brought)) {
-    Entry surfaces = entry(Kind::surfaces, name);
-    surfaces.text_number = text_number;
-    append(std::move(surfaces));
-  }
-  // Only who comes later takes numbers: until somebody comes, the last numbers count.
+void WorldJournal::note_surfaces(const std::string& name, std::int64_t text_number) {
+  Entry surfaces = entry(Kind::surfaces, name);
+  surfaces.text_number = text_number;
+  append(std::move(surfaces));
+}
+
+/// Only who comes later takes numbers: until somebody comes, the last numbers count.
+void WorldJournal::note_numbers() {
   for (std::size_t i = noted_.size(); i-- > 0 && noted_[i].kind != Kind::vehicle_came;)
     if (noted_[i].kind == Kind::numbers) drop(i);
   Entry numbers = entry(Kind::numbers, "");
@@ -128,8 +172,11 @@ void WorldJournal::vehicle_went(const std::string& name) {
   const std::optional<std::size_t> came = came_last(Kind::vehicle_came, name);
   if (!came || noted_[*came].text_number < 0) return append(entry(Kind::vehicle_went, name));
   const std::int64_t text_number = noted_[*came].text_number;
+  const bool new_surfaces = noted_[*came].new_surfaces;
   drop_all_of(name, *came);
-  note_what_stayed(name, text_number, -1);
+  if (new_surfaces) note_surfaces(name, text_number);
+  note_numbers();
+  drop_unused_texts();
 }
 
 void WorldJournal::object_came(const ObjectConfig& config, const std::string& name, const Pose& X_WE,
@@ -144,22 +191,33 @@ void WorldJournal::object_came(const ObjectConfig& config, const std::string& na
 }
 
 void WorldJournal::object_went(const std::string& name) {
-  if (const std::optional<std::size_t> came = came_last(Kind::object_came, name))
-    drop_all_of(name, *came);
-  else
-    append(entry(Kind::object_went, name));
+  const std::optional<std::size_t> came = came_last(Kind::object_came, name);
+  if (!came) return append(entry(Kind::object_went, name));
+  drop_all_of(name, *came);
+  drop_unused_texts();
 }
 
+/// One entry for each device, with all values that were changed: some may be possible only together.
 void WorldJournal::device_changed(const std::string& full_name, const ConfigNode& values) {
-  Entry changed = entry(Kind::device_changed, full_name);
-  changed.text = to_yaml(values);
-  for (const ConfigNode::Entry& value : values.entries) changed.keys += value.key + " ";
   const std::string vehicle = full_name.substr(0, full_name.find('/'));
-  for (std::size_t i = noted_.size(); i-- > 0 && noted_[i].name != vehicle;)
-    if (noted_[i].kind == Kind::device_changed && noted_[i].name == full_name && noted_[i].keys == changed.keys) {
-      drop(i);  // these values count no more
-      break;
-    }
+  const auto is_set_again = [&](const ConfigNode::Entry& old) {
+    return std::any_of(values.entries.begin(), values.entries.end(), [&](const ConfigNode::Entry& value) {
+      return old.key == value.key || old.key.starts_with(value.key + ".");
+    });
+  };
+  ConfigNode all = values;
+  for (std::size_t i = noted_.size(); i-- > 0;) {
+    if (noted_[i].kind == Kind::vehicle_came && noted_[i].name == vehicle) break;
+    if (noted_[i].kind != Kind::device_changed || noted_[i].name != full_name) continue;
+    Diagnostics diagnostics;
+    ConfigNode before = parse_config_text(noted_[i].text, "journal", diagnostics);
+    std::erase_if(before.entries, is_set_again);
+    all.entries.insert(all.entries.begin(), before.entries.begin(), before.entries.end());
+    drop(i);
+    break;
+  }
+  Entry changed = entry(Kind::device_changed, full_name);
+  changed.text = to_yaml(all);
   append(std::move(changed));
 }
 
@@ -169,21 +227,26 @@ void WorldJournal::anchored_vehicle_moved(const std::string& name, const Pose& X
   append(std::move(moved));
 }
 
-void WorldJournal::replay(std::span<const std::byte> bytes) {
+void WorldJournal::replay(std::span<const std::byte> bytes, std::int64_t last_step) {
   bytes_.clear();
   texts_.clear();
   noted_.clear();
   gap_.clear();
+  full_ = false;
   known_texts_.clear();
   parsed_.clear();
   vehicles_.clear();
   StateArchive archive = StateArchive::restorer(bytes);
+  std::int64_t earliest = 0;
   try {
     while (archive.bytes_left() > 0) {
       Entry entry;
       archive(entry);
+      if (entry.step < earliest || entry.step > last_step)
+        throw SnapshotError("the snapshot tells of changes in an order that cannot be");
+      earliest = entry.step;
       apply(entry);
-      if (entry.kind != Kind::text) append(std::move(entry));
+      append(std::move(entry));
     }
   } catch (const ConfigError& error) {
     throw SnapshotError("what came to the world before the snapshot cannot come again: " + error.lines().front());
@@ -201,8 +264,8 @@ void WorldJournal::apply(const Entry& entry) {
   world_.medium_.advance_to(world_.now());
   switch (entry.kind) {
     case Kind::text:
-      known_texts_.push_back(entry.text);
-      number_of(entry.text);
+      known_texts_[entry.number] = entry.text;
+      texts_[entry.text] = entry.number;
       return;
     case Kind::vehicle_came:
       return apply_vehicle(entry);
@@ -231,6 +294,7 @@ void WorldJournal::apply(const Entry& entry) {
 }
 
 void WorldJournal::apply_vehicle(const Entry& entry) {
+  if (entry.number < 0 || entry.number > 100'000'000) throw SnapshotError("the snapshot has a vehicle of no number");
   VehicleInstance instance;
   instance.name = entry.name;
   instance.X_WV = entry.X_W;
@@ -270,12 +334,12 @@ void WorldJournal::apply_object(const Entry& entry) {
 }
 
 const ConfigNode& WorldJournal::parsed(std::int64_t text_number) {
-  if (text_number < 0 || text_number >= static_cast<std::int64_t>(known_texts_.size()))
-    throw SnapshotError("the snapshot tells of a vehicle or object without its YAML");
+  const auto text = known_texts_.find(text_number);
+  if (text == known_texts_.end()) throw SnapshotError("the snapshot tells of a vehicle or object without its YAML");
   const auto [found, fresh] = parsed_.try_emplace(text_number);
   if (fresh) {
     Diagnostics diagnostics;
-    found->second = parse_config_text(known_texts_[static_cast<std::size_t>(text_number)], "snapshot", diagnostics);
+    found->second = parse_config_text(text->second, "snapshot", diagnostics);
     diagnostics.throw_if_any();
   }
   return found->second;

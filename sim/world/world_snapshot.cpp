@@ -14,12 +14,33 @@ namespace {
 /// Grows when the order or the meaning of what a snapshot holds changes.
 constexpr std::uint32_t state_version = 1;
 
+/// Whom the events are for is looked up by number when they are due.
+void check_events(EventQueue& queue, std::size_t devices, const AcousticChannel& acoustics,
+                  const StateArchive& archive) {
+  StateArchive saver = StateArchive::saver();
+  saver(queue);
+  const Bytes bytes = saver.take_bytes();
+  StateArchive reader = StateArchive::restorer(bytes);
+  std::int64_t reached = 0;  // what the queue saves before its events
+  std::uint64_t next_sequence = 0;
+  std::vector<Event> events;
+  reader(reached, next_sequence, events);
+  for (const Event& event : events)
+    if (event.device != Event::of_acoustics && static_cast<std::size_t>(event.device) >= devices)
+      archive.fail("an event of a device that is not there");
+  acoustics.check_events(events, archive);
+}
+
 }  // namespace
 
 void World::visit_state(StateArchive& archive) {
   archive.section("world");
   archive(step_number_, ended_);
   archive.unhashed(next_vehicle_number_, next_object_number_, counts_, complaints_);
+  constexpr int most_vehicles_ever = 100'000'000;  // lists have a place for each number
+  if (archive.restoring() &&
+      (next_vehicle_number_ < 0 || next_vehicle_number_ > most_vehicles_ever || next_object_number_ < 0))
+    archive.fail("numbers of vehicles or objects that cannot be");
   physics_->visit_state(archive);
   archive.section("medium");
   archive(medium_, *hydrodynamics_);
@@ -37,6 +58,7 @@ void World::visit_state(StateArchive& archive) {
   archive(events_);
   archive.section("acoustics");
   archive(*acoustics_);
+  if (archive.restoring()) check_events(events_, devices_.size(), *acoustics_, archive);
   archive.section("script");
   archive(*script_);
   if (!archive.hashing()) {
@@ -78,9 +100,9 @@ namespace {
 struct SnapshotHead {
   std::uint32_t version = state_version;
   std::uint64_t seed = 0;
-  std::int64_t step_us = 0;
+  std::int64_t step_us = 0, step = 0;
   Bytes journal;
-  void visit_state(StateArchive& archive) { archive(version, seed, step_us, journal); }
+  void visit_state(StateArchive& archive) { archive(version, seed, step_us, step, journal); }
 };
 
 }  // namespace
@@ -91,7 +113,7 @@ Bytes World::snapshot() const {
   if (!journal_->gap().empty()) throw SnapshotError("this world cannot be saved: " + journal_->gap());
   StateArchive archive = StateArchive::saver(last_snapshot_bytes_ + last_snapshot_bytes_ / 8);
   archive.section("make");
-  SnapshotHead head{state_version, seed(), step_us_, journal_->bytes()};
+  SnapshotHead head{state_version, seed(), step_us_, step_number_, journal_->bytes()};
   archive(head);
   const_cast<World*>(this)->visit_state(archive);  // saving changes nothing
   Bytes bytes = archive.take_bytes();
@@ -132,9 +154,10 @@ void World::restore_state(std::span<const std::byte> snapshot) {
   const bool same_make = head.journal == journal_->bytes() && journal_->gap().empty();
   if (!same_make || !script_ || in_step_) {
     build_again();
-    journal_->replay(head.journal);
+    journal_->replay(head.journal, head.step);
   }
   visit_state(archive);
+  if (step_number_ != head.step) archive.fail("its step is not the one it begins with");
   sort_devices();
   in_step_ = false;
 }

@@ -22,11 +22,12 @@ struct Pilot {
   std::vector<std::string> receive;
   double period_s = 0.1;
   shoal::Client::JoinOptions join;
-  double slow_ms = 0;         ///< of wall time, at random up to this before each answer
-  unsigned seed = 1;          ///< of that
-  std::int64_t stop_at = -1;  ///< tick after which it says nothing any more, but lives
-  std::int64_t die_at = -1;   ///< tick at which it kills itself
-  bool go_back = false;       ///< with the world
+  double slow_ms = 0;          ///< of wall time, at random up to this before each answer
+  unsigned seed = 1;           ///< of that
+  std::int64_t stop_at = -1;   ///< tick after which it says nothing any more, but lives
+  std::int64_t die_at = -1;    ///< tick at which it kills itself
+  std::int64_t leave_at = -1;  ///< tick after which it leaves
+  bool go_back = false;        ///< with the world
 };
 
 std::uint64_t mixed(std::uint64_t hash, const void* data, std::size_t size) {
@@ -48,7 +49,7 @@ int fly(const Pilot& pilot) {
   std::mt19937 random(pilot.seed);
   std::int64_t ticks = 0;
   while (const auto now = client.next_tick()) {
-    ++ticks;
+    if (++ticks == pilot.leave_at) break;
     if (ticks == pilot.die_at) kill(getpid(), SIGKILL);
     while (ticks == pilot.stop_at) pause();
     if (pilot.slow_ms > 0)
@@ -70,7 +71,7 @@ int fly(const Pilot& pilot) {
   std::printf("hash %016" PRIx64 " ticks %" PRId64 " asked_for %" PRIu64 " repeated %" PRIu64 " end %d\n", hash, ticks,
               counts.asked_for, counts.repeated, static_cast<int>(client.end()));
   if (!client.reason().empty()) std::printf("%s\n", client.reason().c_str());
-  return client.end() == shoal::Client::End::last_tick ? 0 : 1;
+  return client.end() == shoal::Client::End::last_tick || ticks == pilot.leave_at ? 0 : 1;
 }
 
 }  // namespace
@@ -88,6 +89,7 @@ int main(int argc, char** argv) {
   app.add_option("--seed", pilot.seed);
   app.add_option("--stop-at", pilot.stop_at);
   app.add_option("--die-at", pilot.die_at);
+  app.add_option("--leave-at", pilot.leave_at);
   app.add_flag("--go-back", pilot.go_back);
   app.add_option("--lcm-url", pilot.lcm_url);
   CLI11_PARSE(app, argc, argv);

@@ -5,6 +5,7 @@
 import glob
 import os
 import random
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -54,6 +55,23 @@ class Example(unittest.TestCase):
         lose(lossy.client.lc)
         self.run_world(lossy.client, "minimal.yaml", "--await", "pilot", "--duration", "15", "--speed", "max")
         self.assertEqual(lossy.ahead_m, undisturbed)
+
+    @unittest.skipUnless(shutil.which("javac"), "there is no Java compiler")
+    def test_java_client_compiles(self):
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([LCM_GEN, "--java", "--jpath", folder,
+                            *glob.glob(os.path.join(ROOT, "bridges", "lcm", "types", "*.lcm"))], check=True)
+            done = subprocess.run(["javac", "-d", os.path.join(folder, "classes"), "-sourcepath",
+                                   os.path.join(HERE, "java") + os.pathsep + folder,
+                                   os.path.join(ROOT, "examples", "java", "LockstepClient.java")],
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_python_client_ignores_what_is_no_message(self):
+        import lockstep_client
+        client = lockstep_client.Pilot("rover1").client
+        for channel, handler in client.protocol.items():
+            client.only_valid(handler)(channel, b"no message")
 
     def run_world(self, client, world, *options):
         with tempfile.TemporaryFile("w+") as log:

@@ -137,6 +137,20 @@ TEST(Keys, StepGoBackBranchAndQuit) {
   EXPECT_FALSE(shoal.is_raw());
 }
 
+TEST(Keys, FunctionKeysDoNothing) {
+  const ScratchFolder folder;
+  OnTerminal shoal(endless_run(folder, {"--speed", "max"}));
+  shoal.press("u40\r");
+  shoal.shows("runs until 40 s");
+  shoal.shows("40.00 s");
+  shoal.shows("paused");
+  shoal.press("\033OR\033[15~\033[1;2R");  // F3, F5 and Shift-F3, which end like R or hold a 1
+  shoal.press("r");
+  shoal.shows("step 3000, 30 s, branch 1, paused");
+  shoal.press("q");
+  EXPECT_EQ(shoal.wait(), 0);
+}
+
 TEST(Keys, ChangeTheSpeed) {
   const ScratchFolder folder;
   OnTerminal shoal(endless_run(folder, {"--speed", "1"}));

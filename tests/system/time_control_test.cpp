@@ -133,6 +133,18 @@ TEST(Snapshot, ValuesCanBeSetAndStructureCannot) {
   EXPECT_THAT(step.errors, HasSubstr("a step of 10000 us"));
 }
 
+TEST(Snapshot, WhatTheCommandLineAsksForHasNoLimit) {
+  const ScratchFolder folder;
+  write_file(folder.file("world.yaml"), "shoal: 1\nname: empty\nphysics: {step_s: 0.01}\n");
+  const Ended ended = run_shoal({"run", folder.file("world.yaml"), "--bus", "none", "--duration", "10.1",
+                                 "--snapshot-every", "0.01", "--snapshots", folder.file("snaps")});
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors.substr(ended.errors.size() -
+                                                       std::min<std::size_t>(400, ended.errors.size()));
+  int files = 0;
+  for ([[maybe_unused]] const auto& file : std::filesystem::directory_iterator(folder.file("snaps"))) ++files;
+  EXPECT_EQ(files, 1010);  // the requests of others are limited to 1000
+}
+
 TEST(Snapshot, RefusesWhatIsNone) {
   const Folder folder;
   write_file(folder.file("foreign"), "not a snapshot at all");

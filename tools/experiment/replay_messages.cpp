@@ -18,6 +18,11 @@ namespace tools {
 
 namespace {
 
+/// Of messages that were read and not yet compared, where stamps do not tell how far to look.
+constexpr std::size_t most_queued_bytes = std::size_t{256} << 20;
+/// A record has what is published in a step with the stamp of this step or the next.
+constexpr std::int64_t steps_ahead = 2;
+
 /// Those of the run itself: another run has others.
 bool is_of_the_run(std::string_view channel) {
   if (!channel.starts_with("sim.")) return false;
@@ -124,7 +129,11 @@ std::optional<ReplayMessages::Payload> ReplayMessages::head(Channel& channel) {
   if (channel.left == 0) return std::nullopt;
   if (current_ == &channel) return event_.payload;
   while (channel.queue.empty() && !at_end_) {
-    if (current_ != nullptr) current_->queue.emplace_back(event_.payload.begin(), event_.payload.end());
+    if (current_ != nullptr) {
+      if (log_.own_stamps ? event_.utime > look_until_ : queued_bytes_ > most_queued_bytes) return std::nullopt;
+      queued_bytes_ += event_.payload.size();
+      current_->queue.emplace_back(event_.payload.begin(), event_.payload.end());
+    }
     current_ = nullptr;
     if (!file_.next(event_)) {
       at_end_ = true;
@@ -138,10 +147,12 @@ std::optional<ReplayMessages::Payload> ReplayMessages::head(Channel& channel) {
 
 void ReplayMessages::pop(Channel& channel) {
   --channel.left;
-  if (current_ == &channel)
+  if (current_ == &channel) {
     current_ = nullptr;
-  else
-    channel.queue.pop_front();
+    return;
+  }
+  queued_bytes_ -= channel.queue.front().size();
+  channel.queue.pop_front();
 }
 
 bool ReplayMessages::is_mail(Channel& channel, Payload payload) {
@@ -158,6 +169,7 @@ void ReplayMessages::published(std::string_view name, std::span<const std::byte>
   if (known == nullptr && is_of_the_run(name)) return;
   Channel& channel = known != nullptr ? *known : add(name);
   channel.published = true;
+  look_until_ = log_.info.epoch_utime + (step + steps_ahead) * log_.info.step_us;
   while (const std::optional<Payload> logged = head(channel)) {
     if (same(*logged, payload)) {
       ++equal_;

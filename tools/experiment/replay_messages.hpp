@@ -68,7 +68,7 @@ class ReplayMessages {
   /// Tries the one that came after `last` before.  The one that is found is the last one then.
   Channel* find_next(std::string_view name, Channel*& last, Channel* Channel::*next);
   Channel& add(std::string_view name);
-  /// Null: the log has no more of them.
+  /// Null: the log has no more of them, or not before what is compared now.
   std::optional<Payload> head(Channel& channel);
   void pop(Channel& channel);
   bool is_mail(Channel& channel, Payload payload);
@@ -78,7 +78,9 @@ class ReplayMessages {
   const ReplayLog& log_;
   bridges::EventLogReader file_;
   bool at_end_ = false;
-  bridges::LogEventView event_;  // the last one that was read
+  std::int64_t look_until_ = 0;   // stamp up to which a record is read
+  std::size_t queued_bytes_ = 0;  // of all channels
+  bridges::LogEventView event_;   // the last one that was read
   Channel *last_published_ = nullptr, *last_read_ = nullptr;
   Channel* current_ = nullptr;  // whose event it is while it is not yet compared; null: it is, or nobody's
   std::map<std::string, Channel, std::less<>> channels_;

@@ -257,6 +257,7 @@ void Run::check_programs() {
   programs_.check(world_.now(), [this](const std::string& client) {
     progress_.clear();
     service_.client_gone(client);
+    return !lockstep_.has(client);
   });
 }
 

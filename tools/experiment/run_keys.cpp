@@ -27,9 +27,10 @@ std::string RunKeys::help() {
 void RunKeys::read() {
   constexpr int most_at_once = 50;
   for (int i = 0; i < most_at_once; ++i) {
-    const auto key = keys_.next();
-    if (!key) return;
-    press(*key);
+    const auto now = KeySequences::Clock::now();
+    const auto byte = keys_.next();
+    for (const char key : byte ? sequences_.next(*byte, now) : sequences_.alone(now)) press(key);
+    if (!byte) return;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "sim/run/run_control.hpp"
+#include "tools/experiment/key_sequences.hpp"
 #include "tools/experiment/terminal_keys.hpp"
 #include "tools/experiment/time_control.hpp"
 
@@ -32,6 +33,7 @@ class RunKeys {
   sim::RunControl& control_;
   Show say_, ask_;
   TerminalKeys keys_;
+  KeySequences sequences_;
   bool asking_ = false;
   std::string answer_;
 };

@@ -27,15 +27,15 @@ std::vector<std::string> RunPrograms::start() {
   return awaited;
 }
 
-void RunPrograms::check(sim::Time now, const std::function<void(const std::string& client)>& told_of) {
+void RunPrograms::check(sim::Time now, const std::function<bool(const std::string& client)>& told_of) {
   if (processes_.empty()) return;
   for (const ProcessGroup::Exit& exit : processes_.reap()) {
     const std::string text = "process '" + exit.name + "' " + exit.how;
     ended_.push_back({exit.name, exit.how, sim::to_seconds(now)});
     if (exit.ends_run) throw RunError(1, "process", text + "; the world says the run ends with it");
-    told_of(exit.client);
+    const bool goes_on = told_of(exit.client);
     if (exit.failed)
-      spdlog::error("{}; the run goes on without it", text);
+      spdlog::error("{}; {}", text, goes_on ? "the run goes on without it" : "its `on_timeout` decides what follows");
     else
       spdlog::info("{}", text);
     gone_.insert(exit.client);

@@ -20,9 +20,10 @@ class RunPrograms {
 
   /// Starts the programs when the options say so.  Returns the lockstep clients to wait for.  Throws RunError.
   std::vector<std::string> start();
-  /// Looks for programs that have ended.  `told_of` gets the lockstep name of each.  Throws RunError when the world
-  /// says that the run ends with one.
-  void check(sim::Time now, const std::function<void(const std::string& client)>& told_of);
+  /// Looks for programs that have ended.  `told_of` gets the lockstep name of each, and says whether the run goes on
+  /// without it at once; else its `on_timeout` decides.  Throws RunError when the world says that the run ends with
+  /// one.
+  void check(sim::Time now, const std::function<bool(const std::string& client)>& told_of);
   bool is_gone(const std::string& client) const { return gone_.contains(client); }
   /// Lets those that take part in the lockstep end by themselves.
   void await_clients() { processes_.await_clients(); }

@@ -46,7 +46,7 @@ void Run::add_figures(Summary& summary) {
   summary.sim_time_s = sim::to_seconds(world_.now());
   summary.state_hash = world_.state_hash();
   summary.messages = counts.published + counts.received;
-  summary.dropped_messages = counts.dropped_incoming + counts.dropped_outgoing;
+  summary.dropped_messages = counts.dropped_incoming + counts.dropped_outgoing + lockstep_.dropped_messages();
   summary.bad_messages =
       world_.counts().bad_messages + service_.bad_messages() + lockstep_.bad_messages() + scoring_.bad_messages();
   summary.quick_steps = world_.physics().quick_steps();

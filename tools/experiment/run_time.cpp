@@ -48,7 +48,7 @@ void Run::take_snapshots() {
   if (!due) return;
   try {
     progress_.clear();
-    spdlog::info("{}", time_.write_snapshot(""));
+    spdlog::info("{}", time_.write_planned_snapshot());
   } catch (const std::exception& error) {  // asked for on the command line: not to be missed
     throw RunError(4, "bus", error.what());
   }

@@ -101,6 +101,8 @@ Snapshot snapshot_from_bytes(const sim::Bytes& bytes, const std::string& path) {
   }
   const bool possible = snapshot.step >= 0 && snapshot.step_us > 0 && snapshot.step < INT64_MAX / 4 / snapshot.step_us;
   if (!possible) throw fail(fmt::format("step {} of {} us is none", snapshot.step, snapshot.step_us));
+  if (snapshot.epoch_us < -INT64_MAX / 2 || snapshot.epoch_us > INT64_MAX / 2)
+    throw fail(fmt::format("the epoch {} us is too far away", snapshot.epoch_us));
   return snapshot;
 }
 

@@ -29,8 +29,8 @@ struct Snapshot {
   std::uint64_t state_hash = 0;
   std::vector<std::string> vehicles;
   sim::Bytes state;   ///< World::snapshot()
-  sim::Bytes scores;  ///< Scoring::save()
-  sim::Bytes owners;  ///< SimService::save()
+  sim::Bytes scores;  ///< Scoring::visit_state()
+  sim::Bytes owners;  ///< SimService::visit_state()
 
   double time_s() const { return static_cast<double>(step * step_us) * 1e-6; }
   /// Time stamp of messages of this step.

@@ -314,16 +314,26 @@ std::string TimeControl::path_of(const std::string& name) const {
 }
 
 std::string TimeControl::write_snapshot(const std::string& name) {
+  if (files_ >= most_files)
+    throw std::runtime_error(fmt::format("this run wrote {} snapshots that were asked for already", most_files));
+  const std::string text = write_file(name);
+  ++files_;
+  return text;
+}
+
+std::string TimeControl::write_file(const std::string& name) {
   const std::string path =
       path_of(!name.empty() ? name : fmt::format("branch{}_step{}", control_.branch, world_.step_number()));
-  if (files_ >= most_files) throw std::runtime_error(fmt::format("this run wrote {} snapshots already", most_files));
   std::error_code error;
   std::filesystem::create_directories(options_.directory, error);
   if (!options_.overwrite && std::filesystem::exists(path, error))
     throw std::runtime_error(path + ": exists already; choose another name");
   tools::write_snapshot(path, snapshot());
-  ++files_;
   return place() + ": " + path;
+}
+
+std::string TimeControl::write_planned_snapshot() {
+  return write_file("");
 }
 
 std::string TimeControl::restore(const std::string& name, bool run_on) {

@@ -58,8 +58,11 @@ class TimeControl final : public bridges::TimeMachine {
   /// Runs to a time, or up to the next time an event fires, and pauses there.
   std::string run_until(double time_s);
   std::string run_until_event(const std::string& name);
-  /// Writes a file into the directory of snapshots; an empty name makes one of the step.
+  /// Writes a file into the directory of snapshots; an empty name makes one of the step.  Whoever talks to the run can
+  /// ask for 1000 of them.
   std::string write_snapshot(const std::string& name);
+  /// The same for what the command line asked for, without a limit.
+  std::string write_planned_snapshot();
   /// Goes on from a file in the directory of snapshots.
   std::string restore(const std::string& name, bool run_on);
 
@@ -93,6 +96,7 @@ class TimeControl final : public bridges::TimeMachine {
   void travel(const std::function<void()>& work, std::int64_t to_step, bool run_on, bool ours);
   void put_back(const Saved& before);
   std::string what_is_kept() const;
+  std::string write_file(const std::string& name);
   std::string path_of(const std::string& name) const;
 
   sim::World& world_;

@@ -65,6 +65,33 @@ TEST(Client, RunsInStepWithTheSimulator) {
   EXPECT_EQ(client.counts().bad, 0u);
 }
 
+TEST(Client, JoinsAgainWhileATickIsOpen) {
+  FakeSimulator simulator;
+  shoal::Client client("pilot", own_url(1));
+  client.set_silence_limit(10s);
+  std::thread thread([&] {
+    simulator.reply(simulator.await_request(), true, "");
+    simulator.tick(1, {"pilot"});
+    auto request = simulator.await_request();
+    while (request.value == 0.1) request = simulator.await_request();  // of the first, sent again
+    simulator.reply(request, true, "");
+    EXPECT_EQ(simulator.await_ack().sequence, 1);
+    const auto command = simulator.commands().take();
+    EXPECT_TRUE(command);
+    simulator.tick(2, {"pilot"});
+    EXPECT_EQ(simulator.await_ack().sequence, 2);
+    simulator.tick(3, {"pilot"}, true);
+  });
+  client.join(0.1, 10s);
+  EXPECT_TRUE(client.next_tick());
+  client.publish("auv1.cmd", shoal::helm_command_t{});
+  client.join(0.2, 10s);
+  EXPECT_TRUE(client.next_tick());
+  EXPECT_FALSE(client.next_tick());
+  EXPECT_EQ(client.end(), shoal::Client::End::last_tick);
+  thread.join();
+}
+
 TEST(Client, GivesNothingAtOnceWhenAskedAgainAfterTheEnd) {
   FakeSimulator simulator;
   shoal::Client client("pilot", own_url(1));

@@ -93,12 +93,14 @@ class FakeSimulator {
   };
 
   void join(const shoal::sim_control_request_t& request) {
-    Member& member = members_[request.client];
-    member = {};
-    member.due.name = request.client;
     std::smatch match;
-    if (std::regex_search(request.text, match, std::regex("session: (\\d+)")))
-      member.due.session = std::stoll(match[1]);
+    const bool has_session = std::regex_search(request.text, match, std::regex("session: (\\d+)"));
+    const std::int64_t session = has_session ? std::stoll(match[1]) : 0;
+    Member& member = members_[request.client];
+    if (member.due.session != session) member = {};
+    member.receives.clear();
+    member.due.name = request.client;
+    member.due.session = session;
     const std::regex channel("\"([^\"]*)\"");
     for (std::sregex_iterator i(request.text.begin(), request.text.end(), channel), end; i != end; ++i)
       member.receives.push_back((*i)[1]);

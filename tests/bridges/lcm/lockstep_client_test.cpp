@@ -305,6 +305,15 @@ TEST(LockstepClient, EndsWhenTheWorldGoesBackUnlessItGoesWithIt) {
   test.simulator.tick(1, {"pilot"}, false, 2);
   EXPECT_FALSE(test.client.next_tick(test.tick));
   EXPECT_EQ(test.client.end(), LockstepClient::End::rewound);
+  // It joins again, and goes on with the tick that told of it.
+  std::thread thread([&] {
+    test.simulator.reply(test.simulator.await_request(), true, "");
+    test.simulator.repeat_tick();
+  });
+  test.client.join(0.1, 10s);
+  ASSERT_TRUE(test.client.next_tick(test.tick));
+  thread.join();
+  EXPECT_EQ(test.tick.branch, 2);
 }
 
 TEST(LockstepClient, SaysThatTheWorldWentOnWithoutIt) {

@@ -7,6 +7,7 @@
 #include "shoal/sim_resent_t.hpp"
 #include "shoal/sim_tick_t.hpp"
 #include "sim/bus/crc32.hpp"
+#include "sim/bus/in_process_bus.hpp"
 #include "tests/bridges/lcm/service_fixture.hpp"
 
 namespace {
@@ -257,6 +258,42 @@ TEST(LockstepService, ALeaveWaitsForTheAcknowledgementBeforeIt) {
   EXPECT_EQ(s.lockstep.summaries().at(0).ended, "left");
 }
 
+TEST(LockstepService, ALeaveIsGrantedThoughTheNextTickHasGoneOut) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
+  s.synchronize([&] { s.acknowledge(0, "pilot", 5, 1); });
+  s.test.world.step();
+  s.synchronize([&] {
+    EXPECT_TRUE(s.is_undecided("leave", "pilot", "{session: 5, acknowledged: 2}"));  // its answer is on its way
+    EXPECT_THAT(s.ask("leave", 0, "{session: 5, acknowledged: 3}").text, HasSubstr("after tick 3, which it was not"));
+    EXPECT_TRUE(s.ask("leave", 0, "{session: 5, acknowledged: 1}").ok);
+  });
+  EXPECT_FALSE(s.lockstep.has("pilot"));
+}
+
+TEST(LockstepService, JoiningAgainLeavesTheOpenTickOpen) {
+  Service s;
+  const auto reader = s.gate.open_mailbox("cmd");
+  ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
+  int waited = 0;
+  s.synchronize([&] {
+    ++waited;
+    if (waited == 1) {
+      ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}", 0.02).ok);
+    } else if (waited == 3) {
+      s.test.bus.publish("cmd", bytes_of("1"), sim::Time(0));
+      s.acknowledge(0, "pilot", 5, 1, {{"cmd", "1"}});
+    }
+  });
+  EXPECT_EQ(waited, 3);
+  EXPECT_EQ(s.admitted(), "1");
+  s.test.world.step();
+  s.synchronize([] { ADD_FAILURE() << "its period is two steps now"; });
+  s.test.world.step();
+  s.synchronize([&] { s.acknowledge(2, "pilot", 5, 2); });
+  EXPECT_EQ(s.lockstep.bad_messages(), 0);
+}
+
 TEST(LockstepService, WithoutALateClientTheWorldGoesOnAndTellsItSo) {
   Service s;
   ASSERT_TRUE(s.join("pilot", "{session: 5, on_timeout: continue, timeout_s: 0.001}").ok);
@@ -290,6 +327,109 @@ TEST(LockstepService, AFloodOfJoinsLeavesTheClientsThatAreThere) {
   for (int i = 0; i < 1000; ++i) ASSERT_TRUE(s.join("client" + std::to_string(i), "", 100).ok);
   EXPECT_THAT(s.join("one more").text, HasSubstr("1000 clients have joined"));
   EXPECT_TRUE(s.lockstep.has("client999"));
+}
+
+TEST(LockstepService, KeepsThePauseThatSomebodyAskedForWhileAClientWasLate) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, on_timeout: pause, timeout_s: 0.001}").ok);
+  s.synchronize([&] {
+    if (!s.control.paused) return;
+    s.control.set_paused(true);
+    s.acknowledge(0, "pilot", 5, 1);
+  });
+  EXPECT_TRUE(s.control.paused);
+}
+
+TEST(LockstepService, KeepsThePauseOfARewindWhileAClientWasLate) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, on_timeout: pause, timeout_s: 0.001}").ok);
+  bool went_back = false;
+  s.synchronize([&] {
+    if (!s.control.paused) return;
+    if (!went_back) s.lockstep.set_branch(1);
+    went_back = true;
+    s.acknowledge(0, "pilot", 5, 2);
+  });
+  EXPECT_TRUE(s.control.paused);
+}
+
+TEST(LockstepService, WhatWasPublishedForATickBeforeARewindIsDroppedWithoutComplaint) {
+  Service s;
+  const auto reader = s.gate.open_mailbox("cmd");
+  ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}", 0.02).ok);
+  s.synchronize([&] { s.acknowledge(0, "pilot", 5, 1); });
+  s.test.world.step();
+  const sim::Bytes before = s.test.world.snapshot();  // at a step without a tick
+  s.test.world.step();
+  EXPECT_THROW(s.lockstep.synchronize([](std::chrono::milliseconds) {},
+                                      [&, calls = 0]() mutable {
+                                        if (++calls == 3) throw std::logic_error("a rewind in the middle of it");
+                                        return true;
+                                      }),
+               std::logic_error);
+  s.test.world.restore(before);
+  s.lockstep.set_branch(1);
+  s.test.bus.publish("cmd", bytes_of("old"), sim::Time(0));
+  s.synchronize();
+  EXPECT_EQ(s.admitted(), "");  // may be of the tick that was open
+  s.acknowledge(2, "pilot", 5, 2, {{"cmd", "old"}, {"cmd", "late"}});
+  s.synchronize();
+  s.test.bus.publish("cmd", bytes_of("late"), sim::Time(0));
+  s.test.bus.publish("cmd", bytes_of("stranger's"), sim::Time(0));
+  EXPECT_EQ(s.admitted(), "stranger's");
+  EXPECT_EQ(s.lockstep.bad_messages(), 0);
+}
+
+TEST(LockstepService, AClientThatMustHaveTooMuchUntilItsNextTickIsDroppedAndTold) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, receives: [image], timeout_s: 60}", 1e6).ok);
+  s.synchronize([&] { s.acknowledge(0, "pilot", 5, 1); });
+  const sim::Bytes image(50'000'000);
+  for (int i = 0; i < 6; ++i) s.gate.publish("image", image, sim::Time(0));
+  s.test.world.step();
+  s.synchronize();
+  EXPECT_FALSE(s.lockstep.has("pilot"));
+  EXPECT_FALSE(s.replies.last().ok);
+  EXPECT_THAT(s.lockstep.summaries().at(0).ended, HasSubstr("more than 256 MB of messages until its next tick"));
+}
+
+TEST(LockstepService, AnAcknowledgementMayNameTenThousandMessages) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
+  std::vector<std::pair<std::string, std::string>> named(10'001, {"nobody reads this", "x"});
+  bool refused = false;
+  s.synchronize([&] {
+    s.acknowledge(0, "pilot", 5, 1, named);
+    if (refused) return;
+    refused = true;
+    named.pop_back();
+  });
+  EXPECT_TRUE(refused);
+  EXPECT_EQ(s.lockstep.bad_messages(), 1);
+}
+
+TEST(LockstepService, OnlySoManyClientsOfThePastAreListed) {
+  Service s;
+  for (int i = 0; i < 2500; ++i) {
+    const std::string name = "client" + std::to_string(i);
+    ASSERT_TRUE(s.join(name, "", 100).ok);
+    ASSERT_TRUE(s.ask("leave", 0, "", name).ok);
+  }
+  EXPECT_EQ(s.lockstep.summaries().size(), 2000u);
+}
+
+TEST(LockstepService, AClientOfTheSameNameOnAnotherBusIsASecondOne) {
+  sim::InProcessBus other_bus;
+  sim::MailGate other_gate(other_bus);
+  Service s;
+  s.lockstep.add_line(other_bus, other_gate);
+  ASSERT_TRUE(s.join("pilot").ok);
+  shoal::sim_control_request_t request{};
+  request.client = "pilot";
+  request.value = 0.01;
+  EXPECT_FALSE(s.lockstep.join(1, request));  // not decided
+  s.synchronize([&] { s.acknowledge(0, "pilot"); });
+  EXPECT_THROW(s.lockstep.join(1, request), std::runtime_error);
 }
 
 TEST(LockstepService, TellsTheEndUntilAllKnow) {

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "bridges/lcm/run_journal.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "shoal/sim_vehicle_t.hpp"
 #include "shoal/twist_command_t.hpp"
@@ -115,6 +116,25 @@ TEST(Spawn, ErrorsReadAsThoseOfFiles) {
   // The world goes on as it was.
   EXPECT_EQ(host.test.world.vehicles().size(), 1u);
   EXPECT_NO_THROW(host.test.run_for(0.1));
+}
+
+TEST(Spawn, OnlyWhatIsAVehicleIsWrittenDown) {
+  Host host;
+  bridges::RunJournal journal(host.test.bus);
+  journal.attach(host.test.world);
+  host.service.use_journal(journal);
+  std::vector<std::string> written;
+  journal.set_listener([&](std::int64_t, const bridges::RunJournal::Letter& letter) {
+    written.emplace_back(reinterpret_cast<const char*>(letter.payload.data()), letter.payload.size());
+  });
+  journal.start();
+  // worlds/ackermann_track.yaml is YAML that lies beside the world, and no vehicle.
+  EXPECT_FALSE(host.ask("spawn", "{name: x, file: ackermann_track.yaml}").ok);
+  EXPECT_FALSE(host.ask("spawn", "{name: x, file: .hidden.yaml}").ok);
+  EXPECT_THAT(written, testing::IsEmpty());
+  EXPECT_TRUE(host.ask("spawn", "{name: x, file: rover_small.yaml, position_m: [3, 0, 0]}").ok);
+  ASSERT_EQ(written.size(), 1u);
+  EXPECT_THAT(written[0], testing::AllOf(HasSubstr("model"), testing::Not(HasSubstr("rover_small.yaml"))));
 }
 
 TEST(Spawn, APlaceThatIsTakenIsRefused) {

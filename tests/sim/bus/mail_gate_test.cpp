@@ -238,4 +238,46 @@ TEST_F(MailGateTest, RefusesChannelNamesThatTheNetworkRefuses) {
   EXPECT_THROW(gate.publish("", {}, Time{0}), std::invalid_argument);
 }
 
+/// A network on which somebody sends faster than anybody can take.
+class FloodedBus final : public sim::Bus {
+ public:
+  void publish(std::string_view, std::span<const std::byte>, Time) override {}
+  std::unique_ptr<sim::Mailbox> open_mailbox(const std::string&, std::size_t) override {
+    return std::make_unique<Flood>(*this);
+  }
+  sim::BusCounts counts() const override { return {}; }
+  int taken = 0;
+
+ private:
+  class Flood final : public sim::Mailbox {
+   public:
+    explicit Flood(FloodedBus& bus) : bus_(bus) {}
+    std::optional<sim::Message> take() override {
+      if (bus_.taken >= 10'000) return std::nullopt;  // so that the test ends
+      return sim::Message{"a", bytes(std::to_string(++bus_.taken)), true};
+    }
+    std::uint64_t dropped() const override { return 0; }
+    void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) override { *flag = true; }
+    std::vector<sim::Message> unread() const override { return {}; }
+    void set_unread(std::vector<sim::Message>) override {}
+
+   private:
+    FloodedBus& bus_;
+  };
+};
+
+TEST(FloodedMailGate, TakesNoMoreThanAMailboxHoldsAtOnceAndGoesOnLater) {
+  FloodedBus network;
+  MailGate gate(network);
+  const auto mailbox = gate.open_mailbox("a", 5);
+  const int most = static_cast<int>(sim::Bus::default_mailbox_capacity);
+  EXPECT_TRUE(gate.collect());
+  EXPECT_EQ(network.taken, most);
+  ASSERT_EQ(gate.waiting().size(), 5u);
+  EXPECT_EQ(text_of(gate.waiting().back().payload), std::to_string(most));
+  EXPECT_EQ(gate.counts().dropped_incoming, static_cast<std::uint64_t>(most - 5));
+  EXPECT_TRUE(gate.collect());
+  EXPECT_EQ(network.taken, 2 * most);
+}
+
 }  // namespace

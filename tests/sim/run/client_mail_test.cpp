@@ -77,6 +77,52 @@ TEST(ClientMail, DropsWhatComesASecondTime) {
   EXPECT_EQ(test.admitted(), "11");
 }
 
+TEST(ClientMail, WhatComesASecondTimeMuchLaterIsAnotherMessage) {
+  Sorted test;
+  test.arrive("1");
+  test.mail.expect("a", {named("cmd", "1")});
+  EXPECT_EQ(test.admitted(), "1");
+  for (std::int64_t step = 0; step < sim::ClientMail::recent_steps; ++step) EXPECT_EQ(test.admitted(), "");
+  test.arrive("1");
+  EXPECT_EQ(test.admitted(), "1");
+}
+
+TEST(ClientMail, AfterClearingOnlyWhatIsOnItsWayIsDropped) {
+  Sorted test;
+  test.arrive("1");
+  test.mail.expect("a", {named("cmd", "1")});
+  EXPECT_EQ(test.admitted(), "1");
+  test.mail.expect("a", {named("cmd", "2")});
+  test.mail.clear();
+  for (const char* text : {"1", "2", "3"}) test.arrive(text);
+  EXPECT_EQ(test.admitted(), "13");
+}
+
+TEST(ClientMail, OfOneChannelOnlySoManyWaitAndTheOthersStay) {
+  Sorted test;
+  const auto other = test.gate.open_mailbox("other");
+  test.network.publish("other", bytes_of("o"), sim::Time(0));
+  for (std::size_t i = 0; i < sim::ClientMail::most_of_channel + 500; ++i) {
+    test.arrive(std::to_string(i) + " ");
+    if (i % 100 == 0) test.mail.collect();
+  }
+  test.mail.collect();
+  EXPECT_EQ(test.mail.dropped(), 500u);
+  const std::string admitted = test.admitted();
+  EXPECT_EQ(admitted.substr(0, 5), "o500 ");
+}
+
+TEST(ClientMail, HoldsTheMailOfStrangersUntilItIsKnownWhoseItIs) {
+  Sorted test;
+  test.mail.hold("a");
+  for (const char* text : {"1", "2"}) test.arrive(text);
+  EXPECT_EQ(test.admitted(), "");
+  test.mail.drop({named("cmd", "1"), named("cmd", "3")});
+  test.mail.release("a");
+  test.arrive("3");
+  EXPECT_EQ(test.admitted(), "2");
+}
+
 TEST(ClientMail, OfAClientThatIsGoneWhatHasComeIsAdmitted) {
   Sorted test;
   test.arrive("2");

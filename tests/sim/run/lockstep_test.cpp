@@ -141,6 +141,38 @@ TEST(Lockstep, AfterGoingBackEverybodyIsAskedByItsPeriod) {
   EXPECT_EQ(lockstep.find("a")->sequence, 2);
 }
 
+TEST(Lockstep, AnAnswerToATickBeforeGoingBackIsAbandoned) {
+  Lockstep lockstep;
+  lockstep.join("a", session(7), 10, 0);
+  lockstep.join("simple", {}, 10, 0);
+  lockstep.ask(60);
+  lockstep.rewound(20);
+  const auto abandoned = Lockstep::Verdict::abandoned;
+  answer(lockstep, {"a", 60, 7, 1}, 20, abandoned);
+  answer(lockstep, {"simple", 60, 0, 0}, 20, abandoned);
+  lockstep.ask(20);
+  answer(lockstep, {"a", 60, 7, 1}, 20, abandoned);
+  EXPECT_EQ(missing(lockstep, 20), (Names{"a", "simple"}));
+  answer(lockstep, {"a", 20, 7, 2}, 20);
+  answer(lockstep, {"simple", 20, 0, 0}, 20);
+  EXPECT_EQ(missing(lockstep, 20), (Names{}));
+}
+
+TEST(Lockstep, JoiningAgainWithAnotherPeriodLeavesAnOpenTickOpen) {
+  Lockstep lockstep;
+  lockstep.join("a", session(7), 10, 0);
+  lockstep.join("simple", {}, 10, 0);
+  lockstep.ask(20);
+  lockstep.join("a", session(7), 4, 20);
+  lockstep.join("simple", {}, 4, 20);
+  EXPECT_EQ(missing(lockstep, 20), (Names{"a", "simple"}));
+  lockstep.ask(20);
+  answer(lockstep, {"a", 20, 7, 1}, 20);
+  answer(lockstep, {"simple", 20, 0, 0}, 20);
+  EXPECT_EQ(missing(lockstep, 20), (Names{}));
+  EXPECT_EQ(missing(lockstep, 24), (Names{"a", "simple"}));
+}
+
 TEST(LockstepTerms, AreReadWithClearErrors) {
   sim::LockstepTerms defaults;
   defaults.on_timeout = "pause";

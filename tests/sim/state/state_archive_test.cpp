@@ -266,4 +266,26 @@ TEST(StateArchive, TheQuickHasherGivesTheSameHashWithoutTheParts) {
   EXPECT_EQ(quick_parts, 0u);
 }
 
+/// Counts how many there ever were.
+struct Counted {
+  Counted() { ++made; }
+  double number = 0;
+  void visit_state(StateArchive& archive) { archive(number); }
+  static inline int made = 0;
+};
+
+TEST(StateArchive, AListIsNotLongerThanWhatWasRead) {
+  StateArchive saver = StateArchive::saver();
+  std::uint64_t says = 800;
+  std::vector<double> numbers(100);
+  saver(says);
+  saver.raw(numbers.data(), numbers.size() * sizeof(double));
+  const std::vector<std::byte> bytes = saver.take_bytes();
+  std::vector<Counted> list;
+  Counted::made = 0;
+  StateArchive restorer = StateArchive::restorer(bytes);
+  EXPECT_THROW(restorer(list), SnapshotError);
+  EXPECT_EQ(Counted::made, 101);
+}
+
 }  // namespace

@@ -1,5 +1,14 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <span>
+#include <string>
+#include <tuple>
+
 #include "sim/world/vehicle_loader.hpp"
 #include "tests/devices/state_fixture.hpp"
 
@@ -288,6 +297,140 @@ TEST(WorldSnapshot, ThePartThatDiffersIsToldByItsHash) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i] == b[i], a[i].part != "rover2/lidar") << a[i].part;
   EXPECT_NE(one.world.state_hash(), other.world.state_hash());
+}
+
+/// The journal keeps what is possible only together, and each value once.
+TEST(WorldSnapshot, ValuesThatAreOnlyPossibleTogetherComeBack) {
+  const auto change = [](TappedWorld& test, int step) {
+    const std::map<int, std::string> values{{10, "{range_max_m: 100}"},
+                                            {20, "{range_min_m: 50}"},
+                                            {30, "{range_max_m: 80}"},
+                                            {40, "{range_min_m: 1, rate_hz: 20}"},
+                                            {50, "{range_max_m: 7}"}};
+    if (!values.contains(step)) return;
+    sim::Diagnostics diagnostics;
+    EXPECT_TRUE(test.world.change_device("rover1/lidar", sim::parse_config_text(values.at(step), "change", diagnostics),
+                                         diagnostics));
+  };
+  SavedRun(busy_world, change).expect_restored_worlds_go_on_alike({15, 25, 35, 45, 55}, 60);
+}
+
+/// Each with other YAML, some refused: none of it may stay.
+TEST(WorldSnapshot, TextsThatLeaveNoTraceAreNotKept) {
+  TappedWorld test(busy_world);
+  int number = 0;
+  const auto guest = [&](const std::string& position_m) {
+    const std::string text = "{name: guest, position_m: [" + position_m + R"(], model: {shoal: 1, vehicle: guest)" +
+                             std::to_string(++number) + R"(, bodies: [{name: hull, position_m: [0, 0, 0.2],
+      parts: [{shape: box, size_m: [0.3, 0.3, 0.3], mass_kg: 1}]}]}})";
+    return sim::read_spawn_request(test.world.config(), text).vehicle;
+  };
+  const auto bytes_after = [&](int rounds) {
+    for (int i = 0; i < rounds; ++i) {
+      test.world.add_vehicle(guest("0, -6, 0"));
+      test.world.remove_vehicle("guest");
+      EXPECT_THROW(test.world.add_vehicle(guest("0, 4, 0.1")), sim::ConfigError);  // where crates lie
+    }
+    return static_cast<std::int64_t>(test.world.snapshot().size());
+  };
+  const std::int64_t few = bytes_after(2);
+  EXPECT_NEAR(static_cast<double>(bytes_after(40)), static_cast<double>(few), 100);
+  TappedWorld fresh(busy_world);
+  const sim::Bytes snapshot = test.world.snapshot();
+  fresh.world.restore(snapshot);
+  EXPECT_EQ(fresh.world.snapshot(), snapshot);
+  for (int i = 0; i < 50; ++i) {
+    test.world.step();
+    fresh.world.step();
+    ASSERT_EQ(fresh.world.state_hash(), test.world.state_hash()) << i;
+  }
+}
+
+TEST(WorldSnapshot, AJournalThatGrewTooLargeIsRefusedAndLetGo) {
+  TappedWorld test(busy_world);
+  const sim::Bytes start = test.world.snapshot();
+  std::string error;
+  for (int i = 0; i < 40 && error.empty(); ++i) {  // of 0.5 MiB each; the limit is 16
+    const std::string name = "g" + std::to_string(i);
+    test.world.add_vehicle(
+        sim::read_spawn_request(test.world.config(),
+                                "{name: " + name + ", position_m: [" + std::to_string(2 * i) +
+                                    ", 30, 9], model: {shoal: 1, vehicle: " + std::string(500'000, 'x') + name +
+                                    ", bodies: [{name: hull, parts: [{shape: box, mass_kg: 1}]}]}}")
+            .vehicle);
+    try {
+      test.world.snapshot();
+    } catch (const sim::SnapshotError& refused) {
+      error = refused.what();
+    }
+  }
+  EXPECT_EQ(error, "this world cannot be saved: more came, went and was changed than can be told in 16 MiB");
+  EXPECT_EQ(error_of(test.world, start), "");
+  EXPECT_EQ(test.world.snapshot(), start);  // back there it can be saved again
+}
+
+/// A snapshot in which a number was changed.
+class ForgedSnapshot : public DamagedSnapshot {
+ protected:
+  /// The place behind `before`, which must be there.
+  template <typename Before>
+  static std::size_t behind(const sim::Bytes& bytes, const Before& before) {
+    const auto key = std::as_bytes(std::span(before));
+    const auto found = std::search(bytes.begin(), bytes.end(), key.begin(), key.end());
+    EXPECT_NE(found, bytes.end());
+    return static_cast<std::size_t>(found - bytes.begin()) + key.size();
+  }
+  template <typename Number>
+  static void put(sim::Bytes& bytes, std::size_t at, Number number) {
+    std::memcpy(bytes.data() + at, &number, sizeof number);
+  }
+};
+
+TEST_F(ForgedSnapshot, WithBodiesWhereNoneCanBeIsRefused) {
+  const sim::Vector3d p_W = world().find_object("crate3")->body->X_WB().translation();  // its centre of mass
+  const std::size_t p = behind(good, std::array{p_W.x(), p_W.y(), p_W.z()}) - 3 * sizeof(double);
+  const std::size_t q = p + 3 * sizeof(double), R = q + 4 * sizeof(double), v = R + 12 * sizeof(double);
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& [at, number, error] : {std::tuple(p, nan, "pose"),
+                                          {p, 1e200, "pose"},
+                                          {q, 3.0, "pose"},
+                                          {q, nan, "pose"},
+                                          {R, 7.0, "pose"},
+                                          {v, nan, "velocity"},
+                                          {v, -1e200, "velocity"}}) {
+    sim::Bytes bad = good;
+    put(bad, at, number);
+    EXPECT_THAT(error_of(world(), bad), HasSubstr(error)) << at - p << " " << number;
+    EXPECT_EQ(world().snapshot(), good);
+  }
+}
+
+TEST_F(ForgedSnapshot, WithEventsOfNobodyIsRefused) {
+  const std::pair<int, const char*> forged[] = {{999, "an event of a device that is not there"},
+                                                {-1, "events: an event of nobody"},
+                                                {-2, "a signal that is not there"}};
+  for (const auto& [device, error] : forged) {
+    TappedWorld broken(busy_world), other(busy_world);
+    broken.world.schedule_arrival(device, sim::Time{100'000}, {});
+    EXPECT_THAT(error_of(other.world, broken.world.snapshot()), HasSubstr(error)) << device;
+  }
+}
+
+TEST_F(ForgedSnapshot, WithAnEventThatFiredLessThanNeverIsRefused) {
+  sim::Bytes bad = good;
+  // Behind the length of the part come the actor (two of 8 bytes, 4, 1, a pose) and how often the event has fired.
+  const std::size_t script = behind(bad, std::string("script")) + 8;
+  put(bad, script + 2 * 8 + 4 + 1 + 16 * 8 + 8, std::int64_t{-1});
+  EXPECT_THAT(error_of(world(), bad), HasSubstr("script: an event that fired less often than never"));
+}
+
+TEST_F(ForgedSnapshot, WithAHistoryAfterItsEndIsRefused) {
+  sim::Bytes bad = good;
+  // Behind the length of the part come version, seed and the length of a step.
+  put(bad, behind(bad, std::string("make")) + 8 + 4 + 8 + 8, std::int64_t{1});
+  TappedWorld fresh(busy_world);
+  EXPECT_THAT(error_of(fresh.world, bad), HasSubstr("changes in an order that cannot be"));
+  EXPECT_THAT(error_of(world(), bad), HasSubstr("its step is not the one it begins with"));
 }
 
 }  // namespace

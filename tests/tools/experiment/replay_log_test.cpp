@@ -98,4 +98,22 @@ TEST(ReplayLog, MailThatWasLostJustBeforeABranchEndsTheProof) {
   EXPECT_EQ(read.usable_step(), 5);
 }
 
+TEST(ReplayMessages, ARecordIsNotReadAheadOfTheStep) {
+  HandMade log;
+  log.info(0, 0, 0);
+  const sim::Bytes early(8, std::byte{1}), late(8, std::byte{2});
+  for (std::int64_t step = 1; step <= 100; ++step) log.raw("often", late, step);
+  log.raw("rare", late, 100);
+  log.info(0, 101, 0);
+  const tools::ReplayLog read = log.read();
+  tools::ReplayMessages messages(read);
+  messages.published("rare", early, 1);  // which is 100 steps before the log's
+  ASSERT_NE(messages.first(), nullptr);
+  EXPECT_EQ(messages.first()->what, "was published here and is not in the log");
+  for (std::int64_t step = 1; step <= 100; ++step) messages.published("often", late, step);
+  messages.published("rare", late, 100);
+  EXPECT_EQ(messages.equal(), 101u);
+  EXPECT_EQ(messages.different(), 1u);
+}
+
 }  // namespace

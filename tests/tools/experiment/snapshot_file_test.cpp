@@ -94,6 +94,15 @@ TEST(SnapshotFile, RefusesForeignFilesAndOtherFormats) {
   EXPECT_EQ(error_of_bytes(other), "a.snapshot: its format version must be 1, got 2");
 }
 
+TEST(SnapshotFile, RefusesTimesThatAreNone) {
+  Snapshot far = example();
+  far.epoch_us = INT64_MAX - 5;
+  EXPECT_EQ(error_of_bytes(tools::to_bytes(far)), "a.snapshot: the epoch 9223372036854775802 us is too far away");
+  Snapshot early = example();
+  early.step = -1;
+  EXPECT_EQ(error_of_bytes(tools::to_bytes(early)), "a.snapshot: step -1 of 10000 us is none");
+}
+
 TEST(SnapshotFile, RefusesWhatAnotherBuildWrote) {
   EXPECT_EQ(error_of([] { tools::check_version(example(), "a.snapshot", "1.2.4 (abd)"); }),
             "a.snapshot: was written by shoal 1.2.3 (abc), this is 1.2.4 (abd): only the same build can go on from it");

@@ -1,0 +1,8 @@
+package lcm.lcm;
+
+import java.io.DataOutput;
+import java.io.IOException;
+
+public interface LCMEncodable {
+  void encode(DataOutput out) throws IOException;
+}

@@ -1,0 +1,5 @@
+package lcm.lcm;
+
+public interface LCMSubscriber {
+  void messageReceived(LCM lcm, String channel, LCMDataInputStream in);
+}
