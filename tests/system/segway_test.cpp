@@ -26,7 +26,7 @@ TEST(SegwayRun, AnotherProcessBalancesItForTenMinutesOnCommand) {
 TEST(SegwayRun, FallsWhenItIsTooLate) {
   // After 5.4 s, says docs/segway.md.
   const Ended ended = run_segway(
-      {"--duration", "12", "--set", "vehicles.segway1.actuator_latency_s=0.16", "--set", "physics.step_s=0.001"});
+      {"--duration", "12", "--set", "vehicles.segway1.actuator_latency_s=0.14", "--set", "physics.step_s=0.001"});
   EXPECT_EQ(ended.exit_code, 1);
   EXPECT_THAT(ended.output, testing::ContainsRegex("lean.fell_s +5[.]"));
   EXPECT_THAT(ended.output, HasSubstr("FAILED: fallen.count (1.000) == 0"));
