@@ -214,7 +214,8 @@ class Replay {
     service_.publish_step();
     if (!outcome_.first) tell_first_messages();
     while (next_hash_ != log_.hashes.end() && next_hash_->first < world_.step_number()) ++next_hash_;
-    if (next_hash_ != log_.hashes.end() && next_hash_->first == world_.step_number()) compare_hashes(next_hash_->second);
+    if (next_hash_ != log_.hashes.end() && next_hash_->first == world_.step_number())
+      compare_hashes(next_hash_->second);
   }
 
   /// All that differ by now differ since this step.

@@ -40,9 +40,8 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       progress_(duration_s_, options.quiet),
       programs_(loaded.config, options, buses_) {
   journal_.attach(world_);
-  journal_.set_heard([this] {
-    return buses_.over_lcm() || !options_.record.empty() || buses_.gate().reads("sim.hash");
-  });
+  journal_.set_heard(
+      [this] { return buses_.over_lcm() || !options_.record.empty() || buses_.gate().reads("sim.hash"); });
   service_.use_journal(journal_);
   world_.use_threads(options.threads);
   lockstep_.add_line(buses_.network(), buses_.gate());
