@@ -349,6 +349,7 @@ void LockstepClient::remember(std::size_t channel, std::uint32_t crc) {
   recent_order_.emplace_back(channel, crc);
   if (recent_order_.size() <= most_recent) return;
   recent_.erase(recent_order_.front());
+  early_.erase(recent_order_.front());
   recent_order_.pop_front();
 }
 
@@ -358,6 +359,9 @@ bool LockstepClient::rewind(const shoal::sim_tick_t& tick) {
   sent_.clear();
   delayed_.clear();
   for (Channel& channel : receives_) channel.held.clear();
+  recent_.clear();
+  recent_order_.clear();
+  early_.clear();
   if (!rewound_) {
     end_ = End::rewound;
     return false;
@@ -385,6 +389,11 @@ void LockstepClient::handle_tick() {
     published_.push_back(std::move(message));
   }
   for (Named& named : now.messages) {
+    // One that was handled before any tick named it.
+    if (const auto early = early_.find({named.channel, named.crc}); early != early_.end()) {
+      early_.erase(early);
+      continue;
+    }
     remember(named.channel, named.crc);
     call_handlers(std::string(receives_[named.channel].name), named.payload);
   }
@@ -402,6 +411,7 @@ void LockstepClient::handle_unnamed() {
       } else {
         ++counts_.unnamed;
         remember(i, held.crc);
+        if (early_.size() < most_recent) early_.insert({i, held.crc});
         call_handlers(std::string(receives_[i].name), held.payload);
       }
     }

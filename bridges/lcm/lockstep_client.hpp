@@ -175,6 +175,7 @@ class LockstepClient {
   std::vector<Published> published_, sent_, delayed_;  // since the tick; with the last acknowledgement; before the next
   std::set<std::pair<std::size_t, std::uint32_t>> recent_;  // handled a short time ago
   std::deque<std::pair<std::size_t, std::uint32_t>> recent_order_;
+  std::set<std::pair<std::size_t, std::uint32_t>> early_;  // of those: handled although no tick had named them
   std::function<void(const shoal::sim_tick_t&)> rewound_;
   std::int32_t branch_ = 0;
 

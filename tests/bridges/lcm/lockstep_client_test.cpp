@@ -214,6 +214,21 @@ TEST(LockstepClient, HandlesMessagesInTheOrderOfTheTickAndOnce) {
   EXPECT_EQ(test.client.counts().repeated, 2u);
 }
 
+TEST(LockstepClient, WhatWasHandledBeforeATickNamedItIsNotHandledAgain) {
+  Listening test({"a"});
+  test.simulator.bus().publish("a", bytes_of("1"), sim::Time(0));
+  for (int step = 1; step <= 6; ++step) {
+    // Named late, and later another that is equal.
+    if (step == 5 || step == 6) test.simulator.name("a", bytes_of("1"));
+    if (step == 5 || step == 6) test.simulator.bus().publish("a", bytes_of("1"), sim::Time(0));
+    test.simulator.tick(step, {"pilot"});
+    ASSERT_TRUE(test.client.next_tick(test.tick));
+    test.client.acknowledge(test.tick);
+    EXPECT_EQ(test.seen.size(), step < 3 ? 0u : step < 6 ? 1u : 2u) << step;
+  }
+  EXPECT_EQ(test.client.counts().unnamed, 1u);
+}
+
 TEST(LockstepClient, AsksForWhatIsMissingUntilItHasAll) {
   Listening test({"a"});
   test.simulator.publish("a", bytes_of("1"));
