@@ -87,7 +87,7 @@ class MailGate final : public Bus {
   std::vector<std::unique_ptr<Channel>> channels_;  // by slot; null: the slot is free
   std::vector<std::size_t> free_slots_;
   std::unordered_map<std::string, Channel*, NameHash, std::equal_to<>> by_name_;  // asked, never iterated
-  std::bitset<most_bits> bits_;  // of the names that are or were read
+  std::bitset<most_bits> bits_;                                                   // of the names that are or were read
   std::vector<Mail> waiting_, admitted_;
   std::uint64_t dropped_ = 0;
 };

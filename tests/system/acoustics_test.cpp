@@ -75,8 +75,8 @@ TEST(AcousticsCommand, DrawsAPicture) {
 }
 
 TEST(AcousticsCommand, ShowsTheLinkThatItsPageShows) {
-  const Ended ended = acoustics(
-      {source("worlds/coop_underwater.yaml"), "--from", "boat1/modem", "--to", "boat2/modem", "--packet", "psk:500:64"});
+  const Ended ended = acoustics({source("worlds/coop_underwater.yaml"), "--from", "boat1/modem", "--to", "boat2/modem",
+                                 "--packet", "psk:500:64"});
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_THAT(ended.output, ContainsRegex("psk +500 +64"));
 }

@@ -1,7 +1,8 @@
 #include "sim/world/event_queue.hpp"
-#include "tests/state_hash_of.hpp"
 
 #include <gtest/gtest.h>
+
+#include "tests/state_hash_of.hpp"
 
 namespace {
 
