@@ -95,7 +95,9 @@ TEST(WorldSnapshot, VisitorsFaultsMovesAndChangesComeBack) {
     };
     if (step == 20) world.add_vehicle(visitor(world, "guest", 0));
     if (step == 40) world.add_vehicle(visitor(world, "other", 1));
-    if (step == 50) EXPECT_THROW(world.add_vehicle(visitor(world, "taken", 1)), sim::ConfigError);
+    if (step == 50) {
+      EXPECT_THROW(world.add_vehicle(visitor(world, "taken", 1)), sim::ConfigError);
+    }
     if (step == 60) change("rover1/imu", "{rate_hz: 25, gyro_noise: {gaussian_std: 0.5}}");
     if (step == 80) world.remove_vehicle("guest");
     if (step == 90) world.add_vehicle(visitor(world, "third", -1));
