@@ -91,7 +91,9 @@ TEST(Replay, ALogOfLcmLoggerIsEnough) {
   // lcm-logger may lose a message on a busy machine: then it is said, and nothing is taken for a difference.
   EXPECT_THAT(again.exit_code, AnyOf(0, 4)) << again.output << again.errors;
   EXPECT_THAT(again.output, HasSubstr("equal for ")) << again.errors;
-  if (again.exit_code == 4) EXPECT_THAT(again.output, HasSubstr("missing"));
+  if (again.exit_code == 4) {
+    EXPECT_THAT(again.output, HasSubstr("missing"));
+  }
 }
 
 TEST(Replay, WhatClientsDidToTheWorldIsDoneAgain) {
