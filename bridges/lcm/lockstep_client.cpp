@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <random>
 
+#include "bridges/lcm/resend.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_control_reply_t.hpp"
@@ -28,10 +29,6 @@ constexpr std::string_view unnamed_channels[] = {"sim.ack",  "sim.control", "sim
                                                  "sim.mail", "sim.resend",  "sim.resent",        "sim.tick"};
 
 constexpr milliseconds slice{50};
-/// A message that is on its way comes within this; what was lost is asked for then.
-constexpr milliseconds grace{1};
-constexpr milliseconds first_interval{20}, last_interval{250};
-constexpr std::size_t bundle_bytes = 60'000;
 constexpr std::size_t most_recent = 8192;
 constexpr std::size_t most_held = 100'000;
 /// What a client waits, at most, for the simulator to let it go.
@@ -123,11 +120,11 @@ void LockstepClient::request(const std::string& command, double value, const std
   const std::int32_t id = ++request_id_;
   if (command == "join") join_id_ = id;
   answered_id_.reset();
-  milliseconds interval = first_interval;
+  milliseconds interval = first_resend_interval;
   while (Clock::now() < deadline && !(stop_ && heed_stop)) {
     send_request(command, id, value, text);
     const auto resend = std::min(deadline, Clock::now() + interval);
-    interval = std::min(2 * interval, last_interval);
+    interval = next_resend_interval(interval);
     while (auto message = wait(resend, heed_stop)) {
       take(std::move(*message));
       if (answered_id_ != id) continue;
@@ -254,8 +251,8 @@ void LockstepClient::take_tick(std::span<const std::byte> payload) {
 void LockstepClient::begin_tick(shoal::sim_tick_t tick, const shoal::sim_due_t& due) {
   Incomplete incomplete;
   incomplete.sequence = due.sequence;
-  incomplete.ask_at = Clock::now() + grace;
-  incomplete.interval = first_interval;
+  incomplete.ask_at = Clock::now() + resend_grace;
+  incomplete.interval = first_resend_interval;
   for (std::size_t i = 0; i < due.channel.size(); ++i) {
     const auto channel = static_cast<std::size_t>(due.channel[i]);
     if (channel >= receives_.size()) return;  // not what we asked for
@@ -269,27 +266,18 @@ void LockstepClient::take_question(std::span<const std::byte> payload) {
   const auto question = try_decode<shoal::sim_resend_t>(payload);
   if (!question || question->of_client == 0 || question->client != name_ || question->session != session_) return;
   if (question->sequence != sequence_ || open_ || question->first < 0) return;
-  shoal::sim_resent_t bundle;
-  bundle.utime = tick_.utime;
-  bundle.client = name_;
-  bundle.session = session_;
-  bundle.sequence = sequence_;
-  bundle.of_client = 1;
-  for (std::size_t at = static_cast<std::size_t>(question->first); at < sent_.size();) {
-    bundle.first = static_cast<std::int32_t>(at);
-    bundle.message.clear();
-    for (std::size_t bytes = 0; at < sent_.size(); ++at) {
-      bytes += sent_[at].payload.size() + 80;
-      if (bytes > bundle_bytes && !bundle.message.empty()) break;
-      shoal::sim_payload_t& message = bundle.message.emplace_back();
-      message.channel = sent_[at].channel;
-      message.size = static_cast<std::int32_t>(sent_[at].payload.size());
-      const auto* data = reinterpret_cast<const std::uint8_t*>(sent_[at].payload.data());
-      message.data.assign(data, data + sent_[at].payload.size());
-    }
-    bundle.count = static_cast<std::int32_t>(bundle.message.size());
-    send(bundle_channel, shoal::encode(bundle));
-  }
+  shoal::sim_resent_t head;
+  head.utime = tick_.utime;
+  head.client = name_;
+  head.session = session_;
+  head.sequence = sequence_;
+  head.of_client = 1;
+  send_bundles(
+      head, static_cast<std::size_t>(question->first), sent_.size(),
+      [this](std::size_t place) {
+        return ResentMessage{sent_[place].channel, sent_[place].payload};
+      },
+      [this](const shoal::sim_resent_t& bundle) { send(bundle_channel, shoal::encode(bundle)); });
 }
 
 void LockstepClient::take_bundle(std::span<const std::byte> payload) {
@@ -301,8 +289,7 @@ void LockstepClient::take_bundle(std::span<const std::byte> payload) {
     const std::size_t place = static_cast<std::size_t>(bundle->first) + i;
     if (place >= incomplete_->messages.size()) return;
     Named& named = incomplete_->messages[place];
-    const auto* data = reinterpret_cast<const std::byte*>(bundle->message[i].data.data());
-    const std::span<const std::byte> bytes(data, bundle->message[i].data.size());
+    const std::span<const std::byte> bytes = bytes_of(bundle->message[i]);
     if (named.there || sim::crc32(bytes) != named.crc) continue;
     named.payload.assign(bytes.begin(), bytes.end());
     named.there = true;
@@ -331,7 +318,7 @@ void LockstepClient::ask_when_due() {
   const auto now = Clock::now();
   if (now < incomplete_->ask_at) return;
   incomplete_->ask_at = now + incomplete_->interval;
-  incomplete_->interval = std::min(2 * incomplete_->interval, last_interval);
+  incomplete_->interval = next_resend_interval(incomplete_->interval);
   shoal::sim_resend_t question;
   question.utime = incomplete_->tick.utime;
   question.client = name_;

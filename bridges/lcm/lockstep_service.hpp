@@ -125,8 +125,7 @@ class LockstepService {
   std::chrono::milliseconds nap() const;
   std::int64_t utime() const { return world_.epoch_us() + world_.now().count(); }
   LockstepSummary& summary_of(const std::string& client);
-  template <typename Message>
-  void publish(sim::Bus& bus, const char* channel, const Message& message);
+  Line& line_of(int number) { return *lines_[static_cast<std::size_t>(number)]; }
 
   sim::World& world_;
   sim::RunControl& control_;
@@ -145,7 +144,6 @@ class LockstepService {
   bool suspended_ = false;
   std::int32_t branch_ = 0;
   std::int64_t bad_messages_ = 0;
-  sim::Bytes buffer_;
 };
 
 }  // namespace bridges

@@ -4,7 +4,6 @@
 #include <spdlog/fmt/fmt.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -13,6 +12,7 @@
 #include <iterator>
 #include <span>
 
+#include "sim/bus/crc32.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/state/state_archive.hpp"
 
@@ -25,16 +25,6 @@ constexpr std::uint32_t format_version = 1;
 constexpr std::size_t head_bytes = sizeof magic + sizeof format_version;
 constexpr std::size_t checksum_bytes = sizeof(std::uint32_t);
 constexpr std::intmax_t most_bytes = std::intmax_t{4} << 30;
-
-std::uint32_t checksum(std::span<const std::byte> bytes) {
-  uLong sum = crc32(0, nullptr, 0);
-  while (!bytes.empty()) {  // zlib counts in 32 bits
-    const std::size_t part = std::min<std::size_t>(bytes.size(), std::size_t{1} << 30);
-    sum = crc32(sum, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(part));
-    bytes = bytes.subspan(part);
-  }
-  return static_cast<std::uint32_t>(sum);
-}
 
 template <typename T>
 T number_at(const sim::Bytes& bytes, std::size_t at) {
@@ -73,7 +63,7 @@ sim::Bytes to_bytes(const Snapshot& snapshot) {
   archive(version);
   visit(archive, const_cast<Snapshot&>(snapshot));  // saving changes nothing
   sim::Bytes bytes = archive.take_bytes();
-  const std::uint32_t sum = checksum(bytes);
+  const std::uint32_t sum = sim::crc32(bytes);
   const auto* from = reinterpret_cast<const std::byte*>(&sum);
   bytes.insert(bytes.end(), from, from + sizeof sum);
   return bytes;
@@ -89,7 +79,7 @@ Snapshot snapshot_from_bytes(const sim::Bytes& bytes, const std::string& path) {
     throw fail(fmt::format("its format version must be {}, got {}", format_version, version));
   const std::size_t content = bytes.size() - checksum_bytes;
   const auto expected = number_at<std::uint32_t>(bytes, content);
-  const std::uint32_t sum = checksum(std::span(bytes).first(content));
+  const std::uint32_t sum = sim::crc32(std::span(bytes).first(content));
   if (sum != expected)
     throw fail(fmt::format("is damaged or cut off: its checksum must be {:08x}, got {:08x}", expected, sum));
   Snapshot snapshot;

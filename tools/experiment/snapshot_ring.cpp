@@ -94,9 +94,10 @@ void SnapshotRing::add(std::int64_t step, const sim::Bytes& snapshot, std::size_
   assert(families_.empty() ||
          step > (families_.back().others.empty() ? families_.back().step : families_.back().others.back().step));
   const bool full = !families_.empty() && (families_.back().others.size() + 1 >= most_in_family ||
-                                           step - families_.back().step >= std::max<std::int64_t>(steps_ / 2, 1));
+                                           step - families_.back().step >= std::max<std::int64_t>(steps_ / 2, 1) ||
+                                           families_.back().bytes() > most_bytes_ / 4);
   if (families_.empty() || full || whole_.empty()) {
-    families_.push_back({step, compressed(snapshot), snapshot.size(), {}});
+    families_.push_back({step, compressed(snapshot), {}});
     whole_ = snapshot;
     bytes_ += families_.back().compressed.size();
   } else {
@@ -106,8 +107,8 @@ void SnapshotRing::add(std::int64_t step, const sim::Bytes& snapshot, std::size_
     bytes_ += families_.back().others.back().compressed.size();
   }
   ++count_;
-  // A family goes when even its last is not needed any more; the newest family stays whatever it costs.
-  while (families_.size() > 1 && (families_[1].step <= step - steps_ || bytes_ + bytes_beside > most_bytes_)) {
+  // A family goes when even its last is not needed any more, or when there is no room for it.
+  while (families_.size() > 1 && (families_[1].step <= step - steps_ || bytes() + bytes_beside > most_bytes_)) {
     bytes_ -= families_.front().bytes();
     count_ -= 1 + families_.front().others.size();
     families_.pop_front();

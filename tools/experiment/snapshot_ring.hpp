@@ -14,7 +14,7 @@ namespace tools {
 /// they lean on.
 class SnapshotRing {
  public:
-  /// Snapshots are kept for `steps` steps, but never more than `most_bytes` of them.
+  /// Snapshots are kept for `steps` steps, but never more than `most_bytes` of them; the newest one always is.
   SnapshotRing(std::int64_t steps, std::size_t most_bytes) : steps_(steps), most_bytes_(most_bytes) {}
 
   /// `step` must be larger than that of the newest.  `bytes_beside` count as well.
@@ -28,7 +28,8 @@ class SnapshotRing {
   /// The step of the oldest one.
   std::optional<std::int64_t> oldest() const;
   std::size_t size() const { return count_; }
-  std::size_t bytes() const { return bytes_; }
+  /// That it holds in memory.
+  std::size_t bytes() const { return bytes_ + whole_.size(); }
 
  private:
   struct Difference {
@@ -39,7 +40,6 @@ class SnapshotRing {
   struct Family {
     std::int64_t step;
     sim::Bytes compressed;
-    std::size_t raw_bytes;
     std::vector<Difference> others;
     std::size_t bytes() const;
   };

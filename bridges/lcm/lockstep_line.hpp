@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "bridges/lcm/lockstep_service.hpp"
+#include "shoal/message_codec.hpp"
+
+namespace bridges {
+
+/// A bus on which clients may be.
+struct LockstepService::Line {
+  Line(sim::Bus& bus, sim::MailGate& mail_gate)
+      : network(bus),
+        gate(mail_gate),
+        mail(mail_gate),
+        acks(bus.open_mailbox("sim.ack")),
+        questions(bus.open_mailbox("sim.resend")),
+        bundles(bus.open_mailbox("sim.resent")) {}
+
+  /// Out at once, beside the gate.
+  template <typename Message>
+  void publish(const char* channel, const Message& message, sim::Time at) {
+    shoal::encode_into(message, buffer);
+    network.publish(channel, buffer, at);
+    network.end_of_step();
+  }
+
+  sim::Bus& network;
+  sim::MailGate& gate;
+  sim::ClientMail mail;
+  std::unique_ptr<sim::Mailbox> acks, questions, bundles;
+  std::vector<std::unique_ptr<sim::Mailbox>> passed_on;  // read for the sake of other clients only
+  sim::Bytes buffer;
+};
+
+}  // namespace bridges

@@ -1,0 +1,190 @@
+#include "bridges/lcm/lockstep_line.hpp"
+#include "bridges/lcm/resend.hpp"
+#include "shoal/sim_ack_t.hpp"
+#include "shoal/sim_resend_t.hpp"
+#include "shoal/sim_tick_t.hpp"
+
+// The messages of the lockstep: ticks, acknowledgements, and what is asked for and sent again.
+
+namespace bridges {
+
+using std::chrono::milliseconds;
+
+namespace {
+
+/// Messages of a kind that are looked at before the world looks at something else.
+constexpr int most_at_once = 1000;
+
+template <typename Take>
+void take_up_to(int most, sim::Mailbox& mailbox, Take&& take) {
+  for (int taken = 0; taken < most; ++taken) {
+    const auto message = mailbox.take();
+    if (!message) return;
+    take(*message);
+  }
+}
+
+}  // namespace
+
+void LockstepService::publish_tick(const std::vector<std::string>& clients, bool last) {
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    shoal::sim_tick_t tick;
+    tick.utime = utime();
+    tick.step = world_.step_number();
+    tick.branch = branch_;
+    tick.last = last;
+    for (const std::string& client : clients) {
+      const sim::LockstepMember* member = lockstep_.find(client);
+      if (member == nullptr || member->line != static_cast<int>(i)) continue;
+      shoal::sim_due_t& due = tick.client.emplace_back();
+      due.name = client;
+      due.session = member->terms.session;
+      due.sequence = member->sequence;
+      due.count = static_cast<std::int32_t>(member->list.size());
+      for (const sim::PostedMessage& posted : member->list) {
+        due.channel.push_back(posted.channel);
+        due.crc.push_back(posted.crc);
+      }
+    }
+    tick.count = static_cast<std::int32_t>(tick.client.size());
+    if (tick.count > 0 || last) lines_[i]->publish("sim.tick", tick, world_.now());
+  }
+}
+
+void LockstepService::ask_client(const sim::LockstepMember& member) {
+  Line& line = line_of(member.line);
+  shoal::sim_resend_t question;
+  question.utime = utime();
+  question.client = member.name;
+  question.session = member.terms.session;
+  question.sequence = member.sequence;
+  question.of_client = true;
+  question.first = line.mail.first_missing(member.name);
+  line.publish("sim.resend", question, world_.now());
+}
+
+void LockstepService::take_messages() {
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    Line& line = *lines_[i];
+    if (!lockstep_.empty()) line.mail.collect();
+    take_up_to(most_at_once, *line.acks, [&](const sim::Message& ack) { take_ack(static_cast<int>(i), ack); });
+    take_up_to(most_at_once, *line.questions, [&](const sim::Message& question) { take_question(question); });
+    take_up_to(most_at_once, *line.bundles, [&](const sim::Message& bundle) { take_bundle(bundle); });
+    for (const auto& mailbox : line.passed_on)
+      while (mailbox->take()) {
+      }
+  }
+}
+
+void LockstepService::take_ack(int line_index, const sim::Message& message) {
+  std::string who;
+  try {
+    const auto ack = shoal::decode<shoal::sim_ack_t>(message.payload, shoal::Finite::any);
+    who = ack.client.substr(0, 60);
+    if (ack.channel.size() > sim::most_named_messages)
+      throw std::runtime_error("client '" + ack.client + "' names " + std::to_string(ack.channel.size()) +
+                               " messages; at most " + std::to_string(sim::most_named_messages) + " are allowed");
+    std::string why;
+    const auto verdict =
+        lockstep_.acknowledge({ack.client, ack.step, ack.session, ack.sequence}, world_.step_number(), why);
+    if (verdict == sim::Lockstep::Verdict::refused) {
+      if (const auto dropped = dropped_.find(ack.client);
+          dropped != dropped_.end() && dropped->second.session == ack.session && !lockstep_.has(ack.client))
+        tell_dropped(dropped->second, ack.client);
+      throw std::runtime_error(why);
+    }
+    if (heard_) heard_(ack.client);
+    if (verdict == sim::Lockstep::Verdict::repeated) return;
+    sim::LockstepMember& member = *lockstep_.find(ack.client);
+    Line& line = line_of(member.line);
+    std::vector<sim::NamedMessage> named;
+    for (std::size_t i = 0; i < ack.channel.size(); ++i)
+      named.push_back({ack.channel[i], static_cast<std::uint32_t>(ack.crc[i])});
+    line.mail.release(ack.client);
+    if (verdict == sim::Lockstep::Verdict::abandoned) {
+      line.mail.drop(named);
+      member.left_open = 0;  // once
+      return;
+    }
+    if (!ack.listed) return;
+    for (const std::string& channel : ack.channel)
+      if (!line.gate.reads(channel) && lockstep_.somebody_receives(line_index, channel) && !channel.empty() &&
+          channel.size() <= sim::Bus::max_channel_length)
+        line.passed_on.push_back(line.gate.open_mailbox(channel));
+    line.mail.expect(ack.client, named);
+    Asked& asked = asked_[ack.client];
+    asked.send_at = Clock::now() + resend_grace;
+    asked.interval = first_resend_interval;
+  } catch (const std::runtime_error& error) {
+    complain(who, std::string("sim.ack: ") + error.what());
+  }
+}
+
+void LockstepService::take_question(const sim::Message& message) {
+  std::string who;
+  try {
+    const auto question = shoal::decode<shoal::sim_resend_t>(message.payload, shoal::Finite::any);
+    if (question.of_client) return;  // our own
+    who = question.client.substr(0, 60);
+    const sim::LockstepMember* member = lockstep_.find(question.client);
+    if (member == nullptr || member->terms.session != question.session)
+      throw std::runtime_error("client '" + question.client + "' asks for messages, but takes no part in the lockstep");
+    if (question.sequence != member->sequence || member->answered) return;  // late
+    if (question.first < 0 || static_cast<std::size_t>(question.first) >= member->list.size())
+      throw std::runtime_error("client '" + question.client + "' asks for message " + std::to_string(question.first) +
+                               " of " + std::to_string(member->list.size()));
+    const auto asked = asked_.find(question.client);
+    // What is on its way need not go out twice.
+    if (asked == asked_.end() || Clock::now() < asked->second.serve_after) return;
+    asked->second.serve_after = Clock::now() + milliseconds(5);
+    send_again(*member, question.first);
+  } catch (const std::runtime_error& error) {
+    complain(who, std::string("sim.resend: ") + error.what());
+  }
+}
+
+void LockstepService::send_again(const sim::LockstepMember& member, std::int32_t first) {
+  Line& line = line_of(member.line);
+  shoal::sim_resent_t head;
+  head.utime = utime();
+  head.client = member.name;
+  head.session = member.terms.session;
+  head.sequence = member.sequence;
+  head.of_client = false;
+  send_bundles(
+      head, static_cast<std::size_t>(first), member.list.size(),
+      [&](std::size_t place) {
+        const sim::PostedMessage& posted = member.list[place];
+        return ResentMessage{member.terms.receives[static_cast<std::size_t>(posted.channel)], *posted.payload};
+      },
+      [&](const shoal::sim_resent_t& bundle) {
+        summary_of(member.name).messages_sent_again += bundle.count;
+        line.publish("sim.resent", bundle, world_.now());
+      });
+}
+
+void LockstepService::take_bundle(const sim::Message& message) {
+  std::string who;
+  try {
+    const auto bundle = shoal::decode<shoal::sim_resent_t>(message.payload, shoal::Finite::any);
+    if (!bundle.of_client) return;  // our own
+    who = bundle.client.substr(0, 60);
+    const sim::LockstepMember* member = lockstep_.find(bundle.client);
+    if (member == nullptr || member->terms.session != bundle.session)
+      throw std::runtime_error("client '" + bundle.client +
+                               "' sends messages again, but takes no part in the lockstep");
+    if (bundle.sequence != member->sequence || !member->answered) return;  // late
+    Line& line = line_of(member->line);
+    for (std::size_t i = 0; i < bundle.message.size(); ++i) {
+      const auto bytes = bytes_of(bundle.message[i]);
+      ++summary_of(bundle.client).messages_asked_for;
+      if (!line.mail.add(bundle.client, bundle.first + static_cast<std::int32_t>(i), bundle.message[i].channel,
+                         {bytes.begin(), bytes.end()}))
+        throw std::runtime_error("client '" + bundle.client + "' sends again what it had not named");
+    }
+  } catch (const std::runtime_error& error) {
+    complain(who, std::string("sim.resent: ") + error.what());
+  }
+}
+
+}  // namespace bridges
