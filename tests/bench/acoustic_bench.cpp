@@ -11,6 +11,7 @@
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/world.hpp"
+#include "tests/project_paths.hpp"
 
 namespace {
 
@@ -35,7 +36,7 @@ std::string world_text(std::int64_t vehicles, double spacing_m, const std::strin
 void talk(benchmark::State& state, double spacing_m, const std::string& acoustics) {
   const std::int64_t vehicles = state.range(0);
   const sim::LoadedWorld loaded =
-      sim::load_world_text(world_text(vehicles, spacing_m, acoustics), SHOAL_SOURCE_DIR "/worlds/bench.yaml");
+      sim::load_world_text(world_text(vehicles, spacing_m, acoustics), test_support::source_path("worlds/bench.yaml"));
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus);
   shoal::modem_send_t message{};

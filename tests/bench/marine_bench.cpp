@@ -8,6 +8,7 @@
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/world.hpp"
+#include "tests/project_paths.hpp"
 
 namespace {
 
@@ -20,7 +21,7 @@ std::string world_text(std::int64_t vehicles, double step_s, const std::string& 
          "\n    position_m: [0, 0, -20]\n    placement: {pattern: grid, spacing_m: 5}\n    " + vehicle + "\n";
 }
 
-const std::string worlds = SHOAL_SOURCE_DIR "/worlds/bench.yaml";
+const std::string worlds = test_support::source_path("worlds/bench.yaml");
 
 /// Propellers and fins of a fleet at work.
 void set_off(sim::World& world, sim::Bus& bus) {

@@ -12,6 +12,7 @@
 #include "shoal/modem_send_t.hpp"
 #include "sim/bus/utime_stamp.hpp"
 #include "tests/devices/world_fixture.hpp"
+#include "tests/project_paths.hpp"
 
 namespace {
 
@@ -139,7 +140,7 @@ class WorldOfOffset : public test::LoadedTestWorld {
 
  private:
   static sim::LoadedWorld with_clocks(const std::string& file, double offset_s) {
-    sim::LoadedWorld loaded = sim::load_world(SHOAL_SOURCE_DIR "/worlds/" + file, with_messages({}));
+    sim::LoadedWorld loaded = sim::load_world(test_support::source_path("worlds/") + file, with_messages({}));
     for (sim::VehicleInstance& vehicle : loaded.config.vehicles) {
       auto config = std::make_shared<sim::VehicleConfig>(*vehicle.config);
       config->clock = {};

@@ -2,6 +2,7 @@
 #include "sim/world/mounted_device.hpp"
 #include "tests/devices/modem_fixture.hpp"
 #include "tests/devices/port_fixture.hpp"
+#include "tests/project_paths.hpp"
 
 namespace {
 
@@ -53,7 +54,7 @@ class DamagedState : public testing::TestWithParam<std::string> {
   }
   std::size_t below(std::size_t size) { return random.integer_below(static_cast<std::uint32_t>(size)); }
 
-  test::LoadedTestWorld test{SHOAL_SOURCE_DIR "/worlds/" + GetParam()};
+  test::LoadedTestWorld test{test_support::source_path("worlds/") + GetParam()};
   sim::Random random{1, GetParam()};
   std::vector<sim::Sensor*> sensors;
   std::vector<std::string> names;

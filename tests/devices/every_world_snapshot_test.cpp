@@ -5,6 +5,7 @@
 
 #include "tests/devices/port_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
+#include "tests/project_paths.hpp"
 
 namespace {
 
@@ -51,7 +52,7 @@ struct SteppedWorld {
 
 std::vector<std::string> worlds() {
   std::vector<std::string> names;
-  for (const auto& file : fs::directory_iterator(SHOAL_SOURCE_DIR "/worlds")) {
+  for (const auto& file : fs::directory_iterator(test_support::source_path("worlds"))) {
     if (file.path().extension() != ".yaml") continue;
     names.push_back(file.path().stem().string());
   }
@@ -66,7 +67,7 @@ class EveryWorld : public testing::TestWithParam<std::string> {
   EveryWorld() {
     sim::LoadOptions options;
     options.encode_message = shoal::encode_own_message;
-    loaded = sim::load_world(SHOAL_SOURCE_DIR "/worlds/" + GetParam() + ".yaml", options);
+    loaded = sim::load_world(test_support::source_path("worlds/") + GetParam() + ".yaml", options);
     sim::Random random(1, GetParam());
     random.begin_step(0);
     saved_at.push_back(0);

@@ -7,6 +7,7 @@
 #include "devices/buoyancy_engine.hpp"
 #include "devices/moving_mass.hpp"
 #include "tests/devices/marine_fixture.hpp"
+#include "tests/project_paths.hpp"
 
 namespace {
 
@@ -16,7 +17,8 @@ class DriftingVehicle : public test::TestWorld {
                   const std::string& step_s = "0.01")
       : TestWorld("shoal: 1\norigin: {latitude_deg: 60, longitude_deg: 20}\nphysics: {step_s: " + step_s +
                   ", gravity_mps2: 9.81}\nmedium: {water: {density_kgpm3: 1025}, current: {velocity_mps: " + current +
-                  "}}\nvehicles:\n  - {name: v, file: " + SHOAL_SOURCE_DIR + "/vehicles/" + file + start + "}\n"),
+                  "}}\nvehicles:\n  - {name: v, file: " + test_support::source_path("vehicles/") + file + start +
+                  "}\n"),
         body(*world.vehicles()[0]->bodies()[0].second) {}
   void command(const std::string& device, double value) {
     shoal::actuator_command_t message{};

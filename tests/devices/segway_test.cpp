@@ -10,6 +10,7 @@
 #include "shoal/joint_servo_command_t.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/fidelity/closed_forms.hpp"
+#include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace {
@@ -39,9 +40,10 @@ struct Segway : test::TestWorld {
   }
   static std::string world_of(const Setting& setting) {
     const test_support::ScratchFolder scratch;  // the file is read at once
-    std::ofstream(scratch.file("segway.yaml")) << "include: " SHOAL_SOURCE_DIR "/vehicles/segway_rmp.yaml\n"
-                                               << "shoal: 1\nvehicle: segway_in_test\n"
-                                               << (setting.joints.empty() ? "" : "joints:\n" + setting.joints);
+    std::ofstream(scratch.file("segway.yaml"))
+        << "include: " << test_support::source_path("vehicles/segway_rmp.yaml") << "\n"
+        << "shoal: 1\nvehicle: segway_in_test\n"
+        << (setting.joints.empty() ? "" : "joints:\n" + setting.joints);
     std::ostringstream text;
     text.precision(12);
     text << "shoal: 1\nphysics: " << setting.physics

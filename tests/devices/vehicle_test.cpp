@@ -11,12 +11,13 @@
 #include "shoal/wheel_encoder_t.hpp"
 #include "shoal/wrench_t.hpp"
 #include "tests/devices/world_fixture.hpp"
+#include "tests/project_paths.hpp"
 
 namespace {
 
 /// A world of worlds/ with its one vehicle.
 struct Driven : test::LoadedTestWorld {
-  explicit Driven(const std::string& name) : LoadedTestWorld(SHOAL_SOURCE_DIR "/worlds/" + name + ".yaml") {}
+  explicit Driven(const std::string& name) : LoadedTestWorld(test_support::source_path("worlds/") + name + ".yaml") {}
   const sim::Vehicle& vehicle() const { return *world.vehicles().front(); }
   sim::Vector3d position() const { return vehicle().X_WV().translation(); }
 };

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/project_paths.hpp"
+
 namespace test {
 
 /// A row of tests/fidelity/reference/closed_forms.csv.
@@ -30,7 +32,7 @@ struct ClosedForm {
 
 /// All rows of all cases, in the order of the file.
 inline std::vector<ClosedForm> all_closed_forms() {
-  std::ifstream in(std::string(SHOAL_SOURCE_DIR) + "/tests/fidelity/reference/closed_forms.csv");
+  std::ifstream in(test_support::source_path("tests/fidelity/reference/closed_forms.csv"));
   std::vector<ClosedForm> forms;
   std::string line;
   std::getline(in, line);  // the header

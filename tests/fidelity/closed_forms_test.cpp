@@ -8,6 +8,8 @@
 #include <regex>
 #include <set>
 
+#include "tests/project_paths.hpp"
+
 // Each row of closed_forms.csv about water and what is in it is compared with something by some test.
 
 namespace {
@@ -75,7 +77,7 @@ std::vector<Mention> mentions_in(const std::string& source) {
 
 TEST(ClosedForms, EveryRowAboutWaterIsUsedByATest) {
   std::vector<Mention> mentions;
-  for (const auto& entry : fs::recursive_directory_iterator(SHOAL_SOURCE_DIR "/tests")) {
+  for (const auto& entry : fs::recursive_directory_iterator(test_support::source_path("tests"))) {
     if (entry.path().extension() != ".cpp") continue;
     std::ifstream in(entry.path());
     const std::string source{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

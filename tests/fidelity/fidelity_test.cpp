@@ -15,6 +15,7 @@
 #include "sim/world/bottom_check.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/world.hpp"
+#include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tools/experiment/fidelity_report.hpp"
 
@@ -24,7 +25,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-const std::string cases_file = SHOAL_SOURCE_DIR "/tests/fidelity/cases.yaml";
+const std::string cases_file = test_support::source_path("tests/fidelity/cases.yaml");
 
 tools::FidelityResult run(const std::string& name, const tools::FidelityOptions& options = {}) {
   const tools::FidelityFile file = tools::read_fidelity_file(cases_file);
@@ -130,7 +131,8 @@ class FidelityFiles : public testing::Test {
     }
     return {};
   }
-  std::string cases(const std::string& more, const std::string& vehicle = SHOAL_SOURCE_DIR "/vehicles/bluerov2.yaml") {
+  std::string cases(const std::string& more,
+                    const std::string& vehicle = test_support::source_path("vehicles/bluerov2.yaml")) {
     return write("cases.yaml", "shoal: 1\ngroups:\n  - name: g\n    vehicle: " + vehicle + "\n" + more +
                                    "    cases: [{name: c, reference: c.csv}]\n");
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/geodesy.hpp"
+#include "tests/project_paths.hpp"
 
 namespace test {
 
@@ -18,7 +19,7 @@ struct GpsPoint {
 };
 
 inline std::vector<GpsPoint> gps_points() {
-  std::ifstream in(std::string(SHOAL_SOURCE_DIR) + "/tests/fidelity/reference/gps_points.csv");
+  std::ifstream in(test_support::source_path("tests/fidelity/reference/gps_points.csv"));
   std::vector<GpsPoint> points;
   std::string line;
   std::getline(in, line);  // the header

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/project_paths.hpp"
 #include "tests/system/shoal_program.hpp"
 
 namespace {
@@ -26,7 +27,7 @@ class Plugin : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new system_test::ScratchFolder;
-    const Ended installed = run({"cmake", "--install", SHOAL_BINARY_DIR, "--prefix", path("prefix")});
+    const Ended installed = run({"cmake", "--install", test_support::built_path(""), "--prefix", path("prefix")});
     ASSERT_EQ(installed.exit_code, 0) << installed.errors;
     fs::copy(source("examples/plugin"), path("example"), fs::copy_options::recursive);
     fs::remove_all(path("example/build"));

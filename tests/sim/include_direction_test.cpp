@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/project_paths.hpp"
+
 // Includes point down: tools -> bridges, devices, sim; bridges -> sim; devices -> sim.  `shoal` are the
 // generated messages, `lcm` is LCM itself.
 
@@ -52,7 +54,7 @@ bool is_source(const fs::path& path) {
 }
 
 TEST(IncludeDirection, PointsDownEverywhere) {
-  const fs::path root = SHOAL_SOURCE_DIR;
+  const fs::path root = test_support::source_path("");
   int files = 0;
   for (const auto& [folder, allowed] : may_include)
     for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {

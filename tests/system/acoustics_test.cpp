@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/project_paths.hpp"
 #include "tests/system/shoal_program.hpp"
 
 namespace {
@@ -82,7 +83,8 @@ TEST(AcousticsCommand, ShowsTheLinkThatItsPageShows) {
 }
 
 TEST(AcousticsCommand, ChecksTheClosedForms) {
-  const Ended ended = acoustics({"--closed-forms", SHOAL_SOURCE_DIR "/tests/fidelity/reference/closed_forms.csv"});
+  const Ended ended =
+      acoustics({"--closed-forms", test_support::source_path("tests/fidelity/reference/closed_forms.csv")});
   ASSERT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_THAT(ended.output, HasSubstr("| ambient_noise_wenz_coates |"));
   const ScratchFolder folder;
@@ -103,7 +105,7 @@ TEST(AcousticsCommand, SaysWhatIsWrong) {
   EXPECT_THAT(error_of({"--from", "0,0,-5"}), HasSubstr("needs --to"));
   EXPECT_THAT(error_of({"--level", "nan"}), HasSubstr("must be from -100 to 300"));
   EXPECT_THAT(error_of({"--set", "acoustics.spreading.factor=9"}), HasSubstr("'factor' must be >= 0 and <= 4, got 9"));
-  EXPECT_THAT(error_of({SHOAL_SOURCE_DIR "/worlds/minimal.yaml"}), HasSubstr("no water"));
+  EXPECT_THAT(error_of({test_support::source_path("worlds/minimal.yaml")}), HasSubstr("no water"));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "tests/project_paths.hpp"
 #include "tests/system/shoal_program.hpp"
 
 extern char** environ;
@@ -16,11 +17,11 @@ extern char** environ;
 namespace system_test {
 
 std::string built(const std::string& program) {
-  return SHOAL_BINARY_DIR "/bin/" + program;
+  return test_support::built_path("bin/" + program);
 }
 
 std::string source(const std::string& path) {
-  return SHOAL_SOURCE_DIR "/" + path;
+  return test_support::source_path(path);
 }
 
 std::string text_of_file(const std::string& path) {

@@ -7,6 +7,7 @@
 #include "shoal/actuator_command_t.hpp"
 #include "sim/world/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
+#include "tests/project_paths.hpp"
 
 namespace {
 
@@ -40,7 +41,7 @@ double rms_against(const std::string& file, const std::string& step) {
   yaml.replace(yaml.find("STEP"), 4, step);
   test::TestWorld test(yaml);
   sim::Body& body = test.world.vehicles()[0]->body("hull");
-  std::ifstream in(std::string(SHOAL_SOURCE_DIR) + "/tests/fidelity/reference/" + file);
+  std::ifstream in(test_support::source_path("tests/fidelity/reference/") + file);
   std::string line;
   std::getline(in, line);
   double sum = 0;

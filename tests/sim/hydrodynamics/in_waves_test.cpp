@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/project_paths.hpp"
 #include "tests/sim/hydrodynamics/floating_worlds.hpp"
 
 // Floating bodies in regular waves.
@@ -78,7 +79,7 @@ TEST(InWaves, AMeshOfABoxMovesAsTheBox) {
     test.run_for(10);
     return body_of(test).X_WB();
   };
-  const std::string mesh = std::string(SHOAL_SOURCE_DIR) + "/tests/sim/hydrodynamics/box_1m.obj";
+  const std::string mesh = test_support::source_path("tests/sim/hydrodynamics/box_1m.obj");
   const sim::Pose box = place_after("{shape: box, size_m: [2, 2, 2], density_kgpm3: 500}");
   const sim::Pose same =
       place_after("{shape: mesh, mesh: " + mesh + ", scale: 2, density_kgpm3: 500, drag_coefficient: [1.05]}");

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "tests/devices/world_fixture.hpp"
+#include "tests/project_paths.hpp"
 
 namespace {
 
@@ -21,7 +22,7 @@ std::vector<std::string> snippets(const std::string& path) {
 }
 
 TEST(LivingWorldsPage, HasSnippetsThatLoadAndRun) {
-  const auto all = snippets(SHOAL_SOURCE_DIR "/docs/living_worlds.md");
+  const auto all = snippets(test_support::source_path("docs/living_worlds.md"));
   ASSERT_EQ(all.size(), 4u);
   std::string world = "shoal: 1\nobjects:\n  - {name: ground, fixed: true, parts: [{shape: plane}]}\n";
   int x = 30;

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "tests/devices/world_fixture.hpp"
+#include "tests/project_paths.hpp"
 
 namespace {
 
@@ -166,7 +167,7 @@ TEST(LoadWorld, AMistakeInAVehicleFileIsReportedOnceForAllItsInstances) {
 }
 
 TEST(LoadWorld, TheResolvedWorldIsAWorldFileOfItsOwn) {
-  const auto loaded = sim::load_world(SHOAL_SOURCE_DIR "/worlds/minimal.yaml", {{"run.duration_s=3"}, {}});
+  const auto loaded = sim::load_world(test_support::source_path("worlds/minimal.yaml"), {{"run.duration_s=3"}, {}});
   const std::string text = sim::to_yaml(loaded.resolved);
   const auto again = sim::load_world_text(text, "elsewhere/world.yaml");
   EXPECT_EQ(again.config.run.duration_s, 3);
@@ -180,7 +181,7 @@ TEST(LoadWorld, TheResolvedWorldIsAWorldFileOfItsOwn) {
 }
 
 TEST(LoadWorld, EveryFileInBadWorldsSaysWhatItsFirstLineExpects) {
-  const std::string folder = SHOAL_SOURCE_DIR "/tests/bad_worlds/";
+  const std::string folder = test_support::source_path("tests/bad_worlds/");
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".yaml") continue;

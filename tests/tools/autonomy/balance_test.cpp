@@ -10,6 +10,7 @@
 #include "shoal/joint_servo_command_t.hpp"
 #include "shoal/wheel_encoder_t.hpp"
 #include "tests/devices/world_fixture.hpp"
+#include "tests/project_paths.hpp"
 #include "tools/autonomy/balance_model.hpp"
 
 namespace {
@@ -23,7 +24,7 @@ struct Balanced : test::LoadedTestWorld {
   explicit Balanced(const Balance::Params& params, const std::string& physics_step_s = "0.005",
                     const std::string& latency_s = "0.02")
       : LoadedTestWorld(sim::load_world(
-            SHOAL_SOURCE_DIR "/worlds/segway.yaml",
+            test_support::source_path("worlds/segway.yaml"),
             with_messages({.sets = {"physics.step_s=" + physics_step_s,
                                     "vehicles.segway1.actuator_latency_s=" + latency_s, "metrics=[]", "pass=[]"}}))),
         law(params),

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tools/experiment/acoustic_closed_forms.hpp"
 
@@ -155,11 +156,12 @@ std::string text_of(const std::string& path) {
 }
 
 TEST(AcousticClosedForms, AllHoldAndArePrintedInTheDocument) {
-  const auto rows = tools::acoustic_closed_forms(SHOAL_SOURCE_DIR "/tests/fidelity/reference/closed_forms.csv");
+  const auto rows =
+      tools::acoustic_closed_forms(test_support::source_path("tests/fidelity/reference/closed_forms.csv"));
   EXPECT_EQ(rows.size(), 48u);
   for (const tools::ClosedFormRow& row : rows)
     EXPECT_TRUE(row.within()) << row.name << " " << row.parameters << ": " << row.computed;
-  EXPECT_THAT(text_of(SHOAL_SOURCE_DIR "/docs/acoustics.md"), HasSubstr(tools::closed_forms_text(rows)))
+  EXPECT_THAT(text_of(test_support::source_path("docs/acoustics.md")), HasSubstr(tools::closed_forms_text(rows)))
       << "stale; type  build/release/bin/shoal acoustics --closed-forms tests/fidelity/reference/closed_forms.csv";
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/devices/world_fixture.hpp"
+#include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tools/experiment/study_curves.hpp"
 #include "tools/experiment/study_report.hpp"
@@ -133,7 +134,7 @@ TEST(StudyConfig, CasesChangeTheWorld) {
 
 TEST(StudyConfig, ThoseThatAreShippedCanBeRead) {
   int read = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(SHOAL_SOURCE_DIR "/worlds/studies")) {
+  for (const auto& entry : std::filesystem::directory_iterator(test_support::source_path("worlds/studies"))) {
     EXPECT_NO_THROW(tools::load_study(entry.path().string())) << entry.path();
     ++read;
   }

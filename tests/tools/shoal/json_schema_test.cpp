@@ -11,6 +11,7 @@
 
 #include "sim/device/device_registry.hpp"
 #include "sim/world/load_world.hpp"
+#include "tests/project_paths.hpp"
 
 namespace {
 
@@ -25,7 +26,7 @@ class ScratchTree {
     root_ = mkdtemp(pattern);
     fs::create_directories(root_ / "docs");
     fs::create_directories(root_ / "worlds");
-    fs::copy(SHOAL_SOURCE_DIR "/docs/schema", root_ / "docs/schema", fs::copy_options::recursive);
+    fs::copy(test_support::source_path("docs/schema"), root_ / "docs/schema", fs::copy_options::recursive);
   }
   ~ScratchTree() { fs::remove_all(root_); }
   ScratchTree(const ScratchTree&) = delete;
@@ -49,8 +50,8 @@ struct Verdict {
 };
 
 Verdict validate(const std::string& schemas, const std::string& arguments) {
-  const std::string command = "/usr/bin/python3 -B " SHOAL_SOURCE_DIR "/tests/tools/shoal/validate_yaml.py " + schemas +
-                              " " + arguments + " 2>&1";
+  const std::string command = "/usr/bin/python3 -B " + test_support::source_path("tests/tools/shoal/validate_yaml.py") +
+                              " " + schemas + " " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   Verdict verdict;
   char block[4096];
@@ -59,12 +60,12 @@ Verdict validate(const std::string& schemas, const std::string& arguments) {
   return verdict;
 }
 
-const std::string own_schemas = SHOAL_SOURCE_DIR "/docs/schema";
+const std::string own_schemas = test_support::source_path("docs/schema");
 
 std::string shipped_files() {
   std::string files;
   for (const char* folder : {"worlds", "vehicles"})
-    for (const auto& entry : fs::directory_iterator(fs::path(SHOAL_SOURCE_DIR) / folder))
+    for (const auto& entry : fs::directory_iterator(fs::path(test_support::source_path("")) / folder))
       if (entry.path().extension() == ".yaml") files += " " + entry.path().string();
   return files;
 }
@@ -107,7 +108,7 @@ TEST(JsonSchema, AcceptsEveryShippedFile) {
 }
 
 TEST(JsonSchema, RefusesTheBadWorldsWhoseMistakeItCanSay) {
-  const Verdict verdict = validate(own_schemas, std::string("refuse ") + SHOAL_SOURCE_DIR "/tests/bad_worlds");
+  const Verdict verdict = validate(own_schemas, std::string("refuse ") + test_support::source_path("tests/bad_worlds"));
   EXPECT_TRUE(verdict.good) << verdict.output;
 }
 
@@ -140,7 +141,7 @@ TEST(JsonSchema, AcceptsWhatTheLoaderAcceptsInOddSpelling) {
 
 TEST(JsonSchema, AcceptsTheWorldAsItIsWrittenToResults) {
   const ScratchTree tree;
-  const auto loaded = sim::load_world(SHOAL_SOURCE_DIR "/worlds/coop_land.yaml");
+  const auto loaded = sim::load_world(test_support::source_path("worlds/coop_land.yaml"));
   const std::string world = tree.write("resolved.yaml", "world", sim::to_yaml(loaded.resolved));
   const Verdict verdict = validate(tree.schemas(), "accept " + world);
   EXPECT_TRUE(verdict.good) << verdict.output;

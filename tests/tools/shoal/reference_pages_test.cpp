@@ -8,12 +8,13 @@
 
 #include "shoal/message_schema.hpp"
 #include "sim/device/device_registry.hpp"
+#include "tests/project_paths.hpp"
 
 namespace {
 
 TEST(ReferencePages, InDocsAreUpToDate) {
   for (const std::string name : {"devices", "world_format", "messages"}) {
-    std::ifstream in(std::string(SHOAL_SOURCE_DIR "/docs/") + name + ".md", std::ios::binary);
+    std::ifstream in(test_support::source_path("docs/") + name + ".md", std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     // Not EXPECT_EQ: nobody wants to read two whole pages.
     EXPECT_TRUE(text == tools::reference_page(name))
