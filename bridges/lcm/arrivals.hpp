@@ -2,39 +2,69 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
-#include <mutex>
+#include <vector>
+
+#include "bridges/lcm/poll_set.hpp"
 
 namespace bridges {
 
-/// Lets one thread sleep until a message comes on any of the buses that share this.
+/// Lets one thread sleep until a message comes on any of the buses that share this.  That thread sends what the buses
+/// have queued before it sleeps, and receives for them: no other thread stands between it and the answer.
 class Arrivals {
  public:
-  /// From the receiving threads.
-  void arrived() {
-    count_.fetch_add(1);
-    if (waiters_.load() == 0) return;
-    { const std::lock_guard lock(mutex_); }  // the waiter is asleep, or will see the new count
-    condition_.notify_all();
-  }
+  /// A bus, as the thread that waits sees it.
+  class Port {
+   public:
+    virtual void send_queued() = 0;
+    /// Gives what has come to the mailboxes.  False: nothing will come any more.
+    virtual bool receive() = 0;
 
-  /// Sleeps until a message arrived after the last call returned; at once if one did already.  False on time-out.
-  bool wait(std::chrono::milliseconds timeout) {
-    waiters_.fetch_add(1);
-    std::unique_lock lock(mutex_);
-    const bool came = condition_.wait_for(lock, timeout, [&] { return count_.load() != seen_; });
-    waiters_.fetch_sub(1);
-    seen_ = count_.load();
-    return came;
-  }
+   protected:
+    ~Port() = default;
+  };
+
+  /// Throws BusError when no file descriptor is left.
+  Arrivals();
+  ~Arrivals();
+  Arrivals(const Arrivals&) = delete;
+  Arrivals& operator=(const Arrivals&) = delete;
+
+  /// While it lives the thread that waits serves `port`, which can receive when `fd` is readable.  Made and destroyed
+  /// by that thread.
+  class Place {
+   public:
+    Place(Arrivals& arrivals, Port& port, int fd) : arrivals_(arrivals), port_(port) { arrivals.add(port, fd); }
+    ~Place() { arrivals_.remove(port_); }
+    Place(const Place&) = delete;
+    Place& operator=(const Place&) = delete;
+
+   private:
+    Arrivals& arrivals_;
+    Port& port_;
+  };
+
+  /// A message is in its mailbox.  From any thread.
+  void arrived();
+  /// By one thread.  Sleeps until a message arrived after the last call returned; at once if one did already.  False on
+  /// time-out.
+  bool wait(std::chrono::milliseconds timeout);
 
  private:
+  struct Watched {
+    Port* port;
+    int fd;
+  };
+  void add(Port& port, int fd);
+  void remove(Port& port);
+  void receive(const PollSet::Readable& readable);
+
+  PollSet readable_;
+  int wake_fd_;
+  std::vector<Watched> ports_;
   std::atomic<std::uint64_t> count_ = 0;
   std::uint64_t seen_ = 0;
-  std::atomic<int> waiters_ = 0;
-  std::mutex mutex_;
-  std::condition_variable condition_;
+  std::atomic<bool> asleep_ = false;
 };
 
 }  // namespace bridges

@@ -12,15 +12,20 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "bridges/lcm/outgoing_sender.hpp"
+#include "bridges/lcm/poll_set.hpp"
+
 namespace bridges {
 namespace {
 
-constexpr std::chrono::seconds time_to_flush{1};
+/// Messages that are received before a thread that waits looks at its mailboxes.
+constexpr int most_at_once = 1000;
 constexpr std::size_t max_echoes = 4096;
 
 class ChannelMailbox;
@@ -151,20 +156,24 @@ void on_message(const lcm_recv_buf_t* buffer, const char*, void* user) {
 
 }  // namespace
 
-struct LcmBus::Threads {
+struct LcmBus::Threads final : Arrivals::Port {
   Threads(const std::string& url, const LcmBusOptions& chosen)
-      : options(chosen), connection(url), outgoing(options.outgoing), stop_fd(eventfd(0, EFD_CLOEXEC)) {
+      : options(chosen),
+        connection(url),
+        outgoing(options.outgoing, [this](const OutgoingQueue::Entry& message) { send(message); }),
+        stop_fd(eventfd(0, EFD_CLOEXEC)) {
     if (stop_fd < 0) throw BusError("no file descriptor is left for the bus");
     if (!options.arrivals) options.arrivals = std::make_shared<Arrivals>();
-    sender = std::thread([this] { send_all(); });
+    // Before the receiver: of the two the first wakes.
+    if (!connection.may_block()) place.emplace(*options.arrivals, *this, connection.fd());
+    readable.add(connection.fd(), this);
+    readable.add(stop_fd, nullptr);
     receiver = std::thread([this] { receive_all(); });
   }
 
   ~Threads() {
-    const auto deadline = std::chrono::steady_clock::now() + time_to_flush;
-    outgoing.close(deadline);
-    if (!outgoing.wait_until_sent(time_to_flush)) connection.shut_down();
-    sender.join();
+    place.reset();
+    outgoing.close([this] { connection.shut_down(); });
     stopping = true;
     const std::uint64_t one = 1;
     [[maybe_unused]] const auto written = write(stop_fd, &one, sizeof(one));
@@ -172,18 +181,17 @@ struct LcmBus::Threads {
     close(stop_fd);
   }
 
-  void send_all() {
-    std::unique_ptr<OutgoingQueue::Entry> entry;
-    while ((entry = outgoing.next(std::move(entry)))) {
-      bool sent = false;
-      if (connected) {
-        // tcpq writes subscriptions into the same stream.
-        const std::lock_guard lock(transmit_mutex);
-        sent = connection.publish(entry->channel.c_str(), entry->payload);
-      }
-      if (!sent) count_refused();
+  void send(const OutgoingQueue::Entry& message) {
+    bool sent = false;
+    if (connected) {
+      // tcpq writes subscriptions into the same stream.
+      const std::lock_guard lock(transmit_mutex);
+      sent = connection.publish(message.channel.c_str(), message.payload);
     }
+    if (!sent) count_refused();
   }
+
+  void send_queued() override { outgoing.help(); }
 
   Channel& open_channel(const std::string& name) {
     const std::lock_guard lock(channels_mutex);
@@ -217,27 +225,37 @@ struct LcmBus::Threads {
 
   void receive_all() {
     while (!stopping) {
-      if (!wait_readable(connection.fd(), stop_fd, std::chrono::milliseconds(-1)) || stopping) continue;
+      readable.wait(std::chrono::milliseconds(-1));
+      if (stopping || !receive()) return;
+    }
+  }
+
+  bool receive() override {
+    const std::lock_guard lock(receive_mutex);
+    for (int i = 0; connected && i < most_at_once; ++i) {
+      // Another thread may have been faster.
+      if (!wait_readable(connection.fd(), -1, std::chrono::milliseconds(0))) break;
       if (connection.handle()) continue;
       connected = false;
       spdlog::warn("the connection to {} is lost; messages are dropped from now on", connection.url());
-      return;
     }
+    return connected;
   }
 
   LcmBusOptions options;
   std::map<std::string, std::unique_ptr<Channel>, std::less<>> channels;  // outlives the connection's handlers
   LcmConnection connection;
-  OutgoingQueue outgoing;
-  std::mutex transmit_mutex;
+  std::mutex transmit_mutex, receive_mutex;
   mutable std::mutex channels_mutex;
-  int stop_fd = -1;
   std::atomic<bool> stopping = false;
   std::atomic<bool> connected = true;
   std::atomic<bool> warned_of_size = false;
   std::atomic<std::uint64_t> published = 0;
   std::atomic<std::uint64_t> refused = 0;
-  std::thread sender;
+  OutgoingSender outgoing;  // its thread uses what is above
+  std::optional<Arrivals::Place> place;
+  PollSet readable;
+  int stop_fd = -1;
   std::thread receiver;
 };
 

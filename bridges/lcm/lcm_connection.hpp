@@ -57,6 +57,8 @@ class LcmConnection {
   /// Calls the handlers for one message.  Only after fd() became readable.  False when the connection is
   /// lost.
   bool handle();
+  /// publish() and handle() may wait for another program: tcpq.
+  bool may_block() const { return is_tcp_; }
   /// Makes a blocked publish() return, for good.
   void shut_down();
 

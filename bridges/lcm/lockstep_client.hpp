@@ -7,16 +7,13 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
+#include "bridges/lcm/client_inbox.hpp"
+#include "bridges/lcm/client_outbox.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
-#include "shoal/sim_resend_t.hpp"
-#include "shoal/sim_resent_t.hpp"
 #include "shoal/sim_tick_t.hpp"
 
 namespace bridges {
@@ -52,11 +49,7 @@ class LockstepClient {
     std::string on_timeout;  ///< wait, pause, continue, end; empty: the world's choice
     double timeout_s = 0;    ///< wall time; 0: the world's
   };
-  struct Counts {
-    std::uint64_t asked_for = 0;  ///< messages that came only after they were asked for
-    std::uint64_t repeated = 0;   ///< messages that came again, and were dropped
-    std::uint64_t unnamed = 0;    ///< messages that no tick named: of senders the simulator does not hear
-  };
+  using Counts = ClientInbox::Counts;
 
   /// Throws BusError when LCM cannot be used.
   LockstepClient(const std::string& url, std::string name);
@@ -90,40 +83,16 @@ class LockstepClient {
   End end() const { return end_; }
   /// The simulator's words, when it dropped this client.
   const std::string& reason() const { return reason_; }
-  const Counts& counts() const { return counts_; }
+  const Counts& counts() const { return inbox_.counts(); }
   /// Zero: wait for ever.
   void set_silence_limit(std::chrono::milliseconds limit) { silence_limit_ = limit; }
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// A message that came, and that no tick named yet.
-  struct Held {
-    std::uint32_t crc;
-    sim::Bytes payload;
-    int ticks = 0;  ///< that did not name it
-  };
-  /// A channel whose messages ticks name.
-  struct Channel {
-    std::string name;
-    std::deque<Held> held;
-  };
-  /// A message that the tick names.
-  struct Named {
-    std::size_t channel;
-    std::uint32_t crc;
-    bool there = false;
-    sim::Bytes payload;
-  };
-  struct Published {
-    std::string channel;
-    std::uint32_t crc;
-    sim::Bytes payload;
-  };
   /// The tick that this client waits to have all messages of.
   struct Incomplete {
     shoal::sim_tick_t tick;
     std::int64_t sequence;
-    std::vector<Named> messages;
     Clock::time_point ask_at;
     std::chrono::milliseconds interval;
   };
@@ -135,7 +104,6 @@ class LockstepClient {
                bool heed_stop);
   void send_request(const std::string& command, std::int32_t id, double value, const std::string& text);
   void ask_to_join(Clock::time_point deadline);
-  std::string terms() const;
   void call_handlers(const std::string& channel, std::span<const std::byte> payload);
 
   void take(Received message);
@@ -145,11 +113,8 @@ class LockstepClient {
   void take_bundle(std::span<const std::byte> payload);
   void begin_tick(shoal::sim_tick_t tick, const shoal::sim_due_t& due);
   bool rewind(const shoal::sim_tick_t& tick);
-  bool has_all();
   void ask_when_due();
   void handle_tick();
-  void handle_unnamed();
-  void remember(std::size_t channel, std::uint32_t crc);
   void send(std::string_view channel, std::span<const std::byte> payload);
   void send_ack();
 
@@ -160,9 +125,9 @@ class LockstepClient {
   JoinOptions options_;
   // Handlers may subscribe: a deque grows without moving the one that is called.
   std::map<std::string, std::deque<Handler>, std::less<>> handlers_;
-  std::vector<Channel> receives_;
-  std::map<std::string, std::size_t, std::less<>> receives_at_;
-  std::size_t receives_told_ = 0;  // so many of them the simulator knows
+  ClientInbox inbox_;
+  ClientOutbox outbox_;
+  std::size_t channels_told_ = 0;  // so many of the inbox the simulator knows
   bool joined_ = false;
   std::int32_t request_id_ = 0, join_id_ = 0;
   std::optional<std::int32_t> answered_id_;
@@ -171,18 +136,12 @@ class LockstepClient {
   std::optional<Incomplete> incomplete_;
   std::int64_t sequence_ = 0;  // of the last tick that was handled
   shoal::sim_tick_t tick_;
-  bool open_ = false;                                  // handled, and not acknowledged
-  std::vector<Published> published_, sent_, delayed_;  // since the tick; with the last acknowledgement; before the next
-  std::set<std::pair<std::size_t, std::uint32_t>> recent_;  // handled a short time ago
-  std::deque<std::pair<std::size_t, std::uint32_t>> recent_order_;
-  std::set<std::pair<std::size_t, std::uint32_t>> early_;  // of those: handled although no tick had named them
   std::function<void(const shoal::sim_tick_t&)> rewound_;
   std::int32_t branch_ = 0;
 
   std::atomic<bool> stop_ = false;
   End end_ = End::none;
   std::string reason_;
-  Counts counts_;
   std::chrono::milliseconds silence_limit_{30'000};
   static_assert(std::atomic<bool>::is_always_lock_free, "stop() is called from signal handlers");
 };

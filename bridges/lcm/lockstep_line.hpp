@@ -18,12 +18,11 @@ struct LockstepService::Line {
         questions(bus.open_mailbox("sim.resend")),
         bundles(bus.open_mailbox("sim.resent")) {}
 
-  /// Out at once, beside the gate.
+  /// Beside the gate.  Goes out when the world waits for the answer, or at the end of the step.
   template <typename Message>
   void publish(const char* channel, const Message& message, sim::Time at) {
     shoal::encode_into(message, buffer);
     network.publish(channel, buffer, at);
-    network.end_of_step();
   }
 
   sim::Bus& network;

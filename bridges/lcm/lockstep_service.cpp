@@ -342,10 +342,11 @@ void LockstepService::publish_end(const Wait& wait, milliseconds limit) {
       send_at = now + interval;
       interval = next_resend_interval(interval);
     }
-    if (names.empty() || now >= end) return;
+    if (names.empty() || now >= end) break;
     wait(milliseconds(10));
     take_messages();
   }
+  for (const auto& line : lines_) line->network.end_of_step();
 }
 
 }  // namespace bridges

@@ -39,7 +39,7 @@ enum class LockstepOutcome {
 /// neither a tick nor a message between world and client is lost.  See docs/lockstep.md.
 class LockstepService {
  public:
-  /// Waits for messages up to the given time, or returns earlier.
+  /// Sends what was published, and waits for messages up to the given time, or returns earlier.
   using Wait = std::function<void(std::chrono::milliseconds)>;
 
   /// The defaults are those of the world's `lockstep`.

@@ -44,16 +44,11 @@ void OutgoingQueue::wake() {
 
 std::unique_ptr<OutgoingQueue::Entry> OutgoingQueue::next(std::unique_ptr<Entry> used) {
   std::unique_lock lock(mutex_);
-  if (used) recycle(std::move(used));
-  sending_ = false;
-  if (waiting_.empty()) {
-    awake_ = false;
-    sent_.notify_all();
-  }
+  if (used) finish(std::move(used));
   sender_waits_ = true;
-  while (!closed_ && (waiting_.empty() || !awake_)) {
+  while (sending_ || (!closed_ && (waiting_.empty() || !awake_))) {
     const bool timed_out = sender_.wait_for(lock, longest_wait) == std::cv_status::timeout;
-    if (timed_out && !waiting_.empty()) break;
+    if (timed_out && !sending_ && !waiting_.empty()) break;
   }
   sender_waits_ = false;
   if (closed_ && std::chrono::steady_clock::now() > deadline_) {
@@ -65,6 +60,34 @@ std::unique_ptr<OutgoingQueue::Entry> OutgoingQueue::next(std::unique_ptr<Entry>
     return nullptr;
   }
   awake_ = true;
+  return take_first();
+}
+
+std::unique_ptr<OutgoingQueue::Entry> OutgoingQueue::next_if_idle(std::unique_ptr<Entry> used) {
+  const std::lock_guard lock(mutex_);
+  if (used) finish(std::move(used));
+  return sending_ || waiting_.empty() || closed_ ? nullptr : take_first();
+}
+
+void OutgoingQueue::hand_over(std::unique_ptr<Entry> used) {
+  {
+    const std::lock_guard lock(mutex_);
+    finish(std::move(used));
+    if (waiting_.empty()) return;
+    awake_ = true;
+  }
+  sender_.notify_one();
+}
+
+void OutgoingQueue::finish(std::unique_ptr<Entry> used) {
+  recycle(std::move(used));
+  sending_ = false;
+  if (!waiting_.empty()) return;
+  awake_ = false;
+  sent_.notify_all();
+}
+
+std::unique_ptr<OutgoingQueue::Entry> OutgoingQueue::take_first() {
   std::unique_ptr<Entry> entry = std::move(waiting_.front());
   waiting_.pop_front();
   waiting_bytes_ -= entry->payload.size();

@@ -37,6 +37,11 @@ class OutgoingQueue {
   /// The sender's side: the oldest message, waiting for one.  `used`: what was sent before, its memory is
   /// reused. Empty when the queue is closed and either empty or past its deadline.
   std::unique_ptr<Entry> next(std::unique_ptr<Entry> used);
+  /// The same for another thread, at once, also when nobody called wake().  Empty when there is none, or when the
+  /// sender is at it, who sends also what was pushed before this call.
+  std::unique_ptr<Entry> next_if_idle(std::unique_ptr<Entry> used);
+  /// The other thread leaves the rest to the sender.
+  void hand_over(std::unique_ptr<Entry> used);
   /// No more messages come; what is here may be sent until the deadline.
   void close(std::chrono::steady_clock::time_point deadline);
   /// Until everything pushed so far is sent or dropped.  False on time-out.
@@ -46,6 +51,8 @@ class OutgoingQueue {
  private:
   std::unique_ptr<Entry> free_entry();
   void recycle(std::unique_ptr<Entry> entry);
+  void finish(std::unique_ptr<Entry> used);
+  std::unique_ptr<Entry> take_first();
 
   const Limits limits_;
   mutable std::mutex mutex_;
@@ -56,7 +63,7 @@ class OutgoingQueue {
   std::vector<std::unique_ptr<Entry>> free_;
   std::size_t free_bytes_ = 0;
   std::uint64_t dropped_ = 0;
-  bool sending_ = false;  // the sender holds a message
+  bool sending_ = false;  // somebody holds a message that is not sent yet
   bool sender_waits_ = false;
   bool awake_ = false;  // told to send all there is
   bool closed_ = false;
