@@ -1,6 +1,6 @@
 // What lockstep costs: the time from a tick to the last answer, for 1 and 10 clients, beside a bare LCM ping-pong of
 // the same sizes in the same run; and how fast a small world runs with 10 clients at 100 Hz.
-//   lockstep_bench [STEPS]
+//   lockstep_bench [STEPS [CLIENTS ...]]
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -144,7 +144,10 @@ int main(int argc, char** argv) {
   const std::string on = url();
   const Times bare = ping_pong(on, steps);
   std::printf("bare LCM ping-pong      p50 %7.1f us   p99 %7.1f us\n", bare.p50_us, bare.p99_us);
-  for (const int clients : {1, 10}) {
+  std::vector<int> numbers;
+  for (int i = 2; i < argc; ++i) numbers.push_back(std::atoi(argv[i]));
+  if (numbers.empty()) numbers = {1, 10};
+  for (const int clients : numbers) {
     const Cost cost = lockstep(on, clients, steps);
     std::printf(
         "barrier, %2d client%s     p50 %7.1f us   p99 %7.1f us   per client p50 %6.1f us   ratio to ping-pong %.2f   "
