@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <random>
 
+#include "bridges/lcm/lockstep_terms.hpp"
 #include "bridges/lcm/resend.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_ack_t.hpp"
@@ -12,7 +13,6 @@
 #include "shoal/sim_control_request_t.hpp"
 #include "shoal/sim_resend_t.hpp"
 #include "shoal/sim_resent_t.hpp"
-#include "sim/run/lockstep.hpp"
 
 namespace bridges {
 namespace {
@@ -116,7 +116,7 @@ void LockstepClient::request(const std::string& command, double value, const std
 void LockstepClient::ask_to_join(Clock::time_point deadline) {
   const std::size_t told = inbox_.channels().size();
   const sim::LockstepTerms terms{session_, inbox_.channels(), options_.on_timeout, options_.timeout_s};
-  request("join", period_s_, sim::text_of(terms), deadline, true);
+  request("join", period_s_, text_of(terms), deadline, true);
   channels_told_ = told;
 }
 
@@ -340,7 +340,7 @@ void LockstepClient::leave() {
   }
   joined_ = false;
   try {
-    request("leave", 0, sim::text_of(sim::LeaveTerms{session_, sequence_}), deadline, false);
+    request("leave", 0, text_of(sim::LeaveTerms{session_, sequence_}), deadline, false);
   } catch (const BusError&) {
     // The world notices when it waits for this client.
   }

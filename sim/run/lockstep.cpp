@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <utility>
 
 #include "sim/bus/crc32.hpp"
 #include "sim/config/message_text.hpp"
@@ -22,15 +21,6 @@ Terms terms_in(const std::string& text, const char* command, Terms terms) {
   in.finish();
   diagnostics.throw_if_any();
   return terms;
-}
-
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + '"';
 }
 
 }  // namespace
@@ -59,16 +49,6 @@ LockstepTerms read_lockstep_terms(const std::string& text, const LockstepTerms& 
   return terms_in(text, "join", defaults);
 }
 
-std::string text_of(const LockstepTerms& terms) {
-  std::string text = "{session: " + std::to_string(terms.session) + ", receives: [";
-  const char* between = "";
-  for (const std::string& channel : terms.receives) text += std::exchange(between, ", ") + quoted(channel);
-  text += "]";
-  if (!terms.on_timeout.empty()) text += ", on_timeout: " + quoted(terms.on_timeout);
-  if (terms.timeout_s != 0) text += ", timeout_s: " + std::to_string(terms.timeout_s);
-  return text + "}";
-}
-
 void LeaveTerms::read(ParamReader& in) {
   in.read("session", session, between(0, 9e18), "that of the join; 0: whichever it is");
   in.read("acknowledged", acknowledged, between(-1, 9e18), "sequence of the last tick it acknowledged; -1: unknown");
@@ -76,10 +56,6 @@ void LeaveTerms::read(ParamReader& in) {
 
 LeaveTerms read_leave_terms(const std::string& text) {
   return terms_in(text, "leave", LeaveTerms{});
-}
-
-std::string text_of(const LeaveTerms& terms) {
-  return "{session: " + std::to_string(terms.session) + ", acknowledged: " + std::to_string(terms.acknowledged) + "}";
 }
 
 void Lockstep::join(const std::string& client, const LockstepTerms& terms, std::int64_t period_steps, std::int64_t step,

@@ -38,9 +38,6 @@ struct LockstepTerms {
 /// Reads the `text` of a join; what it does not say is as in `defaults`.  Throws ConfigError.
 LockstepTerms read_lockstep_terms(const std::string& text, const LockstepTerms& defaults);
 
-/// What read_lockstep_terms() reads.  An empty `on_timeout` and a `timeout_s` of 0 are left to the world.
-std::string text_of(const LockstepTerms& terms);
-
 /// The `text` of `leave`, a YAML map.
 struct LeaveTerms {
   std::int64_t session = 0;        ///< 0: whichever has joined
@@ -50,7 +47,6 @@ struct LeaveTerms {
 
 /// Throws ConfigError.
 LeaveTerms read_leave_terms(const std::string& text);
-std::string text_of(const LeaveTerms& terms);
 
 /// A message that a client must have.
 struct PostedMessage {
