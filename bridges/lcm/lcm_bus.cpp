@@ -25,7 +25,7 @@ namespace bridges {
 namespace {
 
 /// Messages that are received before a thread that waits looks at its mailboxes.
-constexpr int most_at_once = 1000;
+constexpr int most_at_once = 100;
 constexpr std::size_t max_echoes = 4096;
 
 class ChannelMailbox;
