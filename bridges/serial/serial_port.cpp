@@ -214,7 +214,10 @@ class FifoPort final : public sim::BytePort {
   }
   static void make_fifo(const std::string& path) {
     struct stat status {};
-    if (lstat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode)) unlink(path.c_str());
+    if (lstat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode)) {
+      spdlog::warn("serial port '{}': replaced the FIFO that a killed run left", path);
+      unlink(path.c_str());
+    }
     if (mkfifo(path.c_str(), 0600) != 0) fail("cannot make the FIFO", path);
   }
   void remove_all() {
