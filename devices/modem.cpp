@@ -115,21 +115,32 @@ void Modem::transmit(sim::Time now, const Outgoing& message) {
                     reinterpret_cast<const std::uint8_t*>(message.data.data()) + message.data.size());
   frame.utime = (clock_.reading(now) - now).count();
   const sim::Bytes payload = shoal::encode(frame);
-  const sim::Zones& zones = network_.world().zones();
-  const sim::Medium& medium = network_.world().medium();
-  // It sends, and nobody hears.
-  if (zones.denied(sim::ZoneFlag::radio_denied, p_WS()) || !carries(medium, params_.through, p_WS())) return;
+  ++counts_.sent;
+  counts_.sent_bytes += frame.size;
   for (Modem* receiver : network_.members()) {
     if (receiver == this || receiver->params_.network != params_.network) continue;
     if (!message.destination.empty() && receiver->vehicle_ != message.destination) continue;
+    if (const sim::SignalLoss loss = loss_to(*receiver); loss != sim::SignalLoss::none) {
+      ++receiver->counts_.lost[static_cast<std::size_t>(loss)];
+      continue;
+    }
     const double distance_m = (receiver->p_WS() - p_WS()).norm();
-    if (zones.denied(sim::ZoneFlag::radio_denied, receiver->p_WS())) continue;
-    if (!carries(medium, params_.through, receiver->p_WS())) continue;
-    if (distance_m > params_.range_m || lost_on_the_way_to(*receiver)) continue;
-    if (params_.line_of_sight && hidden_from(*receiver)) continue;
     const sim::Time due = now + sim::from_seconds(air_time_s + distance_m / propagation_mps());
     network_.world().schedule_arrival(receiver->device_, due, payload);
   }
+}
+
+sim::SignalLoss Modem::loss_to(const Modem& receiver) const {
+  const sim::Zones& zones = network_.world().zones();
+  const sim::Medium& medium = network_.world().medium();
+  for (const Modem* end : {this, &receiver}) {
+    if (zones.denied(sim::ZoneFlag::radio_denied, end->p_WS())) return sim::SignalLoss::noise;
+    if (!carries(medium, params_.through, end->p_WS())) return sim::SignalLoss::blocked;
+  }
+  if ((receiver.p_WS() - p_WS()).norm() > params_.range_m) return sim::SignalLoss::noise;
+  if (lost_on_the_way_to(receiver)) return sim::SignalLoss::link;
+  if (params_.line_of_sight && hidden_from(receiver)) return sim::SignalLoss::blocked;
+  return sim::SignalLoss::none;
 }
 
 double Modem::propagation_mps() const {
@@ -138,7 +149,7 @@ double Modem::propagation_mps() const {
   return params_.through == SignalCarrier::acoustic ? network_.world().medium().sound_speed_mps(p_WS()) : light_mps;
 }
 
-bool Modem::lost_on_the_way_to(const Modem& receiver) {
+bool Modem::lost_on_the_way_to(const Modem& receiver) const {
   if (params_.loss_probability <= 0) return false;
   // A stream for each pair, so that another modem in the world changes no other link.
   sim::Random link(seed_, full_name_ + ">" + receiver.full_name_);
@@ -163,6 +174,7 @@ void Modem::arrive(sim::Time at, std::span<const std::byte> payload) {
   Packet packet{frame.source, frame.destination, sent, at, sent + sim::Time{frame.utime}, {}};
   const auto* data = reinterpret_cast<const std::byte*>(frame.data.data());
   packet.data.assign(data, data + frame.data.size());
+  ++counts_.received;
   if (serial_) serial_->write(packet.data);
   tell_tap(at, packet.source, packet.data);
   arrived_.push_back(std::move(packet));
@@ -175,7 +187,7 @@ void Modem::measure(const sim::SenseContext&) {
 
 void Modem::visit_state(sim::StateArchive& archive) {
   archive(queue_, arrived_, received_, busy_until_, sent_);
-  archive.unhashed(dropped_);
+  archive.unhashed(dropped_, counts_);
   if (serial_) archive(*serial_);
 }
 

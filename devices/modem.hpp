@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -9,6 +10,7 @@
 #include "devices/message_modem.hpp"
 #include "devices/serial_port.hpp"
 #include "devices/signal_carrier.hpp"
+#include "sim/acoustics/signal.hpp"
 #include "sim/device/device_registry.hpp"
 
 namespace devices {
@@ -32,6 +34,14 @@ class Modem final : public sim::Sensor, public MessageModem {
     int max_message_bytes = 1024;
     std::optional<SerialMessageParams> serial;
     void read(sim::ParamReader& in);
+  };
+  /// What it sent, and what became of messages of its network that were for it or for everybody.
+  struct Counts {
+    std::int64_t sent = 0, sent_bytes = 0, received = 0;
+    /// By SignalLoss: `noise` out of range or in a zone without radio, `blocked` by what stands between or an antenna
+    /// where the signal does not go, `link` by `loss_probability`.
+    std::array<std::int64_t, sim::signal_losses> lost{};
+    void visit_state(sim::StateArchive& archive) { archive(sent, sent_bytes, received, lost); }
   };
   struct Packet {
     std::string source, destination;
@@ -59,6 +69,9 @@ class Modem final : public sim::Sensor, public MessageModem {
   /// What arrived since the last sample.
   const std::vector<Packet>& received() const { return received_; }
   std::uint64_t dropped_from_queue() const { return dropped_; }
+  const Counts& counts() const { return counts_; }
+  const std::string& vehicle_name() const { return vehicle_; }
+  const std::string& full_name() const { return full_name_; }
 
  private:
   struct Outgoing {
@@ -70,7 +83,9 @@ class Modem final : public sim::Sensor, public MessageModem {
 
   void transmit(sim::Time now, const Outgoing& message);
   double propagation_mps() const;
-  bool lost_on_the_way_to(const Modem& receiver);
+  /// Why a message does not come to a modem that it is for; none: it does.
+  sim::SignalLoss loss_to(const Modem& receiver) const;
+  bool lost_on_the_way_to(const Modem& receiver) const;
   /// Something stands between the two antennas; not the hulls that carry them.
   bool hidden_from(const Modem& receiver) const;
   sim::Vector3d p_WS() const;
@@ -90,6 +105,7 @@ class Modem final : public sim::Sensor, public MessageModem {
   sim::Time busy_until_{0};
   std::int64_t sent_ = 0;
   std::uint64_t dropped_ = 0;
+  Counts counts_;
   std::vector<Packet> arrived_, received_;
   std::unique_ptr<SerialMessages> serial_;
 };

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <pty.h>
+#include <spdlog/spdlog.h>
 #include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
@@ -74,18 +75,55 @@ sim::Bytes read_all(int descriptor) {
   return bytes;
 }
 
+// The system gives the number of a pseudo-terminal that is gone to the next one, so a link that a killed run left may
+// lead to another terminal.  While a run lives, it holds a lock on a byte of its terminal that stands for the path of
+// the link; and its links are spelt in a way of their own, so that no other program's is taken for one.
+
+constexpr char terminals[] = "/dev/pts/";
+constexpr char own_spelling[] = "/dev/pts/./";
+
+struct flock lock_of(const std::string& path) {
+  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
+  for (const char c : fs::absolute(path).lexically_normal().string())
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  struct flock lock {};
+  lock.l_type = F_WRLCK;
+  lock.l_whence = SEEK_SET;
+  lock.l_start = static_cast<off_t>(hash & 0x3fffffff);
+  lock.l_len = 1;
+  return lock;
+}
+
+/// Whether a run that lives made this link.
+bool is_held(const std::string& path) {
+  const int terminal = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  if (terminal < 0) return true;  // somebody else's, perhaps
+  struct flock lock = lock_of(path);
+  const bool held = fcntl(terminal, F_OFD_GETLK, &lock) != 0 || lock.l_type != F_UNLCK;
+  ::close(terminal);
+  return held;
+}
+
+/// Makes room for a link, or throws.
+void remove_stale_link(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_symlink(path, error)) return;
+  if (fs::exists(path, error)) {
+    const bool own = fs::read_symlink(path, error).string().starts_with(own_spelling);
+    if (!own || is_held(path)) {
+      errno = EEXIST;
+      fail("is in use", path);
+    }
+  }
+  spdlog::warn("serial port '{}': replaced the link that a killed run left", path);
+  fs::remove(path, error);
+}
+
 class PtyPort final : public sim::BytePort {
  public:
   explicit PtyPort(const std::string& path) : path_(path) {
     make_parent(path);
-    std::error_code error;
-    if (fs::is_symlink(path, error)) {
-      if (fs::exists(path, error)) {
-        errno = EEXIST;
-        fail("is in use", path);
-      }
-      fs::remove(path, error);
-    }
+    remove_stale_link(path);
     char name[128];
     termios raw{};
     cfmakeraw(&raw);
@@ -94,7 +132,11 @@ class PtyPort final : public sim::BytePort {
     fcntl(master_, F_SETFL, O_NONBLOCK);
     fcntl(master_, F_SETFD, FD_CLOEXEC);
     fcntl(slave_, F_SETFD, FD_CLOEXEC);
-    if (symlink(name, path.c_str()) != 0) {
+    struct flock lock = lock_of(path);
+    fcntl(slave_, F_OFD_SETLK, &lock);
+    std::string target = name;
+    if (target.starts_with(terminals)) target.replace(0, sizeof terminals - 1, own_spelling);
+    if (symlink(target.c_str(), path.c_str()) != 0) {
       const int reason = errno;
       close_all();
       errno = reason;
@@ -172,7 +214,10 @@ class FifoPort final : public sim::BytePort {
   }
   static void make_fifo(const std::string& path) {
     struct stat status {};
-    if (lstat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode)) unlink(path.c_str());
+    if (lstat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode)) {
+      spdlog::warn("serial port '{}': replaced the FIFO that a killed run left", path);
+      unlink(path.c_str());
+    }
     if (mkfifo(path.c_str(), 0600) != 0) fail("cannot make the FIFO", path);
   }
   void remove_all() {

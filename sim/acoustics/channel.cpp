@@ -34,15 +34,13 @@ AcousticChannel::AcousticChannel(const AcousticsConfig& config, const AcousticSu
 
 AcousticChannel::~AcousticChannel() = default;
 
-int AcousticChannel::join(Transducer& transducer) {
-  const auto free = std::find(transducers_.begin(), transducers_.end(), nullptr);
+void AcousticChannel::join(Transducer& transducer) {
+  auto place = std::find(transducers_.begin(), transducers_.end(), nullptr);
+  if (place == transducers_.end()) place = transducers_.insert(place, nullptr);
+  *place = &transducer;
+  transducer.number_ = static_cast<int>(place - transducers_.begin());
+  transducer.join_ = ++joins_;
   forget_places();
-  if (free == transducers_.end()) {
-    transducers_.push_back(&transducer);
-    return static_cast<int>(transducers_.size()) - 1;
-  }
-  *free = &transducer;
-  return static_cast<int>(free - transducers_.begin());
 }
 
 void AcousticChannel::leave(Transducer& transducer) {
@@ -56,8 +54,6 @@ void AcousticChannel::leave(Transducer& transducer) {
   transducers_[static_cast<std::size_t>(transducer.number())] = nullptr;
   for (const auto& sending : sendings_)
     if (sending && sending->from == &transducer) sending->from = nullptr;
-  for (Flight& flight : flights_)
-    if (flight.to == &transducer) flight.to = nullptr;
   forget_places();
 }
 
@@ -75,10 +71,11 @@ void AcousticChannel::noise_changed() {
   for (std::size_t i = 0; i < flights_.size(); ++i) {
     const Flight& flight = flights_[i];
     const auto number = static_cast<std::int64_t>(i);
-    if (flight.to == nullptr || !flight.noticed || !flight.to->receiver_.takes(number)) continue;
+    Transducer* const to = flight.noticed ? receiver_of(flight) : nullptr;
+    if (to == nullptr || !to->receiver_.takes(number)) continue;
     const Signal& signal = sendings_[static_cast<std::size_t>(flight.sending)]->signal;
-    const PowerRatio noise = noise_at(*flight.to, flight.to->p_W(around_.medium.now()), signal);
-    flight.to->receiver_.set_noise(number, noise, around_.medium.now());
+    const PowerRatio noise = noise_at(*to, to->p_W(around_.medium.now()), signal);
+    to->receiver_.set_noise(number, noise, around_.medium.now());
   }
 }
 
@@ -132,7 +129,6 @@ int AcousticChannel::new_flight() {
   }
   const int number = free_flights_.back();
   free_flights_.pop_back();
-  flights_[static_cast<std::size_t>(number)] = {};
   return number;
 }
 
@@ -167,8 +163,26 @@ void AcousticChannel::transmit(Transducer& from, Signal signal, Time at) {
   schedule(at + sending.signal.duration, emission_end_event, number);
 }
 
+void AcousticChannel::set_receiver(Flight& flight, const Transducer* to) {
+  flight.to = to != nullptr ? to->number() : -1;
+  flight.to_join = to != nullptr ? to->join_ : 0;
+}
+
+/// With many signals under way each one is far from the last in memory.
+void AcousticChannel::fetch_ahead() const {
+  constexpr std::size_t events_ahead = 6;
+  const std::optional<Time> item = around_.events.stamp_ahead(events_ahead, Event::of_acoustics);
+  if (!item || item->count() < 0 || static_cast<std::uint64_t>(item->count()) >= flights_.size()) return;
+  const Flight* const flight = &flights_[static_cast<std::size_t>(item->count())];
+  __builtin_prefetch(flight, 1);
+  __builtin_prefetch(reinterpret_cast<const char*>(flight + 1) - 1, 1);
+}
+
 void AcousticChannel::handle(const Event& event, Time now) {
+  if (now != step_end_) ++looks_;
   step_end_ = now;
+  handling_ = true;
+  fetch_ahead();
   const int item = static_cast<int>(event.stamp.count());
   switch (event.kind) {
     case emission_event:
@@ -192,6 +206,7 @@ void AcousticChannel::handle(const Event& event, Time now) {
     default:
       break;
   }
+  handling_ = false;
 }
 
 void AcousticChannel::emit(int number, Time now) {
@@ -231,13 +246,13 @@ void AcousticChannel::emit(int number, Time now) {
   for (const int hearer : near_) {
     Transducer* to = transducers_[static_cast<std::size_t>(hearer)];
     if (to == nullptr || to == from) continue;
-    const double distance_m = (to->p_W(sending.sent) - sending.p_W).norm();
-    if (distance_m > reach_m + stray_m) continue;
+    const Vector3d p_W = to->p_W(sending.sent);
+    if ((p_W - sending.p_W).norm() > reach_m + stray_m) continue;
     const int flight = new_flight();
     flights_[static_cast<std::size_t>(flight)].sending = number;
-    flights_[static_cast<std::size_t>(flight)].to = to;
+    set_receiver(flights_[static_cast<std::size_t>(flight)], to);
     ++sending.users;
-    const double travel_s = travel_time_s(around_.medium, sending.p_W, to->p_W(sending.sent));
+    const double travel_s = travel_time_s(around_.medium, sending.p_W, p_W);
     schedule(sending.sent + from_seconds(travel_s * (1 - early)), near_event, flight);
   }
   release(number);
@@ -254,17 +269,16 @@ void AcousticChannel::end_emission(int number, Time at) {
 
 void AcousticChannel::approach(int number, Time due) {
   Flight& flight = flights_[static_cast<std::size_t>(number)];
-  if (flight.to != nullptr) {
+  if (const Transducer* const to = receiver_of(flight)) {
     const Sending& sending = *sendings_[static_cast<std::size_t>(flight.sending)];
     // From here on the receiver goes on as it does now.
-    const auto arrival =
-        meeting(around_.medium, sending.p_W, sending.sent, flight.to->p_W(step_end_), step_end_, flight.to->v_W());
+    const auto arrival = meeting(around_.medium, sending.p_W, sending.sent, to->p_W(step_end_), step_end_, to->v_W());
     if (arrival) {
       flight.travel_time_s = arrival->travel_time_s;
       flight.begun = std::max(due, sending.sent + from_seconds(arrival->travel_time_s));
-      flight.p_begun_W = flight.to->p_W(flight.begun);
+      flight.p_begun_W = to->p_W(flight.begun);
     } else {
-      flight.to = nullptr;  // faster than sound: it was thrown out of the world
+      set_receiver(flight, nullptr);  // faster than sound: it was thrown out of the world
     }
   }
   schedule(std::max(flight.begun, due), begin_event, number);

@@ -80,23 +80,31 @@ class AcousticChannel {
   /// A signal on its way to one receiver.
   struct Flight {
     int sending = -1;
-    Transducer* to = nullptr;  // null: it left
+    int to = -1;  // number of the transducer; -1: it left
     Time begun{0}, ended{0};
     double travel_time_s = 0;
     Vector3d p_begun_W = Vector3d::Zero();
     double closing_mps = 0;
     Decibels level{0}, snr{0};
     SignalLoss loss = SignalLoss::none;
+    std::uint32_t to_join = 0;  // else another has its number now
     bool listened = false, present = false, noticed = false, delayed = false;
     void visit_state(StateArchive& archive);  // but for `to`
   };
 
-  int join(Transducer& transducer);
+  void join(Transducer& transducer);
   void leave(Transducer& transducer);
   void join(ContinuousSound& sound);
   void leave(ContinuousSound& sound);
   void transmit(Transducer& from, Signal signal, Time at);
 
+  /// Null when it left.
+  Transducer* receiver_of(const Flight& flight) const {
+    Transducer* const to = flight.to < 0 ? nullptr : transducers_[static_cast<std::size_t>(flight.to)];
+    return to != nullptr && to->join_ == flight.to_join ? to : nullptr;
+  }
+  static void set_receiver(Flight& flight, const Transducer* to);
+  void fetch_ahead() const;
   void emit(int sending, Time now);
   void end_emission(int sending, Time at);
   void approach(int flight, Time due);
@@ -116,17 +124,19 @@ class AcousticChannel {
   Decibels link_loss(const Transducer& to, const Sending& sending, double& loss_probability) const;
   /// Of the sea and of continuous sounds, in the band of a signal, as a receiver hears it.
   PowerRatio noise_at(const Transducer& to, const Vector3d& p_W, const Signal& signal) const;
-  void take(int number, Flight& flight, const Sending& sending, PowerRatio disturbing);
-  void finish(Flight& flight, const Sending& sending, const SignalReceiver::Outcome& outcome);
+  void take(int number, Flight& flight, const Sending& sending, PowerRatio power, PowerRatio disturbing);
+  void finish(const Transducer& to, Flight& flight, const Sending& sending, const SignalReceiver::Outcome& outcome);
   /// Its draws when a signal begins, and when it ends.
   Random stream(const Transducer& to, const Sending& sending, bool at_end) const;
   void schedule(Time due, EventKind kind, int item);
-  void visit_transducer(StateArchive& archive, Transducer*& transducer);
+  Transducer* visit_transducer(StateArchive& archive, const Transducer* transducer);
   void check_numbers(const StateArchive& archive) const;
   int new_sending();
   int new_flight();
   void release(int sending);
   Time step_end() const { return step_end_; }
+  /// While events are handled: a number of its own for each time that bodies may have moved.  Else negative.
+  std::int64_t look() const { return handling_ ? looks_ : -1; }
 
   AcousticsConfig config_;
   AcousticSurroundings around_;
@@ -139,6 +149,9 @@ class AcousticChannel {
   std::vector<int> free_flights_;
   std::int64_t flights_made_ = 0;
   Time step_end_{0};
+  std::uint32_t joins_ = 0;
+  std::int64_t looks_ = 0;
+  bool handling_ = false;
   Neighbourhood neighbours_;
   double neighbours_age_ = -1;  // when they were looked up, s; negative: not
   bool watching_ = false;       // a watch_event is under way

@@ -17,8 +17,8 @@ constexpr double lowest_dB = -1000;
 }  // namespace
 
 PowerRatio AcousticChannel::noise_at(const Transducer& to, const Vector3d& p_W, const Signal& signal) const {
-  const Decibels quieter = to.noise_reduction(signal.centre_Hz);
-  PowerRatio noise = to_power(propagation_.ambient_level(signal.centre_Hz, signal.bandwidth_Hz) - quieter);
+  PowerRatio noise =
+      propagation_.ambient_power(signal.centre_Hz, signal.bandwidth_Hz, to.noise_reduction(signal.centre_Hz));
   for (const ContinuousSound* sound : sounds_) {
     if (!sound->on_ || !sound->vehicle_.systems().powered || sound->faults_.silent()) continue;
     const Vector3d from_W = sound->body_.X_WB() * sound->p_BS_;
@@ -63,7 +63,7 @@ Random AcousticChannel::stream(const Transducer& to, const Sending& sending, boo
 }
 
 PowerRatio AcousticChannel::work_out_level(Flight& flight, const Sending& sending, double& later_s) {
-  const Transducer& to = *flight.to;
+  const Transducer& to = *receiver_of(flight);
   const Signal& signal = sending.signal;
   const Vector3d way_W = flight.p_begun_W - sending.p_W;
   const double range_m = way_W.norm();
@@ -74,21 +74,25 @@ PowerRatio AcousticChannel::work_out_level(Flight& flight, const Sending& sendin
   const double squeezed = doppler_factor(direction_W, sending.v_W, v_to_W, c);
   flight.ended = flight.begun + from_seconds(to_seconds(signal.duration) / squeezed);
 
-  Random random = stream(to, sending, false);
+  Random random = propagation_.draws() ? stream(to, sending, false) : Random(0, {});
   const Propagation::Gain gain =
       propagation_.gain(sending.p_W, sending.group, flight.p_begun_W, to.vehicle().group(), signal.centre_Hz, random);
   double loss_probability = 0;
   Decibels level = signal.source_level - link_loss(to, sending, loss_probability);
-  level += directivity_gain(sending.directivity, sending.R_WS.transpose() * direction_W, signal.centre_Hz, c);
-  level += directivity_gain(to.config().directivity, -(to.R_WS().transpose() * direction_W), signal.centre_Hz, c);
+  const auto add_beam = [&](const DirectivityConfig& beam, const auto& direction_S) {
+    if (beam.pattern != DirectivityConfig::Pattern::omni)
+      level += directivity_gain(beam, direction_S(), signal.centre_Hz, c);
+  };
+  add_beam(sending.directivity, [&] { return Vector3d(sending.R_WS.transpose() * direction_W); });
+  add_beam(to.config().directivity, [&] { return Vector3d(-(to.R_WS().transpose() * direction_W)); });
   flight.level = level + gain.signal;
   later_s = gain.later_s;
   if (gain.blocked && gain.signal.dB() < lowest_dB) flight.loss = SignalLoss::blocked;
-  return to_power(level) * gain.disturbing;
+  return gain.disturbing.linear() > 0 ? to_power(level) * gain.disturbing : PowerRatio{};
 }
 
 SignalLoss AcousticChannel::obstacle(const Flight& flight) const {
-  const Transducer& to = *flight.to;
+  const Transducer& to = *receiver_of(flight);
   if (!around_.medium.in_water(flight.p_begun_W)) return SignalLoss::out_of_water;
   if (!to.works()) return SignalLoss::receiver_off;
   if (flight.begun < to.sending_until_) return SignalLoss::half_duplex;
@@ -99,11 +103,12 @@ SignalLoss AcousticChannel::obstacle(const Flight& flight) const {
 void AcousticChannel::begin(int number) {
   Flight& flight = flights_[static_cast<std::size_t>(number)];
   const Sending& sending = *sendings_[static_cast<std::size_t>(flight.sending)];
-  if (flight.to == nullptr) {
+  Transducer* const receiver = receiver_of(flight);
+  if (receiver == nullptr) {
     end(number);
     return;
   }
-  Transducer& to = *flight.to;
+  Transducer& to = *receiver;
   const Vector3d p_W = to.p_W(flight.begun);
   // Where it was expected, but for what its turns do in so short a time; somebody who was put elsewhere is met anew.
   if (!flight.delayed && (p_W - flight.p_begun_W).norm() > 0.01) {
@@ -127,20 +132,21 @@ void AcousticChannel::begin(int number) {
   }
   flight.listened = to.listener_.listens_to(sending.signal);
   flight.present = flight.loss == SignalLoss::none && around_.medium.in_water(flight.p_begun_W);
-  if (flight.present) {
-    const PowerRatio power = to_power(flight.level) + disturbing;
-    to.receiver_.begin({number, sending.signal.centre_Hz, sending.signal.bandwidth_Hz, power, flight.ended},
-                       flight.begun);
-  }
-  if (flight.listened) take(number, flight, sending, disturbing);
+  const PowerRatio power = to_power(flight.level);
+  if (flight.present)
+    to.receiver_.begin(
+        {number, sending.signal.centre_Hz, sending.signal.bandwidth_Hz, power + disturbing, flight.ended},
+        flight.begun);
+  if (flight.listened) take(number, flight, sending, power, disturbing);
   schedule(flight.ended, end_event, number);
 }
 
-void AcousticChannel::take(int number, Flight& flight, const Sending& sending, PowerRatio disturbing) {
+void AcousticChannel::take(int number, Flight& flight, const Sending& sending, PowerRatio power,
+                           PowerRatio disturbing) {
   const Signal& signal = sending.signal;
-  Transducer& to = *flight.to;
+  Transducer& to = *receiver_of(flight);
   TakenSignal taken;
-  taken.sound = {number, signal.centre_Hz, signal.bandwidth_Hz, to_power(flight.level), flight.ended};
+  taken.sound = {number, signal.centre_Hz, signal.bandwidth_Hz, power, flight.ended};
   taken.noise = noise_at(to, flight.p_begun_W, signal);
   taken.disturbing = disturbing;
   taken.modulation = signal.modulation;
@@ -158,27 +164,28 @@ void AcousticChannel::take(int number, Flight& flight, const Sending& sending, P
   if (displaced >= 0) flights_[static_cast<std::size_t>(displaced)].loss = SignalLoss::captured;
 }
 
-void AcousticChannel::finish(Flight& flight, const Sending& sending, const SignalReceiver::Outcome& outcome) {
-  Random random = stream(*flight.to, sending, true);
+void AcousticChannel::finish(const Transducer& to, Flight& flight, const Sending& sending,
+                             const SignalReceiver::Outcome& outcome) {
+  Random random = stream(to, sending, true);
   const double luck = random.uniform();
   const double link_luck = random.uniform();
   if (luck > outcome.success) flight.loss = luck > outcome.success_alone ? SignalLoss::noise : SignalLoss::interference;
   double loss_probability = 0;
-  link_loss(*flight.to, sending, loss_probability);
+  link_loss(to, sending, loss_probability);
   if (flight.loss == SignalLoss::none && link_luck < loss_probability) flight.loss = SignalLoss::link;
 }
 
 void AcousticChannel::end(int number) {
   Flight& flight = flights_[static_cast<std::size_t>(number)];
   const Sending& sending = *sendings_[static_cast<std::size_t>(flight.sending)];
-  if (Transducer* to = flight.to) {
+  if (Transducer* const to = receiver_of(flight)) {
     SignalReceiver::Outcome outcome;
     const bool taken = flight.present && to->receiver_.end(number, flight.ended, outcome);
     if (flight.listened) {
       Decibels sinr = flight.snr;
       if (taken) {
         sinr = to_decibels(outcome.worst_sinr);
-        finish(flight, sending, outcome);
+        finish(*to, flight, sending, outcome);
         if (!around_.medium.in_water(to->p_W(flight.ended)) || sending.cut) flight.loss = SignalLoss::out_of_water;
         if (!to->works()) flight.loss = SignalLoss::receiver_off;
       }

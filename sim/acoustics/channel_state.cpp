@@ -16,13 +16,12 @@ void AcousticChannel::Flight::visit_state(StateArchive& archive) {
           delayed);
 }
 
-/// By its number; -1: null.
-void AcousticChannel::visit_transducer(StateArchive& archive, Transducer*& transducer) {
+/// By its number; -1: null.  Returns what is restored.
+Transducer* AcousticChannel::visit_transducer(StateArchive& archive, const Transducer* transducer) {
   int number = transducer != nullptr ? transducer->number() : -1;
   archive(number);
-  if (!archive.restoring()) return;
   if (number >= static_cast<int>(transducers_.size())) archive.fail("a signal of a transducer that is not there");
-  transducer = number < 0 ? nullptr : transducers_[static_cast<std::size_t>(number)];
+  return number < 0 ? nullptr : transducers_[static_cast<std::size_t>(number)];
 }
 
 void AcousticChannel::visit_state(StateArchive& archive) {
@@ -39,13 +38,16 @@ void AcousticChannel::visit_state(StateArchive& archive) {
   for (std::uint64_t i = 0; i < sendings; ++i) {
     if (archive.restoring()) sendings_.push_back(std::make_unique<Sending>());
     archive(*sendings_[i]);
-    visit_transducer(archive, sendings_[i]->from);
+    Transducer* const from = visit_transducer(archive, sendings_[i]->from);
+    if (archive.restoring()) sendings_[i]->from = from;
   }
   for (std::uint64_t i = 0; i < flights; ++i) {
     if (archive.restoring()) flights_.emplace_back();
     archive(flights_[i]);
-    visit_transducer(archive, flights_[i].to);
+    const Transducer* const to = visit_transducer(archive, receiver_of(flights_[i]));
+    if (archive.restoring()) set_receiver(flights_[i], to);
   }
+  if (archive.restoring()) ++looks_;
   archive.unhashed(free_sendings_, free_flights_, flights_made_, step_end_, neighbours_, neighbours_age_, watching_,
                    gone_);
   if (archive.restoring()) check_numbers(archive);

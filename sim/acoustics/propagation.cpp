@@ -26,8 +26,8 @@ Propagation::Band Propagation::band(double centre_Hz, double bandwidth_Hz) const
   for (const Band& known : bands_)
     if (known.centre_Hz == centre_Hz && known.bandwidth_Hz == bandwidth_Hz) return known;
   const AmbientNoise noise = config_.noise.with_wind(medium_.mean_wind_mps());
-  const Band band{centre_Hz, bandwidth_Hz, noise.band_level(centre_Hz, bandwidth_Hz),
-                  least_absorption_dBpkm(centre_Hz)};
+  const Decibels ambient = noise.band_level(centre_Hz, bandwidth_Hz);
+  const Band band{centre_Hz, bandwidth_Hz, ambient, to_power(ambient), least_absorption_dBpkm(centre_Hz)};
   constexpr std::size_t most_bands = 64;
   if (bands_.size() < most_bands) bands_.push_back(band);
   return band;
@@ -35,6 +35,11 @@ Propagation::Band Propagation::band(double centre_Hz, double bandwidth_Hz) const
 
 Decibels Propagation::ambient_level(double centre_Hz, double bandwidth_Hz) const {
   return band(centre_Hz, bandwidth_Hz).ambient;
+}
+
+PowerRatio Propagation::ambient_power(double centre_Hz, double bandwidth_Hz, Decibels less) const {
+  const Band of = band(centre_Hz, bandwidth_Hz);
+  return less.dB() == 0 ? of.ambient_power : to_power(of.ambient - less);
 }
 
 double Propagation::least_absorption_dBpkm(double frequency_Hz) const {
@@ -139,9 +144,12 @@ Propagation::Gain Propagation::gain(const Vector3d& from_W, int from_group, cons
   Gain gain;
   const double free = config_.occlusion ? free_part(from_W, from_group, to_W, to_group, frequency_Hz) : 1;
   gain.blocked = free == 0;
-  // What passes by the obstacle, and what passes through it.
-  const double through = config_.occlusion_loss_dB ? std::pow(10.0, -*config_.occlusion_loss_dB / 20) : 0;
-  const Decibels direct = pressure_level(std::max(free, through));
+  Decibels direct;
+  if (free < 1) {
+    // What passes by the obstacle, and what passes through it.
+    const double through = config_.occlusion_loss_dB ? std::pow(10.0, -*config_.occlusion_loss_dB / 20) : 0;
+    direct = pressure_level(std::max(free, through));
+  }
   gain.signal = -transmission_loss(from_W, to_W, frequency_Hz);
   if (config_.multipath) {
     const Echoes echoes = echoes_of(from_W, to_W, frequency_Hz, direct, random);
@@ -153,7 +161,7 @@ Propagation::Gain Propagation::gain(const Vector3d& from_W, int from_group, cons
   }
   const Decibels faded = fade(config_.fading, random);
   gain.signal += faded;
-  gain.disturbing = to_power(faded) * gain.disturbing;
+  if (gain.disturbing.linear() > 0) gain.disturbing = to_power(faded) * gain.disturbing;
   return gain;
 }
 

@@ -31,8 +31,12 @@ class Propagation {
             Random& random) const;
   /// Spreading and absorption along the straight line.
   Decibels transmission_loss(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const;
+  /// Whether gain() draws.
+  bool draws() const { return config_.multipath.has_value() || config_.fading.type != FadingConfig::Type::none; }
   /// Ambient noise of a band: re 1 uPa.
   Decibels ambient_level(double centre_Hz, double bandwidth_Hz) const;
+  /// The same less a directivity index, re 1 uPa^2.
+  PowerRatio ambient_power(double centre_Hz, double bandwidth_Hz, Decibels less) const;
   /// Beyond this a signal is farther below the noise than `below` on any path.
   double audible_range_m(const Signal& signal, Decibels below) const;
   /// How much of the first Fresnel zone is free of terrain, objects and hulls: 1 all, 0 nothing.
@@ -51,6 +55,7 @@ class Propagation {
   struct Band {
     double centre_Hz, bandwidth_Hz;
     Decibels ambient;
+    PowerRatio ambient_power;
     double least_dBpkm;
   };
   Band band(double centre_Hz, double bandwidth_Hz) const;

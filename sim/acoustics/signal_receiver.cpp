@@ -8,7 +8,7 @@ namespace sim {
 namespace {
 
 /// The part of a sound's power that falls into the band of another.
-double share_in_band(const PresentSound& of, const PresentSound& band) {
+inline double share_in_band(const PresentSound& of, const PresentSound& band) {
   if (of.centre_Hz == band.centre_Hz && of.bandwidth_Hz == band.bandwidth_Hz) return 1;
   const double low_Hz = std::max(of.centre_Hz - of.bandwidth_Hz / 2, band.centre_Hz - band.bandwidth_Hz / 2);
   const double high_Hz = std::min(of.centre_Hz + of.bandwidth_Hz / 2, band.centre_Hz + band.bandwidth_Hz / 2);
@@ -22,6 +22,23 @@ PowerRatio SignalReceiver::others(const PresentSound& but, Time at) const {
   for (const PresentSound& sound : present_)
     if (sound.flight != but.flight && sound.ended > at) sum += share_in_band(sound, but) * sound.power;
   return sum;
+}
+
+bool SignalReceiver::stands_out(const TakenSignal& signal, PowerRatio needed) const {
+  const PowerRatio still = signal.noise + signal.disturbing;
+  PowerRatio sum{0};
+  // What is added to a sum never makes it less, rounded or not: once it is too much, the rest does not matter.
+  constexpr std::size_t between_looks = 8;
+  for (std::size_t i = 0; i < present_.size();) {
+    const std::size_t end = std::min(i + between_looks, present_.size());
+    for (; i < end; ++i) {
+      const PresentSound& sound = present_[i];
+      if (sound.flight != signal.sound.flight && sound.ended > signal.begun)
+        sum += share_in_band(sound, signal.sound) * sound.power;
+    }
+    if (!(signal.sound.power / (still + sum) >= needed)) return false;
+  }
+  return signal.sound.power / (still + sum) >= needed;
 }
 
 void SignalReceiver::count_bits(Time until) {
@@ -52,6 +69,7 @@ void SignalReceiver::count_bits(Taken& taken, Time until) const {
 void SignalReceiver::begin(const PresentSound& sound, Time at) {
   count_bits(at);
   present_.push_back(sound);
+  present_flights_.push_back(sound.flight);
 }
 
 SignalLoss SignalReceiver::take(const TakenSignal& signal, const Rules& rules, std::int64_t& displaced) {
@@ -59,7 +77,7 @@ SignalLoss SignalReceiver::take(const TakenSignal& signal, const Rules& rules, s
   const PowerRatio needed = to_power(Decibels{rules.detection_dB});
   const PowerRatio still = signal.noise + signal.disturbing;
   if (signal.sound.power / still < needed) return SignalLoss::noise;
-  const bool noticed = signal.sound.power / (still + others(signal.sound, signal.begun)) >= needed;
+  const bool noticed = stands_out(signal, needed);
   auto rival = taken_.end();
   for (auto each = taken_.begin(); each != taken_.end(); ++each) {
     // One that ends as this one begins is no rival.
@@ -109,11 +127,12 @@ bool SignalReceiver::end(std::int64_t flight, Time at, Outcome& outcome) {
     outcome = {std::exp(taken->log_success), std::exp(taken->log_success_alone), taken->worst_sinr};
     taken_.erase(taken);
   }
-  const auto gone =
-      std::find_if(present_.begin(), present_.end(), [&](const PresentSound& sound) { return sound.flight == flight; });
-  if (gone != present_.end()) {
-    *gone = present_.back();
+  const auto gone = std::find(present_flights_.begin(), present_flights_.end(), flight);
+  if (gone != present_flights_.end()) {
+    present_[static_cast<std::size_t>(gone - present_flights_.begin())] = present_.back();
     present_.pop_back();
+    *gone = present_flights_.back();
+    present_flights_.pop_back();
   }
   return was_taken;
 }
@@ -123,6 +142,13 @@ std::int64_t SignalReceiver::drop() {
   const std::int64_t flight = taken_.back().signal.sound.flight;
   taken_.pop_back();
   return flight;
+}
+
+void SignalReceiver::visit_state(StateArchive& archive) {
+  archive(present_, taken_);
+  if (!archive.restoring()) return;
+  present_flights_.clear();
+  for (const PresentSound& sound : present_) present_flights_.push_back(sound.flight);
 }
 
 }  // namespace sim

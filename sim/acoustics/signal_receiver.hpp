@@ -65,7 +65,7 @@ class SignalReceiver {
   bool taking() const { return !taken_.empty(); }
   /// All flights it knows of have numbers from 0 to below this.
   bool flights_are_below(std::size_t count) const;
-  void visit_state(StateArchive& archive) { archive(present_, taken_); }
+  void visit_state(StateArchive& archive);
 
  private:
   /// A signal that is taken, and what has come of it so far.
@@ -81,11 +81,14 @@ class SignalReceiver {
 
   /// Of all sounds but one, in its band, that last beyond a time.
   PowerRatio others(const PresentSound& but, Time at) const;
+  /// Whether a signal is so much stronger than all else in its band.
+  bool stands_out(const TakenSignal& signal, PowerRatio needed) const;
   /// Counts the bits of what is taken since the last change.
   void count_bits(Time until);
   void count_bits(Taken& taken, Time until) const;
 
   std::vector<PresentSound> present_;
+  std::vector<std::int64_t> present_flights_;  // of each of them: where many overlap, looked through often
   std::vector<Taken> taken_;
 };
 

@@ -37,7 +37,7 @@ Transducer::Transducer(AcousticListener& listener, const ReceiverConfig& config,
       X_BS_(context.config.X_BS()),
       faults_(context.faults),
       full_name_(context.full_name()) {
-  number_ = channel_.join(*this);
+  channel_.join(*this);
 }
 
 Transducer::~Transducer() {
@@ -53,15 +53,22 @@ bool Transducer::works() const {
   return vehicle_.systems().powered && !faults_.silent();
 }
 
-Vector3d Transducer::p_W(Time at) const {
-  const BodyMotion motion = body_.motion();
-  const Vector3d p_BS_W = motion.R_WB * X_BS_.translation();
-  const Vector3d v_WS_W = motion.v_WB_W + motion.w_WB_W.cross(p_BS_W);
-  return motion.p_WB + p_BS_W + v_WS_W * to_seconds(at - channel_.step_end());
+const Transducer::Motion& Transducer::motion() const {
+  // Where hundreds of signals come to it in a step, it is worked out once.
+  const std::int64_t look = channel_.look();
+  if (look == motion_of_ && look >= 0) return motion_;
+  const BodyMotion body = body_.motion();
+  const Vector3d p_BS_W = body.R_WB * X_BS_.translation();
+  motion_.p_W = body.p_WB + p_BS_W;
+  motion_.drift_W = body.v_WB_W + body.w_WB_W.cross(p_BS_W);
+  motion_.v_W = body_.velocity_at_W(X_BS_.translation());
+  motion_of_ = look;
+  return motion_;
 }
 
-Vector3d Transducer::v_W() const {
-  return body_.velocity_at_W(X_BS_.translation());
+Vector3d Transducer::p_W(Time at) const {
+  const Motion& now = motion();
+  return now.p_W + now.drift_W * to_seconds(at - channel_.step_end());
 }
 
 Matrix3d Transducer::R_WS() const {

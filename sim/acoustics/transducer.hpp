@@ -69,7 +69,7 @@ class Transducer {
 
   /// At a time within or near the step that just ended: by its velocity from where it is.
   Vector3d p_W(Time at) const;
-  Vector3d v_W() const;
+  Vector3d v_W() const { return motion().v_W; }
   Matrix3d R_WS() const;
   const std::string& full_name() const { return full_name_; }
   const Vehicle& vehicle() const { return vehicle_; }
@@ -86,6 +86,13 @@ class Transducer {
  private:
   friend class AcousticChannel;
 
+  /// Where it is at the end of the step, and how it moves.
+  struct Motion {
+    Vector3d p_W, v_W;
+    Vector3d drift_W;  // v_W as p_W(Time) has it: the same but for rounding
+  };
+  const Motion& motion() const;
+
   AcousticListener& listener_;
   ReceiverConfig config_;
   AcousticChannel& channel_;
@@ -95,15 +102,18 @@ class Transducer {
   const DeviceFaults& faults_;
   std::string full_name_;
   int number_ = -1;
-  Time busy_until_{0};     // of all it was asked to send
-  Time sending_until_{0};  // of what it sends or sent last
-  int sending_ = -1;       // what it sends, in the channel; -1: nothing
+  std::uint32_t join_ = 0;  // of the joins of all transducers, from 1: others may have had its number before
+  Time busy_until_{0};      // of all it was asked to send
+  Time sending_until_{0};   // of what it sends or sent last
+  int sending_ = -1;        // what it sends, in the channel; -1: nothing
   std::int64_t signals_ = 0;
   SignalReceiver receiver_;
   Counts counts_;
   // The directivity index of a frequency, worked out before; NaN: none.
   mutable double index_of_Hz_ = std::numeric_limits<double>::quiet_NaN();
   mutable Decibels index_;
+  mutable Motion motion_;
+  mutable std::int64_t motion_of_ = -1;  // AcousticChannel::look() that it is of
 };
 
 /// A sound that goes on and on: an engine, a pile driver, a jammer.  Owned by a device; in the channel while it exists,

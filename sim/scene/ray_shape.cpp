@@ -124,6 +124,17 @@ SHOAL_INLINE double range_to(const RayShape& shape, const RayPacket& rays, int l
   }
 }
 
+/// Most shapes that a tree proposes are missed by far, which costs less to find out.
+SHOAL_INLINE bool passes_by(const RayShape& shape, const RayPacket& rays, int lane) {
+  const double x = rays.origin[0][lane] - shape.center[0];
+  const double y = rays.origin[1][lane] - shape.center[1];
+  const double z = rays.origin[2][lane] - shape.center[2];
+  const double vx = rays.direction[0][lane], vy = rays.direction[1][lane], vz = rays.direction[2][lane];
+  const double along = x * vx + y * vy + z * vz;
+  const double px = x - along * vx, py = y - along * vy, pz = z - along * vz;
+  return px * px + py * py + pz * pz > shape.misses_beyond_m2;
+}
+
 template <Kind kind>
 SHOAL_INLINE void ranges_to(const RayShape& shape, const RayPacket& rays, unsigned lanes,
                             double (&range_m)[RayPacket::size]) {
@@ -132,7 +143,7 @@ SHOAL_INLINE void ranges_to(const RayShape& shape, const RayPacket& rays, unsign
   } else {
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
-      range_m[lane] = range_to<kind>(shape, rays, lane);
+      range_m[lane] = passes_by(shape, rays, lane) ? infinity : range_to<kind>(shape, rays, lane);
     }
   }
 }
@@ -233,14 +244,10 @@ double RayShape::reach_m() const {
   }
 }
 
-RayShape make_ray_shape(int number, const ScenePart& part, const TriangleScene* mesh) {
-  RayShape shape;
-  shape.part = number;
-  shape.group = part.group;
-  shape.category = part.category;
-  shape.material = part.material;
-  shape.transmits = part.transmits;
-  shape.mesh = mesh;
+namespace {
+
+/// Kind and sizes.
+void take_sizes(RayShape& shape, int number, const ScenePart& part, const TriangleScene* mesh) {
   const auto round = [&](Kind kind, double radius_m, double length_m) {
     shape.kind = kind;
     shape.size = {radius_m, radius_m * radius_m, length_m / 2};
@@ -251,7 +258,7 @@ RayShape make_ray_shape(int number, const ScenePart& part, const TriangleScene* 
     shape.kind = Kind::mesh;
     const Vector3d half = mesh->half_extents_m();
     shape.size = {half.x(), half.y(), half.z()};
-    return shape;
+    return;
   }
   switch (dGeomGetClass(part.geom)) {
     case dBoxClass:
@@ -276,6 +283,21 @@ RayShape make_ray_shape(int number, const ScenePart& part, const TriangleScene* 
     default:
       throw std::logic_error("part " + std::to_string(number) + " has a shape without a surface for rays");
   }
+}
+
+}  // namespace
+
+RayShape make_ray_shape(int number, const ScenePart& part, const TriangleScene* mesh) {
+  RayShape shape;
+  shape.part = number;
+  shape.group = part.group;
+  shape.category = part.category;
+  shape.material = part.material;
+  shape.transmits = part.transmits;
+  shape.mesh = mesh;
+  take_sizes(shape, number, part, mesh);
+  // With room for rounding, over any distance that there is.
+  if (shape.kind != Kind::plane) shape.misses_beyond_m2 = std::pow(1.001 * shape.reach_m() + 1e-3, 2);
   return shape;
 }
 

@@ -29,6 +29,8 @@ struct alignas(32) RayShape {
   Kind kind = Kind::box;
   std::uint8_t transmits = 0;
   const TriangleScene* mesh = nullptr;
+  /// A ray whose line passes the centre at more than this, squared, misses.
+  double misses_beyond_m2 = std::numeric_limits<double>::infinity();
 
   bool stops(const RayFilter& filter) const {
     return group != filter.exclude_group && (category & filter.categories) != 0 &&

@@ -1,7 +1,7 @@
 #include "sim/world/event_queue.hpp"
 
 #include <algorithm>
-#include <tuple>
+#include <utility>
 
 namespace sim {
 
@@ -11,81 +11,128 @@ void EventQueue::schedule(Event event) {
 }
 
 void EventQueue::insert(Event event) {
-  if (free_slots_.empty()) {
-    free_slots_.push_back(events_.size());
-    events_.emplace_back();
+  Entry entry{event.due, event.sequence, event.stamp, event.device, event.kind, Entry::no_payload};
+  if (!event.payload.empty()) {
+    if (free_payloads_.empty()) {
+      free_payloads_.push_back(static_cast<int>(payloads_.size()));
+      payloads_.emplace_back();
+    }
+    entry.payload = free_payloads_.back();
+    free_payloads_.pop_back();
+    payloads_[static_cast<std::size_t>(entry.payload)] = std::move(event.payload);
   }
-  const std::size_t slot = free_slots_.back();
-  free_slots_.pop_back();
-  const Key key{event.due, event.sequence, slot};
-  if (const std::int64_t slice = slice_of(event.due); slice > reached_) {
-    slices_[slice].push_back(key);
-  } else {
-    heap_.push_back(key);
-    std::push_heap(heap_.begin(), heap_.end(), Later());
-  }
-  events_[slot] = std::move(event);
   ++size_;
+  if (const std::int64_t slice = slice_of(event.due); slice > reached_) {
+    const auto [found, is_new] = slices_.try_emplace(slice);
+    if (is_new && !spare_.empty()) {
+      found->second = std::move(spare_.back());
+      spare_.pop_back();
+    }
+    found->second.push_back(entry);
+  } else {
+    late_.push_back(entry);
+    std::push_heap(late_.begin(), late_.end(), Later());
+  }
+}
+
+/// Appends what is due up to the end of this slice, sorted.
+void EventQueue::reach(std::int64_t slice) {
+  if (slice <= reached_) return;
+  reached_ = slice;
+  if (slices_.empty() || slices_.begin()->first > slice) return;
+  sorted_.erase(sorted_.begin(), sorted_.begin() + static_cast<std::ptrdiff_t>(next_));
+  next_ = 0;
+  while (!slices_.empty() && slices_.begin()->first <= slice) {
+    std::vector<Entry>& entries = slices_.begin()->second;
+    const auto old = static_cast<std::ptrdiff_t>(sorted_.size());
+    sorted_.insert(sorted_.end(), entries.begin(), entries.end());
+    std::sort(sorted_.begin() + old, sorted_.end(), Earlier());
+    entries.clear();
+    constexpr std::size_t most_spare = 256;
+    if (spare_.size() < most_spare) spare_.push_back(std::move(entries));
+    slices_.erase(slices_.begin());
+  }
+}
+
+Event EventQueue::take(const Entry& entry) {
+  Event event{entry.due, entry.sequence, entry.device, entry.kind, entry.stamp, {}};
+  if (entry.payload != Entry::no_payload) {
+    event.payload = std::exchange(payloads_[static_cast<std::size_t>(entry.payload)], {});
+    free_payloads_.push_back(entry.payload);
+  }
+  --size_;
+  return event;
 }
 
 bool EventQueue::take_due(Time now, Event& event) {
-  while (!slices_.empty() && slices_.begin()->first <= slice_of(now)) {
-    const auto slice = slices_.begin();
-    heap_.insert(heap_.end(), slice->second.begin(), slice->second.end());
-    std::make_heap(heap_.begin(), heap_.end(), Later());
-    slices_.erase(slice);
+  reach(slice_of(now));
+  const Entry* const first = next_ < sorted_.size() ? &sorted_[next_] : nullptr;
+  if (!late_.empty() && (first == nullptr || Earlier()(late_.front(), *first))) {
+    if (late_.front().due > now) return false;
+    std::pop_heap(late_.begin(), late_.end(), Later());
+    event = take(late_.back());
+    late_.pop_back();
+    return true;
   }
-  reached_ = std::max(reached_, slice_of(now));
-  if (heap_.empty() || heap_.front().due > now) return false;
-  std::pop_heap(heap_.begin(), heap_.end(), Later());
-  const std::size_t slot = heap_.back().slot;
-  heap_.pop_back();
-  event = std::move(events_[slot]);
-  free_slots_.push_back(slot);
-  --size_;
+  if (first == nullptr || first->due > now) return false;
+  event = take(*first);
+  ++next_;
   return true;
 }
 
 void EventQueue::forget_device(int device) {
-  const auto of_device = [&](const Key& key) {
-    if (events_[key.slot].device != device) return false;
-    events_[key.slot] = {};
-    free_slots_.push_back(key.slot);
-    --size_;
+  const auto of_device = [&](const Entry& entry) {
+    if (entry.device != device) return false;
+    take(entry);
     return true;
   };
-  for (auto& [slice, keys] : slices_) std::erase_if(keys, of_device);
-  if (std::erase_if(heap_, of_device) > 0) std::make_heap(heap_.begin(), heap_.end(), Later());
+  sorted_.erase(sorted_.begin(), sorted_.begin() + static_cast<std::ptrdiff_t>(next_));
+  next_ = 0;
+  std::erase_if(sorted_, of_device);
+  if (std::erase_if(late_, of_device) > 0) std::make_heap(late_.begin(), late_.end(), Later());
+  for (auto& [slice, entries] : slices_) std::erase_if(entries, of_device);
 }
 
-/// The heap's layout depends on its history; the order of delivery is what counts.
+template <typename Use>
+void EventQueue::for_each(const Use& use) const {
+  for (std::size_t i = next_; i < sorted_.size(); ++i) use(sorted_[i]);
+  for (const Entry& entry : late_) use(entry);
+  for (const auto& [slice, entries] : slices_)
+    for (const Entry& entry : entries) use(entry);
+}
+
+/// How they are stored depends on their history; the order of delivery is what counts.
 void EventQueue::visit_state(StateArchive& archive) {
   archive.unhashed(reached_, next_sequence_);
   if (archive.restoring()) {
     std::vector<Event> events;
     archive(events);
-    heap_.clear();
-    slices_.clear();
-    events_.clear();
-    free_slots_.clear();
-    size_ = 0;
+    const std::int64_t reached = reached_;
+    const std::uint64_t next_sequence = next_sequence_;
+    *this = {};
+    reached_ = reached;
+    next_sequence_ = next_sequence;
     for (Event& event : events) {
       if (event.device < 0 && event.device != Event::of_acoustics) archive.fail("an event of nobody");
       insert(std::move(event));
     }
     return;
   }
-  std::vector<Event*> ordered;
+  std::vector<Entry> ordered;
   ordered.reserve(size_);
-  for (const Key& key : heap_) ordered.push_back(&events_[key.slot]);
-  for (const auto& [slice, keys] : slices_)
-    for (const Key& key : keys) ordered.push_back(&events_[key.slot]);
-  std::sort(ordered.begin(), ordered.end(), [](const Event* a, const Event* b) {
-    return std::tie(a->due, a->sequence) < std::tie(b->due, b->sequence);
-  });
+  for_each([&](const Entry& entry) { ordered.push_back(entry); });
+  std::sort(ordered.begin(), ordered.end(), Earlier());
   auto size = static_cast<std::uint64_t>(ordered.size());  // as archive(std::vector<Event>) has it
   archive(size);
-  for (Event* event : ordered) archive(*event);
+  for (const Entry& entry : ordered) {
+    Event event{entry.due, entry.sequence, entry.device, entry.kind, entry.stamp, {}};
+    // Lent, for a hash of many camera images copies none.
+    Bytes* const payload =
+        entry.payload != Entry::no_payload ? &payloads_[static_cast<std::size_t>(entry.payload)] : nullptr;
+    if (payload != nullptr) std::swap(event.payload, *payload);
+    archive(event);
+    if (payload != nullptr) std::swap(event.payload, *payload);
+  }
 }
 
 }  // namespace sim

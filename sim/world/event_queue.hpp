@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "sim/bus/bus.hpp"
@@ -34,33 +36,55 @@ class EventQueue {
   void schedule(Event event);
   /// Takes the next event that is due at or before `now`; false when there is none.
   bool take_due(Time now, Event& event);
+  /// The stamp of an event that is about so many events ahead, if it is of this device: so that memory that it will
+  /// need can be fetched before.  Nothing is lost when there is none.
+  std::optional<Time> stamp_ahead(std::size_t events, int device) const {
+    if (next_ + events >= sorted_.size() || sorted_[next_ + events].device != device) return std::nullopt;
+    return sorted_[next_ + events].stamp;
+  }
   /// Drops what waits for a device that goes.
   void forget_device(int device);
   std::size_t size() const { return size_; }
   void visit_state(StateArchive& archive);
 
  private:
-  void insert(Event event);
-  /// What is moved about; the events stay where they are.
-  struct Key {
+  /// An event, with its payload elsewhere: most have none.
+  struct Entry {
+    static constexpr int no_payload = -1;
+
     Time due;
     std::uint64_t sequence;
-    std::size_t slot;
+    Time stamp;
+    int device, kind;
+    int payload;  // its place in payloads_
   };
-  struct Later {
-    bool operator()(const Key& a, const Key& b) const {
-      return a.due != b.due ? a.due > b.due : a.sequence > b.sequence;
+  struct Earlier {
+    bool operator()(const Entry& a, const Entry& b) const {
+      return a.due != b.due ? a.due < b.due : a.sequence < b.sequence;
     }
   };
-  /// Times are cut into slices: a heap of all that waits for long would not fit into the cache.
+  struct Later {
+    bool operator()(const Entry& a, const Entry& b) const { return Earlier()(b, a); }
+  };
+  /// Times are cut into slices, which are sorted when they are reached: a heap of all that waits for long would not fit
+  /// into the cache.
   static std::int64_t slice_of(Time due) { return due.count() >> 14; }
 
-  std::vector<Key> heap_;  // up to the slice `reached_`
-  std::map<std::int64_t, std::vector<Key>> slices_;
+  void insert(Event event);
+  void reach(std::int64_t slice);
+  Event take(const Entry& entry);
+  template <typename Use>
+  void for_each(const Use& use) const;
+
+  std::vector<Entry> sorted_;  // up to the slice `reached_`; those before `next_` were taken
+  std::size_t next_ = 0;
+  std::vector<Entry> late_;  // a heap: scheduled when their slice had been reached
+  std::map<std::int64_t, std::vector<Entry>> slices_;
+  std::vector<std::vector<Entry>> spare_;  // empty, with memory
   std::int64_t reached_ = -1;
   std::size_t size_ = 0;
-  std::vector<Event> events_;
-  std::vector<std::size_t> free_slots_;
+  std::vector<Bytes> payloads_;
+  std::vector<int> free_payloads_;
   std::uint64_t next_sequence_ = 0;
 };
 

@@ -94,7 +94,7 @@ void ProcessConfig::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "name of the process in messages");
   in.require("command");
-  in.read("command", command, "program and its arguments; {lcm_url} is replaced");
+  in.read("command", command, "program and its arguments; {lcm_url} and {run} are replaced");
   in.read("client", client, "the name it joins the lockstep with; the run then waits for it");
   in.read_reference("bus", bus, "bus", "its LCM URL is that of this bus, named in `buses`; unset: the world's");
   in.read_choice("on_exit", on_exit, {"continue", "end"}, "when it ends before the run does");

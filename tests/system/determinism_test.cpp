@@ -108,7 +108,8 @@ INSTANTIATE_TEST_SUITE_P(Worlds, Determinism,
                                          Case{"worlds/proving_ground.yaml", "20"},
                                          Case{"worlds/proving_sea.yaml", "20"}, Case{"worlds/hill_course.yaml", "5"},
                                          Case{"worlds/sonar_tank.yaml", "5"}, Case{"worlds/survey.yaml", "10"},
-                                         Case{"worlds/harbour.yaml", "5"}, Case{"worlds/coop_underwater.yaml", "10"}),
+                                         Case{"worlds/harbour.yaml", "5"}, Case{"worlds/coop_underwater.yaml", "10"},
+                                         Case{"worlds/coop_relay.yaml", "10"}, Case{"worlds/clock_bench.yaml", "60"}),
                          [](const auto& test) { return std::filesystem::path(test.param.world).stem().string(); });
 
 TEST(ProvingGroundAndSea, HaveEveryDevice) {

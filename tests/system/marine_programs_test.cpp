@@ -111,6 +111,22 @@ TEST(CoopRelay, OrderComesToTheAuvByTheRelayAndNotWithoutIt) {
   }
 }
 
+TEST(CoopRelay, ARefusedOrderComesBackToTheStationByTheRelay) {
+  const ScratchFolder folder;
+  // The first order is for 15 m.
+  const std::string command =
+      "processes.auv.command=[shoal-coop-auv, --name, auv, --id, '0', --obey, --behaviour, 'circle:0,0,40', --speed, "
+      "'1.5', --depth, '10', --states, '6', --sound-speed, '1505', --slot, 2/3, --slot-s, '5', --order-depth-max, "
+      "'12']";
+  const Ended ended = run_shoal({"run", source("worlds/coop_relay.yaml"), "--launch", "--duration", "300", "--lcm-url",
+                                 own_url(6), "--results", folder.file("out"), "--no-pictures", "--set", command});
+  EXPECT_EQ(ended.exit_code, 1) << ended.errors;  // its rules fail
+  const std::string said = text_of_file(folder.file("out/station.log"));
+  EXPECT_THAT(said, HasSubstr("station: order 1 was refused: too deep, 15 m\n"));
+  EXPECT_THAT(said, HasSubstr("station: 0 of 1 orders obeyed, 1 refused"));
+  EXPECT_THAT(text_of_file(folder.file("out/auv.log")), HasSubstr("0 orders obeyed, 1 refused"));
+}
+
 /// The summary of the first minutes of a world with its programs.
 nlohmann::json summary_of(const std::string& world, const std::string& results, int url, const std::string& threads) {
   const Ended ended =

@@ -129,6 +129,55 @@ TEST(Study, RunsOfAWorldWithASerialPortDoNotDisturbEachOther) {
   EXPECT_EQ(ended.exit_code, 0) << ended.errors << ended.output;
 }
 
+/// A study with programs, of a world with a modem whose port is at `port`; the program notes that it found the port.
+struct PortStudy {
+  explicit PortStudy(const std::string& port) {
+    write_file(folder.file("world.yaml"),
+               "shoal: 1\nrun: {duration_s: 1e9}\nphysics: {gravity_mps2: 0}\nmedium: {water: {}}\nvehicles:\n"
+               "  - name: m\n    position_m: [0, 0, -20]\n    model:\n      shoal: 1\n      vehicle: ball\n"
+               "      bodies: [{name: hull, kinematic: true, parts: [{shape: sphere, radius_m: 0.1}]}]\n"
+               "      devices: [{name: modem, type: micromodem, serial: {path: \"" +
+                   folder.file(port) +
+                   "\"}}]\n"
+                   "processes: [{name: host, on_exit: end, command: [sh, -c, \"test -e " +
+                   folder.file(port) + " && touch " + folder.file("seen.{run}") + "\"]}]\n");
+    write_file(folder.file("study.yaml"),
+               "shoal: 1\nstudy: ports\nworld: world.yaml\nlaunch: true\nseeds: [1, 2]\ncases: [{name: a}]\n");
+  }
+  Ended run(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments{"study", folder.file("study.yaml"), "--output", folder.file("out")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_shoal(arguments);
+  }
+  bool all_saw_their_port() const {
+    return fs::exists(folder.file("seen.a-seed_1")) && fs::exists(folder.file("seen.a-seed_2"));
+  }
+
+  ScratchFolder folder;
+};
+
+TEST(Study, RefusesRunsAtOnceThatWouldHaveOneSerialPort) {
+  const PortStudy study("{vehicle}.port");
+  const Ended ended = study.run({"--jobs", "2"});
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_THAT(ended.errors,
+              HasSubstr("vehicle 'm': device 'modem': runs at the same time cannot have one serial port, '" +
+                        study.folder.file("m.port") + "': put {run} into its path, or use --jobs 1"));
+  EXPECT_FALSE(fs::exists(study.folder.file("out")));
+}
+
+TEST(Study, WithoutJobsRunsThatHaveOneSerialPortGoOneAfterTheOther) {
+  const PortStudy study("m.port");
+  EXPECT_THAT(study.run().errors, Not(HasSubstr("is in use")));
+  EXPECT_TRUE(study.all_saw_their_port());
+}
+
+TEST(Study, GivesEachRunASerialPortOfItsOwnWhereThePathNamesTheRun) {
+  const PortStudy study("m.{run}");
+  EXPECT_THAT(study.run({"--jobs", "2"}).errors, Not(HasSubstr("is in use")));
+  EXPECT_TRUE(study.all_saw_their_port());
+}
+
 TEST(Study, OfTheCooperativeWorldGoesOnWhereItWasStopped) {
   const ScratchFolder folder;
   const auto study = [&](const std::string& seeds) {

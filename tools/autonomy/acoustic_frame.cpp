@@ -7,7 +7,21 @@
 
 #include "sim/math.hpp"
 
-namespace autonomy::acoustic_frame {
+namespace autonomy {
+
+std::string to_text(OrderRefusal refusal) {
+  switch (refusal) {
+    case OrderRefusal::none:
+      return "not refused";
+    case OrderRefusal::too_deep:
+      return "too deep";
+    case OrderRefusal::too_fast:
+      return "too fast";
+  }
+  return "reason " + std::to_string(static_cast<int>(refusal));
+}
+
+namespace acoustic_frame {
 
 namespace {
 
@@ -77,6 +91,8 @@ bool fits(const AcousticState& s) {
   for (const double number :
        {s.east_m, s.north_m, s.depth_m, s.east_std_m, s.north_std_m, s.correlation, s.speed_mps, s.course_rad})
     if (!std::isfinite(number)) return false;
+  const int reason = static_cast<int>(s.refusal);
+  if (!is_byte(s.refused_order) || !is_byte(reason) || (s.refused_order == 0) != (reason == 0)) return false;
   return is_byte(s.sender) && is_byte(s.order) && std::abs(s.east_m) < most_m && std::abs(s.north_m) < most_m &&
          s.depth_m > -0.005 && s.depth_m < deepest_m && s.east_std_m >= 0 && s.north_std_m >= 0 && s.speed_mps >= 0 &&
          std::abs(s.correlation) <= 1;
@@ -108,6 +124,14 @@ std::int64_t centimetres(double metres) {
   return std::llround(100 * metres);
 }
 
+/// Each length has one kind.
+std::optional<int> kind_of_state(std::size_t bytes) {
+  if (bytes == state_bytes) return state_kind;
+  if (bytes == obeying_state_bytes) return obeying_state_kind;
+  if (bytes == refusing_state_bytes) return refusing_state_kind;
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::uint16_t checksum(std::span<const std::uint8_t> bytes) {
@@ -122,7 +146,8 @@ std::uint16_t checksum(std::span<const std::uint8_t> bytes) {
 
 std::optional<Bytes> encode(const AcousticState& state) {
   if (!fits(state)) return std::nullopt;
-  Writer out(state.order == 0 ? state_kind : obeying_state_kind);
+  const int kind = state.refused_order != 0 ? refusing_state_kind : state.order != 0 ? obeying_state_kind : state_kind;
+  Writer out(kind);
   out.put(state.sender, 1);
   out.put(of_week_ms(state.utime), 4);
   out.put(centimetres(state.east_m), 4);
@@ -134,16 +159,19 @@ std::optional<Bytes> encode(const AcousticState& state) {
   out.put(std::llround(127 * state.correlation), 1);
   out.put(std::min<std::int64_t>(centimetres(std::min(state.speed_mps, 1000.0)), 65535), 2);
   out.put(std::llround(std::remainder(state.course_rad, 2 * std::numbers::pi) / (2 * std::numbers::pi) * turn), 2);
-  if (state.order != 0) out.put(state.order, 1);
+  if (kind != state_kind) out.put(state.order, 1);
+  if (kind == refusing_state_kind) {
+    out.put(state.refused_order, 1);
+    out.put(static_cast<int>(state.refusal), 1);
+  }
   return out.finish();
 }
 
 std::optional<AcousticState> decode(std::span<const std::uint8_t> bytes, std::int64_t near_utime) {
-  if (bytes.size() != state_bytes && bytes.size() != obeying_state_bytes) return std::nullopt;
-  const bool obeys = bytes.size() == obeying_state_bytes;
+  const std::optional<int> kind = kind_of_state(bytes.size());
+  if (!kind) return std::nullopt;
   Reader in(bytes);
-  if (in.unsigned_number(1) != (version << 4 | (obeys ? obeying_state_kind : state_kind)) || !has_good_checksum(bytes))
-    return std::nullopt;
+  if (in.unsigned_number(1) != (version << 4 | *kind) || !has_good_checksum(bytes)) return std::nullopt;
   AcousticState state;
   state.sender = static_cast<int>(in.unsigned_number(1));
   const std::int64_t time_of_week_ms = in.unsigned_number(4);
@@ -155,9 +183,14 @@ std::optional<AcousticState> decode(std::span<const std::uint8_t> bytes, std::in
   state.correlation = static_cast<double>(in.signed_number(1)) / 127;
   state.speed_mps = 0.01 * static_cast<double>(in.unsigned_number(2));
   state.course_rad = sim::wrap_angle(static_cast<double>(in.unsigned_number(2)) / turn * 2 * std::numbers::pi);
-  if (obeys) state.order = static_cast<int>(in.unsigned_number(1));
+  if (*kind != state_kind) state.order = static_cast<int>(in.unsigned_number(1));
+  if (*kind == refusing_state_kind) {
+    state.refused_order = static_cast<int>(in.unsigned_number(1));
+    state.refusal = static_cast<OrderRefusal>(in.unsigned_number(1));
+    if (state.refused_order == 0 || state.refusal == OrderRefusal::none) return std::nullopt;
+  }
   if (time_of_week_ms >= week_ms || state.east_std_m <= 0 || state.north_std_m <= 0 ||
-      std::abs(state.correlation) > 1 || (obeys && state.order == 0))
+      std::abs(state.correlation) > 1 || (*kind == obeying_state_kind && state.order == 0))
     return std::nullopt;
   state.utime = full_utime(time_of_week_ms, near_utime);
   return state;
@@ -195,4 +228,6 @@ std::optional<AcousticOrder> decode_order(std::span<const std::uint8_t> bytes, s
   return order;
 }
 
-}  // namespace autonomy::acoustic_frame
+}  // namespace acoustic_frame
+
+}  // namespace autonomy

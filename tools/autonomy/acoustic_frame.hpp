@@ -3,9 +3,19 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace autonomy {
+
+/// Why a vehicle does not do what it was told.
+enum class OrderRefusal {
+  none = 0,
+  too_deep = 1,
+  too_fast = 2,
+};
+/// Such as `too deep`; of a number that this program does not know: `reason 7`.
+std::string to_text(OrderRefusal refusal);
 
 /// What a vehicle tells the others of its state over an acoustic modem.
 struct AcousticState {
@@ -20,6 +30,9 @@ struct AcousticState {
   double speed_mps = 0;   ///< over ground
   double course_rad = 0;  ///< direction of the speed, counter-clockwise from east
   int order = 0;          ///< number of the last order that it obeyed, 1 to 255; 0: none
+  /// Of a later order that it refused; 0: none since.
+  int refused_order = 0;
+  OrderRefusal refusal = OrderRefusal::none;  ///< why; set just when `refused_order` is
 };
 
 /// Where a vehicle is to go.
@@ -34,8 +47,8 @@ struct AcousticOrder {
   double speed_mps = 0;  ///< through the water; above 0
 };
 
-/// Frames for acoustic modems, big-endian.  An AcousticState in 28 bytes (kind 0), or in 29 (kind 2) when there is an
-/// order to tell of:
+/// Frames for acoustic modems, big-endian.  An AcousticState in 28 bytes (kind 0), in 29 (kind 2) when there is an
+/// order to tell of, or in 31 (kind 3) when there is one that was refused:
 ///
 ///     0      version (high four bits) and kind (low four)
 ///     1      sender
@@ -45,8 +58,9 @@ struct AcousticOrder {
 ///     17-18  east_std, cm, rounded up  19-20  north_std
 ///     21     correlation, 1/127, signed
 ///     22-23  speed, cm/s               24-25  course, 1/65536 of a turn
-///     26     kind 2: last order obeyed
-///     26-27, kind 2 27-28  checksum of the bytes before
+///     26     kinds 2, 3: last order obeyed; kind 3: 0 for none
+///     27     kind 3: order refused     28     kind 3: OrderRefusal
+///     the last two  checksum of the bytes before
 ///
 /// An AcousticOrder in 23 bytes (kind 1):
 ///
@@ -63,16 +77,18 @@ namespace acoustic_frame {
 inline constexpr std::size_t state_bytes = 28;
 inline constexpr std::size_t order_bytes = 23;
 inline constexpr std::size_t obeying_state_bytes = 29;
+inline constexpr std::size_t refusing_state_bytes = 31;
 inline constexpr int version = 1;
 inline constexpr int state_kind = 0;
 inline constexpr int order_kind = 1;
 inline constexpr int obeying_state_kind = 2;
+inline constexpr int refusing_state_kind = 3;
 
 using Bytes = std::vector<std::uint8_t>;
 
 /// Nothing when the state does not fit: a sender outside of 0 to 255, a depth outside of -0.005 m to 167 km (a small
 /// negative one is 0), a position beyond 21 000 km, a standard deviation or speed below 0, an order outside of 0 to
-/// 255, or what is no number.
+/// 255, a refused one without a reason or a reason without one, or what is no number.
 std::optional<Bytes> encode(const AcousticState& state);
 
 /// Nothing when it is no such frame: the length, version, kind or checksum is another, or the standard deviations are

@@ -158,9 +158,17 @@ void CoopAuv::receive(const shoal::acoustic_received_t& packet) {
   if (cooperative_ && params_.use_ranges) use_range(packet, *state);
 }
 
+OrderRefusal CoopAuv::refusal_of(const AcousticOrder& order) const {
+  if (order.depth_m > params_.order_depth_max_m) return OrderRefusal::too_deep;
+  if (order.speed_mps > params_.order_speed_max_mps) return OrderRefusal::too_fast;
+  return OrderRefusal::none;
+}
+
 void CoopAuv::obey(const AcousticOrder& order) {
-  if (!params_.obey || order.receiver != params_.id || order.number <= order_) return;
-  if (order.depth_m > params_.order_depth_max_m || order.speed_mps > params_.order_speed_max_mps) {
+  if (!params_.obey || order.receiver != params_.id || order.number <= std::max(order_, refused_order_)) return;
+  refusal_ = refusal_of(order);
+  refused_order_ = refusal_ == OrderRefusal::none ? 0 : order.number;
+  if (refused_order_ != 0) {
     ++counts_.orders_refused;
     return;
   }
@@ -261,6 +269,8 @@ std::optional<shoal::modem_send_t> CoopAuv::state_frame() {
   state.speed_mps = v_W.norm();
   state.course_rad = std::atan2(v_W.y(), v_W.x());
   state.order = order_;
+  state.refused_order = refused_order_;
+  state.refusal = refusal_;
   auto message = to_everybody(state);
   if (message) ++counts_.sent;
   return message;

@@ -64,10 +64,10 @@ class CoopAuv {
     int refused = 0;  ///< by the gate, or came too late
     int sent = 0;
     int clock_steps = 0;
-    int silences = 0;  ///< of all devices
-    int relayed = 0;   ///< states that did not come from their sender: no ranges
-    int orders = 0;    ///< obeyed
-    int orders_refused = 0;
+    int silences = 0;        ///< of all devices
+    int relayed = 0;         ///< states that did not come from their sender: no ranges
+    int orders = 0;          ///< obeyed
+    int orders_refused = 0;  ///< each once
   };
   enum class Phase { waiting_for_fix, at_surface, under_way, done };
 
@@ -96,6 +96,7 @@ class CoopAuv {
   void start(std::int64_t utime, const Vector2d& p_W, double std_m);
   void predict(std::int64_t utime);
   void obey(const AcousticOrder& order);
+  OrderRefusal refusal_of(const AcousticOrder& order) const;
   void use_range(const shoal::acoustic_received_t& packet, const AcousticState& beacon);
   void update_phase();
   shoal::helm_command_t helm();
@@ -106,7 +107,9 @@ class CoopAuv {
   std::unique_ptr<HelmBehaviour> behaviour_;
   ChannelAccess access_;
   DirectStates direct_;
-  int order_ = 0;              ///< number of the last one obeyed
+  int order_ = 0;          ///< number of the last one obeyed
+  int refused_order_ = 0;  ///< number of the last one refused, when later than that
+  OrderRefusal refusal_ = OrderRefusal::none;
   double wanted_depth_m_ = 0;  ///< when under way
   std::optional<MarineEkf> cooperative_;
   std::optional<MarineEkf> dead_reckoning_;

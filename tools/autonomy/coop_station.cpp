@@ -1,9 +1,11 @@
 #include "tools/autonomy/coop_station.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "tools/autonomy/state_packet.hpp"
 #include "tools/autonomy/waypoint_text.hpp"
@@ -14,6 +16,12 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_orders = 255;
+
+std::string decimal(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", number);
+  return text;
+}
 
 shoal::estimate_t estimate_of(const AcousticState& state) {
   constexpr double depth_std_m = 0.1;
@@ -69,7 +77,20 @@ void CoopStation::receive(const shoal::modem_received_t& packet) {
   ++counts_.states;
   state_ = state;
   has_news_ = true;
-  obeyed_ = state->order;
+  note_answer(*state);
+}
+
+void CoopStation::note_answer(const AcousticState& state) {
+  answered_ = std::max(state.order, state.refused_order);
+  last_obeyed_ = std::max(last_obeyed_, state.order);
+  if (state.refused_order <= (refused_.empty() ? 0 : refused_.back())) return;
+  refused_.push_back(state.refused_order);
+  ++counts_.refused;
+  news_ = "order " + std::to_string(state.refused_order) + " was refused: " + to_text(state.refusal);
+  if (static_cast<std::size_t>(state.refused_order) > params_.orders.size()) return;
+  const TimedOrder& refused = params_.orders[static_cast<std::size_t>(state.refused_order) - 1];
+  if (state.refusal == OrderRefusal::too_deep) news_ += ", " + decimal(refused.depth_m) + " m";
+  if (state.refusal == OrderRefusal::too_fast) news_ += ", " + decimal(refused.speed_mps) + " m/s";
 }
 
 AcousticOrder CoopStation::order(int number) const {
@@ -84,10 +105,12 @@ CoopStation::Decision CoopStation::step() {
   const auto& orders = params_.orders;
   counts_.orders = static_cast<int>(
       std::count_if(orders.begin(), orders.end(), [&](const TimedOrder& each) { return each.at_s <= since_s; }));
-  counts_.obeyed = std::max(counts_.obeyed, std::min(obeyed_, counts_.orders));
+  const auto refused_before = std::upper_bound(refused_.begin(), refused_.end(), last_obeyed_) - refused_.begin();
+  counts_.obeyed = std::max(counts_.obeyed, std::min(last_obeyed_, counts_.orders) - static_cast<int>(refused_before));
+  std::swap(decision.news, news_);
   if (has_news_) decision.knowledge = estimate_of(*state_);
   has_news_ = false;
-  if (access_.take_turn(utime_) && counts_.orders > obeyed_) {
+  if (access_.take_turn(utime_) && counts_.orders > answered_) {
     decision.send = to_everybody(order(counts_.orders));
     if (decision.send) ++counts_.sent;
   }

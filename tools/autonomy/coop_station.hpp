@@ -17,7 +17,8 @@
 namespace autonomy {
 
 /// A station that sends a vehicle out of its hearing to places, by radio and whoever passes its messages on.  It says
-/// an order in each of its turns until a state of the vehicle tells that it was obeyed, or the next one is due.  A pure
+/// an order in each of its turns until a state of the vehicle tells that it was obeyed or refused, or the next one is
+/// due.  A pure
 /// function of its reports in their order; its time is that of their stamps, the station's own clock.
 class CoopStation {
  public:
@@ -37,6 +38,7 @@ class CoopStation {
   struct Decision {
     std::optional<shoal::estimate_t> knowledge;  ///< for NAME.knowledge: where the vehicle was, by its newest state
     std::optional<shoal::modem_send_t> send;     ///< for NAME.radio.cmd
+    std::string news;                            ///< to be said; empty: nothing
   };
   struct Counts {
     int sent = 0;
@@ -44,6 +46,7 @@ class CoopStation {
     int bad_frames = 0;
     int orders = 0;  ///< that were due
     int obeyed = 0;
+    int refused = 0;
   };
 
   /// Throws std::invalid_argument when there are more than 255 orders, they are not in the order of their times, or one
@@ -60,6 +63,7 @@ class CoopStation {
  private:
   void note_time(std::int64_t utime);
   AcousticOrder order(int number) const;
+  void note_answer(const AcousticState& state);
 
   Params params_;
   ChannelAccess access_;
@@ -67,7 +71,10 @@ class CoopStation {
   std::optional<std::int64_t> first_utime_;
   std::optional<AcousticState> state_;  ///< newest
   bool has_news_ = false;
-  int obeyed_ = 0;  ///< number of the order that the vehicle obeyed last
+  int answered_ = 0;          ///< number of the order that the vehicle obeyed or refused last
+  int last_obeyed_ = 0;       ///< the largest number that was
+  std::vector<int> refused_;  ///< numbers, rising
+  std::string news_;
   Counts counts_;
 };
 

@@ -15,12 +15,14 @@ int drive(const autonomy::CoopStation::Params& params, const autonomy::Participa
                                             [&](const shoal::modem_received_t& packet) { station.receive(packet); });
   const int exit_code = autonomy::take_part(client, participation, [&](std::int64_t) {
     const autonomy::CoopStation::Decision decision = station.step();
+    if (!decision.news.empty()) std::cerr << params.name << ": " << decision.news << std::endl;
     if (decision.knowledge) client.publish(params.name + ".knowledge", *decision.knowledge);
     if (decision.send) client.publish(params.name + ".radio.cmd", *decision.send);
   });
   const autonomy::CoopStation::Counts& counts = station.counts();
-  std::cerr << params.name << ": " << counts.obeyed << " of " << counts.orders << " orders obeyed, sent " << counts.sent
-            << " times; " << counts.states << " states heard, " << counts.bad_frames << " bad frames\n";
+  std::cerr << params.name << ": " << counts.obeyed << " of " << counts.orders << " orders obeyed, " << counts.refused
+            << " refused, sent " << counts.sent << " times; " << counts.states << " states heard, " << counts.bad_frames
+            << " bad frames\n";
   return exit_code;
 }
 

@@ -1,20 +1,50 @@
 #include "tools/experiment/link_counts.hpp"
 
+#include "devices/modem.hpp"
 #include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/transducer.hpp"
 
 namespace tools {
 
-LinkCounts link_counts(const sim::World& world, const std::string& vehicle, const std::string& device) {
+namespace {
+
+LinkCounts no_counts() {
+  LinkCounts counts;
+  for (const std::string& cause : sim::loss_causes()) counts.lost[cause] = 0;
+  return counts;
+}
+
+void add_losses(LinkCounts& sum, const std::array<std::int64_t, sim::signal_losses>& lost) {
   const std::vector<std::string>& causes = sim::loss_causes();
-  LinkCounts sum;
-  for (const std::string& cause : causes) sum.lost[cause] = 0;
+  for (std::size_t i = 0; i < causes.size(); ++i) sum.lost[causes[i]] += lost[i + 1];  // 0: none
+}
+
+LinkCounts radio_counts(const sim::World& world, const std::string& vehicle, const std::string& device) {
+  LinkCounts sum = no_counts();
+  for (const auto& mounted : world.devices()) {
+    const auto* modem = mounted ? dynamic_cast<const devices::Modem*>(mounted->sensor()) : nullptr;
+    if (modem == nullptr || (!vehicle.empty() && modem->vehicle_name() != vehicle)) continue;
+    if (!device.empty() && modem->full_name() != vehicle + "/" + device) continue;
+    const devices::Modem::Counts& counts = modem->counts();
+    sum.sent += counts.sent;
+    sum.bytes_sent += counts.sent_bytes;
+    sum.received += counts.received;
+    add_losses(sum, counts.lost);
+  }
+  return sum;
+}
+
+}  // namespace
+
+LinkCounts link_counts(const sim::World& world, const std::string& vehicle, const std::string& device) {
+  LinkCounts sum = no_counts();
+  sum.acoustic = vehicle.empty() && !world.acoustics().transducers().empty();  // they may have left since
   const auto add = [&](const sim::Transducer::Counts& counts) {
     sum.sent += counts.sent;
     sum.bytes_sent += counts.sent_bytes;
     sum.received += counts.understood;
     sum.unsent += counts.unsent;
-    for (std::size_t i = 0; i < causes.size(); ++i) sum.lost[causes[i]] += counts.lost[i + 1];  // 0: none
+    add_losses(sum, counts.lost);
   };
   if (vehicle.empty()) add(world.acoustics().counts_of_those_gone());
   for (const sim::Transducer* transducer : world.acoustics().transducers()) {
@@ -22,8 +52,14 @@ LinkCounts link_counts(const sim::World& world, const std::string& vehicle, cons
     if (!vehicle.empty() && transducer->vehicle().name() != vehicle) continue;
     if (!device.empty() && transducer->full_name() != vehicle + "/" + device) continue;
     add(transducer->counts());
+    sum.acoustic = true;
   }
   return sum;
+}
+
+LinkCounts any_link_counts(const sim::World& world, const std::string& vehicle, const std::string& device) {
+  const LinkCounts counts = link_counts(world, vehicle, device);
+  return counts.acoustic ? counts : radio_counts(world, vehicle, device);
 }
 
 }  // namespace tools

@@ -8,8 +8,9 @@
 
 namespace tools {
 
-/// What modems sent on the acoustic channel, and what came of the signals they listened to.
+/// What modems sent, and what came of the signals they listened to.
 struct LinkCounts {
+  bool acoustic = false;                     ///< there are some that are
   std::int64_t sent = 0;                     ///< packets
   std::int64_t bytes_sent = 0;               ///< in them
   std::int64_t received = 0;                 ///< of others' packets, as often as one of the modems understood one
@@ -17,7 +18,9 @@ struct LinkCounts {
   std::map<std::string, std::int64_t> lost;  ///< heard but not understood, by cause: one of sim::loss_causes()
 };
 
-/// Of a vehicle (empty: of all) and one of its devices (empty: of all).
+/// On the acoustic channel, of a vehicle (empty: of all) and one of its devices (empty: of all).
 LinkCounts link_counts(const sim::World& world, const std::string& vehicle, const std::string& device);
+/// The same; of modems by radio where none of these is acoustic.
+LinkCounts any_link_counts(const sim::World& world, const std::string& vehicle, const std::string& device);
 
 }  // namespace tools

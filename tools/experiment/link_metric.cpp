@@ -5,13 +5,13 @@ namespace tools {
 
 namespace {
 
-/// Packets on the acoustic channel, and what became of them.
+/// Packets of modems, and what became of them.
 class DeliveryMetric final : public Metric {
  public:
   DeliveryMetric(const sim::MetricConfig& config, const sim::World& world) : Metric(config), world_(world) {}
 
   void add_figures(Figures& figures) const override {
-    const LinkCounts counts = link_counts(world_, config().vehicle, config().device);
+    const LinkCounts counts = any_link_counts(world_, config().vehicle, config().device);
     std::int64_t all_lost = 0;
     for (const auto& [cause, count] : counts.lost) all_lost += count;
     const auto heard = static_cast<double>(counts.received + all_lost);
@@ -34,7 +34,7 @@ class BytesPerMetreMetric final : public Metric {
 
   bool needs_others() const override { return true; }
   void add_figures(Figures& figures) const override {
-    const auto bytes = static_cast<double>(link_counts(world_, config().vehicle, config().device).bytes_sent);
+    const auto bytes = static_cast<double>(any_link_counts(world_, config().vehicle, config().device).bytes_sent);
     const double less_m = figures.at(config().against + ".rms_m") - figures.at(config().metric + ".rms_m");
     add(figures, "bytes_sent", bytes);
     add(figures, "reduction_m", less_m);

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "tools/experiment/run_error.hpp"
+#include "tools/experiment/run_name.hpp"
 
 namespace tools {
 
@@ -16,7 +17,8 @@ std::vector<std::string> RunPrograms::start() {
       spdlog::info("the world names {} processes; --launch starts them", config_.processes.size());
     return awaited;
   }
-  for (const sim::ProcessConfig& process : config_.processes) {
+  for (sim::ProcessConfig process : config_.processes) {
+    for (std::string& argument : process.command) argument = with_run_name(argument, options_.name);
     try {
       processes_.start(process, buses_.url(process.bus), options_.results);
     } catch (const std::runtime_error& error) {

@@ -20,6 +20,7 @@ struct RunOptions {
   std::string record;                ///< file for the LCM event log; empty: none
   bool overwrite = false;            ///< of the record
   std::string results;               ///< directory; empty: none
+  std::string name = "run";          ///< what {run} stands for in paths of serial ports and in commands of processes
   bool pictures = true;              ///< in the results
   bool paused = false;
   bool launch = false;

@@ -232,4 +232,18 @@ LoadedStudy load_study(const std::string& path) {
   return study;
 }
 
+std::optional<SharedPort> find_shared_port(const LoadedStudy& study) {
+  if (!study.config.launch) return std::nullopt;
+  for (const sim::LoadedWorld& world : study.worlds)
+    for (const sim::VehicleInstance& vehicle : world.config.vehicles)
+      for (const sim::DeviceConfig& device : vehicle.config->devices) {
+        const sim::ConfigNode* const serial = device.source ? device.source->find("serial") : nullptr;
+        const sim::ConfigNode* const path = serial != nullptr ? serial->find("path") : nullptr;
+        if (path == nullptr || path->scalar.find("{run}") != std::string::npos) continue;
+        return SharedPort{path->place, "vehicle '" + vehicle.name + "': device '" + device.name + "'",
+                          sim::channel_name(path->scalar, vehicle.name, device.name)};
+      }
+  return std::nullopt;
+}
+
 }  // namespace tools

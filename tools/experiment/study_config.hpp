@@ -70,4 +70,13 @@ struct LoadedStudy {
 /// Reads and checks a study and its world in every case.  Throws sim::ConfigError.
 LoadedStudy load_study(const std::string& path);
 
+/// A serial port that two runs at the same time would have.
+struct SharedPort {
+  sim::SourcePlace place;
+  std::string who;   ///< vehicle and device
+  std::string path;  ///< as the first of them has it
+};
+/// Runs with `launch` open their serial ports; this one's path has no `{run}`.
+std::optional<SharedPort> find_shared_port(const LoadedStudy& study);
+
 }  // namespace tools

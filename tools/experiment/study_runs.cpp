@@ -146,6 +146,7 @@ class StudyChildren {
       return arguments;
     }
     arguments.emplace_back("--launch");
+    add("--run-name", fmt::format("{}-seed_{}", config.cases[run.in_case].name, run.seed));
     add("--lcm-url", url(slot, attempt, 0));
     const auto& buses = study_.worlds[run.in_case].config.buses;
     for (std::size_t i = 0; i < buses.size(); ++i)

@@ -136,6 +136,10 @@ void add_run_command(CLI::App& app, int& exit_code) {
   add_plugin_option(*command);
   command->add_flag("!--no-serial-ports", arguments->run.serial_ports,
                     "do not open the pseudo-terminals and FIFOs of devices");
+  command
+      ->add_option("--run-name", arguments->run.name,
+                   "what {run} stands for in paths of serial ports and commands of processes")
+      ->capture_default_str();
   command->add_flag("--quiet", arguments->run.quiet, "no progress and no summary");
   command->add_option("--log-level", arguments->log_level, "what is said on stderr")
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}));

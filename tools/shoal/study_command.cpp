@@ -14,10 +14,25 @@ namespace tools {
 
 namespace {
 
+void choose_jobs(const LoadedStudy& study, StudyOptions& options) {
+  const auto shared = find_shared_port(study);
+  if (shared && options.jobs > 1)
+    sim::throw_config_error(shared->place, shared->who,
+                            "runs at the same time cannot have one serial port, '" + shared->path +
+                                "': put {run} into its path, or use --jobs 1");
+  if (options.jobs > 0) return;
+  options.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency() / 2));
+  if (!shared || options.jobs == 1) return;
+  options.jobs = 1;
+  if (!options.quiet)
+    std::cerr << "one run at a time: all have the serial port '" << shared->path
+              << "'; with {run} in its path each has its own\n";
+}
+
 int study(const std::string& path, StudyOptions options) {
   const LoadedStudy loaded = load_study(path);
   if (options.output.empty()) options.output = "results/" + loaded.config.name;
-  if (options.jobs == 0) options.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency() / 2));
+  choose_jobs(loaded, options);
   catch_signals(true);
   try {
     std::vector<StudyRun> runs = plan_study(loaded, options.output);

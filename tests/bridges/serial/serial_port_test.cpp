@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <poll.h>
+#include <pty.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include <fstream>
 
 #include "tests/bridges/lcm/lcm_test_support.hpp"
+#include "tests/sim/medium/log_capture.hpp"
 
 namespace {
 
@@ -136,6 +138,46 @@ TEST(SerialPort, ReplacesWhatADeadRunLeft) {
   const auto fifo = open_serial_port("fifo", folder.file("fifo"));
   Program(folder.file("fifo.in"), O_WRONLY).write("x");
   EXPECT_EQ(read_from(*fifo, 1), "x");
+}
+
+TEST(SerialPort, SaysThatItReplacedALinkOfADeadRun) {
+  const ScratchFolder folder;
+  const test_support::LogCapture log;
+  fs::create_symlink("/dev/pts/no-such-terminal", folder.file("modem"));
+  const auto pty = open_serial_port("pty", folder.file("modem"));
+  EXPECT_THAT(log.text(), testing::HasSubstr("serial port '" + folder.file("modem") +
+                                             "': replaced the link that a killed run left"));
+}
+
+/// The system gives the number of a terminal that is gone to the next one: here the terminal of another port.
+TEST(SerialPort, ReplacesALinkOfADeadRunWhoseTerminalIsAnotherOneNow) {
+  const ScratchFolder folder;
+  const auto other = open_serial_port("pty", folder.file("other"));
+  fs::copy_symlink(folder.file("other"), folder.file("modem"));
+  const auto pty = open_serial_port("pty", folder.file("modem"));
+  Program(folder.file("modem"), O_RDWR).write("x");
+  EXPECT_EQ(read_from(*pty, 1), "x");
+  EXPECT_THAT(error_of("pty", folder.file("other")), testing::HasSubstr("is in use"));
+  EXPECT_THAT(error_of("pty", folder.file("modem")), testing::HasSubstr("is in use"));
+}
+
+TEST(SerialPort, IsInUseUnderEveryNameOfItsFolder) {
+  const ScratchFolder folder;
+  const auto pty = open_serial_port("pty", folder.file("a/modem"));
+  EXPECT_THAT(error_of("pty", folder.file("a/../a/./modem")), testing::HasSubstr("is in use"));
+}
+
+/// As `socat pty,link=...` makes one.
+TEST(SerialPort, RefusesALinkThatAnotherProgramMadeToALiveTerminal) {
+  const ScratchFolder folder;
+  int master = -1, slave = -1;
+  char name[128];
+  ASSERT_EQ(openpty(&master, &slave, name, nullptr, nullptr), 0);
+  fs::create_symlink(name, folder.file("modem"));
+  EXPECT_THAT(error_of("pty", folder.file("modem")), testing::HasSubstr("is in use"));
+  EXPECT_EQ(fs::read_symlink(folder.file("modem")), name);
+  close(master);
+  close(slave);
 }
 
 TEST(SerialPort, RefusesToReplaceAnyOtherFile) {

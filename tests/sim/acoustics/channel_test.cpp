@@ -115,6 +115,20 @@ TEST(AcousticChannel, OnlyWhoIsNearEnoughIsGivenASignal) {
   for (int i = 1; i <= 30; ++i) EXPECT_EQ(phone(test, "b" + std::to_string(i)).all().size(), i <= 5 ? 1u : 0u);
 }
 
+TEST(AcousticChannel, WorkOfASignalGrowsWithItsHearersAndNotWithTheFleet) {
+  std::vector<std::int64_t> flights;
+  for (const int fleet : {20, 80, 160}) {
+    std::string vehicles = vehicle("a", "[0, 0, -10]");
+    for (int i = 1; i <= fleet; ++i)
+      vehicles += vehicle("b" + std::to_string(i), "[" + std::to_string(1000 * (i - fleet / 2) - 500) + ", 0, -10]");
+    TestWorld test(sea("{range_max_m: 4100}", vehicles));
+    phone(test, "a").transducer().transmit(message(), 0ms);
+    test.run_for(10);
+    flights.push_back(test.world.acoustics().flights());
+  }
+  EXPECT_EQ(flights, (std::vector<std::int64_t>{8, 8, 8}));  // 4 to each side
+}
+
 TEST(AcousticChannel, BeyondItsAudibleRangeASignalIsBelowTheNoise) {
   TestWorld test(sea("{absorption: {model: thorp}, noise: {wind_mps: 5}}", vehicle("a", "[0, 0, -10]")));
   const sim::Propagation& propagation = test.world.acoustics().propagation();
@@ -154,6 +168,18 @@ TEST(AcousticChannel, WhoIsRemovedNeitherHearsNorIsMissed) {
   ASSERT_EQ(test.world.acoustics().flights(), 2);
   EXPECT_TRUE(phone(test, "c").all().empty());
   EXPECT_EQ(phone(test, "c").transducer().counts().lost[static_cast<std::size_t>(SignalLoss::out_of_water)], 1);
+}
+
+TEST(AcousticChannel, WhoTakesThePlaceOfOneThatLeftDoesNotHearWhatWasForThatOne) {
+  TestWorld test(sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[750, 0, -10]")));
+  phone(test, "a").transducer().transmit(message(), 0ms);
+  test.run_for(0.1);
+  const int number = phone(test, "b").transducer().number();
+  test.world.remove_vehicle("b");
+  test.world.add_vehicle(test.loaded.config.vehicles[1]);
+  ASSERT_EQ(phone(test, "b").transducer().number(), number);
+  test.run_for(6);
+  EXPECT_TRUE(phone(test, "b").all().empty());
 }
 
 TEST(AcousticChannel, EchoesCarryASignalAroundAWall) {

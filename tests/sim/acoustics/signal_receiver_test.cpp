@@ -54,6 +54,24 @@ TEST(SignalReceiver, AloneASignalComesThroughByItsBitErrors) {
   EXPECT_FALSE(receiver.taking());
 }
 
+/// However many sounds there are, and in which order they came: just where the sum of all says so.
+TEST(SignalReceiver, NoticesASignalThatStandsOutAmongAllOthersTogether) {
+  for (const int others : {1, 7, 8, 9, 40}) {
+    for (const double over_dB : {0.01, -0.01}) {
+      SignalReceiver receiver;
+      double sum = 1;  // the noise
+      for (int i = 0; i < others; ++i) {
+        TakenSignal sound = signal(i, 0);
+        sound.sound.power = PowerRatio{0.5 + i % 3};
+        sum += sound.sound.power.linear();
+        receiver.begin(sound.sound, 0s);
+      }
+      const TakenSignal strong = signal(others, 6 + 10 * std::log10(sum) + over_dB);
+      EXPECT_EQ(arrive(receiver, strong), over_dB > 0 ? SignalLoss::none : SignalLoss::interference) << others;
+    }
+  }
+}
+
 TEST(SignalReceiver, BelowItsThresholdItNoticesNothing) {
   SignalReceiver receiver;
   EXPECT_EQ(arrive(receiver, signal(1, 5.9)), SignalLoss::noise);

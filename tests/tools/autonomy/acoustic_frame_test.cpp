@@ -56,7 +56,10 @@ std::vector<frame::Bytes> one_of_each_kind(std::uint64_t seed) {
   AcousticState state = some_state(random);
   const frame::Bytes plain = *frame::encode(state);
   state.order = 17;
-  return {plain, *frame::encode(some_order(random)), *frame::encode(state)};
+  const frame::Bytes obeying = *frame::encode(state);
+  state.refused_order = 19;
+  state.refusal = autonomy::OrderRefusal::too_fast;
+  return {plain, *frame::encode(some_order(random)), obeying, *frame::encode(state)};
 }
 
 bool is_good(std::span<const std::uint8_t> bytes) {
@@ -64,9 +67,11 @@ bool is_good(std::span<const std::uint8_t> bytes) {
 }
 
 TEST(AcousticFrame, FitsIntoAFrameOfThe32ByteRate) {
-  const std::vector<std::size_t> sizes = {frame::state_bytes, frame::order_bytes, frame::obeying_state_bytes};
+  const std::vector<std::size_t> sizes = {frame::state_bytes, frame::order_bytes, frame::obeying_state_bytes,
+                                          frame::refusing_state_bytes};
   const std::vector<frame::Bytes> frames = one_of_each_kind(6);
-  for (std::size_t i = 0; i < 3; ++i) {
+  ASSERT_EQ(frames.size(), sizes.size());
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
     EXPECT_EQ(frames[i].size(), sizes[i]);
     EXPECT_LE(sizes[i], 32u);
   }
@@ -197,6 +202,43 @@ TEST(AcousticFrame, StateTellsOfAnOrderInOneByteMore) {
   }
 }
 
+TEST(AcousticFrame, StateTellsOfARefusedOrderInThreeBytesMore) {
+  sim::Random random(9, "frame");
+  random.begin_step(0);
+  AcousticState state = some_state(random);
+  const frame::Bytes plain = *frame::encode(state);
+  for (const int order : {0, 1, 254})
+    for (const auto refusal : {autonomy::OrderRefusal::too_deep, autonomy::OrderRefusal::too_fast}) {
+      state.order = order;
+      state.refused_order = order + 1;
+      state.refusal = refusal;
+      const frame::Bytes bytes = *frame::encode(state);
+      const auto decoded = frame::decode(bytes, state.utime);
+      ASSERT_TRUE(decoded);
+      EXPECT_EQ(decoded->order, order);
+      EXPECT_EQ(decoded->refused_order, order + 1);
+      EXPECT_EQ(decoded->refusal, refusal);
+      EXPECT_TRUE(std::equal(plain.begin() + 1, plain.end() - 2, bytes.begin() + 1));
+    }
+}
+
+/// Of a later version of the other program, perhaps.
+TEST(AcousticFrame, AReasonThatIsNotKnownComesThroughAndNoneDoesNot) {
+  sim::Random random(10, "frame");
+  random.begin_step(0);
+  AcousticState state = some_state(random);
+  state.refused_order = 3;
+  state.refusal = static_cast<autonomy::OrderRefusal>(7);
+  frame::Bytes bytes = *frame::encode(state);
+  ASSERT_TRUE(frame::decode(bytes, state.utime));
+  EXPECT_EQ(autonomy::to_text(frame::decode(bytes, state.utime)->refusal), "reason 7");
+  bytes[28] = 0;
+  const std::uint16_t checksum = frame::checksum(std::span(bytes).first(29));
+  bytes[29] = static_cast<std::uint8_t>(checksum >> 8);
+  bytes[30] = static_cast<std::uint8_t>(checksum);
+  EXPECT_FALSE(frame::decode(bytes, state.utime));
+}
+
 TEST(AcousticFrame, OrderComesBackWithinItsQuantisation) {
   sim::Random random(9, "frame");
   for (int i = 0; i < 2000; ++i) {
@@ -275,6 +317,8 @@ TEST(AcousticFrame, WhatDoesNotFitIsNotSent) {
   EXPECT_TRUE(refused([](AcousticState& s) { s.sender = 256; }));
   EXPECT_TRUE(refused([](AcousticState& s) { s.sender = -1; }));
   EXPECT_TRUE(refused([](AcousticState& s) { s.order = 256; }));
+  EXPECT_TRUE(refused([](AcousticState& s) { s.refused_order = 3; }));
+  EXPECT_TRUE(refused([](AcousticState& s) { s.refusal = autonomy::OrderRefusal::too_deep; }));
   EXPECT_TRUE(refused([&](AcousticState& s) { s.east_m = nan; }));
   EXPECT_TRUE(refused([](AcousticState& s) { s.north_m = 3e7; }));
   EXPECT_TRUE(refused([](AcousticState& s) { s.depth_m = -1; }));

@@ -450,6 +450,33 @@ TEST(CoopAuv, ObeysOnlyNewOrdersThatAreForItAndCanBeDone) {
             1);
 }
 
+TEST(CoopAuv, SaysInItsStateThatItRefusedAnOrderUntilItObeysALaterOne) {
+  Voyage voyage(obeying_params());
+  voyage.run(30);
+  const auto state = [&] {
+    for (int i = 0; i < 100; ++i) {
+      voyage.t += second / 5;
+      voyage.auv.receive(depth_at(voyage.t, 20));
+      if (const auto sent = voyage.auv.step().send) return *autonomy::acoustic_frame::decode(sent->data, voyage.t);
+    }
+    ADD_FAILURE() << "it says nothing";
+    return AcousticState();
+  };
+  voyage.auv.receive(order_packet(1, {0, 1000}, 35, voyage.t));
+  EXPECT_EQ(state().refused_order, 0);
+  for (int i = 0; i < 2; ++i) voyage.auv.receive(order_packet(2, {0, 1000}, 100.1, voyage.t));
+  EXPECT_EQ(voyage.auv.counts().orders_refused, 1);
+  EXPECT_EQ(state().order, 1);
+  EXPECT_EQ(state().refused_order, 2);
+  EXPECT_EQ(state().refusal, autonomy::OrderRefusal::too_deep);
+  EXPECT_EQ(voyage.auv.step().helm->depth_m, 35) << "it goes on as it was told before";
+  voyage.auv.receive(order_packet(3, {0, 900}, 30, voyage.t));
+  const AcousticState obeying = state();
+  EXPECT_EQ(obeying.order, 3);
+  EXPECT_EQ(obeying.refused_order, 0);
+  EXPECT_EQ(obeying.refusal, autonomy::OrderRefusal::none);
+}
+
 TEST(CoopAuv, OrderFetchesItBackFromTheEndOfItsRoute) {
   CoopAuv::Params params = obeying_params();
   params.start_W = Vector2d(0, 0);

@@ -115,6 +115,28 @@ TEST(CoopStation, LaterOrderTakesThePlaceOfOneThatWasNotObeyed) {
   EXPECT_TRUE(run(station, 200, 260).empty());
 }
 
+TEST(CoopStation, TellsOnceThatAnOrderWasRefusedAndSaysItNoMore) {
+  CoopStation station(station_params());
+  run(station, 0, 30);
+  AcousticState state = state_of(7, epoch + 29 * second);
+  state.refused_order = 1;
+  state.refusal = autonomy::OrderRefusal::too_deep;
+  station.receive(by_radio(state, epoch + 30 * second));
+  EXPECT_EQ(station.step().news, "order 1 was refused: too deep, 15 m");
+  EXPECT_EQ(station.counts().refused, 1);
+  EXPECT_EQ(station.counts().obeyed, 0);
+  EXPECT_TRUE(run(station, 31, 100).empty());
+  state.utime = epoch + 44 * second;  // its next state says so, too
+  station.receive(by_radio(state, epoch + 100 * second));
+  EXPECT_EQ(station.step().news, "");
+  EXPECT_EQ(station.counts().refused, 1);
+
+  EXPECT_EQ(run(station, 100, 112).size(), 1u);  // the second order
+  station.receive(by_radio(state_of(7, epoch + 112 * second, 2), epoch + 115 * second));
+  EXPECT_EQ(station.step().news, "");
+  EXPECT_EQ(station.counts().obeyed, 1) << "of two, for the first was refused";
+}
+
 TEST(CoopStation, StateOfAnotherVehicleObeysNothing) {
   CoopStation station(station_params());
   run(station, 0, 30);

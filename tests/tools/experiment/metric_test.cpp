@@ -352,6 +352,69 @@ TEST(Delivery, CountsWhatModemsSentAndWhatTheOthersHeard) {
   EXPECT_EQ(figures.at("all.ratio"), figures.at("all.received") / (figures.at("all.received") + lost));
 }
 
+/// b is in range of a, c is not; d is out of the water that hides it.
+TEST(Delivery, OfARadioModemCountsWhatCameAndWhatDidNot) {
+  const std::string radio = "{name: radio, type: modem, range_m: 500}";
+  test::TestWorld test(test::modem_sea(
+      {{"a", "[0, 0, 2]", radio}, {"b", "[300, 0, 2]", radio}, {"c", "[600, 0, 2]", radio}, {"d", "[0, 9, -2]", radio}},
+      "metrics:\n"
+      "  - {name: all, type: delivery}\n"
+      "  - {name: a, type: delivery, vehicle: a, device: radio}\n"
+      "  - {name: b, type: delivery, vehicle: b, device: radio}\n"
+      "  - {name: c, type: delivery, vehicle: c}\n"
+      "  - {name: d, type: delivery, vehicle: d}\n"));
+  tools::Scoring scoring(test.world);
+  EXPECT_TRUE(std::isnan(scoring.figures().at("all.ratio"))) << "nothing was sent";
+  test.send("a.radio.cmd", test::bytes_to("hello"));
+  test.run_for(1);
+  test.send("a.radio.cmd", test::bytes_to("b only", "b"));
+  test.run_for(1);
+  const auto figures = scoring.figures();
+  EXPECT_EQ(figures.at("a.sent"), 2);
+  EXPECT_EQ(figures.at("a.bytes_sent"), 11);
+  EXPECT_TRUE(std::isnan(figures.at("a.ratio"))) << "nobody sent to it";
+  EXPECT_EQ(figures.at("b.received"), 2);
+  EXPECT_EQ(figures.at("b.ratio"), 1);
+  EXPECT_EQ(figures.at("c.lost_noise"), 1);
+  EXPECT_EQ(figures.at("c.ratio"), 0);
+  EXPECT_EQ(figures.at("d.lost_blocked"), 1);
+  EXPECT_EQ(figures.at("all.ratio"), 0.5) << "two of four";
+}
+
+TEST(Delivery, OfALossyRadioLinkIsAboutItsProbability) {
+  test::TestWorld test(test::modem_sea({{"a", "[0, 0, 2]", "{name: radio, type: modem, loss_probability: 0.25}"},
+                                        {"b", "[50, 0, 2]", "{name: radio, type: modem}"}},
+                                       "metrics:\n  - {name: b, type: delivery, vehicle: b, device: radio}\n"));
+  tools::Scoring scoring(test.world);
+  constexpr int messages = 2000;
+  for (int i = 0; i < messages; ++i) {
+    test.send("a.radio.cmd", test::bytes_to("x"));
+    test.run_for(0.01);
+  }
+  test.run_for(0.1);
+  const auto figures = scoring.figures();
+  EXPECT_EQ(figures.at("b.received") + figures.at("b.lost_link"), messages);
+  // Five standard deviations of a share of so many draws.
+  EXPECT_NEAR(figures.at("b.ratio"), 0.75, 5 * std::sqrt(0.25 * 0.75 / messages));
+}
+
+/// A vehicle with both: without a name it is about the acoustic ones, as it was.
+TEST(Delivery, OfAVehicleWithBothIsAboutSoundUnlessItNamesTheRadio) {
+  const std::string both = "{name: radio, type: modem, range_m: 500}, {name: modem, type: acoustic_modem}";
+  test::TestWorld test(test::modem_sea({{"a", "[0, 0, -2]", both}, {"b", "[300, 0, -2]", both}},
+                                       "metrics:\n  - {name: all, type: delivery}\n"
+                                       "  - {name: b, type: delivery, vehicle: b}\n"
+                                       "  - {name: r, type: delivery, vehicle: b, device: radio}\n"));
+  tools::Scoring scoring(test.world);
+  test.send("a.radio.cmd", test::bytes_to("hello"));
+  test.run_for(1);
+  const auto figures = scoring.figures();
+  EXPECT_EQ(figures.at("all.sent"), 0);
+  EXPECT_TRUE(std::isnan(figures.at("b.ratio")));
+  EXPECT_EQ(figures.at("r.ratio"), 0);
+  EXPECT_EQ(figures.at("r.lost_blocked"), 1);
+}
+
 /// A box that turns about its y axis at 1 rad/s, its nose going down, without gravity.
 TEST(Lean, TellsMeanSpreadAndFallOfASteadyTurn) {
   test::TestWorld test(test::box_world(
