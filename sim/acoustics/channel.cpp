@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "sim/acoustics/sound_path.hpp"
 #include "sim/device/fault.hpp"
@@ -35,14 +36,28 @@ AcousticChannel::AcousticChannel(const AcousticsConfig& config, const AcousticSu
 AcousticChannel::~AcousticChannel() = default;
 
 int AcousticChannel::join(Transducer& transducer) {
-  const auto free = std::find(transducers_.begin(), transducers_.end(), nullptr);
   forget_places();
-  if (free == transducers_.end()) {
-    transducers_.push_back(&transducer);
-    return static_cast<int>(transducers_.size()) - 1;
+  const auto free = std::find(transducers_.begin(), transducers_.end(), nullptr);
+  auto number = static_cast<std::size_t>(free - transducers_.begin());
+  if (!prescribed_.empty()) {
+    number = static_cast<std::size_t>(prescribed_.back());
+    prescribed_.pop_back();
   }
-  *free = &transducer;
-  return static_cast<int>(free - transducers_.begin());
+  if (number >= transducers_.size()) transducers_.resize(number + 1);
+  transducers_[number] = &transducer;
+  return static_cast<int>(number);
+}
+
+bool AcousticChannel::prescribe(std::vector<int> numbers) {
+  constexpr int most = 10'000'000;
+  for (const int number : numbers) {
+    const auto at = static_cast<std::size_t>(number);
+    if (number < 0 || number >= most || (at < transducers_.size() && transducers_[at] != nullptr)) return false;
+  }
+  if (std::set<int>(numbers.begin(), numbers.end()).size() != numbers.size()) return false;
+  std::reverse(numbers.begin(), numbers.end());
+  prescribed_ = std::move(numbers);
+  return true;
 }
 
 void AcousticChannel::leave(Transducer& transducer) {
