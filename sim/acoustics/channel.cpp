@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "sim/acoustics/sound_path.hpp"
 #include "sim/device/fault.hpp"
@@ -35,12 +36,29 @@ AcousticChannel::AcousticChannel(const AcousticsConfig& config, const AcousticSu
 AcousticChannel::~AcousticChannel() = default;
 
 void AcousticChannel::join(Transducer& transducer) {
-  auto place = std::find(transducers_.begin(), transducers_.end(), nullptr);
-  if (place == transducers_.end()) place = transducers_.insert(place, nullptr);
-  *place = &transducer;
-  transducer.number_ = static_cast<int>(place - transducers_.begin());
+  const auto free = std::find(transducers_.begin(), transducers_.end(), nullptr);
+  auto number = static_cast<std::size_t>(free - transducers_.begin());
+  if (!prescribed_.empty()) {
+    number = static_cast<std::size_t>(prescribed_.back());
+    prescribed_.pop_back();
+  }
+  if (number >= transducers_.size()) transducers_.resize(number + 1);
+  transducers_[number] = &transducer;
+  transducer.number_ = static_cast<int>(number);
   transducer.join_ = ++joins_;
   forget_places();
+}
+
+bool AcousticChannel::prescribe(std::vector<int> numbers) {
+  constexpr int most = 10'000'000;
+  for (const int number : numbers) {
+    const auto at = static_cast<std::size_t>(number);
+    if (number < 0 || number >= most || (at < transducers_.size() && transducers_[at] != nullptr)) return false;
+  }
+  if (std::set<int>(numbers.begin(), numbers.end()).size() != numbers.size()) return false;
+  std::reverse(numbers.begin(), numbers.end());
+  prescribed_ = std::move(numbers);
+  return true;
 }
 
 void AcousticChannel::leave(Transducer& transducer) {

@@ -47,6 +47,10 @@ class AcousticChannel {
 
   /// In device order; null where one has left.
   const std::vector<Transducer*>& transducers() const { return transducers_; }
+  /// For who builds a world again as it became: those who join next get these numbers.  False: one is taken or cannot
+  /// be.
+  bool prescribe(std::vector<int> numbers);
+  bool as_prescribed() const { return prescribed_.empty(); }
   const Propagation& propagation() const { return propagation_; }
   /// Receptions, heard or not, since the start: what the work grows with.
   std::int64_t flights() const { return flights_made_; }
@@ -142,6 +146,7 @@ class AcousticChannel {
   AcousticSurroundings around_;
   Propagation propagation_;
   std::vector<Transducer*> transducers_;
+  std::vector<int> prescribed_;  // numbers of transducers, the next one last
   std::vector<ContinuousSound*> sounds_;
   std::vector<std::unique_ptr<Sending>> sendings_;
   std::vector<int> free_sendings_;

@@ -1,7 +1,9 @@
 #pragma once
 
-#include <functional>
-#include <queue>
+#include <deque>
+#include <set>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace sim {
@@ -10,21 +12,34 @@ namespace sim {
 /// number is next depends only on which are in use, not on the order in which they became free.
 class FreeNumbers {
  public:
-  int next() const { return free_.empty() ? count_ : free_.top(); }
+  int next() const { return !prescribed_.empty() ? prescribed_.front() : free_.empty() ? count_ : *free_.begin(); }
   int take() {
     const int number = next();
-    if (free_.empty())
-      ++count_;
-    else
-      free_.pop();
+    if (!prescribed_.empty()) prescribed_.pop_front();
+    for (; count_ <= number; ++count_) free_.insert(free_.end(), count_);
+    free_.erase(number);
     return number;
   }
-  void give_back(int number) { free_.push(number); }
+  void give_back(int number) { free_.insert(number); }
   /// One more than the highest number ever taken.
   int count() const { return count_; }
 
+  /// The next ones are these, in this order.  Throws std::out_of_range when one of them is in use or cannot be.
+  void prescribe(const std::vector<int>& numbers) {
+    constexpr int most = 10'000'000;
+    for (const int number : numbers)
+      if (number < 0 || number >= most || (number < count_ && !free_.contains(number)))
+        throw std::out_of_range("number " + std::to_string(number) + " is in use, or is none");
+    if (std::set<int>(numbers.begin(), numbers.end()).size() != numbers.size())
+      throw std::out_of_range("a number comes twice");
+    prescribed_.assign(numbers.begin(), numbers.end());
+  }
+  /// All that were prescribed have been taken.
+  bool as_prescribed() const { return prescribed_.empty(); }
+
  private:
-  std::priority_queue<int, std::vector<int>, std::greater<>> free_;
+  std::set<int> free_;
+  std::deque<int> prescribed_;
   int count_ = 0;
 };
 

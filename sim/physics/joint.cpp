@@ -319,10 +319,13 @@ Vector3d Joint::axis_W(int axis) const {
 /// ODE keeps the world's side of a joint in the world's frame and counts from the pose at which the joint was made.
 /// So the joint is made anew, with its body moved to where it was then.
 void Joint::move_world_side(const Pose& X_move_W) {
-  if (!world_side_) return;
+  if (world_side_) make_again(X_move_W * world_side_->X_WV, X_move_W * world_side_->X_WC);
+}
+
+void Joint::make_again(const Pose& X_WV, const Pose& X_WC) {
   WorldSide& side = *world_side_;
-  side.X_WV = X_move_W * side.X_WV;
-  side.X_WC = X_move_W * side.X_WC;
+  side.X_WV = X_WV;
+  side.X_WC = X_WC;
   OdeStops stops[most_axes];
   double velocity[most_axes], max_force[most_axes];
   for (int axis = 0; axis < axes_; ++axis) {

@@ -109,6 +109,7 @@ class Joint {
   void note_load();
   double motor_at_stop(int axis) const;
   void move_world_side(const Pose& X_move_W);
+  void make_again(const Pose& X_WV, const Pose& X_WC);
   void update_position(double step_s);  ///< after each step; integrates differences, for ODE wraps at pi
 
   std::string name_;

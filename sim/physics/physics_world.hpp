@@ -40,6 +40,26 @@ struct PartInfo {
   bool plane = false;            ///< has no end
 };
 
+/// The numbers of a group and of what belongs to it, in the order in which they came.
+struct GroupNumbers {
+  int group = -1;
+  std::vector<int> bodies, parts, joints;
+  template <typename Archive>
+  void visit_state(Archive& archive) {
+    archive(group, bodies, parts, joints);
+  }
+};
+
+/// Where a joint to the world was made: ODE counts from there.
+struct JointPlace {
+  Pose X_WV = Pose::Identity();
+  Pose X_WC = Pose::Identity();  ///< of the body that moves
+  template <typename Archive>
+  void visit_state(Archive& archive) {
+    archive(X_WV, X_WC);
+  }
+};
+
 /// Work done by the last step, the same in every run.
 struct StepCounts {
   int contacts = 0;
@@ -83,6 +103,17 @@ class PhysicsWorld {
   /// Moves all bodies of a group as one: X_WB := X_move_W * X_WB, the world's side of its joints too, so that joints
   /// keep their positions.  Velocities turn along, or become zero.
   void move_group(int group, const Pose& X_move_W, bool keep_velocity = false);
+
+  // For who builds a world again as it became.
+  GroupNumbers numbers_of(int group) const;
+  /// The next group, and what is added to it, get these numbers.  Throws std::out_of_range when one is in use.
+  void prescribe(const GroupNumbers& numbers);
+  /// All numbers that were prescribed have been given.
+  bool as_prescribed() const;
+  /// Of the joints of a group that hold on to the world, in their order.
+  std::vector<JointPlace> joint_places(int group) const;
+  /// Makes them again there; bodies stay where they are.  Throws std::out_of_range when they are not so many.
+  void make_joints_again(int group, std::span<const JointPlace> places);
 
   /// Names the group that a group stands deepest in, and how deep; empty: in none.
   std::pair<std::string, double> deepest_overlap(int group) const;

@@ -262,4 +262,40 @@ void PhysicsWorld::move_group(int group, const Pose& X_move_W, bool keep_velocit
   for (const int number : moved.joints) impl_->joints[number]->move_world_side(X_move_W);
 }
 
+GroupNumbers PhysicsWorld::numbers_of(int group) const {
+  const Impl::Group& owner = impl_->group(group);
+  return {group, owner.bodies, owner.parts, owner.joints};
+}
+
+void PhysicsWorld::prescribe(const GroupNumbers& numbers) {
+  impl_->group_numbers.prescribe({numbers.group});
+  impl_->body_numbers.prescribe(numbers.bodies);
+  impl_->part_numbers.prescribe(numbers.parts);
+  impl_->joint_numbers.prescribe(numbers.joints);
+}
+
+bool PhysicsWorld::as_prescribed() const {
+  const Impl& all = *impl_;
+  return all.group_numbers.as_prescribed() && all.body_numbers.as_prescribed() && all.part_numbers.as_prescribed() &&
+         all.joint_numbers.as_prescribed();
+}
+
+std::vector<JointPlace> PhysicsWorld::joint_places(int group) const {
+  std::vector<JointPlace> places;
+  for (const int number : impl_->group(group).joints)
+    if (const auto& side = impl_->joints[number]->world_side_) places.push_back({side->X_WV, side->X_WC});
+  return places;
+}
+
+void PhysicsWorld::make_joints_again(int group, std::span<const JointPlace> places) {
+  if (places.size() != joint_places(group).size()) throw std::out_of_range("other joints to the world");
+  auto place = places.begin();
+  for (const int number : impl_->group(group).joints) {
+    Joint& joint = *impl_->joints[number];
+    if (!joint.world_side_) continue;
+    joint.make_again(place->X_WV, place->X_WC);
+    ++place;
+  }
+}
+
 }  // namespace sim

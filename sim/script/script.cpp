@@ -198,6 +198,10 @@ void Script::visit_state(StateArchive& archive) {
   for (Actor& actor : actors_) archive(actor);
   for (std::size_t i = 0; i < events_.size(); ++i) {
     archive(events_[i]);
+    // It would be made up for at once, as often as a forger likes.
+    const std::optional<Time>& next = events_[i].next;
+    if (archive.restoring() && next && *next <= world_.now() - world_.step_time())
+      archive.fail("an event that should have fired long ago");
     if (watches_[i]) archive(*watches_[i]);
   }
   archive(delayed_, records_);

@@ -252,4 +252,8 @@ void VehicleClock::visit_state(StateArchive& archive) {
     archive.fail("a clock that stands at another time than its past");
 }
 
+bool VehicleClock::stands_at(Time now) const {
+  return !state_ || state_->now == now;
+}
+
 }  // namespace sim

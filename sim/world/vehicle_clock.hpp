@@ -59,6 +59,8 @@ class VehicleClock {
   double estimated_std_s(Time now) const;
 
   void visit_state(StateArchive& archive);
+  /// It was advanced to this time last, or is perfect.
+  bool stands_at(Time now) const;
 
   static constexpr Time memory{60'000'000};
 

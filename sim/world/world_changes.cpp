@@ -178,7 +178,7 @@ void World::move_vehicle(const std::string& name, const Pose& X_WV) {
   const Vehicle& vehicle = vehicle_named(name);
   const Pose X_move_W = X_WV * vehicle.X_WV().inverse();
   physics_->move_group(vehicle.group(), X_move_W);
-  if (physics_->anchored(vehicle.group())) journal_->anchored_vehicle_moved(name, X_move_W);
+  if (physics_->anchored(vehicle.group())) journal_->anchored_vehicle_moved(vehicle);
   acoustics_->forget_places();
 }
 
@@ -187,9 +187,8 @@ const WorldObject& World::add_object(const ObjectConfig& config, const std::stri
   check_new_name(name, config.place, who);
   check_limit("objects", objects_.size() + 1, config_.limits.objects, config.place, who);
   check_limit("parts in an object", config.parts.size(), config_.limits.parts, config.place, who);
-  const std::int64_t number = next_object_number_;
   const WorldObject& object = place_object(config, name, X_WE);
-  journal_->object_came(config, name, X_WE, number);
+  journal_->object_came(config, object, X_WE);
   return object;
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "sim/acoustics/channel.hpp"
+#include "sim/acoustics/transducer.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/vehicle_loader.hpp"
@@ -31,7 +32,16 @@ std::string text_of(const ConfigNode& source) {
 }  // namespace
 
 void WorldJournal::Entry::visit_state(StateArchive& archive) {
-  archive(kind, step, name, text, in_file, text_number, bus, X_W, number, new_surfaces, free_numbers, devices);
+  archive(kind, step, name, values, in_file, text_number, bus, X_W, new_surfaces, number, numbers, devices, transducers,
+          joints);
+}
+
+std::size_t WorldJournal::Entry::bytes() const {
+  constexpr std::size_t always = 320;
+  const std::size_t numbers_in_lists =
+      numbers.bodies.size() + numbers.parts.size() + numbers.joints.size() + devices.size() + transducers.size();
+  return always + name.size() + values.size() + bus.size() + numbers_in_lists * sizeof(int) +
+         joints.size() * sizeof(JointPlace);
 }
 
 WorldJournal::Entry WorldJournal::entry(Kind kind, const std::string& name) const {
@@ -42,67 +52,83 @@ WorldJournal::Entry WorldJournal::entry(Kind kind, const std::string& name) cons
   return entry;
 }
 
+Bytes WorldJournal::bytes() const {
+  StateArchive archive = StateArchive::saver(size_);
+  auto& self = const_cast<WorldJournal&>(*this);  // saving changes nothing
+  std::vector<std::pair<std::int64_t, std::string>> texts;
+  for (const auto& [number, text] : texts_) texts.emplace_back(number, text.text);
+  auto devices = static_cast<std::int64_t>(world_.devices_.size());
+  archive(texts, self.entries_, world_.free_numbers_, devices);
+  return archive.take_bytes();
+}
+
 void WorldJournal::append(Entry entry) {
-  if (full_) return;
-  StateArchive archive = StateArchive::saver();
-  archive(entry);
-  const std::vector<std::byte> bytes = archive.take_bytes();
-  bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
-  const std::int64_t text_number = entry.kind == Kind::text ? entry.number : entry.text_number;
-  noted_.push_back(
-      {entry.kind, std::move(entry.name), std::move(entry.text), text_number, entry.new_surfaces, bytes.size()});
-  if (bytes_.size() <= most_bytes) return;
+  use_text(entry.text_number);
+  size_ += entry.bytes();
+  entries_.push_back(std::move(entry));
+  check_size();
+}
+
+void WorldJournal::check_size() {
+  if (size_ <= most_bytes) return;
+  forget();
   full_ = true;
-  if (gap_.empty()) gap_ = "more came, went and was changed than can be told in 16 MiB";
-  bytes_ = {};
-  noted_ = {};
+  gap_ = "more came and was changed than can be told in 16 MiB";
+}
+
+void WorldJournal::forget() {
+  entries_ = {};
   texts_.clear();
+  text_numbers_.clear();
+  size_ = 0;
 }
 
-void WorldJournal::drop(std::size_t number) {
-  std::ptrdiff_t begin = 0;
-  for (std::size_t i = 0; i < number; ++i) begin += static_cast<std::ptrdiff_t>(noted_[i].bytes);
-  const auto from = bytes_.begin() + begin;
-  bytes_.erase(from, from + static_cast<std::ptrdiff_t>(noted_[number].bytes));
-  noted_.erase(noted_.begin() + static_cast<std::ptrdiff_t>(number));
+void WorldJournal::drop(std::size_t place) {
+  const auto at = entries_.begin() + static_cast<std::ptrdiff_t>(place);
+  size_ -= at->bytes();
+  let_go_of_text(at->text_number);
+  entries_.erase(at);
 }
 
-void WorldJournal::drop_all_of(const std::string& name, std::size_t first) {
-  for (std::size_t i = noted_.size(); i-- > first;)
-    if (noted_[i].name == name || noted_[i].name.starts_with(name + "/")) drop(i);
-}
-
-std::optional<std::size_t> WorldJournal::came_last(Kind kind, const std::string& name) const {
-  for (std::size_t i = noted_.size(); i-- > 0;) {
-    const Kind other = noted_[i].kind;
-    if (other == kind && noted_[i].name == name) return i;
-    if (other == Kind::vehicle_came || other == Kind::object_came || other == Kind::surfaces) return std::nullopt;
-  }
+std::optional<std::size_t> WorldJournal::place_of(Kind came, const std::string& name) const {
+  for (std::size_t i = entries_.size(); i-- > 0;)
+    if (entries_[i].kind == came && entries_[i].name == name) return i;
   return std::nullopt;
 }
 
-std::int64_t WorldJournal::number_of(const std::string& text) {
-  if (full_) return 0;
-  const auto known = texts_.find(text);
-  if (known != texts_.end()) return known->second;
-  std::set<std::int64_t> taken;
-  for (const auto& [other, number] : texts_) taken.insert(number);
-  Entry noted = entry(Kind::text, "");
-  while (taken.contains(noted.number)) ++noted.number;
-  noted.text = text;
-  const std::int64_t number = noted.number;
-  texts_.emplace(text, number);
-  append(std::move(noted));
-  return number;
+void WorldJournal::drop_changes_of(const std::string& name, std::size_t first) {
+  for (std::size_t i = entries_.size(); i-- > first;) {
+    const Entry& entry = entries_[i];
+    const bool change = entry.kind == Kind::device_changed && entry.name.starts_with(name + "/");
+    if (change || (entry.kind == Kind::moved && entry.name == name)) drop(i);
+  }
 }
 
-void WorldJournal::drop_unused_texts() {
-  std::set<std::int64_t> used;
-  for (const Noted& noted : noted_)
-    if (noted.kind != Kind::text) used.insert(noted.text_number);
-  for (std::size_t i = noted_.size(); i-- > 0;)
-    if (noted_[i].kind == Kind::text && !used.contains(noted_[i].text_number)) drop(i);
-  std::erase_if(texts_, [&](const auto& text) { return !used.contains(text.second); });
+void WorldJournal::use_text(std::int64_t number) {
+  if (number >= 0) ++texts_.at(number).users;
+}
+
+void WorldJournal::let_go_of_text(std::int64_t number) {
+  if (number < 0) return;
+  const auto text = texts_.find(number);
+  if (--text->second.users > 0) return;
+  size_ -= text->second.text.size();
+  text_numbers_.erase(text->second.text);
+  texts_.erase(text);
+}
+
+/// The lowest number that is free.
+void WorldJournal::note_source(Entry& entry, const ConfigNode& source) {
+  std::string text = text_of(source);
+  if (const auto known = text_numbers_.find(text); known != text_numbers_.end()) {
+    entry.text_number = known->second;
+    return;
+  }
+  entry.text_number = 0;
+  for (const auto& [number, other] : texts_) entry.text_number += number == entry.text_number;
+  size_ += text.size();
+  text_numbers_.emplace(text, entry.text_number);
+  texts_[entry.text_number].text = std::move(text);
 }
 
 bool WorldJournal::has_new_surfaces(const VehicleConfig& config) const {
@@ -127,152 +153,158 @@ bool WorldJournal::has_new_surfaces(const VehicleConfig& config) const {
 void WorldJournal::note_vehicle(Entry& entry, const VehicleInstance& instance) {
   entry.bus = instance.bus;
   entry.X_W = instance.X_WV;
-  if (instance.config->source) {
-    entry.text_number = number_of(text_of(*instance.config->source));
-    return;
-  }
+  if (instance.config->source) return note_source(entry, *instance.config->source);
   for (std::size_t i = 0; i < world_.config().vehicles.size(); ++i)
     if (world_.config().vehicles[i].config == instance.config) entry.in_file = static_cast<std::int64_t>(i);
   if (entry.in_file < 0 && gap_.empty()) gap_ = "vehicle '" + instance.name + "' did not come from YAML";
 }
 
 void WorldJournal::vehicle_came(const VehicleInstance& instance, int number, bool new_surfaces) {
+  if (full_) return;
   Entry came = entry(Kind::vehicle_came, instance.name);
   note_vehicle(came, instance);
-  came.number = number;
   came.new_surfaces = new_surfaces;
+  came.number = number;
+  const Vehicle& vehicle = world_.vehicle_named(instance.name);
+  came.numbers = world_.physics_->numbers_of(vehicle.group());
+  for (const MountedDevice* device : vehicle.devices()) came.devices.push_back(device->number());
+  for (const Transducer* transducer : world_.acoustics_->transducers())
+    if (transducer != nullptr && &transducer->vehicle() == &vehicle) came.transducers.push_back(transducer->number());
   append(std::move(came));
 }
 
 void WorldJournal::vehicle_failed(const VehicleInstance& instance, bool new_surfaces) {
-  Entry failed = entry(Kind::surfaces, instance.name);
-  if (new_surfaces) note_vehicle(failed, instance);
   // What is in the world file has brought its surfaces at the start.
-  if (failed.text_number >= 0) note_surfaces(instance.name, failed.text_number);
-  note_numbers();
-}
-
-void WorldJournal::note_surfaces(const std::string& name, std::int64_t text_number) {
-  Entry surfaces = entry(Kind::surfaces, name);
-  surfaces.text_number = text_number;
+  if (full_ || !new_surfaces || !instance.config->source) return;
+  Entry surfaces = entry(Kind::surfaces, instance.name);
+  note_vehicle(surfaces, instance);
   append(std::move(surfaces));
 }
 
-/// Only who comes later takes numbers: until somebody comes, the last numbers count.
-void WorldJournal::note_numbers() {
-  for (std::size_t i = noted_.size(); i-- > 0 && noted_[i].kind != Kind::vehicle_came;)
-    if (noted_[i].kind == Kind::numbers) drop(i);
-  Entry numbers = entry(Kind::numbers, "");
-  numbers.free_numbers = world_.free_numbers_;
-  numbers.devices = static_cast<std::int64_t>(world_.devices_.size());
-  append(std::move(numbers));
-}
-
 void WorldJournal::vehicle_went(const std::string& name) {
-  const std::optional<std::size_t> came = came_last(Kind::vehicle_came, name);
-  if (!came || noted_[*came].text_number < 0) return append(entry(Kind::vehicle_went, name));
-  const std::int64_t text_number = noted_[*came].text_number;
-  const bool new_surfaces = noted_[*came].new_surfaces;
-  drop_all_of(name, *came);
-  if (new_surfaces) note_surfaces(name, text_number);
-  note_numbers();
-  drop_unused_texts();
+  if (full_) return;
+  const std::optional<std::size_t> came = place_of(Kind::vehicle_came, name);
+  drop_changes_of(name, came.value_or(0));
+  if (!came) return append(entry(Kind::vehicle_went, name));
+  Entry& gone = entries_[*came];
+  if (!gone.new_surfaces || gone.text_number < 0) return drop(*came);
+  // They stay, and keep their numbers: the place among the others counts.
+  size_ -= gone.bytes();
+  Entry surfaces;
+  surfaces.step = gone.step;
+  surfaces.name = name;
+  surfaces.text_number = gone.text_number;
+  gone = std::move(surfaces);
+  size_ += gone.bytes();
 }
 
-void WorldJournal::object_came(const ObjectConfig& config, const std::string& name, const Pose& X_WE,
-                               std::int64_t number) {
-  Entry came = entry(Kind::object_came, name);
+void WorldJournal::object_came(const ObjectConfig& config, const WorldObject& object, const Pose& X_WE) {
+  if (full_) return;
+  Entry came = entry(Kind::object_came, object.name);
   came.X_W = X_WE;
-  came.number = number;
+  came.number = object.number;
+  came.numbers = world_.physics_->numbers_of(object.group);
   came.in_file = place_in(world_.config().objects, &config);
-  if (came.in_file < 0 && config.source) came.text_number = number_of(text_of(*config.source));
-  if (came.in_file < 0 && !config.source && gap_.empty()) gap_ = "object '" + name + "' did not come from YAML";
+  if (came.in_file < 0 && config.source) note_source(came, *config.source);
+  if (came.in_file < 0 && !config.source && gap_.empty()) gap_ = "object '" + object.name + "' did not come from YAML";
   append(std::move(came));
 }
 
 void WorldJournal::object_went(const std::string& name) {
-  const std::optional<std::size_t> came = came_last(Kind::object_came, name);
-  if (!came) return append(entry(Kind::object_went, name));
-  drop_all_of(name, *came);
-  drop_unused_texts();
+  if (full_) return;
+  const std::optional<std::size_t> came = place_of(Kind::object_came, name);
+  came ? drop(*came) : append(entry(Kind::object_went, name));
 }
 
 /// One entry for each device, with all values that were changed: some may be possible only together.
 void WorldJournal::device_changed(const std::string& full_name, const ConfigNode& values) {
-  const std::string vehicle = full_name.substr(0, full_name.find('/'));
+  if (full_) return;
   const auto is_set_again = [&](const ConfigNode::Entry& old) {
     return std::any_of(values.entries.begin(), values.entries.end(), [&](const ConfigNode::Entry& value) {
       return old.key == value.key || old.key.starts_with(value.key + ".");
     });
   };
   ConfigNode all = values;
-  for (std::size_t i = noted_.size(); i-- > 0;) {
-    if (noted_[i].kind == Kind::vehicle_came && noted_[i].name == vehicle) break;
-    if (noted_[i].kind != Kind::device_changed || noted_[i].name != full_name) continue;
+  if (const auto known = place_of(Kind::device_changed, full_name)) {
     Diagnostics diagnostics;
-    ConfigNode before = parse_config_text(noted_[i].text, "journal", diagnostics);
+    ConfigNode before = parse_config_text(entries_[*known].values, "journal", diagnostics);
     std::erase_if(before.entries, is_set_again);
     all.entries.insert(all.entries.begin(), before.entries.begin(), before.entries.end());
-    drop(i);
-    break;
+    drop(*known);
   }
   Entry changed = entry(Kind::device_changed, full_name);
-  changed.text = to_yaml(all);
+  changed.values = to_yaml(all);
   append(std::move(changed));
 }
 
-void WorldJournal::anchored_vehicle_moved(const std::string& name, const Pose& X_move_W) {
-  Entry moved = entry(Kind::moved, name);
-  moved.X_W = X_move_W;
+/// Joints that are made anew are the last ones: so is the entry.
+void WorldJournal::anchored_vehicle_moved(const Vehicle& vehicle) {
+  if (full_) return;
+  if (const auto known = place_of(Kind::moved, vehicle.name())) drop(*known);
+  Entry moved = entry(Kind::moved, vehicle.name());
+  moved.joints = world_.physics_->joint_places(vehicle.group());
   append(std::move(moved));
 }
 
 void WorldJournal::replay(std::span<const std::byte> bytes, std::int64_t last_step) {
-  bytes_.clear();
-  texts_.clear();
-  noted_.clear();
+  forget();
   gap_.clear();
   full_ = false;
-  known_texts_.clear();
-  parsed_.clear();
-  vehicles_.clear();
+  std::vector<std::pair<std::int64_t, std::string>> texts;
+  std::vector<Entry> entries;
+  std::vector<int> free;
+  std::int64_t devices = 0;
   StateArchive archive = StateArchive::restorer(bytes);
+  archive(texts, entries, free, devices);
+  archive.end();
+  for (const auto& [number, text] : texts) {
+    if (number < 0 || !texts_.try_emplace(number, Text{text, 0}).second || !text_numbers_.emplace(text, number).second)
+      throw SnapshotError("the snapshot has the YAML of vehicles or objects twice");
+    size_ += text.size();
+  }
   std::int64_t earliest = 0;
   try {
-    while (archive.bytes_left() > 0) {
-      Entry entry;
-      archive(entry);
+    for (Entry& entry : entries) {
       if (entry.step < earliest || entry.step > last_step)
         throw SnapshotError("the snapshot tells of changes in an order that cannot be");
       earliest = entry.step;
       apply(entry);
       append(std::move(entry));
     }
+    set_free_devices(std::move(free), devices);
   } catch (const ConfigError& error) {
     throw SnapshotError("what came to the world before the snapshot cannot come again: " + error.lines().front());
   } catch (const WorldError& error) {
     throw SnapshotError(std::string("what happened to the world before the snapshot cannot happen again: ") +
                         error.what());
+  } catch (const std::out_of_range& error) {
+    throw SnapshotError(std::string("what came to the world before the snapshot has numbers that cannot be: ") +
+                        error.what());
   }
-  known_texts_.clear();
   parsed_.clear();
   vehicles_.clear();
 }
 
+namespace {
+
+void check_pose(const Pose& X_W) {
+  const Matrix3d R = X_W.linear();
+  const bool good = X_W.matrix().allFinite() && X_W.translation().cwiseAbs().maxCoeff() < 1e9 &&
+                    (R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() < 1e-3 && R.determinant() > 0;
+  if (!good) throw SnapshotError("the snapshot has something come to, or moved to, a pose that cannot be");
+}
+
+}  // namespace
+
 void WorldJournal::apply(const Entry& entry) {
   world_.step_number_ = entry.step;
   world_.medium_.advance_to(world_.now());
+  check_pose(entry.X_W);
   switch (entry.kind) {
-    case Kind::text:
-      known_texts_[entry.number] = entry.text;
-      texts_[entry.text] = entry.number;
-      return;
     case Kind::vehicle_came:
       return apply_vehicle(entry);
     case Kind::surfaces:
       return world_.bring_surfaces(*vehicle_config(entry));
-    case Kind::numbers:
-      return apply_numbers(entry);
     case Kind::vehicle_went:
       return world_.take_apart(world_.vehicle_named(entry.name));
     case Kind::object_came:
@@ -281,20 +313,21 @@ void WorldJournal::apply(const Entry& entry) {
       return world_.take_apart(world_.object_named(entry.name));
     case Kind::device_changed: {
       Diagnostics diagnostics;
-      const ConfigNode values = parse_config_text(entry.text, "snapshot", diagnostics);
+      const ConfigNode values = parse_config_text(entry.values, "snapshot", diagnostics);
       diagnostics.throw_if_any();
       world_.apply_change(entry.name, values, diagnostics);
       diagnostics.throw_if_any();
       return;
     }
     case Kind::moved:
-      return world_.physics_->move_group(world_.vehicle_named(entry.name).group(), entry.X_W);
+      return apply_move(entry);
   }
   throw SnapshotError("the snapshot tells of a change of a kind that is none");
 }
 
 void WorldJournal::apply_vehicle(const Entry& entry) {
   if (entry.number < 0 || entry.number > 100'000'000) throw SnapshotError("the snapshot has a vehicle of no number");
+  if (world_.find_vehicle(entry.name) != nullptr) throw SnapshotError("the snapshot has a vehicle twice");
   VehicleInstance instance;
   instance.name = entry.name;
   instance.X_WV = entry.X_W;
@@ -302,28 +335,54 @@ void WorldJournal::apply_vehicle(const Entry& entry) {
   instance.config = vehicle_config(entry);
   world_.bring_surfaces(*instance.config);
   world_.next_vehicle_number_ = static_cast<int>(entry.number);
+  world_.physics_->prescribe(entry.numbers);
+  prescribe_devices(entry);
   world_.build_vehicle(instance);
+  check_prescribed();
 }
 
-void WorldJournal::apply_numbers(const Entry& entry) {
-  const auto devices = static_cast<std::size_t>(entry.devices);
-  if (devices < world_.devices_.size() || devices > world_.devices_.size() + entry.free_numbers.size())
-    throw SnapshotError("the snapshot has numbers of devices that cannot be");
-  for (const int number : entry.free_numbers)
-    if (number < 0 || number >= entry.devices ||
-        (static_cast<std::size_t>(number) < world_.devices_.size() &&
-         world_.devices_[static_cast<std::size_t>(number)]))
-      throw SnapshotError("the snapshot has numbers of devices that cannot be");
-  std::vector<int> sorted = entry.free_numbers;
+void WorldJournal::prescribe_devices(const Entry& entry) {
+  constexpr int most = 10'000'000;
+  std::vector<int>& free = world_.free_numbers_;
+  free.assign(entry.devices.rbegin(), entry.devices.rend());
+  auto& devices = world_.devices_;
+  for (const int number : free) {
+    if (number < 0 || number >= most) throw std::out_of_range("a device");
+    if (static_cast<std::size_t>(number) >= devices.size()) devices.resize(static_cast<std::size_t>(number) + 1);
+    if (devices[static_cast<std::size_t>(number)]) throw std::out_of_range("a device");
+  }
+  if (std::set<int>(free.begin(), free.end()).size() != free.size()) throw std::out_of_range("a device");
+  if (!world_.acoustics_->prescribe(entry.transducers)) throw std::out_of_range("a transducer");
+}
+
+void WorldJournal::check_prescribed() const {
+  const bool all =
+      world_.physics_->as_prescribed() && world_.acoustics_->as_prescribed() && world_.free_numbers_.empty();
+  if (!all) throw std::out_of_range("there are more numbers than things");
+}
+
+void WorldJournal::set_free_devices(std::vector<int> free, std::int64_t devices) {
+  const auto there = static_cast<std::size_t>(std::count_if(world_.devices_.begin(), world_.devices_.end(),
+                                                            [](const auto& device) { return device != nullptr; }));
+  const auto size = static_cast<std::size_t>(devices);
+  std::vector<int> sorted = free;
   std::sort(sorted.begin(), sorted.end());
-  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+  const auto taken = [&](int number) {
+    return number < 0 || number >= devices ||
+           (static_cast<std::size_t>(number) < world_.devices_.size() &&
+            world_.devices_[static_cast<std::size_t>(number)] != nullptr);
+  };
+  if (size < world_.devices_.size() || there + free.size() != size ||
+      std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end() || std::any_of(free.begin(), free.end(), taken))
     throw SnapshotError("the snapshot has numbers of devices that cannot be");
-  world_.devices_.resize(devices);
-  world_.free_numbers_ = entry.free_numbers;
+  world_.devices_.resize(size);
+  world_.free_numbers_ = std::move(free);
 }
 
 void WorldJournal::apply_object(const Entry& entry) {
+  if (world_.find_object(entry.name) != nullptr) throw SnapshotError("the snapshot has an object twice");
   world_.next_object_number_ = entry.number;
+  world_.physics_->prescribe(entry.numbers);
   if (entry.in_file >= 0) {
     if (entry.in_file >= static_cast<std::int64_t>(world_.config().objects.size()))
       throw SnapshotError("the snapshot has an object that the world file has not");
@@ -331,15 +390,24 @@ void WorldJournal::apply_object(const Entry& entry) {
   } else {
     world_.place_object(object_config(entry), entry.name, entry.X_W);
   }
+  if (!world_.physics_->as_prescribed()) throw std::out_of_range("there are more numbers than things");
+}
+
+void WorldJournal::apply_move(const Entry& entry) {
+  for (const JointPlace& joint : entry.joints) {
+    check_pose(joint.X_WV);
+    check_pose(joint.X_WC);
+  }
+  world_.physics_->make_joints_again(world_.vehicle_named(entry.name).group(), entry.joints);
 }
 
 const ConfigNode& WorldJournal::parsed(std::int64_t text_number) {
-  const auto text = known_texts_.find(text_number);
-  if (text == known_texts_.end()) throw SnapshotError("the snapshot tells of a vehicle or object without its YAML");
+  const auto text = texts_.find(text_number);
+  if (text == texts_.end()) throw SnapshotError("the snapshot tells of a vehicle or object without its YAML");
   const auto [found, fresh] = parsed_.try_emplace(text_number);
   if (fresh) {
     Diagnostics diagnostics;
-    found->second = parse_config_text(text->second, "snapshot", diagnostics);
+    found->second = parse_config_text(text->second.text, "snapshot", diagnostics);
     diagnostics.throw_if_any();
   }
   return found->second;

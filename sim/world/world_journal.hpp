@@ -10,21 +10,23 @@
 
 #include "sim/bus/bus.hpp"
 #include "sim/math.hpp"
+#include "sim/physics/physics_world.hpp"
 #include "sim/state/state_archive.hpp"
 #include "sim/world/world_config.hpp"
 
 namespace sim {
 
+class Vehicle;
 class World;
+struct WorldObject;
 
-/// What changed the make of a world since its start: what came and went, and which devices got other values.  A
-/// snapshot carries it, so that a world of the same configuration can be brought to the same make, with the same
+/// What makes a world another one than its configuration says: what came and went, and which devices got other values.
+/// A snapshot carries it, so that a world of the same configuration can be brought to the same make, with the same
 /// numbers and in the same order.  The order counts: ODE goes through bodies and joints as they came.
 ///
-/// It does not grow with what leaves no trace: who came and went with nobody coming in between, those who could not
-/// come, values of a device that were changed again.  It grows with what comes and goes in turns, so that always some
-/// of it is there, and with moves of what is joined to the world: beyond most_bytes the journal lets go of everything,
-/// and gap() says so.
+/// It tells of those who are there, with the numbers they have, and not of those who came and went again; of values and
+/// places that were changed, the last ones.  Of who came from the world file it notes that they went.  So it grows with
+/// what is there, not with time.  Beyond most_bytes it lets go of everything, and gap() says so.
 class WorldJournal {
  public:
   explicit WorldJournal(World& world) : world_(world) {}
@@ -37,17 +39,19 @@ class WorldJournal {
   // Called by the world for each change, after it.  `number`: that the vehicle or object got.  `new_surfaces`: what
   // has_new_surfaces() said before.
   void vehicle_came(const VehicleInstance& instance, int number, bool new_surfaces);
-  /// One that could not come has left its surfaces behind, and has used numbers.
+  /// One that could not come has left its surfaces behind.
   void vehicle_failed(const VehicleInstance& instance, bool new_surfaces);
   void vehicle_went(const std::string& name);
-  void object_came(const ObjectConfig& config, const std::string& name, const Pose& X_WE, std::int64_t number);
+  void object_came(const ObjectConfig& config, const WorldObject& object, const Pose& X_WE);
   void object_went(const std::string& name);
   void device_changed(const std::string& full_name, const ConfigNode& values);
   /// One that is joined to the world: its joints were made anew.
-  void anchored_vehicle_moved(const std::string& name, const Pose& X_move_W);
+  void anchored_vehicle_moved(const Vehicle& vehicle);
 
   /// All of it, as replay() takes it.
-  const Bytes& bytes() const { return bytes_; }
+  Bytes bytes() const;
+  /// How many bytes that are, about.
+  std::size_t size() const { return size_; }
   /// Why it cannot be told; empty: it can.
   const std::string& gap() const { return gap_; }
   /// Does it all again, in a world that was just built.  Nothing in it may be later than `last_step`.  Throws
@@ -56,72 +60,71 @@ class WorldJournal {
 
  private:
   enum class Kind {
-    text,
     vehicle_came,
-    vehicle_went,
+    vehicle_went,  ///< one of the world file
     object_came,
     object_went,
     device_changed,
     moved,
-    surfaces,  ///< of a vehicle that could not come, or went again
-    numbers    ///< of devices: which are free, in their order
+    surfaces  ///< of a vehicle that could not come, or went again
   };
   struct Entry {
-    Kind kind = Kind::text;
+    Kind kind = Kind::surfaces;
     std::int64_t step = 0;
     std::string name;
-    std::string text;           ///< YAML, of kind text and device_changed
+    std::string values;         ///< of a device, YAML
     std::int64_t in_file = -1;  ///< place in the lists of the world file, for what was read there
     std::int64_t text_number = -1;
     std::string bus;
     Pose X_W = Pose::Identity();
-    std::int64_t number = 0;    ///< of a text too
     bool new_surfaces = false;  ///< a vehicle brought some
-    std::vector<int> free_numbers;
-    std::int64_t devices = 0;
+    std::int64_t number = 0;    ///< of the vehicle or object
+    GroupNumbers numbers;
+    std::vector<int> devices, transducers;  ///< their numbers
+    std::vector<JointPlace> joints;         ///< of one that was moved
     void visit_state(StateArchive& archive);
+    /// About.
+    std::size_t bytes() const;
+  };
+  /// YAML that entries share.
+  struct Text {
+    std::string text;
+    std::int64_t users = 0;  ///< entries
   };
 
   Entry entry(Kind kind, const std::string& name) const;
   void append(Entry entry);
-  /// Drops the entries of a name, from the entry `first` on, and those of its devices.
-  void drop_all_of(const std::string& name, std::size_t first);
-  void drop(std::size_t number);
-  /// Where something came, when nobody else has come since; else nothing.
-  std::optional<std::size_t> came_last(Kind kind, const std::string& name) const;
-  // What a vehicle that is not there has left behind.
-  void note_numbers();
-  void note_surfaces(const std::string& name, std::int64_t text_number);
-  /// Drops texts that no entry needs any more.
-  void drop_unused_texts();
+  void drop(std::size_t place);
+  /// Where something came last; nothing: with the world file.
+  std::optional<std::size_t> place_of(Kind came, const std::string& name) const;
+  /// Drops what happened to somebody who is there, from an entry on.
+  void drop_changes_of(const std::string& name, std::size_t first);
+  void note_source(Entry& entry, const ConfigNode& source);
   void note_vehicle(Entry& entry, const VehicleInstance& instance);
-  /// The number of a text, which is noted when it is new.
-  std::int64_t number_of(const std::string& text);
+  void use_text(std::int64_t number);
+  void let_go_of_text(std::int64_t number);
+  void check_size();
+  void forget();
   void apply(const Entry& entry);
   void apply_vehicle(const Entry& entry);
-  void apply_numbers(const Entry& entry);
   void apply_object(const Entry& entry);
+  void apply_move(const Entry& entry);
+  void prescribe_devices(const Entry& entry);
+  void check_prescribed() const;
+  /// Which numbers of devices are free, in the order in which they will be used.
+  void set_free_devices(std::vector<int> free, std::int64_t devices);
   const ConfigNode& parsed(std::int64_t text_number);
   std::shared_ptr<const VehicleConfig> vehicle_config(const Entry& entry);
   ObjectConfig object_config(const Entry& entry);
 
   World& world_;
-  Bytes bytes_;
-  /// An entry in bytes_, with what decides whether it still counts.
-  struct Noted {
-    Kind kind;
-    std::string name;
-    std::string text;  ///< of the values of a device; of YAML
-    std::int64_t text_number;
-    bool new_surfaces;
-    std::size_t bytes;
-  };
-  std::vector<Noted> noted_;
-  std::map<std::string, std::int64_t> texts_;
+  std::vector<Entry> entries_;
+  std::map<std::int64_t, Text> texts_;
+  std::map<std::string, std::int64_t> text_numbers_;
+  std::size_t size_ = 0;
   std::string gap_;
   bool full_ = false;
   // While it replays.
-  std::map<std::int64_t, std::string> known_texts_;
   std::map<std::int64_t, ConfigNode> parsed_;
   std::map<std::int64_t, std::shared_ptr<const VehicleConfig>> vehicles_;
 };

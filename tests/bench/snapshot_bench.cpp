@@ -1,11 +1,15 @@
 // What it costs to save a world, to go back to it, and to hash it; per body and as a whole.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <string>
 
 #include "tools/experiment/scale_scene.hpp"
+#include "tools/experiment/snapshot_ring.hpp"
 
 namespace {
 
@@ -82,6 +86,45 @@ void SnapshotOfBoxes(benchmark::State& state) {
   count_bodies(state, world);
 }
 BENCHMARK(SnapshotOfBoxes)->Arg(10)->Arg(1000)->Unit(benchmark::kMicrosecond);
+
+/// What a run keeps to go back by: one snapshot a second for ten minutes of a world in which all move, and then half a
+/// minute back and half a second on.
+void RingOfTenMinutes(benchmark::State& state) {
+  constexpr int seconds = 600;
+  tools::ScaleScene scene(static_cast<int>(state.range(0)));
+  sim::World& world = scene.world();
+  const std::int64_t per_second = std::llround(1 / sim::to_seconds(world.step_time()));
+  tools::SnapshotRing ring(seconds * per_second, std::size_t{64} << 20);
+  const auto wall_s = [] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  };
+  double save_s = 0, longest_s = 0, back_s = 0;
+  std::size_t whole_bytes = 0;
+  for (auto _ : state) {
+    for (int second = 0; second < seconds; ++second) {
+      scene.run_for(1);
+      const double begin_s = wall_s();
+      const sim::Bytes snapshot = world.snapshot();
+      ring.add(world.step_number(), snapshot);
+      const double took_s = wall_s() - begin_s;
+      save_s += took_s;
+      longest_s = std::max(longest_s, took_s);
+      whole_bytes = snapshot.size();
+    }
+    const double begin_s = wall_s();
+    const std::int64_t to = world.step_number() - 30 * per_second - per_second / 2;
+    world.restore(ring.get(*ring.newest_until(to)));
+    while (world.step_number() < to) world.step();
+    back_s = wall_s() - begin_s;
+  }
+  state.counters["bytes"] = static_cast<double>(whole_bytes);
+  state.counters["MB_of_600"] = static_cast<double>(ring.bytes()) * 1e-6;
+  state.counters["kept"] = static_cast<double>(ring.size());
+  state.counters["us_each"] = 1e6 * save_s / seconds;
+  state.counters["us_longest"] = 1e6 * longest_s;
+  state.counters["back_30s_ms"] = 1e3 * back_s;
+}
+BENCHMARK(RingOfTenMinutes)->Arg(10)->Iterations(1)->Unit(benchmark::kSecond);
 
 }  // namespace
 

@@ -61,6 +61,35 @@ TEST(Replay, FindsAPlantedDifferenceAndWritesAReport) {
   EXPECT_EQ(replay({folder.file("report.txt")}).exit_code, 4);
 }
 
+TEST(Replay, ARunThatBeganWithASnapshotIsRunAgainFromThere) {
+  const ScratchFolder folder;
+  const std::string snapshot = folder.file("snaps") + "/branch0_step1000.snapshot";
+  ASSERT_EQ(run_shoal({"run", source("worlds/coop_land.yaml"), "--launch", "--duration", "12", "--speed", "max",
+                       "--lcm-url", own_url(), "--snapshot-at", "10", "--snapshots", folder.file("snaps")})
+                .exit_code,
+            0);
+  const std::vector<std::string> from{"run", "--from",  snapshot, "--launch",  "--duration",
+                                      "20",  "--speed", "max",    "--lcm-url", own_url()};
+  const auto run = [&](const std::string& log, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = from;
+    arguments.insert(arguments.end(), {"--record", log});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_shoal(arguments);
+  };
+  const Ended plain = run(folder.file("plain.lcm"), {});
+  EXPECT_THAT(plain.exit_code, AnyOf(0, 1)) << plain.errors;
+  const Ended again = replay({folder.file("plain.lcm")});
+  EXPECT_EQ(again.exit_code, 0) << again.output << again.errors;
+  EXPECT_THAT(again.output, HasSubstr("equal for 1000 steps (from step 1000; 11 hashes, "));
+  const Ended changed = run(folder.file("set.lcm"), {"--set", "vehicles.rover3.devices.lidar.rate_hz=5"});
+  EXPECT_THAT(changed.exit_code, AnyOf(0, 1)) << changed.errors;
+  EXPECT_EQ(replay({folder.file("set.lcm")}).exit_code, 0);
+  const Ended differs = replay({folder.file("plain.lcm"), "--set", "vehicles.rover3.devices.lidar.rate_hz=5"});
+  EXPECT_EQ(differs.exit_code, 1) << differs.output << differs.errors;
+  EXPECT_THAT(replay({folder.file("plain.lcm"), "--set", "vehicles.rover3.devices.lidar.name=eye"}).errors,
+              HasSubstr("plain.lcm: sim.snapshot: "));
+}
+
 TEST(Replay, ALogOfLcmLoggerIsEnough) {
   const ScratchFolder folder;
   Program logger({"lcm-logger", "--force", "--flush-interval=20", "--lcm-url=" + own_url(), folder.file("logger.lcm")});

@@ -9,6 +9,7 @@
 #include "shoal/sim_vehicle_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "tests/system/shoal_program.hpp"
+#include "tools/experiment/snapshot_file.hpp"
 
 // Snapshots, rewind, branches and `until` in the real program, asked for over the bus.
 
@@ -279,7 +280,7 @@ TEST(Rewind, ABranchWhoseRecordCannotBeMadeLeavesTheRunAsItWas) {
   }
 }
 
-TEST(Restore, ALogDoesNotProveWhatBeganWithAFile) {
+TEST(Restore, ItsRecordsAreRunAgainFromTheFileOn) {
   const Folder folder;
   Live live(folder, {"--record", folder.file("log.lcm")});
   bridges::LcmListener listener(own_url());
@@ -287,19 +288,46 @@ TEST(Restore, ALogDoesNotProveWhatBeganWithAFile) {
   shoal::twist_command_t forward{};
   forward.forward_mps = 1;
   listener.publish("r1.drive.cmd", shoal::encode(forward));
+  EXPECT_EQ(control({"spawn", "{name: guest, file: rover.yaml, position_m: [0, 3, 0]}"}).exit_code, 0);
   live.run_until("3");
   EXPECT_EQ(control({"snapshot", "a"}).exit_code, 0);
+  EXPECT_EQ(control({"remove", "guest"}).exit_code, 0);
+  live.run_until("3.5");
   EXPECT_EQ(control({"restore", "a"}).exit_code, 0);
+  listener.publish("guest.drive.cmd", shoal::encode(forward));
   live.run_until("4");
   EXPECT_EQ(control({"rewind", "--value", "0.5"}).output, "step 350, 3.5 s, branch 2, paused\n");
-  live.run_until("4");
+  live.run_until("5");
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
-  EXPECT_EQ(run_shoal({"replay", folder.file("log.lcm")}).exit_code, 0);
-  for (const char* log : {"log.branch1.lcm", "log.branch2.lcm"}) {
+  for (const auto& [log, text] : {std::pair("log.lcm", "equal for 350 steps ("),
+                                  {"log.branch1.lcm", "equal for 100 steps (from step 300; "},
+                                  {"log.branch2.lcm", "equal for 200 steps (from step 300; "}}) {
     const Ended replayed = run_shoal({"replay", folder.file(log)});
-    EXPECT_EQ(replayed.exit_code, 4) << log << replayed.output << replayed.errors;
-    EXPECT_THAT(replayed.errors, HasSubstr("the run began with a snapshot")) << log;
+    EXPECT_EQ(replayed.exit_code, 0) << log << replayed.output << replayed.errors;
+    EXPECT_THAT(replayed.output, HasSubstr(text)) << log;
+    EXPECT_THAT(replayed.output, Not(HasSubstr("note:"))) << log;
   }
+}
+
+TEST(Restore, OneThatDoesNotFitLeavesNoBranchBehind) {
+  const Folder folder;
+  const std::string results = folder.file("results");
+  Live live(folder, {"--results", results, "--no-pictures"});
+  live.run_until("2");
+  EXPECT_EQ(control({"snapshot", "good"}).exit_code, 0);
+  // Of the same world, with a state that has bytes too many.
+  tools::Snapshot bad = tools::read_snapshot(folder.file("snaps/good.snapshot"));
+  bad.state.push_back(std::byte{1});
+  tools::write_snapshot(folder.file("snaps/bad.snapshot"), bad);
+  const std::string before = Live::where();
+  const Ended refused = control({"restore", "bad"});
+  EXPECT_EQ(refused.exit_code, 1) << refused.output;
+  EXPECT_THAT(refused.errors, HasSubstr("bytes are left over in the snapshot"));
+  EXPECT_EQ(Live::where(), before);
+  EXPECT_FALSE(std::filesystem::exists(results + "/branch0"));
+  EXPECT_EQ(control({"restore", "good"}).exit_code, 0);
+  EXPECT_EQ(summary_value(results + "/branch0", "steps"), "200");
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
 }
 
 TEST(Restore, GoesOnFromAFileAndRefusesAnotherWorldsOne) {

@@ -97,6 +97,7 @@ class Replay {
         service_(*main_.gate, *main_.network, world_, control_, lockstep_,
                  {sim::to_yaml(loaded_.resolved), version_text(), build_text(), log_.info.files}) {
     check_times();
+    restore();
     world_.use_threads(options.threads);
     serial_.attach(world_);
     for (const Letter& letter : log_.letters)
@@ -107,6 +108,7 @@ class Replay {
     const auto begin = std::chrono::steady_clock::now();
     outcome_.step_s = sim::to_seconds(world_.step_time());
     const std::int64_t last = last_step();
+    outcome_.begin_step = world_.step_number();
     Progress progress(static_cast<double>(last) * outcome_.step_s, options_.quiet);
     hand_over(RunJournal::before_first_reports);
     after_step();
@@ -156,11 +158,31 @@ class Replay {
     if (world_.epoch_us() != log_.info.epoch_utime)
       throw std::runtime_error(fmt::format("{}: its run has the epoch {}, the world here {}: all stamps would differ",
                                            log_.path, log_.info.epoch_utime, world_.epoch_us()));
-    if (log_.proven_step && *log_.proven_step <= 0 && log_.usable_step() < log_.last_step)
+    if (!log_.bad_snapshot.empty() && !log_.snapshot && log_.usable_step() < log_.last_step)
+      throw std::runtime_error(log_.path + ": cannot be run again: " + log_.bad_snapshot);
+    if (log_.proven_step && *log_.proven_step <= log_.begin_step() && log_.usable_step() < log_.last_step)
       throw std::runtime_error(log_.path + ": cannot be run again from the start: " + log_.holes.front() +
-                               "; the log begins later than the run, or the run began with a snapshot");
-    if (log_.last_step == 0 && log_.hashes.empty())
+                               "; the log begins later than the run");
+    if (log_.last_step == log_.begin_step() && log_.hashes.empty())
       throw std::runtime_error(log_.path + ": ends before the first step");
+  }
+
+  /// The run, or the branch, began with a snapshot.
+  void restore() {
+    if (!log_.snapshot) return;
+    const std::string who = log_.path + ": sim.snapshot";
+    check_version(*log_.snapshot, who, short_version());
+    try {
+      world_.restore(log_.snapshot->state);
+      auto owners = sim::StateArchive::restorer(log_.snapshot->owners);
+      owners.section("owners");
+      service_.visit_state(owners);
+      owners.end();
+    } catch (const sim::SnapshotError& error) {
+      throw std::runtime_error(who + ": " + error.what());
+    }
+    if (world_.state_hash() != log_.snapshot->state_hash && options_.sets.empty() && options_.world.empty())
+      throw std::runtime_error(who + ": restored here it has another state hash than where it was written");
   }
 
   std::int64_t last_step() {
@@ -172,6 +194,9 @@ class Replay {
         last = static_cast<std::int64_t>(steps);
       }
     }
+    if (last < world_.step_number())
+      throw std::runtime_error(
+          fmt::format("{}: begins at {:.6g} s, after --until", log_.path, sim::to_seconds(world_.now())));
     return last;
   }
 
@@ -277,8 +302,8 @@ class Replay {
   }
 
   void conclude() {
-    outcome_.steps = world_.step_number();
-    outcome_.sim_time_s = sim::to_seconds(world_.now());
+    outcome_.steps = world_.step_number() - outcome_.begin_step;
+    outcome_.sim_time_s = static_cast<double>(outcome_.steps) * outcome_.step_s;
     outcome_.messages = messages_.equal();
     outcome_.missing_messages = messages_.missing();
     if (!outcome_.first) tell_first_messages();
@@ -299,7 +324,8 @@ class Replay {
                       log_.usable_step(), log_.last_step, log_.usable_step()));
     if (outcome_.interrupted) note("interrupted");
     if (log_.goes_back) note("the log holds several branches; only hashes are compared");
-    if (log_.first_step > 0) note(fmt::format("the log begins at step {}", log_.first_step));
+    if (!log_.bad_snapshot.empty()) note(log_.bad_snapshot);
+    if (log_.first_step > log_.begin_step()) note(fmt::format("the log begins at step {}", log_.first_step));
     if (log_.hashes.empty()) note("the log holds no hashes: only messages are compared");
     if (outcome_.missing_messages > 0 && !(log_.own_stamps && outcome_.first))
       note(fmt::format("{} messages that were published here are not in the log", outcome_.missing_messages));
@@ -365,10 +391,11 @@ std::string ReplayOutcome::to_text() const {
   std::string text;
   if (first) {
     text = fmt::format("differs first at step {} ({:.3f} s) of {}:\n", first->step,
-                       static_cast<double>(first->step) * step_s, steps);
+                       static_cast<double>(first->step) * step_s, begin_step + steps);
     for (const std::string& what : first->what) text += "  " + what + "\n";
   } else {
-    text = fmt::format("equal for {} steps ({} hashes, {} messages)\n", steps, hashes, messages);
+    const std::string from = begin_step > 0 ? fmt::format("from step {}; ", begin_step) : "";
+    text = fmt::format("equal for {} steps ({}{} hashes, {} messages)\n", steps, from, hashes, messages);
   }
   text += fmt::format("{:.3f} s in {:.2f} s: {:.1f} times real time\n", sim_time_s, wall_s,
                       wall_s > 0 ? sim_time_s / wall_s : 0.0);

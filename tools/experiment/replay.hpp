@@ -26,7 +26,8 @@ struct ReplayOutcome {
     std::vector<std::string> what;
   };
 
-  std::int64_t steps = 0;
+  std::int64_t begin_step = 0;  ///< later than 0 when the log begins with a snapshot
+  std::int64_t steps = 0;       ///< that were run
   double sim_time_s = 0, step_s = 0, wall_s = 0;
   std::uint64_t hashes = 0, messages = 0, missing_messages = 0;
   std::optional<First> first;

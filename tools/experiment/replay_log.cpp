@@ -15,7 +15,9 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_hash_t.hpp"
 #include "shoal/sim_mail_t.hpp"
+#include "shoal/sim_snapshot_t.hpp"
 #include "shoal/sim_state_t.hpp"
+#include "tools/experiment/snapshot_pieces.hpp"
 
 namespace tools {
 
@@ -32,7 +34,7 @@ std::int64_t number_at(std::span<const std::byte> payload, std::size_t index) {
 
 class Reader {
  public:
-  explicit Reader(const std::string& path) : file_(path) { log_.path = path; }
+  explicit Reader(const std::string& path) : file_(path), pieces_(file_.file_bytes()) { log_.path = path; }
 
   ReplayLog read() {
     bridges::LogEventView event;
@@ -48,6 +50,7 @@ class Reader {
     for (const Count& count : counts_) log_.events.emplace(count.channel, count.events);
     for (const std::string& text : file_.problems()) problem(text);
     if (!informed_) fail_without_info();
+    note_missing_pieces();
     for (const Hole& hole : holes_) tell(hole);
     return std::move(log_);
   }
@@ -105,6 +108,7 @@ class Reader {
     if (event.channel == "sim.info") return take_info(event);
     if (event.channel == "sim.mail") return take_mail(event);
     if (event.channel == "sim.hash") return take_hash(event);
+    if (event.channel == "sim.snapshot") return take_snapshot(event);
     if (event.channel == "sim.state") take_state(event);
   }
 
@@ -113,7 +117,43 @@ class Reader {
     const std::int64_t step = number_at(event.payload, 1);
     if (!informed_ || !is_time_of(step, number_at(event.payload, 0))) return;  // of somebody else
     note_step(step);
+    published_ = true;
     if (event.utime != number_at(event.payload, 0)) log_.own_stamps = false;
+  }
+
+  /// What the run, or this branch, begins with: what came before is not needed to run it again.
+  void take_snapshot(const bridges::LogEventView& event) {
+    const auto message = shoal::decode<shoal::sim_snapshot_t>(event.payload, shoal::Finite::any);
+    check_stamp(event, message.utime, message.step);
+    if (informed_ && message.branch != branch_)
+      throw shoal::MessageError(fmt::format("is of branch {}, but the log is of branch {}", message.branch, branch_));
+    const std::optional<sim::Bytes> bytes = pieces_.add(message);
+    if (!bytes || !informed_) return;
+    try {
+      begin_with(snapshot_from_bytes(*bytes, "sim.snapshot"), message);
+    } catch (const SnapshotFileError& error) {
+      log_.bad_snapshot = error.what();
+    }
+  }
+
+  void begin_with(Snapshot snapshot, const shoal::sim_snapshot_t& message) {
+    const shoal::sim_info_t& info = log_.info;
+    if (snapshot.step != message.step || snapshot.seed != info.seed || snapshot.step_us != info.step_us ||
+        snapshot.epoch_us != info.epoch_utime || snapshot.resolved_world != info.resolved_config)
+      throw SnapshotFileError("sim.snapshot: is of another world, seed, epoch or step than sim.info tells of");
+    log_.goes_back = log_.goes_back || published_;
+    log_.snapshot = std::move(snapshot);
+    log_.bad_snapshot.clear();
+    log_.letters.clear();
+    log_.hashes.clear();
+    holes_.clear();
+    next_sequence_ = message.mail_sequence;
+    mail_step_ = log_.last_step = message.step;
+  }
+
+  void note_missing_pieces() {
+    const std::string missing = pieces_.missing();
+    if (!missing.empty()) log_.bad_snapshot = "sim.snapshot: " + missing;
   }
 
   void note_step(std::int64_t step) {
@@ -170,6 +210,10 @@ class Reader {
     if (log_.last_step > info.step) log_.goes_back = true;
     std::erase_if(log_.letters, [&](const ReplayLog::Letter& letter) { return letter.step >= info.step; });
     log_.hashes.erase(log_.hashes.upper_bound(info.step), log_.hashes.end());
+    if (info.step < log_.begin_step()) {
+      log_.snapshot.reset();
+      log_.bad_snapshot = fmt::format("sim.snapshot: the log goes back to step {}, before its snapshot", info.step);
+    }
     log_.last_step = info.step;
     mail_step_ = std::min(mail_step_, info.step);
     // What is missing of the part that was left is not missed.
@@ -215,15 +259,17 @@ class Reader {
     for (std::size_t i = 0; i < message.part.size(); ++i)
       hashes.parts.push_back({std::move(message.part[i]), static_cast<std::uint64_t>(message.part_hash[i])});
     note_step(message.step);
+    published_ = true;
   }
 
   bridges::EventLogReader file_;
+  SnapshotPieces pieces_;
   ReplayLog log_;
   std::deque<Count> counts_;  // whose names do not move
   std::unordered_map<std::string_view, std::size_t> by_name_;
   std::size_t last_ = 0;  // in counts_
   std::vector<Hole> holes_;
-  bool informed_ = false, stepped_ = false;
+  bool informed_ = false, stepped_ = false, published_ = false;
   std::int32_t branch_ = 0;
   std::int64_t next_sequence_ = 0;
   std::int64_t mail_step_ = 0;  // of the last sim.mail

@@ -9,6 +9,7 @@
 #include "shoal/sim_info_t.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/state/state_archive.hpp"
+#include "tools/experiment/snapshot_file.hpp"
 
 namespace tools {
 
@@ -27,6 +28,8 @@ struct ReplayLog {
 
   std::string path;
   shoal::sim_info_t info{};               ///< the first
+  std::optional<Snapshot> snapshot;       ///< that it begins with; letters and hashes are of later
+  std::string bad_snapshot;               ///< why one that it began with cannot be used; empty: none was bad
   std::vector<Letter> letters;            ///< in the order in which they were handed over
   std::map<std::int64_t, Hashes> hashes;  ///< by step
   std::int64_t first_step = 0;            ///< of which the log tells
@@ -38,6 +41,8 @@ struct ReplayLog {
   bool own_stamps = true;                       ///< stamped with simulated time: a record, in which nothing is lost
   bool goes_back = false;                       ///< holds the same steps more than once, of several branches
 
+  /// Where the repetition begins.
+  std::int64_t begin_step() const { return snapshot ? snapshot->step : 0; }
   /// The last step up to which the run can be repeated.
   std::int64_t usable_step() const { return proven_step.value_or(last_step); }
 };

@@ -231,7 +231,14 @@ void Results::write_metrics(const std::string& directory, const Summary& summary
   write_file(directory + "/metrics.csv", text);
 }
 
-void Results::cut_tracks(sim::Time back_to) {
+void Results::drop_branch() {
+  std::error_code error;
+  if (!kept_.empty()) std::filesystem::remove_all(kept_, error);
+  kept_.clear();
+}
+
+void Results::begin_branch(sim::Time back_to) {
+  kept_.clear();
   const std::string path = directory_ + "/tracks.csv";
   const auto cannot_cut = [&] { return cannot_write(path, std::strerror(errno)); };
   if (std::fflush(tracks_) != 0) throw cannot_cut();
@@ -251,11 +258,12 @@ void Results::cut_tracks(sim::Time back_to) {
 
 void Results::keep_branch(const Summary& left, const Scoring& scoring, const sim::ConfigNode& resolved) {
   const std::string directory = directory_ + "/branch" + std::to_string(left.branch);
+  std::error_code error;
+  if (!std::filesystem::exists(directory, error)) kept_ = directory;
   write_summary(directory, left);
   write_metrics(directory, left);
   write_errors(directory, scoring);
   write_file(directory + "/world.yaml", sim::to_yaml(resolved));
-  std::error_code error;
   if (std::fflush(tracks_) != 0) throw cannot_write(directory_ + "/tracks.csv", std::strerror(errno));
   std::filesystem::copy_file(directory_ + "/tracks.csv", directory + "/tracks.csv",
                              std::filesystem::copy_options::overwrite_existing, error);

@@ -82,8 +82,10 @@ class Results {
   /// The world is about to go back: keeps what there is of the branch that is left in DIRECTORY/branchK, without
   /// pictures.  Throws std::runtime_error.
   void keep_branch(const Summary& left, const Scoring& scoring, const sim::ConfigNode& resolved);
+  /// It has not gone back after all: nothing of keep_branch() stays.
+  void drop_branch();
   /// It has gone back: drops what the tracks know of later.  Throws std::runtime_error.
-  void cut_tracks(sim::Time back_to);
+  void begin_branch(sim::Time back_to);
   /// summary.json, metrics.csv, errors.csv, world.yaml and the pictures.  Plotting ends once `give_up` says so.
   /// What cannot be written does not keep the rest from being written.  Throws std::runtime_error about the first.
   void finish(const Summary& summary, const Scoring& scoring, const sim::ConfigNode& resolved,
@@ -101,6 +103,7 @@ class Results {
   const sim::World& world_;
   bool pictures_;
   std::FILE* tracks_ = nullptr;
+  std::string kept_;  ///< the directory that keep_branch() made for the branch that goes on so far; empty: none
   std::int64_t every_steps_ = 1;
   std::int64_t steps_per_second_ = 1;
   std::optional<std::string> error_;

@@ -41,14 +41,13 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       mail_(buses_, journal_, service_, lockstep_),
       branch_log_(buses_, journal_, options.record, options.overwrite),
       time_(world_, control_, scoring_, service_, mail_, time_options(),
-            {[this](std::int64_t to_step, bool ours) { leave_branch(to_step, ours); },
-             [this] { branch_log_.give_up(); }, [this] { begin_branch(); }}),
+            {[this](std::int64_t to_step, bool ours) { leave_branch(to_step, ours); }, [this] { stay(); },
+             [this](bool ours) { begin_branch(ours); }}),
       duration_s_(options.duration_s.value_or(loaded.config.run.duration_s)),
       progress_(duration_s_, options.quiet),
       programs_(loaded.config, options, buses_) {
   journal_.attach(world_);
-  journal_.set_heard(
-      [this] { return buses_.over_lcm() || !options_.record.empty() || buses_.gate().reads("sim.hash"); });
+  journal_.set_heard([this] { return heard() || buses_.gate().reads("sim.hash"); });
   service_.use_journal(journal_);
   world_.use_threads(options.threads);
   lockstep_.add_line(buses_.network(), buses_.gate());
@@ -143,6 +142,7 @@ void Run::start_clients() {
                        "; their clients would mix: choose another port with --lcm-url");
   }
   service_.publish_info();  // a log tells of its run from the first event
+  if (options_.from) publish_snapshot();
   buses_.end_of_step();
   await(programs_.start());
 }

@@ -39,7 +39,11 @@ class Run {
   void end_of_step();
   TimeControl::Options time_options() const;
   void leave_branch(std::int64_t to_step, bool ours);
-  void begin_branch();
+  void stay();
+  void begin_branch(bool ours);
+  /// What the run goes on from: a log that begins here can be run again.
+  void publish_snapshot();
+  bool heard();
   void take_snapshots();
   /// Requests and keys.
   void obey();

@@ -2,8 +2,10 @@
 
 #include <cmath>
 
+#include "shoal/message_codec.hpp"
 #include "tools/experiment/run.hpp"
 #include "tools/experiment/run_error.hpp"
+#include "tools/experiment/snapshot_pieces.hpp"
 
 // What a run does beside when its world moves in time, and when it writes snapshots.
 
@@ -20,16 +22,39 @@ void Run::leave_branch(std::int64_t to_step, bool ours) {
   results_->keep_branch(left, scoring_, loaded_.resolved);
 }
 
-void Run::begin_branch() {
+void Run::stay() {
+  branch_log_.give_up();
+  if (results_) results_->drop_branch();
+}
+
+bool Run::heard() {
+  return buses_.over_lcm() || !options_.record.empty();
+}
+
+void Run::publish_snapshot() {
+  if (!heard()) return;
+  sim::Bytes buffer;
+  for (const shoal::sim_snapshot_t& piece : in_pieces(time_.snapshot(), control_.branch, journal_.sequence())) {
+    shoal::encode_into(piece, buffer);
+    buses_.outer().publish("sim.snapshot", buffer, world_.now());
+  }
+}
+
+void Run::begin_branch(bool ours) {
   branch_log_.branch(control_.branch);
   lockstep_.set_branch(control_.branch);
   buses_.set_time(world_.now());
   service_.tell_changes();
   service_.publish_info();
+  if (!ours) {  // nobody has seen this step
+    publish_snapshot();
+    service_.publish_step();
+    journal_.after_step();
+  }
   buses_.end_of_step();
   branch_log_.mark(world_.step_number(), time_.oldest_step().value_or(world_.step_number()));
   progress_.restart(world_.now());
-  if (results_) results_->cut_tracks(world_.now());
+  if (results_) results_->begin_branch(world_.now());
 }
 
 void Run::take_snapshots() {

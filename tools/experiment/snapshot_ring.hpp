@@ -3,15 +3,17 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "sim/bus/bus.hpp"
 
 namespace tools {
 
 /// Snapshots of the last seconds in memory.  Every few are kept whole; of those between, what differs from the whole
-/// one before is kept, compressed.  Bounded in number and bytes: the oldest go first, together with the whole one that
-/// they lean on.
+/// one before is kept.  Compressed where there is no room without.  Bounded in number and bytes: the oldest go first,
+/// together with the whole one that they lean on.
 class SnapshotRing {
  public:
   /// Snapshots are kept for `steps` steps, but never more than `most_bytes` of them; the newest one always is.
@@ -29,27 +31,32 @@ class SnapshotRing {
   std::optional<std::int64_t> oldest() const;
   std::size_t size() const { return count_; }
   /// That it holds in memory.
-  std::size_t bytes() const { return bytes_ + whole_.size(); }
+  std::size_t bytes() const { return bytes_ + whole_.size() + difference_.size(); }
 
  private:
-  struct Difference {
+  /// A snapshot, or how it differs from another.
+  struct Packed {
     std::int64_t step;
-    sim::Bytes compressed;
+    sim::Bytes bytes;
+    bool deflated;
+    sim::Bytes unpacked() const;
   };
   /// A whole snapshot, and those that lean on it.
   struct Family {
-    std::int64_t step;
-    sim::Bytes compressed;
-    std::vector<Difference> others;
+    Packed whole;
+    std::vector<Packed> others;
     std::size_t bytes() const;
   };
 
+  Packed pack(std::int64_t step, std::span<const std::byte> bytes) const;
+  std::int64_t newest() const;
   const Family* family_of(std::int64_t step) const;
 
   std::int64_t steps_;
   std::size_t most_bytes_;
   std::deque<Family> families_;
-  sim::Bytes whole_;  // the newest family's, not compressed
+  sim::Bytes whole_;       // the newest family's, not packed
+  sim::Bytes difference_;  // memory that is used again
   std::size_t bytes_ = 0, count_ = 0;
 };
 

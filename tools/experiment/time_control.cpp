@@ -17,9 +17,10 @@ namespace {
 
 constexpr int most_files = 1000;
 constexpr const char* suffix = ".snapshot";
-/// Between two snapshots for going back at least this many times what the last one cost: in a run that is much faster
+/// Between two snapshots for going back at least this many times what the last one cost (the steps after it take
+/// longer too, for their memory is not in the caches any more): in a run that is much faster
 /// than real time they are further apart, and the steps between them take the less time to work out again.
-constexpr int rest_per_snapshot = 40;
+constexpr int rest_per_snapshot = 80;
 
 /// One run of bytes that the ring can compare part by part, and back.  Its last bytes tell the three sizes.
 constexpr std::size_t trailer_bytes = 3 * sizeof(std::uint64_t);
@@ -248,7 +249,7 @@ void TimeControl::travel(const std::function<void()>& work, std::int64_t to_step
   control_.set_paused(!run_on);
   moved_ = true;
   try {
-    if (hooks_.arrived) hooks_.arrived();
+    if (hooks_.arrived) hooks_.arrived(ours);
   } catch (const std::exception& error) {  // half of the run is there: it cannot go on
     broken_ = error.what();
     throw;

@@ -38,8 +38,8 @@ class TimeControl final : public bridges::TimeMachine {
     /// Before: the branch is as it was left.  `ours`: the new one begins at a step that this run has been at.  The
     /// world stays where it is when this throws.
     std::function<void(std::int64_t to_step, bool ours)> leaving;
-    std::function<void()> stayed;   ///< the world is where it was after all
-    std::function<void()> arrived;  ///< after
+    std::function<void()> stayed;            ///< the world is where it was after all
+    std::function<void(bool ours)> arrived;  ///< after
   };
 
   /// All must outlive this.

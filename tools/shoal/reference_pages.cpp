@@ -96,6 +96,7 @@ std::string messages_page() {
                      "| `sim.ack` | `shoal.sim_ack_t` | lockstep: a client is done |\n"
                      "| `sim.resend` | `shoal.sim_resend_t` | lockstep: asks for messages that did not arrive |\n"
                      "| `sim.resent` | `shoal.sim_resent_t` | lockstep: messages that were asked for |\n"
+                     "| `sim.snapshot` | `shoal.sim_snapshot_t` | what a run began with that began with a snapshot |\n"
                      "| `sim.vehicle` | `shoal.sim_vehicle_t` | a vehicle came, went, or was asked for |\n\n"
                      "Types that are equal on the wire to those of `bot_core` say so.\n";
   for (const auto& [name, schema] : shoal::embedded_types().all())

@@ -24,10 +24,10 @@ using AllTypes =
                    modem_send_t, multibeam_t, nmea_sentence_t, odometry_t, planar_lidar_t, point_cloud_t, pose_t,
                    position_report_t, pressure_t, range_beacon_t, raw_t, rigid_transform_t, side_scan_t, sim_ack_t,
                    sim_control_reply_t, sim_control_request_t, sim_due_t, sim_hash_t, sim_info_t, sim_letter_t,
-                   sim_mail_t, sim_payload_t, sim_resend_t, sim_resent_t, sim_state_t, sim_tick_t, sim_vehicle_t,
-                   sonar_image_t, sonar_range_t, station_command_t, swarm_position_t, thrust_rudder_command_t,
-                   thrust_rudder_elevator_command_t, transponder_t, twist_command_t, usbl_t, utime_t, water_speed_t,
-                   waypoints_command_t, wheel_encoder_t, wheel_speeds_command_t, wrench_t>;
+                   sim_mail_t, sim_payload_t, sim_resend_t, sim_resent_t, sim_snapshot_t, sim_state_t, sim_tick_t,
+                   sim_vehicle_t, sonar_image_t, sonar_range_t, station_command_t, swarm_position_t,
+                   thrust_rudder_command_t, thrust_rudder_elevator_command_t, transponder_t, twist_command_t, usbl_t,
+                   utime_t, water_speed_t, waypoints_command_t, wheel_encoder_t, wheel_speeds_command_t, wrench_t>;
 TYPED_TEST_SUITE(EveryType, AllTypes);
 
 TYPED_TEST(EveryType, HasTheFingerprintThatLcmGenComputes) {
@@ -77,7 +77,7 @@ TYPED_TEST(EveryType, SurvivesGarbage) {
 
 TEST(MessageCodec, TheListOfTypesAboveIsComplete) {
   // One more .lcm file needs one more name above.
-  EXPECT_EQ(embedded_types().all().size(), 70u);
+  EXPECT_EQ(embedded_types().all().size(), 71u);
 }
 
 TEST(MessageCodec, ThrowsWithTheReason) {

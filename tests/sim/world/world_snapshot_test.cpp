@@ -366,7 +366,7 @@ TEST(WorldSnapshot, AJournalThatGrewTooLargeIsRefusedAndLetGo) {
       error = refused.what();
     }
   }
-  EXPECT_EQ(error, "this world cannot be saved: more came, went and was changed than can be told in 16 MiB");
+  EXPECT_EQ(error, "this world cannot be saved: more came and was changed than can be told in 16 MiB");
   EXPECT_EQ(error_of(test.world, start), "");
   EXPECT_EQ(test.world.snapshot(), start);  // back there it can be saved again
 }
@@ -405,6 +405,28 @@ TEST_F(ForgedSnapshot, WithBodiesWhereNoneCanBeIsRefused) {
     EXPECT_THAT(error_of(world(), bad), HasSubstr(error)) << at - p << " " << number;
     EXPECT_EQ(world().snapshot(), good);
   }
+}
+
+/// What is late would be made up for in small steps, as many as a forger likes.
+TEST_F(ForgedSnapshot, WithAClockThatIsLateIsRefused) {
+  // 60 steps of 5 ms, and a node of the clock's wander every 0.1 s up to 2 s after that.
+  const std::size_t at = behind(good, std::array<std::int64_t, 4>{300'000, 25, 0, 100'000}) - 4 * sizeof(std::int64_t);
+  put(good, at, std::int64_t{200'000});
+  EXPECT_THAT(error_of(world(), good), HasSubstr("a clock that stands at another time than the world"));
+}
+
+TEST(WorldSnapshot, WithAnEventThatIsLateIsRefused) {
+  TappedWorld test("shoal: 1\nphysics: {step_s: 0.01}\nevents: [{name: tick, every: 1, do: [{log: tick}]}]\n");
+  for (int i = 0; i < 150; ++i) test.world.step();
+  sim::Bytes snapshot = test.world.snapshot();
+  EXPECT_EQ(error_of(test.world, snapshot), "");
+  std::array<std::byte, 1 + sizeof(std::int64_t)> next{std::byte{1}};  // it is there: at 2 s
+  const std::int64_t next_us = 2'000'000, long_ago_us = 1'000'000;
+  std::memcpy(&next[1], &next_us, sizeof next_us);
+  const auto at = std::search(snapshot.begin(), snapshot.end(), next.begin(), next.end());
+  ASSERT_NE(at, snapshot.end());
+  std::memcpy(&*at + 1, &long_ago_us, sizeof long_ago_us);
+  EXPECT_THAT(error_of(test.world, snapshot), HasSubstr("an event that should have fired long ago"));
 }
 
 TEST_F(ForgedSnapshot, WithEventsOfNobodyIsRefused) {

@@ -15,13 +15,15 @@
 #include "tests/devices/port_fixture.hpp"
 #include "tools/experiment/run_identity.hpp"
 #include "tools/experiment/runner.hpp"
+#include "tools/experiment/snapshot_pieces.hpp"
 
 namespace test {
 
 /// A run in this process that is recorded as `shoal run --record` does, with clients that the test plays.
 class RecordedRun {
  public:
-  RecordedRun(const std::string& yaml, const std::string& log)
+  /// `from`: it begins with this snapshot, of a RecordedRun of the same world.
+  RecordedRun(const std::string& yaml, const std::string& log, const tools::Snapshot* from = nullptr)
       : loaded(sim::load_world_text(yaml, "worlds/test.yaml", LoadedTestWorld::with_messages({}))),
         recorder(network, log, loaded.config.epoch_us),
         gate(recorder),
@@ -35,7 +37,32 @@ class RecordedRun {
                  tools::files_text(loaded.resolved)}) {
     journal.attach(world);
     service.use_journal(journal);
+    if (from != nullptr) {
+      world.restore(from->state);
+      journal.begin_branch(0, 1);
+    }
     service.publish_info();
+    if (from != nullptr)
+      for (const auto& piece : tools::in_pieces(*from, 0, 1))
+        gate.publish("sim.snapshot", shoal::encode(piece), world.now());
+  }
+
+  tools::Snapshot snapshot() {
+    tools::Snapshot s;
+    s.version = tools::short_version();
+    s.resolved_world = sim::to_yaml(loaded.resolved);
+    s.seed = loaded.config.run.seed;
+    s.epoch_us = world.epoch_us();
+    s.step_us = world.step_time().count();
+    s.step = world.step_number();
+    s.state_hash = world.state_hash();
+    s.state = world.snapshot();
+    auto owners = sim::StateArchive::saver();
+    owners.section("owners");
+    service.visit_state(owners);
+    owners.end();
+    s.owners = owners.take_bytes();
+    return s;
   }
 
   /// `clients` act before each step; then requests are obeyed.
@@ -83,16 +110,16 @@ class RecordedRun {
   bridges::SimService service;
 };
 
-/// Copies a log without the events that `leave_out` names.
-inline void copy_log(const std::string& from, const std::string& to,
-                     const std::function<bool(const bridges::LogEvent&)>& leave_out) {
+/// Copies a log; `keep` may change an event, or say that it goes.
+inline void change_log(const std::string& from, const std::string& to,
+                       const std::function<bool(bridges::LogEvent&)>& keep) {
   bridges::EventLogReader in(from);
   std::string bytes;
   const auto add = [&bytes](std::uint64_t value, int size) {
     for (int i = size - 1; i >= 0; --i) bytes += static_cast<char>(value >> (8 * i) & 0xff);
   };
-  while (const auto event = in.next()) {
-    if (leave_out(*event)) continue;
+  while (auto event = in.next()) {
+    if (!keep(*event)) continue;
     add(0xEDA1DA01, 4);
     add(static_cast<std::uint64_t>(event->number), 8);
     add(static_cast<std::uint64_t>(event->utime), 8);
@@ -104,6 +131,12 @@ inline void copy_log(const std::string& from, const std::string& to,
   std::FILE* out = std::fopen(to.c_str(), "wb");
   std::fwrite(bytes.data(), 1, bytes.size(), out);
   std::fclose(out);
+}
+
+/// Copies a log without the events that `leave_out` names.
+inline void copy_log(const std::string& from, const std::string& to,
+                     const std::function<bool(const bridges::LogEvent&)>& leave_out) {
+  change_log(from, to, [&](const bridges::LogEvent& event) { return !leave_out(event); });
 }
 
 }  // namespace test
