@@ -66,6 +66,7 @@ class FakeSimulator {
     shoal::sim_control_reply_t reply{};
     reply.id = request.id;
     reply.client = request.client;
+    reply.session = session_of(request);
     reply.ok = ok ? 1 : 0;
     reply.text = text;
     send("sim.control.reply", reply);
@@ -92,10 +93,14 @@ class FakeSimulator {
     shoal::sim_due_t due;
   };
 
-  void join(const shoal::sim_control_request_t& request) {
+  static std::int64_t session_of(const shoal::sim_control_request_t& request) {
     std::smatch match;
     const bool has_session = std::regex_search(request.text, match, std::regex("session: (\\d+)"));
-    const std::int64_t session = has_session ? std::stoll(match[1]) : 0;
+    return has_session ? std::stoll(match[1]) : 0;
+  }
+
+  void join(const shoal::sim_control_request_t& request) {
+    const std::int64_t session = session_of(request);
     Member& member = members_[request.client];
     if (member.due.session != session) member = {};
     member.receives.clear();
