@@ -59,7 +59,7 @@ class ClientMail {
   /// Unnamed messages that wait: of one channel, and bytes of all.
   static constexpr std::size_t most_of_channel = 10'000;
   static constexpr std::size_t most_bytes = 256'000'000;
-  static constexpr std::int64_t repeat_windows = 2, late_windows = 10;
+  static constexpr std::int64_t repeat_windows = 1, late_windows = 10;
 
  private:
   static constexpr std::size_t most_twins = 50'000;

@@ -85,12 +85,14 @@ class FakeSimulator {
   }
   void repeat_tick() { send("sim.tick", last_tick_); }
   std::int64_t session(const std::string& client) const { return members_.at(client).due.session; }
+  std::int32_t join_id(const std::string& client) const { return members_.at(client).join_id; }
   std::vector<std::string> receives(const std::string& client) const { return members_.at(client).receives; }
 
  private:
   struct Member {
     std::vector<std::string> receives;
     shoal::sim_due_t due;
+    std::int32_t join_id = 0;  ///< number of the request
   };
 
   static std::int64_t session_of(const shoal::sim_control_request_t& request) {
@@ -104,6 +106,7 @@ class FakeSimulator {
     Member& member = members_[request.client];
     if (member.due.session != session) member = {};
     member.receives.clear();
+    member.join_id = request.id;
     member.due.name = request.client;
     member.due.session = session;
     const std::regex channel("\"([^\"]*)\"");

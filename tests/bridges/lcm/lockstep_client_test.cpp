@@ -411,7 +411,8 @@ TEST(LockstepClient, SaysThatTheWorldWentOnWithoutIt) {
   reply.client = "pilot";
   reply.ok = 0;
   reply.text = "too late; join again";
-  reply.id = static_cast<std::int32_t>(getpid() % 1'000'000) * 1000 + 1;
+  reply.id = test.simulator.join_id("pilot");
+  reply.session = test.simulator.session("pilot");
   test.simulator.send("sim.control.reply", reply);
   EXPECT_FALSE(test.client.next_tick(test.tick));
   EXPECT_EQ(test.client.end(), LockstepClient::End::dropped);

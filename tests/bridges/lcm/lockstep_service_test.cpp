@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "bridges/lcm/resend.hpp"
 #include "shoal/sim_ack_t.hpp"
@@ -25,8 +26,8 @@ sim::Bytes bytes_of(const std::string& text) {
 
 /// A world with one box.
 struct Service : lcm_test::ServedWorld {
-  explicit Service(const std::string& lockstep = "{timeout_s: 0.02}")
-      : ServedWorld("shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nlockstep: " + lockstep +
+  explicit Service(const std::string& terms = "{timeout_s: 0.02}")
+      : ServedWorld("shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nlockstep: " + terms +
                     "\nvehicles: [{name: a, model: {shoal: 1, bodies: [{name: b, parts: [{shape: box, mass_kg: "
                     "1}]}]}}]\n") {}
 
@@ -388,7 +389,7 @@ TEST(LockstepService, AClientCannotMakeAWorldWaitLongerThanItsFileSays) {
   ASSERT_TRUE(s.join("stranger", "{session: 5, on_timeout: wait, timeout_s: 1000}").ok);
   bool named = false;
   s.synchronize([&] {
-    named = true;
+    if (std::exchange(named, true)) return;
     EXPECT_THAT(s.service.waits_for(), testing::MatchesRegex("waits [0-9.]+ s for 'stranger'"));
   });
   EXPECT_TRUE(named);
