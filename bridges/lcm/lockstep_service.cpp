@@ -22,7 +22,7 @@ constexpr std::chrono::seconds alive_for{1};
 constexpr std::size_t most_summaries = 2000;
 constexpr std::size_t most_ended_sessions = 1000;
 /// Of sim::ClientMail.
-constexpr milliseconds mail_window{100};
+constexpr milliseconds mail_window{50};
 
 }  // namespace
 
