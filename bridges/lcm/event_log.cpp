@@ -17,7 +17,7 @@ constexpr std::uint32_t sync_word = 0xEDA1DA01;
 constexpr std::size_t header_bytes = 28;
 constexpr std::int32_t max_channel_bytes = 1000;  // liblcm's own limit for logs
 constexpr std::size_t max_problems = 100;
-constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
+constexpr std::size_t block_bytes = std::size_t{1} << 18;
 constexpr std::size_t read_bytes = std::size_t{1} << 17;
 
 std::uint32_t number32(const unsigned char* at) {
@@ -33,10 +33,6 @@ std::uint64_t number64(const unsigned char* at) {
 }
 
 }  // namespace
-
-FileDescriptor::~FileDescriptor() {
-  if (number_ >= 0) ::close(number_);
-}
 
 EventLogReader::EventLogReader(const std::string& path) : file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
   if (file_.number() < 0) throw BusError(path + ": " + std::strerror(errno));
@@ -129,11 +125,8 @@ void EventLogReader::find_sync() {
 
 bool EventLogWriter::write(std::int64_t number, std::int64_t utime, std::string_view channel,
                            std::span<const std::byte> payload) {
-  const std::size_t size = header_bytes + channel.size() + payload.size();
-  if (used_ + size > buffer_bytes && !flush()) return false;
-  if (buffer_.size() < used_ + size) buffer_.resize(std::max(buffer_bytes, used_ + size));
-  std::byte* to = buffer_.data() + used_;
-  used_ += size;
+  std::byte* to = room(header_bytes + channel.size() + payload.size());
+  if (to == nullptr) return false;
   const auto put = [&to](const void* from, std::size_t bytes) {
     if (bytes > 0) std::memcpy(to, from, bytes);
     to += bytes;
@@ -157,18 +150,26 @@ bool EventLogWriter::write(std::int64_t number, std::int64_t utime, std::string_
 }
 
 bool EventLogWriter::write(std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t done = ::write(file_.number(), bytes.data(), bytes.size());
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) return false;
-    bytes = bytes.subspan(static_cast<std::size_t>(done));
-  }
+  std::byte* to = room(bytes.size());
+  if (to == nullptr) return false;
+  if (!bytes.empty()) std::memcpy(to, bytes.data(), bytes.size());
   return true;
 }
 
+std::byte* EventLogWriter::room(std::size_t size) {
+  if (block_.used + size > block_bytes && !hand_over()) return nullptr;
+  const std::size_t begin = block_.used;
+  if (block_.bytes.size() < begin + size) block_.bytes.resize(std::max(block_bytes, begin + size));
+  block_.used += size;
+  return block_.bytes.data() + begin;
+}
+
+bool EventLogWriter::hand_over() {
+  return block_.used == 0 || file_.hand_over(block_);
+}
+
 bool EventLogWriter::flush() {
-  const bool done = write(std::span(buffer_).first(std::exchange(used_, 0)));
-  return done;
+  return hand_over() && file_.finish();
 }
 
 }  // namespace bridges

@@ -6,29 +6,14 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "bridges/lcm/bus_error.hpp"
+#include "bridges/lcm/file_descriptor.hpp"
+#include "bridges/lcm/file_writer.hpp"
 #include "sim/bus/bus.hpp"
 
 namespace bridges {
-
-/// A file that closes itself.
-class FileDescriptor {
- public:
-  explicit FileDescriptor(int number = -1) : number_(number) {}
-  FileDescriptor(FileDescriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
-  }
-  ~FileDescriptor();
-  int number() const { return number_; }
-
- private:
-  int number_;
-};
 
 struct LogEvent {
   std::int64_t number = 0;
@@ -81,21 +66,26 @@ class EventLogReader {
   std::vector<std::string> problems_;
 };
 
-/// Writes an LCM event log: whole events, through a buffer.
+/// Writes an LCM event log: whole events, through blocks that another thread writes.
 class EventLogWriter {
  public:
   explicit EventLogWriter(FileDescriptor file) : file_(std::move(file)) {}
 
-  /// All return false when the file cannot take it; errno says why.
+  /// All return false when the file cannot take what was written so far; errno says why.
   bool write(std::int64_t number, std::int64_t utime, std::string_view channel, std::span<const std::byte> payload);
   /// Bytes of another log.
   bool write(std::span<const std::byte> bytes);
+  /// Lets the thread write what there is, and does not wait for it.
+  bool hand_over();
+  /// Waits until all is written.
   bool flush();
 
  private:
-  FileDescriptor file_;
-  std::vector<std::byte> buffer_;
-  std::size_t used_ = 0;  // of the buffer
+  /// Where `size` bytes of the block can be put; null: the file takes no more.
+  std::byte* room(std::size_t size);
+
+  FileWriter file_;
+  FileWriter::Block block_;
 };
 
 }  // namespace bridges

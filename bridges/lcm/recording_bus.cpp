@@ -18,6 +18,7 @@ namespace {
 /// Sync word, number, time, two lengths.
 constexpr std::uint64_t event_head_bytes = 28;
 constexpr std::size_t copied_at_once = std::size_t{1} << 20;
+constexpr std::chrono::milliseconds shortest_pause{50};
 
 std::unique_ptr<EventLogWriter> create(const std::string& path, Existing existing) {
   // O_EXCL decides and creates in one go; a device such as /dev/full is never "made".
@@ -68,10 +69,14 @@ void RecordingBus::record(std::string_view channel, std::span<const std::byte> p
   if (!log_->write(static_cast<std::int64_t>(recorded_), utime_, channel, payload)) return fail(errno);
   ++recorded_;
   bytes_ += event_head_bytes + channel.size() + payload.size();
-  // Once a simulated second: a killed run loses little, and `tail` sees it grow.
-  if (const std::int64_t second = (utime_ - epoch_utime_) / 1'000'000; second > flushed_s_) {
-    flushed_s_ = second;
-    if (!log_->flush()) fail(errno);
+  // Once a simulated second, but not more often than it is worth it: a killed run loses little, and `tail` sees it
+  // grow.
+  if (const std::int64_t second = (utime_ - epoch_utime_) / 1'000'000; second > handed_over_s_) {
+    handed_over_s_ = second;
+    if (const auto now = std::chrono::steady_clock::now(); now - handed_over_ >= shortest_pause) {
+      handed_over_ = now;
+      if (!log_->hand_over()) fail(errno);
+    }
   }
 }
 
@@ -109,7 +114,7 @@ void RecordingBus::go_on() {
   bytes_ = next_->bytes;
   next_.reset();
   utime_ = epoch_utime_;  // time went back: the next set_time() tells
-  flushed_s_ = 0;
+  handed_over_s_ = 0;
 }
 
 void RecordingBus::fail(int error_number) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <type_traits>
 #include <vector>
 
 namespace sim {
@@ -26,7 +28,6 @@ struct VehicleClock::State {
   struct Steer {
     Time after;
     double offset_s, rate;
-    void visit_state(StateArchive& archive) { archive(after, offset_s, rate); }
   };
 
   State(const ClockConfig& config_in, std::uint64_t seed, const std::string& vehicle, Time start_in)
@@ -34,23 +35,19 @@ struct VehicleClock::State {
     nodes.push_back({start, 0});
   }
 
-  /// As two blocks: there are many, and the state is hashed often.
-  void visit_nodes(StateArchive& archive) {
-    std::vector<std::int64_t> times_us;
-    std::vector<double> wanders_s;
-    if (!archive.restoring()) {
-      times_us.reserve(nodes.size());
-      wanders_s.reserve(nodes.size());
-      for (const Node& node : nodes) {
-        times_us.push_back(node.at.count());
-        wanders_s.push_back(node.wander_s);
-      }
-    }
-    archive(times_us, wanders_s);
+  /// As one block: there are many, and the state is hashed often.
+  template <typename Row>
+  static void visit_block(StateArchive& archive, std::deque<Row>& rows) {
+    constexpr std::size_t words = sizeof(Row) / sizeof(std::uint64_t);
+    static_assert(std::is_trivially_copyable_v<Row> && sizeof(Row) == words * sizeof(std::uint64_t));
+    std::vector<std::uint64_t> block(archive.restoring() ? 0 : words * rows.size());
+    if (!archive.restoring())
+      for (std::size_t i = 0; i < rows.size(); ++i) std::memcpy(&block[words * i], &rows[i], sizeof(Row));
+    archive(block);
     if (!archive.restoring()) return;
-    if (times_us.size() != wanders_s.size()) archive.fail("a clock whose past has holes");
-    nodes.clear();
-    for (std::size_t i = 0; i < times_us.size(); ++i) nodes.push_back({Time{times_us[i]}, wanders_s[i]});
+    if (block.size() % words != 0) archive.fail("a clock whose past has holes");
+    rows.resize(block.size() / words);
+    for (std::size_t i = 0; i < rows.size(); ++i) std::memcpy(&rows[i], &block[words * i], sizeof(Row));
   }
 
   double wander_s(Time at) const {
@@ -241,8 +238,9 @@ void VehicleClock::visit_state(StateArchive& archive) {
   if (!state_) return;
   State& s = *state_;
   archive(s.oscillator, s.now);
-  s.visit_nodes(archive);
-  archive(s.steers, s.forgot_steers, s.first_fix, s.last_fix);
+  State::visit_block(archive, s.nodes);
+  State::visit_block(archive, s.steers);
+  archive(s.forgot_steers, s.first_fix, s.last_fix);
   archive(s.loop.time_constant_s, s.loop.step_above_s, s.loop.pps_std_s, s.loop.interval_s);
   archive(s.learnt_rate, s.last_measured_s, s.rate_is_unknown, s.start);
   if (archive.restoring() && (s.nodes.empty() || (s.forgot_steers && s.steers.empty())))

@@ -1,0 +1,97 @@
+#include "bridges/lcm/file_writer.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include "lcm_test_support.hpp"
+
+namespace bridges {
+namespace {
+
+using lcm_test::ScratchFolder;
+
+std::string contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+FileWriter::Block block_of(std::string_view text) {
+  const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
+  return {{bytes, bytes + text.size()}, text.size()};
+}
+
+TEST(FileWriter, WritesBlocksInTheOrderInWhichTheyWereHandedOver) {
+  const ScratchFolder folder;
+  const std::string path = folder.file("out");
+  std::string expected;
+  {
+    FileWriter writer(FileDescriptor(open(path.c_str(), O_WRONLY | O_CREAT, 0666)));
+    for (int i = 0; i < 1000; ++i) {
+      const std::string text = std::to_string(i) + " ";
+      FileWriter::Block block = block_of(text);
+      ASSERT_TRUE(writer.hand_over(block));
+      EXPECT_EQ(block.used, 0u);
+      expected += text;
+      if (i == 500) {
+        ASSERT_TRUE(writer.finish());
+        EXPECT_EQ(contents(path), expected) << "finish() waits until all is in the file";
+      }
+    }
+  }
+  EXPECT_EQ(contents(path), expected) << "the writer writes what is left before it goes away";
+}
+
+TEST(FileWriter, WritesOnlyTheUsedPartOfABlock) {
+  const ScratchFolder folder;
+  const std::string path = folder.file("out");
+  FileWriter writer(FileDescriptor(open(path.c_str(), O_WRONLY | O_CREAT, 0666)));
+  FileWriter::Block block = block_of("seen, not seen");
+  block.used = 4;
+  ASSERT_TRUE(writer.hand_over(block) && writer.finish());
+  EXPECT_EQ(contents(path), "seen");
+}
+
+TEST(FileWriter, LosesNothingWhenTheFileIsSlowerThanWhatComes) {
+  int pipe_ends[2];
+  ASSERT_EQ(pipe(pipe_ends), 0);
+  std::string got;
+  std::thread reader([&got, end = pipe_ends[0]] {  // a pipe holds 64 kB: the writer has to wait for it
+    char part[4096];
+    for (ssize_t size = 0; (size = read(end, part, sizeof part)) > 0;) got.append(part, static_cast<std::size_t>(size));
+    close(end);
+  });
+  std::string expected;
+  {
+    FileWriter writer{FileDescriptor(pipe_ends[1])};
+    for (int i = 0; i < 50; ++i) {
+      const std::string text(100'000, static_cast<char>('a' + i % 26));
+      FileWriter::Block block = block_of(text);
+      ASSERT_TRUE(writer.hand_over(block));
+      expected += text;
+    }
+  }
+  reader.join();
+  EXPECT_EQ(got, expected);
+}
+
+TEST(FileWriter, SaysThatTheDiskIsFullWhenItIsWaitedForAndEverAfter) {
+  FileWriter writer(FileDescriptor(open("/dev/full", O_WRONLY)));
+  FileWriter::Block block = block_of("no room");
+  EXPECT_TRUE(writer.hand_over(block)) << "nothing is known yet";
+  EXPECT_FALSE(writer.finish());
+  EXPECT_EQ(errno, ENOSPC);
+  block = block_of("more");
+  EXPECT_FALSE(writer.hand_over(block));
+  EXPECT_EQ(errno, ENOSPC);
+}
+
+}  // namespace
+}  // namespace bridges
