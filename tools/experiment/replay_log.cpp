@@ -34,7 +34,7 @@ std::int64_t number_at(std::span<const std::byte> payload, std::size_t index) {
 
 class Reader {
  public:
-  explicit Reader(const std::string& path) : file_(path), pieces_(file_.file_bytes()) { log_.path = path; }
+  explicit Reader(const std::string& path) : file_(path) { log_.path = path; }
 
   ReplayLog read() {
     bridges::LogEventView event;

@@ -123,7 +123,7 @@ TEST_F(ReplayFromASnapshot, OneOfAnotherWorldOrBuildIsTold) {
 
 TEST_F(ReplayFromASnapshot, ForgedPiecesArePassedOver) {
   change_pieces([](shoal::sim_snapshot_t& piece) {
-    piece.bytes = INT64_MAX;
+    piece.pieces = 0;
     return true;
   });
   EXPECT_THAT(error(), HasSubstr("sim.mail 0"));
