@@ -62,8 +62,10 @@ void Micromodem::Params::read(sim::ParamReader& in) {
   in.read("serial", serial, "a pseudo-terminal or FIFO that any program can open");
   const auto is_plain = [](char c) { return c > ' ' && c < 127 && c != ',' && c != '*' && c != '$'; };
   if (!in.describing() && (revision.empty() || !std::all_of(revision.begin(), revision.end(), is_plain)))
-    in.error("revision", "'revision' is a field of a sentence and must have letters, digits and points, no ',', '*', "
-                         "'$' or space, got '" + sim::shortened(sim::printable(revision)) + "'");
+    in.error("revision",
+             "'revision' is a field of a sentence and must have letters, digits and points, no ',', '*', "
+             "'$' or space, got '" +
+                 sim::shortened(sim::printable(revision)) + "'");
 }
 
 Micromodem::Micromodem(const Params& params, const sim::DeviceContext& context)
@@ -107,8 +109,7 @@ void Micromodem::take(const std::string& sentence, sim::Time now) {
   now_ = now;
   NmeaLines lines;  // by the bus every sentence is whole
   const std::string ended = sentence + "\n";
-  for (const auto& line : lines.add(std::as_bytes(std::span(ended.data(), ended.size()))))
-    take_line(line, now);
+  for (const auto& line : lines.add(std::as_bytes(std::span(ended.data(), ended.size())))) take_line(line, now);
 }
 
 void Micromodem::take_line(const NmeaLines::Line& line, sim::Time now) {
@@ -173,7 +174,7 @@ MicromodemSide::Sound Micromodem::transmit(const MicromodemPacket& packet, sim::
   signal.code = packet.code();
   signal.payload = packet.payload();
   const int to = packet.kind == MicromodemPacket::Kind::cycle_init && packet.source != address_ ? packet.source
-                                                                                               : packet.destination;
+                                                                                                : packet.destination;
   signal.to = {group(), to == micromodem_broadcast ? "" : std::to_string(to)};
   return send(std::move(signal), at, on_the_second);
 }

@@ -54,8 +54,7 @@ Modem::Modem(const Params& params, const sim::DeviceContext& context)
       body_(context.body),
       p_BS_(context.config.position_m) {
   if (params.through == SignalCarrier::acoustic && !context.world.medium().has_water())
-    sim::throw_config_error(context.config.place,
-                            "vehicle '" + vehicle_ + "': device '" + context.config.name + "'",
+    sim::throw_config_error(context.config.place, "vehicle '" + vehicle_ + "': device '" + context.config.name + "'",
                             "'through: acoustic' needs water to carry its sound: the world has no 'medium: {water: "
                             "...}'");
   if (params.serial) serial_ = std::make_unique<SerialMessages>(*params.serial, context);

@@ -38,8 +38,8 @@ class Modem final : public sim::Sensor, public MessageModem {
   /// What it sent, and what became of messages of its network that were for it or for everybody.
   struct Counts {
     std::int64_t sent = 0, sent_bytes = 0, received = 0;
-    /// By SignalLoss: `range` out of range, `noise` in a zone without radio, `blocked` by what stands between or an antenna
-    /// where the signal does not go, `link` by `loss_probability`.
+    /// By SignalLoss: `range` out of range, `noise` in a zone without radio, `blocked` by what stands between or an
+    /// antenna where the signal does not go, `link` by `loss_probability`.
     std::array<std::int64_t, sim::signal_losses> lost{};
     void visit_state(sim::StateArchive& archive) { archive(sent, sent_bytes, received, lost); }
   };

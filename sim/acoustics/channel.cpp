@@ -25,10 +25,9 @@ constexpr Time watch_period{100'000};
 }  // namespace
 
 const char* signal_loss_word(SignalLoss loss) {
-  static constexpr const char* words[signal_losses] = {"none",         "noise",        "interference", "half_duplex",
-                                                       "busy",         "captured",     "doppler",      "blocked",
-                                                       "out_of_water", "receiver_off", "link",         "range",
-                                                       "sender_off"};
+  static constexpr const char* words[signal_losses] = {
+      "none",    "noise",        "interference", "half_duplex", "busy",  "captured",  "doppler",
+      "blocked", "out_of_water", "receiver_off", "link",        "range", "sender_off"};
   return words[static_cast<std::size_t>(loss)];
 }
 
@@ -150,8 +149,7 @@ void AcousticChannel::watch() {
     more = true;
     if (can(*each)) continue;
     const bool works = each->works();
-    if (each->sending_ >= 0)
-      cut(each->sending_, works ? SignalLoss::out_of_water : SignalLoss::sender_off, step_end_);
+    if (each->sending_ >= 0) cut(each->sending_, works ? SignalLoss::out_of_water : SignalLoss::sender_off, step_end_);
     const SignalLoss loss = works ? SignalLoss::out_of_water : SignalLoss::receiver_off;
     for (std::int64_t flight = each->receiver_.drop(); flight >= 0; flight = each->receiver_.drop())
       flights_[static_cast<std::size_t>(flight)].loss = loss;
@@ -330,8 +328,7 @@ void AcousticChannel::send_to(int number, Transducer& to) {
   Flight& flight = flights_[static_cast<std::size_t>(flight_number)];
   flight.sending = number;
   set_receiver(flight, &to);
-  flight.meant =
-      signal.kind == Signal::Kind::message && to.is_meant_by(signal) && to.listener_.listens_to(signal);
+  flight.meant = signal.kind == Signal::Kind::message && to.is_meant_by(signal) && to.listener_.listens_to(signal);
   if (flight.meant) ++to.meant_near_;
   ++sending.users;
   const double travel_s = travel_time_s(around_.medium, sending.p_W, to.p_W(sending.sent));

@@ -101,7 +101,7 @@ class AcousticChannel {
     SignalLoss loss = SignalLoss::none;
     std::uint32_t to_join = 0;  // else another has its number now
     bool listened = false, present = false, noticed = false, delayed = false;
-    bool meant = false;  // it is for the receiver
+    bool meant = false;                       // it is for the receiver
     void visit_state(StateArchive& archive);  // but for `to`
   };
 
@@ -179,12 +179,12 @@ class AcousticChannel {
   std::int64_t looks_ = 0;
   bool handling_ = false;
   Neighbourhood neighbours_;
-  double neighbours_age_ = -1;  // when they were looked up, s; negative: not
-  double lowest_m_ = 0;         // z of the lowest of them then
+  double neighbours_age_ = -1;                                           // when they were looked up, s; negative: not
+  double lowest_m_ = 0;                                                  // z of the lowest of them then
   std::map<std::string, std::map<std::string, std::int64_t>> messages_;  // sent, by group and address
   mutable std::vector<std::pair<double, Decibels>> faintest_;            // of a frequency, worked out before
   mutable std::int64_t examined_ = 0;
-  bool watching_ = false;       // a watch_event is under way
+  bool watching_ = false;  // a watch_event is under way
   Transducer::Counts gone_;
   std::vector<int> near_;
 };

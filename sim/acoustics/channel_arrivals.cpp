@@ -137,10 +137,9 @@ void AcousticChannel::begin(int number) {
   flight.present = flight.loss == SignalLoss::none && around_.medium.in_water(flight.p_begun_W);
   const PowerRatio power = to_power(flight.level);
   if (flight.present)
-    to.receiver_.begin(
-        {number, sending.signal.centre_Hz, sending.signal.bandwidth_Hz, power + disturbing, flight.ended,
-         sending.signal.kind == Signal::Kind::message},
-        flight.begun);
+    to.receiver_.begin({number, sending.signal.centre_Hz, sending.signal.bandwidth_Hz, power + disturbing, flight.ended,
+                        sending.signal.kind == Signal::Kind::message},
+                       flight.begun);
   if (flight.listened) take(number, flight, sending, power, disturbing);
   schedule(flight.ended, end_event, number);
   if (flight.present && sending.cut != SignalLoss::none) schedule_silence(number, sending, flight.begun);

@@ -13,8 +13,8 @@ namespace sim {
 struct PresentSound {
   std::int64_t flight = -1;  ///< its number in the channel
   double centre_Hz = 0, bandwidth_Hz = 0;
-  PowerRatio power{0};  ///< re 1 uPa^2, in its own band
-  Time ended{0};        ///< it is known when it will
+  PowerRatio power{0};   ///< re 1 uPa^2, in its own band
+  Time ended{0};         ///< it is known when it will
   bool message = false;  ///< of a modem: no noise to another one's receiver, see TakenSignal::protection
   void visit_state(StateArchive& archive) { archive(flight, centre_Hz, bandwidth_Hz, power, ended, message); }
 };

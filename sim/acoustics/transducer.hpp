@@ -119,7 +119,7 @@ class Transducer {
   int sending_ = -1;        // what it sends, in the channel; -1: nothing
   std::int64_t signals_ = 0;
   SignalReceiver receiver_;
-  Counts counts_;                  // without those that are out of range
+  Counts counts_;  // without those that are out of range
   Audience own_;
   std::int64_t meant_before_ = 0;  // messages for who it is, sent before it was
   std::int64_t meant_near_ = 0;    // since then: those that are or were on their way to it, and its own

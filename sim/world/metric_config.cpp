@@ -220,9 +220,9 @@ void check_metrics(const WorldConfig& world, Diagnostics& diagnostics) {
         diagnostics.error(metric.place, "metric '" + metric.name + "'",
                           "vehicle '" + metric.vehicle + "' has no " + which + rest);
       else if (!is_modem(*meant))
-        diagnostics.error(metric.place, "metric '" + metric.name + "'",
-                          which + " of vehicle '" + metric.vehicle + "' is no modem but of type '" + meant->type +
-                              "'" + rest);
+        diagnostics.error(
+            metric.place, "metric '" + metric.name + "'",
+            which + " of vehicle '" + metric.vehicle + "' is no modem but of type '" + meant->type + "'" + rest);
     }
   }
 }

@@ -112,13 +112,14 @@ TEST(AcousticsCommand, SaysWhatIsWrong) {
 
 TEST(AcousticsCommand, NeedsWaterAtBothEnds) {
   const ScratchFolder folder;
-  std::ofstream(folder.file("sea.yaml")) << "shoal: 1\nmedium: {water: {}}\nobjects:\n"
-                                            "  - {name: bottom, fixed: true, position_m: [0, 0, -30], parts: [{shape: "
-                                            "plane}]}\n"
-                                            "  - {name: rock, fixed: true, position_m: [50, 0, -20], parts: [{shape: box, "
-                                            "size_m: [10, 10, 10]}]}\n"
-                                            "  - {name: jetty, fixed: true, position_m: [90, 0, 0], parts: [{shape: box, "
-                                            "size_m: [10, 10, 2]}]}\n";
+  std::ofstream(folder.file("sea.yaml"))
+      << "shoal: 1\nmedium: {water: {}}\nobjects:\n"
+         "  - {name: bottom, fixed: true, position_m: [0, 0, -30], parts: [{shape: "
+         "plane}]}\n"
+         "  - {name: rock, fixed: true, position_m: [50, 0, -20], parts: [{shape: box, "
+         "size_m: [10, 10, 10]}]}\n"
+         "  - {name: jetty, fixed: true, position_m: [90, 0, 0], parts: [{shape: box, "
+         "size_m: [10, 10, 2]}]}\n";
   const auto to = [&](const std::string& place) {
     return acoustics({folder.file("sea.yaml"), "--from", "0,0,-5", "--to", place});
   };

@@ -208,9 +208,8 @@ void check_end(const char* option, const LinkEnd& end, const sim::World& world) 
   const sim::Vector3d& p_W = end.p_W;
   const std::string place = fmt::format("{:g},{:g},{:g}", p_W.x(), p_W.y(), p_W.z());
   if (!world.medium().in_water(p_W))
-    throw CLI::ValidationError(
-        option, fmt::format("is in the air at {}: the surface is at z = {:.2f} m there", place,
-                            world.medium().surface_m(p_W.x(), p_W.y())));
+    throw CLI::ValidationError(option, fmt::format("is in the air at {}: the surface is at z = {:.2f} m there", place,
+                                                   world.medium().surface_m(p_W.x(), p_W.y())));
   if (in_ground(p_W, world)) throw CLI::ValidationError(option, "is in the ground at " + place);
 }
 
@@ -323,7 +322,7 @@ void add_acoustics_command(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  shoal acoustics --range 1500 --set acoustics.absorption.model=thorp\n"
       "  shoal acoustics --micromodem --set acoustics.fading.type=rayleigh --ranges 500:10000:500\n"
-      "  shoal acoustics worlds/proving_sea.yaml --from 0,0,-5 --to 900,0,-40 --packet psk:500:64\n"
+      "  shoal acoustics worlds/proving_sea.yaml --from 0,0,-5 --to 900,0,-25 --packet psk:500:64\n"
       "  shoal acoustics --closed-forms tests/fidelity/reference/closed_forms.csv\n"
       "docs/acoustics.md has the equations.");
   command->callback([arguments, &exit_code] { exit_code = show(*arguments); });

@@ -155,7 +155,8 @@ TEST(AcousticChannel, LooksForASignalOnlyAtThoseWhoAreNear) {
   for (const int fleet : {20, 160}) {
     std::string vehicles = vehicle("a", "[0, 0, -10]");
     for (int i = 1; i <= fleet; ++i)
-      vehicles += vehicle("b" + std::to_string(i), "[" + std::to_string(i <= 5 ? 1000 * i : 20000 + 1000 * i) + ", 0, -10]");
+      vehicles +=
+          vehicle("b" + std::to_string(i), "[" + std::to_string(i <= 5 ? 1000 * i : 20000 + 1000 * i) + ", 0, -10]");
     TestWorld test(sea("{range_max_m: 6000}", vehicles));
     phone(test, "a").transducer().transmit(message(), 0ms);
     test.run_for(0.02);  // who is near whom is looked up once a second
@@ -185,8 +186,7 @@ TEST(AcousticChannel, CountsMessagesForThoseTheyAreFor) {
   phone(test, "other").transducer().belong_to({"others", "b"});
   Signal to_b = message(), to_d = message(), to_all = message();
   to_b.to = {"modems", "b"}, to_d.to = {"modems", "d"}, to_all.to = {"modems", ""};
-  for (int i = 0; i < 3; ++i)
-    phone(test, "a").transducer().transmit(i == 0 ? to_b : i == 1 ? to_d : to_all, i * 4s);
+  for (int i = 0; i < 3; ++i) phone(test, "a").transducer().transmit(i == 0 ? to_b : i == 1 ? to_d : to_all, i * 4s);
   test.run_for(13);
   const auto understood = [&](const char* name) { return phone(test, name).transducer().counts().understood; };
   EXPECT_EQ(phone(test, "c").all().size(), 3u);  // all are heard
@@ -220,8 +220,8 @@ TEST(AcousticChannel, WhatHasNotBegunCanBeCalledBack) {
 /// c is as loud at b as a was: it is understood, since a has fallen silent.
 TEST(AcousticChannel, TheSoundOfASenderStopsWithItsPower) {
   for (const char* how : {"silent", "removed", "works"}) {
-    TestWorld test(sea("{}", vehicle("a", "[-750, 0, -10]") + vehicle("b", "[0, 0, -10]") +
-                                 vehicle("c", "[750, 0, -10]")));
+    TestWorld test(
+        sea("{}", vehicle("a", "[-750, 0, -10]") + vehicle("b", "[0, 0, -10]") + vehicle("c", "[750, 0, -10]")));
     phone(test, "a").transducer().transmit(message(), 0ms);
     phone(test, "c").transducer().transmit(message(), 2s);
     test.run_for(1);
@@ -528,9 +528,9 @@ TEST(AcousticChannel, AWorldWithoutWaterCannotCarrySound) {
       ": device 'phone': a device of type 'test_hydrophone' needs water to carry its sound: the world has no "
       "'medium: {water: ...}'";
   // Every one is told of, not the first alone.
-  EXPECT_EQ(test::error_of_world("shoal: 1\nname: dry\nvehicles:\n" + vehicle("a", "[0, 0, 0]") +
-                                 vehicle("b", "[9, 0, 0]")),
-            "worlds/test.yaml:13:11: vehicle 'a'" + rest + "\nworlds/test.yaml:23:11: vehicle 'b'" + rest);
+  EXPECT_EQ(
+      test::error_of_world("shoal: 1\nname: dry\nvehicles:\n" + vehicle("a", "[0, 0, 0]") + vehicle("b", "[9, 0, 0]")),
+      "worlds/test.yaml:13:11: vehicle 'a'" + rest + "\nworlds/test.yaml:23:11: vehicle 'b'" + rest);
 }
 
 }  // namespace

@@ -355,9 +355,9 @@ TEST(Delivery, CountsWhatModemsSentAndWhatTheOthersHeard) {
 /// far cannot hear a, near can.
 TEST(Delivery, IsOfWhatWasSentToAModem) {
   const std::string modem = "{name: modem, type: acoustic_modem}";
-  test::TestWorld test(
-      test::modem_sea({{"a", "[0, 0, -20]", modem}, {"near", "[300, 0, -20]", modem}, {"far", "[200000, 0, -20]", modem}},
-                      "metrics:\n  - {name: all, type: delivery}\n  - {name: far, type: delivery, vehicle: far}\n"));
+  test::TestWorld test(test::modem_sea(
+      {{"a", "[0, 0, -20]", modem}, {"near", "[300, 0, -20]", modem}, {"far", "[200000, 0, -20]", modem}},
+      "metrics:\n  - {name: all, type: delivery}\n  - {name: far, type: delivery, vehicle: far}\n"));
   tools::Scoring scoring(test.world);
   test.send("a.modem.cmd", test::bytes_to("hello", "near"));
   test.run_for(5);
