@@ -363,7 +363,8 @@ void AcousticChannel::cut(int number, SignalLoss why, Time at) {
 
 void AcousticChannel::schedule_silence(int number, const Sending& sending, Time now) {
   const Flight& flight = flights_[static_cast<std::size_t>(number)];
-  const double share = to_seconds(sending.cut_after) / to_seconds(sending.signal.duration);
+  const double whole_s = to_seconds(sending.signal.duration);
+  const double share = whole_s > 0 ? to_seconds(sending.cut_after) / whole_s : 1;
   const Time at = std::max(now, flight.begun + from_seconds(share * to_seconds(flight.ended - flight.begun)));
   if (at < flight.ended) schedule(at, silence_event, number);
 }

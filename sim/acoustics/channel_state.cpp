@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include "sim/acoustics/channel.hpp"
@@ -6,14 +7,28 @@
 
 namespace sim {
 
+namespace {
+
+/// It is the place of a count.
+void check_loss(SignalLoss loss, const StateArchive& archive) {
+  if (static_cast<int>(loss) < 0 || static_cast<int>(loss) >= signal_losses)
+    archive.fail("a signal that is lost for no known cause");
+}
+
+}  // namespace
+
 void AcousticChannel::Sending::visit_state(StateArchive& archive) {
   archive(signal, source, number, group, sequence, sent, p_W, v_W, R_WS, cut, cut_after, users);
   archive.unhashed(directivity.pattern, directivity.diameter_m, directivity.length_m, directivity.floor_dB);
+  if (!archive.restoring()) return;
+  check_loss(cut, archive);
+  if (cut_after < Time{0} || cut_after > std::max(signal.duration, Time{0})) archive.fail("a signal cut beyond its end");
 }
 
 void AcousticChannel::Flight::visit_state(StateArchive& archive) {
   archive(sending, begun, ended, travel_time_s, p_begun_W, closing_mps, level, snr, loss, listened, present, noticed,
           delayed, meant);
+  if (archive.restoring()) check_loss(loss, archive);
 }
 
 /// By its number; -1: null.  Returns what is restored.
