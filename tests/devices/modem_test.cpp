@@ -1,3 +1,4 @@
+#include "devices/message_modem.hpp"
 #include "shoal/modem_received_t.hpp"
 #include "shoal/modem_send_t.hpp"
 #include "tests/devices/immersed_sensor_fixture.hpp"
