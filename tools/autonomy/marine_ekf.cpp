@@ -82,6 +82,8 @@ void MarineEkf::predict(std::int64_t utime, const Vector2d& v_measured_W, double
 void MarineEkf::shift_clock(std::int64_t by_us, double range_m, double range_std_m) {
   utime_ += by_us;
   for (Mark& mark : marks_) mark.utime += by_us;
+  if (clock_opened_at_) *clock_opened_at_ += by_us;
+  contradictions_.clear();
   if (params_.states <= 4) return;
   x_[4] += range_m;
   P_.row(4).setZero();
@@ -116,8 +118,23 @@ MarineEkf::Outcome MarineEkf::update_position(std::int64_t utime, const Vector2d
   const auto way_W = way_since(utime);
   if (!way_W) return Outcome::too_old;
   const Vector2d innovation = p_W - (position() - corrected(*way_W));
-  return update<2>(innovation, earlier_position_jacobian(*way_W), squared(std_m) * Eigen::Matrix2d::Identity(),
-                   params_.position_gate);
+  const Eigen::Matrix<double, 2, max_states> H = earlier_position_jacobian(*way_W);
+  const Eigen::Matrix2d R = squared(std_m) * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix2d S = H * P_ * H.transpose() + R;
+  last_nis_ = innovation.dot(S.inverse() * innovation);
+  Outcome outcome = Outcome::accepted;
+  // Written so that NaN is refused.
+  if (!(last_nis_ <= params_.position_gate)) {
+    ++refused_;
+    if (!innovation.allFinite() || ++refused_positions_ < params_.most_refusals) return Outcome::refused;
+    // So many outliers in a row are none: a filter that is sure and wrong would refuse for ever.
+    P_.topLeftCorner<2, 2>() += innovation.squaredNorm() * Eigen::Matrix2d::Identity();
+    ++inflated_;
+    outcome = Outcome::inflated;
+  }
+  refused_positions_ = 0;
+  use<2>(innovation, H, R);
+  return outcome;
 }
 
 MarineEkf::Outcome MarineEkf::update_range(const Range& range) {
@@ -129,7 +146,8 @@ MarineEkf::Outcome MarineEkf::update_range(const Range& range) {
   const Vector2d u = d_W / std::max(distance_m, 1.0);  // of a unit vector in space, the part in the plane
   const double since_s = seconds(utime_ - range.utime);
 
-  Eigen::Matrix<double, 1, max_states> H = u.transpose() * earlier_position_jacobian(*way_W);
+  Row H = u.transpose() * earlier_position_jacobian(*way_W);
+  const double position_variance = H * P_ * H.transpose();
   H(0, 4) = 1;
   H(0, 5) = -since_s;
 
@@ -138,38 +156,87 @@ MarineEkf::Outcome MarineEkf::update_range(const Range& range) {
   const Eigen::Matrix2d P = position_covariance();
   const double sideways_m2 = std::max(0.0, P.trace() - u.dot(P * u));
   const double bend_m = sideways_m2 / (2 * std::max(distance_m, 1.0));
-  const double variance = squared(range.std_m) + u.dot(range.beacon_covariance * u) + 3 * squared(bend_m);
-  const double expected_m = distance_m + x_[4] - x_[5] * since_s;
+  const double R = squared(range.std_m) + u.dot(range.beacon_covariance * u) + 3 * squared(bend_m);
+  double innovation_m = range.range_m - (distance_m + x_[4] - x_[5] * since_s);
+  const double S = H * P_ * H.transpose() + R;
+  last_nis_ = squared(innovation_m) / S;
+
+  Outcome outcome = Outcome::accepted;
+  const Opinion opinion = opinion_of(range.beacon, innovation_m, S);
+  if (opinion != Opinion::agrees) ++refused_;
+  if (opinion == Opinion::agrees_in_doubt || !std::isfinite(innovation_m)) return Outcome::refused;
+  if (opinion == Opinion::contradicts) {
+    contradictions_.push_back({range.beacon, innovation_m, position_variance + R});
+    if (contradictions_.size() > 2 * static_cast<std::size_t>(params_.most_refusals)) contradictions_.pop_front();
+    const auto error_m = common_error();
+    if (!error_m) return Outcome::refused;
+    open_clock(*error_m);
+    innovation_m -= *error_m;
+    outcome = Outcome::inflated;
+  }
+  contradictions_.clear();
   using One = Eigen::Matrix<double, 1, 1>;
-  return update<1>(One(range.range_m - expected_m), H, One(variance), params_.range_gate);
+  use<1>(One(innovation_m), H, One(R));
+  return outcome;
+}
+
+MarineEkf::Opinion MarineEkf::opinion_of(int beacon, double innovation_m, double variance_m2) {
+  Trust& trust = trust_[beacon];
+  // A filter that hears nobody else grows unsure, which is no reason to believe who was wrong when it was sure.
+  const bool in_doubt = trust.doubted_at_m2 > 0;
+  const double variance_now_m2 = in_doubt ? std::min(variance_m2, trust.doubted_at_m2) : variance_m2;
+  // Written so that NaN contradicts.
+  if (!(squared(innovation_m) <= params_.range_gate * variance_now_m2)) {
+    trust.agreements = 0;
+    if (++trust.refusals >= params_.most_refusals && !in_doubt) trust.doubted_at_m2 = variance_m2;
+    return Opinion::contradicts;
+  }
+  trust.refusals = 0;
+  if (in_doubt && ++trust.agreements < params_.most_refusals) return Opinion::agrees_in_doubt;
+  trust = {};
+  return Opinion::agrees;
+}
+
+std::optional<double> MarineEkf::common_error() const {
+  if (params_.states <= 4 || contradictions_.size() < static_cast<std::size_t>(params_.most_refusals))
+    return std::nullopt;
+  double weights = 0, sum_m = 0;
+  bool several_beacons = false;
+  for (const Contradiction& each : contradictions_) {
+    weights += 1 / each.variance_m2;
+    sum_m += each.innovation_m / each.variance_m2;
+    several_beacons = several_beacons || each.beacon != contradictions_.front().beacon;
+  }
+  const double error_m = sum_m / weights;
+  const bool agreed = std::all_of(contradictions_.begin(), contradictions_.end(), [&](const Contradiction& each) {
+    return squared(each.innovation_m - error_m) <= params_.range_gate * each.variance_m2;
+  });
+  return several_beacons && agreed ? std::optional(error_m) : std::nullopt;
+}
+
+void MarineEkf::open_clock(double error_m) {
+  ++inflated_;
+  x_[4] += error_m;
+  P_.row(4).setZero();
+  P_.col(4).setZero();
+  P_(4, 4) = squared(error_m);
+  // An error that comes back has grown: the drift is another one, too.
+  if (clock_opened_at_ && params_.states > 5 && utime_ > *clock_opened_at_)
+    P_(5, 5) += squared(error_m / seconds(utime_ - *clock_opened_at_));
+  clock_opened_at_ = utime_;
+  trust_.clear();
 }
 
 template <int n>
-MarineEkf::Outcome MarineEkf::update(const Eigen::Matrix<double, n, 1>& innovation,
-                                     const Eigen::Matrix<double, n, max_states>& H,
-                                     const Eigen::Matrix<double, n, n>& R, double gate) {
-  Eigen::Matrix<double, n, n> S = H * P_ * H.transpose() + R;
-  last_nis_ = innovation.dot(S.inverse() * innovation);
-  Outcome outcome = Outcome::accepted;
-  // Written so that NaN is refused.
-  if (!(last_nis_ <= gate)) {
-    ++refused_;
-    if (!innovation.allFinite() || ++refusals_in_a_row_ < params_.most_refusals) return Outcome::refused;
-    // So many outliers in a row are none: a filter that is sure and wrong would refuse for ever.
-    P_.topLeftCorner<2, 2>() += innovation.squaredNorm() * Eigen::Matrix2d::Identity();
-    if (params_.states > 4 && n == 1) P_(4, 4) += innovation.squaredNorm();
-    ++inflated_;
-    S = H * P_ * H.transpose() + R;
-    outcome = Outcome::inflated;
-  }
-  refusals_in_a_row_ = 0;
+void MarineEkf::use(const Eigen::Matrix<double, n, 1>& innovation, const Eigen::Matrix<double, n, max_states>& H,
+                    const Eigen::Matrix<double, n, n>& R) {
   ++accepted_;
+  const Eigen::Matrix<double, n, n> S = H * P_ * H.transpose() + R;
   const Eigen::Matrix<double, max_states, n> K = P_ * H.transpose() * S.inverse();
   x_ += K * innovation;
   // Joseph's form stays symmetric and positive under rounding.
   const Covariance A = Covariance::Identity() - K * H;
   P_ = A * P_ * A.transpose() + K * R * K.transpose();
-  return outcome;
 }
 
 }  // namespace autonomy

@@ -57,9 +57,9 @@ shoal::pressure_t depth_at(std::int64_t utime, double depth_m) {
 }
 
 /// A frame from a beacon at rest.
-shoal::acoustic_received_t packet(const Vector2d& beacon_W, std::int64_t sent, std::int64_t arrival) {
+shoal::acoustic_received_t packet(const Vector2d& beacon_W, std::int64_t sent, std::int64_t arrival, int sender = 1) {
   AcousticState state;
-  state.sender = 1;
+  state.sender = sender;
   state.utime = sent - second / 5;
   state.east_m = beacon_W.x();
   state.north_m = beacon_W.y();
@@ -70,7 +70,7 @@ shoal::acoustic_received_t packet(const Vector2d& beacon_W, std::int64_t sent, s
   received.utime = arrival;
   received.sent_utime = sent;
   received.travel_time_s = static_cast<double>(arrival - sent) * 1e-6;
-  received.source = "boat1";
+  received.source = "boat" + std::to_string(sender);
   received.size = sent_message.size;
   received.data = sent_message.data;
   return received;
@@ -125,6 +125,19 @@ TEST(CoopCraft, StopsAndSaysNothingWithoutAFix) {
   EXPECT_FALSE(decision.send || decision.estimate);
 }
 
+TEST(CoopCraft, StopsAndSaysNothingWhenItsGpsFallsSilent) {
+  CoopCraft craft(craft_params(), make_behaviour("route", {{100, 0}}, 1.5, false));
+  craft.receive(fix_at(epoch, {0, 0}));
+  for (int i = 1; i <= 6; ++i) EXPECT_EQ(craft.step().helm->speed_mps, 1.5) << i;  // 3 s
+  for (int i = 0; i < 3; ++i) {
+    const auto decision = craft.step();
+    EXPECT_EQ(decision.helm->speed_mps, 0);
+    EXPECT_FALSE(decision.send || decision.estimate);
+  }
+  craft.receive(fix_at(epoch + 5 * second, {0, 0}));
+  EXPECT_EQ(craft.step().helm->speed_mps, 1.5);
+}
+
 TEST(CoopCraft, FollowsWhatItHears) {
   CoopCraft craft(craft_params(), make_behaviour("follow:boat1,0,0", {}, 2, false));
   craft.receive(fix_at(epoch, {0, 0}));
@@ -168,7 +181,7 @@ struct Voyage {
       const std::int64_t own = t + clock_error_us;
       const bool submerged = decision.helm && decision.helm->depth_m > 0;
       if (submerged) p_W.x() += 0.3;
-      auv.receive(compass_at(own, 0.07 + 0.02 * random.gaussian()));
+      if (has_heading) auv.receive(compass_at(own, 0.07 + 0.02 * random.gaussian()));
       auv.receive(depth_at(own, submerged ? 20 : 0));
       auv.receive(dvl_at(own, submerged ? 1.5 : 0));
       if (!submerged && i % 5 == 0) auv.receive(fix_at(own, p_W));
@@ -182,8 +195,10 @@ struct Voyage {
   }
   void hear(const Vector2d& beacon_W, std::int64_t own, double noise_m) {
     const double depth_m = decision.helm && decision.helm->depth_m > 0 ? 19 : -1;
-    const double range_m = std::hypot((p_W - beacon_W).norm(), depth_m) + noise_m;
-    waiting.push_back(packet(beacon_W, own - clock_error_us - std::llround(range_m / 1500 * 1e6), own));
+    const double range_m = std::hypot((p_W + modem_W - beacon_W).norm(), depth_m) + noise_m;
+    const bool first = beacon_W == beacons[0];
+    waiting.push_back(packet(first ? beacon_W + wrong_by_W : beacon_W,
+                             own - clock_error_us - std::llround(range_m / 1500 * 1e6), own, first ? 1 : 2));
   }
   double error_m() const { return (auv.cooperative()->position_at(t + clock_error_us) - p_W).norm(); }
   double reckoned_error_m() const { return (auv.dead_reckoning()->position_at(t + clock_error_us) - p_W).norm(); }
@@ -193,6 +208,9 @@ struct Voyage {
   std::int64_t t = epoch;
   std::int64_t clock_error_us = 0;
   Vector2d p_W = Vector2d::Zero();
+  Vector2d modem_W = Vector2d::Zero();
+  Vector2d wrong_by_W = Vector2d::Zero();  ///< what the first beacon says of itself
+  bool has_heading = true;
   std::array<Vector2d, 2> beacons = {Vector2d(300, 300), Vector2d(900, -250)};
   std::vector<shoal::acoustic_received_t> waiting;
 };
@@ -311,6 +329,87 @@ TEST(CoopAuv, ClockThatIsSetInASilenceIsBoth) {
   EXPECT_EQ(voyage.auv.counts().silences, 1);
   EXPECT_LT((voyage.auv.dead_reckoning()->position_at(voyage.t + voyage.clock_error_us) - voyage.p_W).norm(),
             0.07 * voyage.p_W.x() + 3);
+}
+
+TEST(CoopAuv, AClockFarFromWhatItWasTakenForDoesNoHarm) {
+  for (const std::int64_t error_us : {second / 2, -second, 3600 * second}) {
+    CoopAuv::Params params = auv_params();
+    params.filter.states = 6;  // and a clock that is taken for 20 ms
+    Voyage voyage(params);
+    voyage.clock_error_us = error_us;
+    voyage.run(800);
+    EXPECT_NEAR(voyage.reckoned_error_m(), 0.07 * voyage.p_W.x(), 5);
+    if (error_us > 60 * second) {
+      // No sound takes an hour: dead reckoning is left.
+      EXPECT_EQ(voyage.auv.counts().ranges, 0);
+      EXPECT_NEAR(voyage.error_m(), voyage.reckoned_error_m(), 1e-6);
+    } else {
+      EXPECT_NEAR(voyage.decision.estimate->clock_error_s, 1e-6 * static_cast<double>(error_us), 0.003);
+      EXPECT_LT(voyage.error_m(), 6);
+    }
+  }
+}
+
+TEST(CoopAuv, ABeaconThatIsWrongOfItselfDoesNoHarm) {
+  CoopAuv::Params params = auv_params();
+  params.filter.states = 6;
+  Voyage voyage(params);
+  voyage.run(300);
+  voyage.wrong_by_W = {200, 200};
+  voyage.run(500);
+  EXPECT_LT(voyage.error_m(), voyage.reckoned_error_m());
+  EXPECT_GE(voyage.auv.counts().refused, 20);  // of the first beacon, one each 20 s
+  EXPECT_LT(voyage.error_m(), 3 * std::sqrt(voyage.auv.cooperative()->position_covariance().trace()));
+}
+
+TEST(CoopAuv, LostHeadingMakesItUnsureAndRangesKeepIt) {
+  Voyage voyage(auv_params());
+  voyage.run(300);
+  voyage.has_heading = false;
+  voyage.run(300);
+  // 1.5 m/s for a minute in any direction, as noise: 1.5 sqrt(60) m after 1 s.
+  const double std_m = std::sqrt(voyage.auv.dead_reckoning()->position_covariance()(0, 0));
+  EXPECT_NEAR(std_m, 1.5 * std::sqrt(60.0 * 298), 15);
+  EXPECT_LT(voyage.error_m(), 3 * std::sqrt(voyage.auv.cooperative()->position_covariance().trace()));
+  voyage.has_heading = true;
+  voyage.run(200);
+  EXPECT_LT(voyage.error_m(), 8);
+}
+
+TEST(CoopAuv, RangesAreThoseOfItsModem) {
+  CoopAuv::Params params = auv_params();
+  params.range_std_m = 0.1;
+  params.sound_speed_std = 0;
+  double errors_m[2];
+  for (const bool told : {false, true}) {
+    if (told) params.modem_B = {20, 0, 0};  // a long vehicle, so that it counts
+    Voyage voyage(params);
+    voyage.modem_W = {20, 0};  // it goes east
+    voyage.run(600);
+    errors_m[told ? 1 : 0] = voyage.error_m();
+  }
+  EXPECT_LT(errors_m[1], 4);
+  EXPECT_GT(errors_m[0], 10);
+}
+
+TEST(CoopAuv, FixesAreThoseOfItsAntenna) {
+  CoopAuv::Params params = auv_params();
+  params.gps_B = {3, 0, 0};
+  CoopAuv auv(params, make_behaviour("route", {{100, 0}}, 1.5, false));
+  auv.receive(compass_at(epoch, 0.5 * pi));
+  auv.receive(fix_at(epoch, {10, 20}));
+  EXPECT_NEAR((auv.cooperative()->position() - Vector2d(10, 17)).norm(), 0, 1e-9);
+}
+
+TEST(CoopAuv, SaysNothingOfItsPlaceWhileAllItsDevicesAreSilent) {
+  Voyage voyage(auv_params());
+  voyage.run(30);
+  EXPECT_TRUE(voyage.auv.step().estimate);
+  EXPECT_TRUE(voyage.auv.step().estimate);  // 1 s
+  const auto decision = voyage.auv.step();
+  EXPECT_FALSE(decision.estimate || decision.dead_reckoning || decision.send);
+  voyage.run(1);
+  EXPECT_TRUE(voyage.decision.estimate);
 }
 
 TEST(CoopAuv, KnownStartNeedsNoFix) {
