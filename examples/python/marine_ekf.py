@@ -29,6 +29,7 @@ def turned(v, angle):
 class MarineEkf:
     GATE = 10.83  # 99.9 % of chi-square with one degree
     MOST_REFUSALS = 5  # in a row, before something is held to be wrong, and not only a measurement
+    BAD_CLOCK_MPS = 0.15  # 100 ppm, the worst of usual quartz clocks, by the speed of sound
 
     def __init__(self, time_s, position_m, position_std_m, states=4, heading_bias_std_rad=0.05, speed_scale_std=0.03,
                  range_bias_std_m=30.0, range_drift_std_mps=0.005, heading_noise=0.035, speed_noise=0.01):
@@ -43,8 +44,8 @@ class MarineEkf:
         self.way = deque([(time_s, 0.0, 0.0)])  # measured, since the start
         self.refused_positions = 0
         self.trust = {}  # of a beacon: refusals in a row, agreements in doubt, variance when the doubt began
-        self.contradictions = deque(maxlen=2 * self.MOST_REFUSALS)  # beacon, innovation, variance without the clock's
-        self.clock_opened_at = None
+        self.contradictions = deque(maxlen=2 * self.MOST_REFUSALS)  # beacon, time, innovation, its variance
+        self.ranges_used = 0
 
     def predict(self, time_s, velocity_mps):
         """Moves on with a velocity over ground (east, north) as DVL and compass measure it."""
@@ -93,7 +94,7 @@ class MarineEkf:
         """A slant range that arrived at time_s from a beacon at (east, north, up) with a covariance (ee, en, nn).
 
         What contradicts never makes the position less sure: the clock is wrong when two beacons or more contradict by
-        the same amount, else it is the beacon, which is then in doubt until it agrees again for a while.
+        the same amount, or by one that grows evenly, else it is the beacon, which is then in doubt until it agrees again for a while.
         """
         since = self.way_since(time_s)
         if since is None:
@@ -115,13 +116,15 @@ class MarineEkf:
         if opinion == "in doubt" or not math.isfinite(innovation):
             return False
         if opinion == "contradicts":
-            self.contradictions.append((beacon, innovation, self.variance_of(h[:4] + [0.0, 0.0]) + variance))
+            without_clock = self.variance_of(h[:4] + [0.0, 0.0]) + variance
+            self.contradictions.append((beacon, time_s, innovation, without_clock))
             error = self.common_error()
             if error is None:
                 return False
-            self.open_clock(error)
-            innovation -= error
+            self.open_clock(*error)
+            innovation -= error[0]
         self.contradictions.clear()
+        self.ranges_used += 1
         self.use(h, innovation, variance)
         return True
 
@@ -141,25 +144,37 @@ class MarineEkf:
         return "agrees"
 
     def common_error(self):
-        """By how much all contradictions are too long, when that is the same for two beacons or more."""
-        beacons = {beacon for beacon, _, _ in self.contradictions}
-        if self.states <= 4 or len(self.contradictions) < self.MOST_REFUSALS or len(beacons) < 2:
+        """By how much all contradictions are too long now, how fast that grows, and the variance of the first; None
+        when they are of one beacon, or do not agree.  A weighted straight line over the time before the last."""
+        if self.states <= 4 or len(self.contradictions) < self.MOST_REFUSALS:
             return None
-        error = (sum(innovation / s for _, innovation, s in self.contradictions)
-                 / sum(1 / s for _, _, s in self.contradictions))
-        if any((innovation - error) ** 2 > self.GATE * s for _, innovation, s in self.contradictions):
+        if len({beacon for beacon, *_ in self.contradictions}) < 2:
             return None
-        return error
+        last = self.contradictions[-1][1]
+        points = [(1 / variance, time_s - last, error) for _, time_s, error, variance in self.contradictions]
+        w, wt, wtt = (sum(weight * t ** power for weight, t, _ in points) for power in (0, 1, 2))
+        we, wte = (sum(weight * t ** power * error for weight, t, error in points) for power in (0, 1))
+        now, rate, variance = we / w, 0.0, 1 / w
+        spread = wtt - wt * wt / w  # its inverse is the variance of the rate
+        slope = (wte - wt * we / w) / spread if spread > 0 else 0.0
+        if self.states > 5 and slope ** 2 * spread > self.GATE:
+            now, rate, variance = (we - slope * wt) / w, slope, 1 / w + (wt / w) ** 2 / spread
+        if any((error - now - rate * t) ** 2 * weight > self.GATE for weight, t, error in points):
+            return None
+        return now, rate, variance
 
-    def open_clock(self, error):
-        """The own clock is ahead by so much more than it was taken for."""
+    def open_clock(self, error, rate, variance):
+        """The own clock is ahead by so much more than it was taken for, in range, and gains so much more."""
         self.x[4] += error
+        self.x[5] += rate
+        drift_variance = max(self.P[5][5], rate ** 2)
+        if self.ranges_used > 0:  # it fitted before: the clock is one that runs away
+            drift_variance = max(drift_variance, self.BAD_CLOCK_MPS ** 2)
         for i in range(N):
-            self.P[i][4] = self.P[4][i] = 0.0
-        self.P[4][4] = error ** 2
-        if self.clock_opened_at is not None and self.states > 5 and self.time_s > self.clock_opened_at:
-            self.P[5][5] += (error / (self.time_s - self.clock_opened_at)) ** 2  # it has grown: the drift is another one
-        self.clock_opened_at = self.time_s
+            self.P[i][4] = self.P[4][i] = self.P[i][5] = self.P[5][i] = 0.0
+        self.P[4][4] = error ** 2 + variance
+        if self.states > 5:
+            self.P[5][5] = drift_variance
         self.trust.clear()
 
     def update_position(self, position_m, std_m):

@@ -219,7 +219,7 @@ void CoopAuv::use_range(const shoal::acoustic_received_t& packet, const Acoustic
   range.beacon_covariance << beacon.east_std_m * beacon.east_std_m, covariance_m2, covariance_m2,
       beacon.north_std_m * beacon.north_std_m;
   range.own_z_m = modem_W.z() - depth_m_;
-  const MarineEkf::Outcome outcome = cooperative_->update_range(range);
+  const MarineEkf::Outcome outcome = cooperative_->update_range(range, &*dead_reckoning_);
   const bool used = outcome == MarineEkf::Outcome::accepted || outcome == MarineEkf::Outcome::inflated;
   ++(used ? counts_.ranges : counts_.refused);
 }

@@ -10,6 +10,7 @@ namespace autonomy {
 namespace {
 
 constexpr double longest_memory_s = 60;
+constexpr double bad_clock_mps = 0.15;  ///< 100 ppm, the worst of usual quartz clocks, by the speed of sound
 
 double squared(double x) {
   return x * x;
@@ -82,7 +83,6 @@ void MarineEkf::predict(std::int64_t utime, const Vector2d& v_measured_W, double
 void MarineEkf::shift_clock(std::int64_t by_us, double range_m, double range_std_m) {
   utime_ += by_us;
   for (Mark& mark : marks_) mark.utime += by_us;
-  if (clock_opened_at_) *clock_opened_at_ += by_us;
   contradictions_.clear();
   if (params_.states <= 4) return;
   x_[4] += range_m;
@@ -137,7 +137,7 @@ MarineEkf::Outcome MarineEkf::update_position(std::int64_t utime, const Vector2d
   return outcome;
 }
 
-MarineEkf::Outcome MarineEkf::update_range(const Range& range) {
+MarineEkf::Outcome MarineEkf::update_range(const Range& range, const MarineEkf* without_ranges) {
   const auto way_W = way_since(range.utime);
   if (!way_W) return Outcome::too_old;
   const Vector2d then_W = position() - corrected(*way_W);
@@ -166,15 +166,22 @@ MarineEkf::Outcome MarineEkf::update_range(const Range& range) {
   if (opinion != Opinion::agrees) ++refused_;
   if (opinion == Opinion::agrees_in_doubt || !std::isfinite(innovation_m)) return Outcome::refused;
   if (opinion == Opinion::contradicts) {
-    contradictions_.push_back({range.beacon, innovation_m, position_variance + R});
+    contradictions_.push_back({range.beacon, range.utime, innovation_m, position_variance + R});
     if (contradictions_.size() > 2 * static_cast<std::size_t>(params_.most_refusals)) contradictions_.pop_front();
-    const auto error_m = common_error();
-    if (!error_m) return Outcome::refused;
-    open_clock(*error_m);
-    innovation_m -= *error_m;
+    auto error = common_error();
+    if (!error && without_ranges != nullptr) error = anything_but_the_ranges();
+    if (!error) return Outcome::refused;
+    open_clock(*error);
+    if (without_ranges != nullptr) {
+      take_motion_of(*without_ranges);
+      contradictions_.clear();
+      return Outcome::inflated;  // the next one is looked at from there
+    }
+    innovation_m -= error->now_m;
     outcome = Outcome::inflated;
   }
   contradictions_.clear();
+  ++ranges_used_;
   using One = Eigen::Matrix<double, 1, 1>;
   use<1>(One(innovation_m), H, One(R));
   return outcome;
@@ -197,34 +204,73 @@ MarineEkf::Opinion MarineEkf::opinion_of(int beacon, double innovation_m, double
   return Opinion::agrees;
 }
 
-std::optional<double> MarineEkf::common_error() const {
-  if (params_.states <= 4 || contradictions_.size() < static_cast<std::size_t>(params_.most_refusals))
-    return std::nullopt;
-  double weights = 0, sum_m = 0;
-  bool several_beacons = false;
-  for (const Contradiction& each : contradictions_) {
-    weights += 1 / each.variance_m2;
-    sum_m += each.innovation_m / each.variance_m2;
-    several_beacons = several_beacons || each.beacon != contradictions_.front().beacon;
-  }
-  const double error_m = sum_m / weights;
-  const bool agreed = std::all_of(contradictions_.begin(), contradictions_.end(), [&](const Contradiction& each) {
-    return squared(each.innovation_m - error_m) <= params_.range_gate * each.variance_m2;
-  });
-  return several_beacons && agreed ? std::optional(error_m) : std::nullopt;
+bool MarineEkf::several_beacons_contradict() const {
+  return std::any_of(contradictions_.begin(), contradictions_.end(),
+                     [&](const Contradiction& each) { return each.beacon != contradictions_.front().beacon; });
 }
 
-void MarineEkf::open_clock(double error_m) {
+std::optional<MarineEkf::ClockError> MarineEkf::anything_but_the_ranges() const {
+  const auto many = 2 * static_cast<std::size_t>(params_.most_refusals);
+  if (ranges_used_ == 0 || contradictions_.size() < many || !several_beacons_contradict()) return std::nullopt;
+  ClockError error;
+  for (const Contradiction& each : contradictions_)
+    error.variance_m2 = std::max(error.variance_m2, squared(each.innovation_m));
+  return error;
+}
+
+std::optional<MarineEkf::ClockError> MarineEkf::common_error() const {
+  const auto& all = contradictions_;
+  if (params_.states <= 4 || all.size() < static_cast<std::size_t>(params_.most_refusals) ||
+      !several_beacons_contradict())
+    return std::nullopt;
+  // A weighted straight line through them, over the time before the last.
+  double w = 0, wt = 0, wtt = 0, we = 0, wte = 0;
+  const auto since_last_s = [&](const Contradiction& each) { return seconds(each.utime - all.back().utime); };
+  for (const Contradiction& each : all) {
+    const double weight = 1 / each.variance_m2;
+    const double t_s = since_last_s(each);
+    w += weight;
+    wt += weight * t_s;
+    wtt += weight * t_s * t_s;
+    we += weight * each.innovation_m;
+    wte += weight * t_s * each.innovation_m;
+  }
+  ClockError error{we / w, 0, 1 / w};
+  const double spread = wtt - wt * wt / w;  // its inverse is the variance of the rate
+  const double rate_mps = spread > 0 ? (wte - wt * we / w) / spread : 0;
+  if (params_.states > 5 && squared(rate_mps) * spread > params_.range_gate)
+    error = {(we - rate_mps * wt) / w, rate_mps, 1 / w + squared(wt / w) / spread};
+  const bool agreed = std::all_of(all.begin(), all.end(), [&](const Contradiction& each) {
+    const double expected_m = error.now_m + error.rate_mps * since_last_s(each);
+    return squared(each.innovation_m - expected_m) <= params_.range_gate * each.variance_m2;
+  });
+  return agreed ? std::optional(error) : std::nullopt;
+}
+
+void MarineEkf::open_clock(const ClockError& error) {
   ++inflated_;
-  x_[4] += error_m;
-  P_.row(4).setZero();
-  P_.col(4).setZero();
-  P_(4, 4) = squared(error_m);
-  // An error that comes back has grown: the drift is another one, too.
-  if (clock_opened_at_ && params_.states > 5 && utime_ > *clock_opened_at_)
-    P_(5, 5) += squared(error_m / seconds(utime_ - *clock_opened_at_));
-  clock_opened_at_ = utime_;
   trust_.clear();
+  if (params_.states <= 4) return;
+  x_[4] += error.now_m;
+  x_[5] += error.rate_mps;
+  for (const int i : {4, 5}) {
+    const double variance = P_(i, i);
+    P_.row(i).setZero();
+    P_.col(i).setZero();
+    P_(i, i) = variance;
+  }
+  P_(4, 4) = squared(error.now_m) + error.variance_m2;
+  if (params_.states <= 5) return;
+  P_(5, 5) = std::max(P_(5, 5), squared(error.rate_mps));
+  // It fitted before: the clock is one that runs away.
+  if (ranges_used_ > 0) P_(5, 5) = std::max(P_(5, 5), squared(bad_clock_mps));
+}
+
+void MarineEkf::take_motion_of(const MarineEkf& other) {
+  x_.head<4>() = other.x_.head<4>();
+  P_.topRows<4>().setZero();
+  P_.leftCols<4>().setZero();
+  P_.topLeftCorner<4, 4>() = other.P_.topLeftCorner<4, 4>();
 }
 
 template <int n>

@@ -74,8 +74,10 @@ class MarineEkf {
   /// A position by GPS.
   Outcome update_position(std::int64_t utime, const Vector2d& p_W, double std_m);
   /// A range that contradicts never makes the position less sure: it is the clock that is wrong when two beacons or
-  /// more contradict by the same amount, else the beacon, which is then in doubt until it agrees again for a while.
-  Outcome update_range(const Range& range);
+  /// more contradict by the same amount, or by one that grows evenly; else the beacon, which is then in doubt until it
+  /// agrees again for a while.  Ranges that were used with a wrong clock have taught wrong things: `without_ranges`,
+  /// when it is given, is a filter of the same vehicle that used none, and from which this one starts anew.
+  Outcome update_range(const Range& range, const MarineEkf* without_ranges = nullptr);
 
   /// The own clock was set: what was at `utime` is now at `utime + by_us`, and ranges are longer by `range_m`, which is
   /// known to `range_std_m`.
@@ -120,16 +122,27 @@ class MarineEkf {
   /// A range that did not fit.
   struct Contradiction {
     int beacon;
+    std::int64_t utime;
     double innovation_m;
     double variance_m2;  ///< without what the clock's states add
+  };
+  /// By how much the own clock is ahead of what it was taken for, and gains, in range.
+  struct ClockError {
+    double now_m = 0;
+    double rate_mps = 0;
+    double variance_m2 = 0;
   };
   enum class Opinion { agrees, agrees_in_doubt, contradicts };
 
   Opinion opinion_of(int beacon, double innovation_m, double variance_m2);
-  /// By how much all contradictions are too long, when that is the same for two beacons or more.
-  std::optional<double> common_error() const;
-  /// The own clock is ahead by so much more than it was taken for.
-  void open_clock(double error_m);
+  /// What all contradictions say alike, when they are of two beacons or more.
+  std::optional<ClockError> common_error() const;
+  /// When none of the last ranges of several beacons fits, though some did before: what those have taught is wrong.
+  /// The clock may be off by as much as the ranges are.
+  std::optional<ClockError> anything_but_the_ranges() const;
+  bool several_beacons_contradict() const;
+  void open_clock(const ClockError& error);
+  void take_motion_of(const MarineEkf& other);
 
   template <int n>
   void use(const Eigen::Matrix<double, n, 1>& innovation, const Eigen::Matrix<double, n, max_states>& H,
@@ -144,7 +157,7 @@ class MarineEkf {
   int refused_positions_ = 0;                 ///< in a row
   std::map<int, Trust> trust_;                ///< by beacon
   std::deque<Contradiction> contradictions_;  ///< since the last range that fitted
-  std::optional<std::int64_t> clock_opened_at_;
+  int ranges_used_ = 0;
   int accepted_ = 0;
   int refused_ = 0;
   int inflated_ = 0;
