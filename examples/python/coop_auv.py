@@ -1,6 +1,6 @@
 """Estimates where an AUV is, beside whatever steers it, in lockstep with the simulator.
 
-    PYTHONPATH=build/release/python:examples/python python3 examples/python/coop_auv.py auv --sound-speed 1504
+    PYTHONPATH=build/release/python:examples/python python3 examples/python/coop_auv.py auv --sound-speed 1506
 
 Reads NAME.dvl, .ahrs or .compass, .pressure, .gps and .modem; publishes NAME.python_estimate.
 """
