@@ -404,8 +404,7 @@ TEST(CoopAuv, FixesAreThoseOfItsAntenna) {
 TEST(CoopAuv, SaysNothingOfItsPlaceWhileAllItsDevicesAreSilent) {
   Voyage voyage(auv_params());
   voyage.run(30);
-  EXPECT_TRUE(voyage.auv.step().estimate);
-  EXPECT_TRUE(voyage.auv.step().estimate);  // 1 s
+  EXPECT_TRUE(voyage.auv.step().estimate);  // the second since the last report: 1 s
   const auto decision = voyage.auv.step();
   EXPECT_FALSE(decision.estimate || decision.dead_reckoning || decision.send);
   voyage.run(1);
