@@ -211,6 +211,33 @@ TEST(Results, ShowErrorsWithWhatTheEstimateSaysOfThem) {
   EXPECT_FALSE(fs::exists(options.results + "/nees.png"));
 }
 
+TEST(Results, ErrorsThatAreVeryDifferentHaveALogarithmicAxis) {
+  for (const bool very : {true, false}) {
+    const ScratchFolder folder;
+    sim::LoadOptions load;
+    load.encode_message = shoal::encode_own_message;
+    const auto loaded = sim::load_world_text(
+        test::rover_world(
+            "        - {name: lidar, type: lidar}\n", "", "",
+            "run: {duration_s: 1}\n"
+            "events:\n"
+            "  - {name: near, every: 0.1, do: [{publish: near, type: shoal.pose_t, value: {pos: [1, 0, 0]}}]}\n"
+            "  - {name: far, every: 0.1, do: [{publish: far, type: shoal.pose_t, value: {pos: [" +
+                std::string(very ? "6" : "4") +
+                ", 0, 0]}}]}\n"
+                "metrics:\n"
+                "  - {name: n, vehicle: r1, channel: near}\n"
+                "  - {name: f, vehicle: r1, channel: far}\n"),
+        "small.yaml", load);
+    auto options = quiet_run();
+    options.results = folder.file("results");
+    tools::run_world(loaded, options);
+    const std::string script = text_of_file(options.results + "/plot.gp");
+    EXPECT_EQ(script.find("set logscale y") != script.npos, very) << script;
+    EXPECT_THAT(text_of_file(options.results + "/errors.png"), testing::StartsWith("\x89PNG"));
+  }
+}
+
 TEST(Results, AreLeftByARunThatFailed) {
   const ScratchFolder folder;
   const auto loaded = small_world(
