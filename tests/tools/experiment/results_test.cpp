@@ -233,7 +233,7 @@ TEST(Results, ErrorsThatAreVeryDifferentHaveALogarithmicAxis) {
     options.results = folder.file("results");
     tools::run_world(loaded, options);
     const std::string script = text_of_file(options.results + "/plot.gp");
-    EXPECT_EQ(script.find("set logscale y") != script.npos, very) << script;
+    EXPECT_EQ(script.find("\nset logscale y") != script.npos, very) << script;
     EXPECT_THAT(text_of_file(options.results + "/errors.png"), testing::StartsWith("\x89PNG"));
   }
 }
