@@ -161,24 +161,21 @@ MarineEkf::Outcome MarineEkf::update_range(const Range& range, const MarineEkf* 
   const double S = H * P_ * H.transpose() + R;
   last_nis_ = squared(innovation_m) / S;
 
+  const Opinion opinion = std::isfinite(last_nis_) ? opinion_of(range.beacon, innovation_m, S) : Opinion::nonsense;
   Outcome outcome = Outcome::accepted;
-  const Opinion opinion = opinion_of(range.beacon, innovation_m, S);
-  if (opinion != Opinion::agrees) ++refused_;
-  if (opinion == Opinion::agrees_in_doubt || !std::isfinite(innovation_m)) return Outcome::refused;
-  if (opinion == Opinion::contradicts) {
-    contradictions_.push_back({range.beacon, range.utime, innovation_m, position_variance + R});
-    if (contradictions_.size() > 2 * static_cast<std::size_t>(params_.most_refusals)) contradictions_.pop_front();
-    auto error = common_error();
-    if (!error && without_ranges != nullptr) error = anything_but_the_ranges();
+  if (opinion != Opinion::agrees) {
+    ++refused_;
+    if (opinion != Opinion::contradicts) return Outcome::refused;
+    const auto error =
+        error_behind({range.beacon, range.utime, innovation_m, position_variance + R}, without_ranges != nullptr);
     if (!error) return Outcome::refused;
     open_clock(*error);
+    outcome = Outcome::inflated;
     if (without_ranges != nullptr) {
       take_motion_of(*without_ranges);
-      contradictions_.clear();
-      return Outcome::inflated;  // the next one is looked at from there
+      return outcome;  // the next range is looked at from there
     }
     innovation_m -= error->now_m;
-    outcome = Outcome::inflated;
   }
   contradictions_.clear();
   ++ranges_used_;
@@ -192,8 +189,7 @@ MarineEkf::Opinion MarineEkf::opinion_of(int beacon, double innovation_m, double
   // A filter that hears nobody else grows unsure, which is no reason to believe who was wrong when it was sure.
   const bool in_doubt = trust.doubted_at_m2 > 0;
   const double variance_now_m2 = in_doubt ? std::min(variance_m2, trust.doubted_at_m2) : variance_m2;
-  // Written so that NaN contradicts.
-  if (!(squared(innovation_m) <= params_.range_gate * variance_now_m2)) {
+  if (squared(innovation_m) > params_.range_gate * variance_now_m2) {
     trust.agreements = 0;
     if (++trust.refusals >= params_.most_refusals && !in_doubt) trust.doubted_at_m2 = variance_m2;
     return Opinion::contradicts;
@@ -202,6 +198,13 @@ MarineEkf::Opinion MarineEkf::opinion_of(int beacon, double innovation_m, double
   if (in_doubt && ++trust.agreements < params_.most_refusals) return Opinion::agrees_in_doubt;
   trust = {};
   return Opinion::agrees;
+}
+
+std::optional<MarineEkf::ClockError> MarineEkf::error_behind(const Contradiction& last, bool can_start_anew) {
+  contradictions_.push_back(last);
+  if (contradictions_.size() > 2 * static_cast<std::size_t>(params_.most_refusals)) contradictions_.pop_front();
+  auto error = common_error();
+  return error || !can_start_anew ? error : anything_but_the_ranges();
 }
 
 bool MarineEkf::several_beacons_contradict() const {
@@ -250,6 +253,7 @@ std::optional<MarineEkf::ClockError> MarineEkf::common_error() const {
 void MarineEkf::open_clock(const ClockError& error) {
   ++inflated_;
   trust_.clear();
+  contradictions_.clear();
   if (params_.states <= 4) return;
   x_[4] += error.now_m;
   x_[5] += error.rate_mps;

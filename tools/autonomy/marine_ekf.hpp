@@ -132,9 +132,11 @@ class MarineEkf {
     double rate_mps = 0;
     double variance_m2 = 0;
   };
-  enum class Opinion { agrees, agrees_in_doubt, contradicts };
+  enum class Opinion { agrees, agrees_in_doubt, contradicts, nonsense };
 
   Opinion opinion_of(int beacon, double innovation_m, double variance_m2);
+  /// What the last contradiction and those before it say of the clock; nothing: they may be the beacons' fault.
+  std::optional<ClockError> error_behind(const Contradiction& last, bool can_start_anew);
   /// What all contradictions say alike, when they are of two beacons or more.
   std::optional<ClockError> common_error() const;
   /// When none of the last ranges of several beacons fits, though some did before: what those have taught is wrong.
