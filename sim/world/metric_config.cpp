@@ -36,7 +36,7 @@ const std::vector<MetricKind>& metric_kinds() {
        MetricType::position_error,
        {"vehicle", "channel"},
        {"from_s", "dimensions"},
-       {"rms_m", "final_m", "max_m", "samples", "per_distance_percent"}},
+       {"rms_m", "final_m", "max_m", "samples", "longest_gap_s", "per_distance_percent"}},
       {"consistency",
        MetricType::consistency,
        {"vehicle", "channel"},

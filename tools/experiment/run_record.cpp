@@ -52,6 +52,7 @@ RunRecord read_run(const std::string& directory) {
   RunRecord run;
   run.directory = directory;
   run.world = in.text("world");
+  if (in.has("description")) run.description = in.text("description");
   run.seed = in.whole("seed");
   run.steps = in.whole("steps");
   run.sim_time_s = in.number("sim_time_s");
@@ -69,12 +70,14 @@ RunRecord read_run(const std::string& directory) {
   }
   for (const auto& item : in.list("processes")) {
     const JsonReader process(item, path + ": processes");
-    run.processes.push_back({process.text("name"), process.text("how"), process.number("sim_time_s")});
+    run.processes.push_back({process.text("name"), process.text("how"), process.number("sim_time_s"),
+                             process.has("failed") && process.boolean("failed")});
   }
   if (in.has("event")) {
     const JsonReader event(in.object("event"), path + ": event");
     run.event = RunRecord::Rule{event.text("text"), event.boolean("passed")};
   }
+  run.judged = in.has("judged") ? in.boolean("judged") : !run.rules.empty() || run.event;
   run.passed = in.boolean("passed");
   run.ended = in.text("ended");
   run.error = in.text("error");

@@ -18,10 +18,11 @@ struct RunRecord {
   struct Process {
     std::string name, how;
     double sim_time_s = 0;
+    bool failed = false;
   };
 
   std::string directory;
-  std::string world;
+  std::string world, description;
   std::int64_t seed = 0;
   std::int64_t steps = 0;
   double sim_time_s = 0;
@@ -33,6 +34,7 @@ struct RunRecord {
   std::vector<Rule> rules;
   std::vector<Process> processes;
   std::optional<Rule> event;  ///< what the event said that ended the run
+  bool judged = false;        ///< by a rule or an event
   bool passed = false;
   std::string ended, error;
   int exit_code = 0;

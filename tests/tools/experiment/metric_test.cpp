@@ -13,6 +13,7 @@
 #include "shoal/twist_command_t.hpp"
 #include "tests/devices/modem_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
+#include "tests/sim/medium/log_capture.hpp"
 #include "tools/experiment/link_counts.hpp"
 #include "tools/experiment/scoring.hpp"
 
@@ -155,6 +156,36 @@ TEST(PositionError, TakesAnEstimateWithoutAUsableCovariance) {
   world.run_for(0.01);
   EXPECT_NEAR(world.figure("flat.final_m"), 5, creep_m);
   EXPECT_EQ(world.scoring.bad_messages(), 0);
+}
+
+TEST(PositionError, ShowsHowLongThereWasNoEstimate) {
+  MetricWorld world("  - {name: e, vehicle: r1, channel: est, from_s: 0.5}\n");
+  world.run_for(1.5);
+  EXPECT_NEAR(world.figure("e.longest_gap_s"), 1, 1e-9);  // none yet
+  for (const double pause_s : {0.4, 1.6, 0.2}) {
+    world.estimate({1, 0, 0}, some_covariance());
+    world.run_for(pause_s);
+  }
+  EXPECT_NEAR(world.figure("e.longest_gap_s"), 1.6, 1e-9);
+  world.run_for(2);
+  EXPECT_NEAR(world.figure("e.longest_gap_s"), 2.2, 1e-9);  // since the last
+}
+
+TEST(PositionError, SaysOnceWhatIsWrongAndThenHowOften) {
+  MetricWorld world("  - {name: e, vehicle: r1, channel: est}\n");
+  const test_support::LogCapture log;
+  world.run_for(0.1);
+  for (int i = 0; i < 300; ++i) {
+    world.estimate({1, 0, 0}, some_covariance(), -20);
+    if (i % 100 == 99) world.run_for(0.01);
+  }
+  world.estimate({1, 0, 0}, some_covariance());
+  world.run_for(0.01);
+  const std::string said = log.text();
+  EXPECT_EQ(world.scoring.bad_messages(), 300);
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 2) << said;
+  EXPECT_NE(said.find("metric 'e': est: 'utime' is not within the last 10 s"), said.npos) << said;
+  EXPECT_NE(said.find("metric 'e': 300 messages in a row were ignored"), said.npos) << said;
 }
 
 TEST(PositionError, PerDistanceIsOfTheWayThatWasTravelled) {
