@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <set>
 
 #include "sim/acoustics/channel.hpp"
 #include "sim/config/message_text.hpp"
@@ -46,12 +47,18 @@ void World::build() {
   for (const MaterialConfig& material : config_.materials) known_materials_.insert(material.name);
   known_contacts_ = config_.contacts;
   add_objects();
-  std::vector<std::string> errors;  // of all vehicles, not of the first alone
+  std::vector<std::string> errors;  // of all vehicles, not of the first alone; the same of many of a kind once
+  std::set<std::string> told;
   for (const VehicleInstance& instance : config_.vehicles) {
     try {
       build_vehicle(instance);
     } catch (const ConfigError& error) {
-      errors.insert(errors.end(), error.lines().begin(), error.lines().end());
+      for (const std::string& line : error.lines()) {
+        std::string of_anybody = line;
+        if (const auto name = of_anybody.find("'" + instance.name + "'"); name != std::string::npos)
+          of_anybody.erase(name, instance.name.size() + 2);
+        if (told.insert(of_anybody).second) errors.push_back(line);
+      }
     }
   }
   if (!errors.empty()) throw ConfigError(errors);

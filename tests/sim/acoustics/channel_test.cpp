@@ -331,6 +331,10 @@ TEST(AcousticChannel, AWorldWithoutWaterCannotCarrySound) {
   EXPECT_EQ(
       test::error_of_world("shoal: 1\nname: dry\nvehicles:\n" + vehicle("a", "[0, 0, 0]") + vehicle("b", "[9, 0, 0]")),
       "worlds/test.yaml:13:11: vehicle 'a'" + rest + "\nworlds/test.yaml:23:11: vehicle 'b'" + rest);
+  // Of many of one kind one stands for all.
+  EXPECT_EQ(test::error_of_world("shoal: 1\nname: dry\nvehicles:\n" + vehicle("a", "[0, 0, 0]") +
+                                 "    count: 3\n    placement: {pattern: grid, spacing_m: 5}\n"),
+            "worlds/test.yaml:13:11: vehicle 'a1'" + rest);
 }
 
 }  // namespace
