@@ -12,6 +12,17 @@
 
 namespace sim {
 
+/// Who a message is for, and who somebody is: what the counts of delivery go by.
+struct Audience {
+  std::string group;    ///< who could understand each other, such as kind and network of modems
+  std::string address;  ///< in the group; of a message, empty: for all of the group
+
+  template <typename Archive>
+  void visit_state(Archive& archive) {
+    archive(group, address);
+  }
+};
+
 /// A sound with a beginning and an end, as a transducer gives it to the water.
 struct Signal {
   /// What it is, so that a listener knows what it listens to.
@@ -34,6 +45,7 @@ struct Signal {
   std::string network;        ///< listeners of another network do not understand it
   std::string code;           ///< the listener's own: a frame type, who is asked
   Bytes payload;              ///< the listener's own
+  Audience to;                ///< of a message: who it is for
 
   /// Its numbers are within what any sound in water can have: levels and rates worked out of them are finite.
   bool possible() const {
@@ -46,7 +58,7 @@ struct Signal {
   template <typename Archive>
   void visit_state(Archive& archive) {
     archive(kind, source_level, centre_Hz, bandwidth_Hz, duration, modulation, bit_rate_bps, bits, coding_gain_dB,
-            network, code, payload);
+            network, code, payload, to);
     if (archive.restoring() && !possible()) archive.fail("a signal that cannot be");
   }
 };
@@ -64,8 +76,10 @@ enum class SignalLoss {
   out_of_water,  ///< sender or receiver left the water
   receiver_off,  ///< without power, or silent by a fault
   link,          ///< `links:` of the world lost it
+  range,         ///< so far away that nothing of it could be heard
+  sender_off,    ///< the sender lost its power, or was removed, in the middle of it
 };
-inline constexpr int signal_losses = 11;
+inline constexpr int signal_losses = 13;
 /// The word of a cause, such as `half_duplex`.
 const char* signal_loss_word(SignalLoss loss);
 

@@ -35,7 +35,8 @@ struct LockstepTerms {
   OnTimeout policy() const;
 };
 
-/// Reads the `text` of a join; what it does not say is as in `defaults`.  Throws ConfigError.
+/// Reads the `text` of a join; what it does not say is as in `defaults`.  Where these are `agreed` the client cannot be
+/// waited for longer: their `on_timeout` counts, and their `timeout_s` is the longest.  Throws ConfigError.
 LockstepTerms read_lockstep_terms(const std::string& text, const LockstepTerms& defaults);
 
 /// The `text` of `leave`, a YAML map.
@@ -47,6 +48,9 @@ struct LeaveTerms {
 
 /// Throws ConfigError.
 LeaveTerms read_leave_terms(const std::string& text);
+
+/// Of the `text` of a join or leave; 0: it names none, or cannot be read.
+std::int64_t session_in(const std::string& text, bool of_join);
 
 /// A message that a client must have.
 struct PostedMessage {
@@ -85,9 +89,11 @@ struct LockstepMember {
   std::vector<PostedMessage> list;     ///< of its last tick
   std::vector<PostedMessage> pending;  ///< for the next
   std::size_t pending_bytes = 0;
-  bool too_much = false;        ///< to keep: what it must have is lost
-  std::int64_t left_open = 0;   ///< sequence of its tick that was open when the world went back; 0: none
-  std::int64_t left_step = -1;  ///< step of that
+  bool too_much = false;            ///< to keep: what it must have is lost
+  bool abandoned = false;           ///< its last tick was open when the world went back, and still is
+  std::int64_t left_step = -1;      ///< of the last such tick
+  std::int32_t left_branch = 0;     ///< of that; kept by the caller
+  std::int64_t left_sequence = -1;  ///< of that
   bool due(std::int64_t step) const { return step >= joined && (step - joined) % period_steps == 0; }
 };
 
@@ -121,12 +127,16 @@ class Lockstep {
   void ask_all(std::int64_t step);
   /// Those due at this step that have not answered, in the order of their names.
   std::vector<LockstepMember*> missing(std::int64_t step);
+  /// Those whose tick was open when the world went back.  Nobody is to be asked for a new one before they have
+  /// answered: only then it is known what they published for the branch that was left.
+  std::vector<LockstepMember*> abandoned();
 
   /// Abandoned: it answers a tick that was open when the world went back.
   enum class Verdict { accepted, repeated, refused, abandoned };
   /// `why` says what is wrong with one that is refused.
   Verdict acknowledge(const LockstepAck& ack, std::int64_t step, std::string& why);
-  /// The world went back to `step`: lists are empty, and all are asked by their periods from there.
+  /// The world went back to `step`: lists are empty, and all are asked by their periods from there, when those who have
+  /// an open tick have answered it.
   void rewound(std::int64_t step);
 
  private:

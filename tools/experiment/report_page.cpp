@@ -111,6 +111,7 @@ std::string warnings_html(const RunRecord& run) {
     if (count > 0) warnings.push_back(fmt::format("{} {}", count, what));
   };
   warn(run.dropped_messages, "messages were lost in full queues or refused by LCM.");
+  warn(run.modem_dropped_messages, "messages were dropped from full queues of modems.");
   warn(run.bad_messages, "messages were received and not usable.");
   warn(run.quick_steps, "steps used QuickStep, for an island of bodies was too large.");
   const auto failed = [](const RunRecord::Process& process) { return process.failed; };

@@ -101,6 +101,7 @@ std::string Summary::to_json() const {
                                {"repeated_ticks", client.repeated_ticks},
                                {"messages_sent_again", client.messages_sent_again},
                                {"messages_asked_for", client.messages_asked_for},
+                               {"messages_repeated", client.messages_repeated},
                                {"timeouts", client.timeouts},
                                {"ended", client.ended.empty() ? "with the run" : client.ended}});
   for (const auto& [vehicle, record] : zones) {
@@ -114,6 +115,7 @@ std::string Summary::to_json() const {
     for (const auto& [cause, count] : acoustics->lost)
       if (count > 0) json["acoustics"]["lost"][cause] = count;
   }
+  json["modem_dropped_messages"] = modem_dropped_messages;
   json["serial_dropped_bytes"] = serial_dropped_bytes;
   if (event) json["event"] = {{"text", event->text}, {"passed", event->passed}};
   json["judged"] = judged();
@@ -146,6 +148,8 @@ std::string Summary::to_text() const {
     if (acoustics->unsent > 0) text += fmt::format(", {} not sent", acoustics->unsent);
     text += '\n';
   }
+  if (modem_dropped_messages > 0)
+    text += fmt::format("  {} messages were dropped from full queues of modems\n", modem_dropped_messages);
   if (serial_dropped_bytes > 0) text += fmt::format("  {} bytes were fetched from no port\n", serial_dropped_bytes);
   for (const auto& [name, value] : metrics) text += fmt::format("  {:<28} {:.4g}\n", name, value);
   for (const Scoring::Verdict& verdict : verdicts)

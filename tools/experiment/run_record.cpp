@@ -62,6 +62,7 @@ RunRecord read_run(const std::string& directory) {
   run.dropped_messages = in.whole("dropped_messages");
   run.bad_messages = in.whole("bad_messages");
   run.quick_steps = in.whole("quick_steps");
+  if (in.has("modem_dropped_messages")) run.modem_dropped_messages = in.whole("modem_dropped_messages");
   run.metrics = read_figures(in);
   for (const auto& item : in.list("rules")) {
     const JsonReader rule(item, path + ": rules");

@@ -1,5 +1,6 @@
 #include <spdlog/spdlog.h>
 
+#include "devices/message_modem.hpp"
 #include "devices/serial_port.hpp"
 #include "sim/acoustics/channel.hpp"
 #include "tools/experiment/run.hpp"
@@ -54,6 +55,7 @@ void Run::add_figures(Summary& summary) {
   summary.quick_steps = world_.physics().quick_steps();
   const LinkCounts links = link_counts(world_, "", "");
   if (!world_.acoustics().transducers().empty()) summary.acoustics = links;
+  summary.modem_dropped_messages = world_.shared<devices::MessageModems>().dropped_from_queues();
   summary.serial_dropped_bytes = devices::serial_dropped_bytes(world_);
   summary.metrics = scoring_.figures();
   summary.verdicts = scoring_.verdicts();

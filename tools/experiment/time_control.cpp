@@ -150,7 +150,10 @@ std::optional<std::string> TimeControl::obey(const std::string& command, const s
   if (command == "restore") return restore(text, value == 1);
   if (command == "rewind") return rewind(value, run_on());
   if (command == "until") return text.empty() ? run_until(value) : run_until_event(text);
-  if (command == "where") return place() + what_is_kept();
+  if (command == "where") {
+    const std::string waits = service_.waits_for();
+    return place() + (waits.empty() ? "" : ", " + waits) + what_is_kept();
+  }
   return std::nullopt;
 }
 

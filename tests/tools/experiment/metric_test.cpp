@@ -383,6 +383,38 @@ TEST(Delivery, CountsWhatModemsSentAndWhatTheOthersHeard) {
   EXPECT_EQ(figures.at("all.ratio"), figures.at("all.received") / (figures.at("all.received") + lost));
 }
 
+/// far cannot hear a, near can.
+TEST(Delivery, IsOfWhatWasSentToAModem) {
+  const std::string modem = "{name: modem, type: acoustic_modem}";
+  test::TestWorld test(test::modem_sea(
+      {{"a", "[0, 0, -20]", modem}, {"near", "[300, 0, -20]", modem}, {"far", "[200000, 0, -20]", modem}},
+      "metrics:\n  - {name: all, type: delivery}\n  - {name: far, type: delivery, vehicle: far}\n"));
+  tools::Scoring scoring(test.world);
+  test.send("a.modem.cmd", test::bytes_to("hello", "near"));
+  test.run_for(5);
+  EXPECT_EQ(scoring.figures().at("all.ratio"), 1) << "nobody sent to the other one";
+  EXPECT_TRUE(std::isnan(scoring.figures().at("far.ratio")));
+  test.send("a.modem.cmd", test::bytes_to("hello"));
+  test.send("a.modem.cmd", test::bytes_to("hello", "far"));
+  test.run_for(10);
+  EXPECT_EQ(scoring.figures().at("all.received"), 2);
+  EXPECT_EQ(scoring.figures().at("all.lost_range"), 2);
+  EXPECT_EQ(scoring.figures().at("all.ratio"), 0.5);
+  EXPECT_EQ(scoring.figures().at("far.ratio"), 0);
+}
+
+TEST(Delivery, CountsWhatWasNotSent) {
+  const std::string modem = "{name: modem, type: acoustic_modem, queue_messages: 2}";
+  test::TestWorld test(test::modem_sea({{"a", "[0, 0, -20]", modem}, {"b", "[300, 0, -20]", modem}},
+                                       "metrics:\n  - {name: a, type: delivery, vehicle: a}\n"));
+  tools::Scoring scoring(test.world);
+  for (int i = 0; i < 5; ++i) test.send("a.modem.cmd", test::bytes_to("hello"));
+  test.run_for(10);
+  EXPECT_EQ(scoring.figures().at("a.dropped"), 3);
+  EXPECT_EQ(scoring.figures().at("a.sent"), 2);
+  EXPECT_EQ(scoring.figures().at("a.unsent"), 0);
+}
+
 /// b is in range of a, c is not; d is out of the water that hides it.
 TEST(Delivery, OfARadioModemCountsWhatCameAndWhatDidNot) {
   const std::string radio = "{name: radio, type: modem, range_m: 500}";
@@ -406,7 +438,7 @@ TEST(Delivery, OfARadioModemCountsWhatCameAndWhatDidNot) {
   EXPECT_TRUE(std::isnan(figures.at("a.ratio"))) << "nobody sent to it";
   EXPECT_EQ(figures.at("b.received"), 2);
   EXPECT_EQ(figures.at("b.ratio"), 1);
-  EXPECT_EQ(figures.at("c.lost_noise"), 1);
+  EXPECT_EQ(figures.at("c.lost_range"), 1);
   EXPECT_EQ(figures.at("c.ratio"), 0);
   EXPECT_EQ(figures.at("d.lost_blocked"), 1);
   EXPECT_EQ(figures.at("all.ratio"), 0.5) << "two of four";

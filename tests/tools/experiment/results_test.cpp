@@ -79,8 +79,8 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   EXPECT_THAT(
       keys, testing::ElementsAre("world", "description", "seed", "steps", "sim_time_s", "wall_s", "real_time_factor",
                                  "state_hash", "messages", "dropped_messages", "bad_messages", "quick_steps", "metrics",
-                                 "rules", "processes", "serial_dropped_bytes", "judged", "passed", "ended", "error",
-                                 "exit_code", "shoal"));
+                                 "rules", "processes", "modem_dropped_messages", "serial_dropped_bytes", "judged",
+                                 "passed", "ended", "error", "exit_code", "shoal"));
   EXPECT_EQ(json["world"], "harbor");
   EXPECT_EQ(json["seed"], 3);
   EXPECT_EQ(json["steps"], 1000);
@@ -123,13 +123,16 @@ TEST(Summary, TellsWhatBecameOfAcousticPackets) {
   summary.acoustics->unsent = 1;
   summary.acoustics->lost = {{"busy", 0}, {"noise", 2}};
   summary.serial_dropped_bytes = 7;
+  summary.modem_dropped_messages = 4;
   const auto json = nlohmann::json::parse(summary.to_json());
   EXPECT_EQ(json["acoustics"],
             nlohmann::json::parse(R"({"sent": 5, "received": 3, "unsent": 1, "lost": {"noise": 2}})"));
   EXPECT_EQ(json["serial_dropped_bytes"], 7);
+  EXPECT_EQ(json["modem_dropped_messages"], 4);
   EXPECT_THAT(summary.to_text(),
               testing::HasSubstr("acoustic packets: 5 sent, 3 received, 2 lost (noise), 1 not sent\n"));
   EXPECT_THAT(summary.to_text(), testing::HasSubstr("  7 bytes were fetched from no port\n"));
+  EXPECT_THAT(summary.to_text(), testing::HasSubstr("  4 messages were dropped from full queues of modems\n"));
 }
 
 TEST(RunWorld, CountsAcousticPacketsOnlyWhereThereAreModems) {
