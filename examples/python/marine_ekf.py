@@ -94,7 +94,8 @@ class MarineEkf:
         """A slant range that arrived at time_s from a beacon at (east, north, up) with a covariance (ee, en, nn).
 
         What contradicts never makes the position less sure: the clock is wrong when two beacons or more contradict by
-        the same amount, or by one that grows evenly, else it is the beacon, which is then in doubt until it agrees again for a while.
+        the same amount, or by one that grows evenly, else it is the beacon, which is then in doubt until it agrees again
+        for a while.
         """
         since = self.way_since(time_s)
         if since is None:
@@ -111,9 +112,10 @@ class MarineEkf:
         variance = (std_m ** 2 + u[0] ** 2 * ee + 2 * u[0] * u[1] * en + u[1] ** 2 * nn
                     + 3 * (sideways / (2 * distance)) ** 2)
         innovation = range_m - distance - self.x[4] + self.x[5] * age
-        s = self.variance_of(h) + variance
-        opinion = self.opinion_of(beacon, innovation, s)
-        if opinion == "in doubt" or not math.isfinite(innovation):
+        if not math.isfinite(innovation):
+            return False
+        opinion = self.opinion_of(beacon, innovation, self.variance_of(h) + variance)
+        if opinion == "in doubt":
             return False
         if opinion == "contradicts":
             without_clock = self.variance_of(h[:4] + [0.0, 0.0]) + variance

@@ -72,6 +72,16 @@ class Filter(unittest.TestCase):
         self.assertAlmostEqual(math.hypot(ekf.x[0] - 100, ekf.x[1] - 50), 0, delta=0.1)
         self.assertLess(ekf.P[0][0], 1.01)
 
+    def test_what_they_say_alike_and_ever_more_is_its_drift(self):
+        ekf = MarineEkf(0, (100, 50), 1, states=6)
+        for i in range(31):
+            ekf.predict(10 * i, (0, 0))
+            beacon, beacon_m, slant = ((1, (0, 50, 0), 100), (2, (100, 0, 0), 50))[i % 2]
+            used = ekf.update_range(10 * i, slant + 750 + 1.5 * i, 1, beacon_m, (0, 0, 0), 0, beacon)
+            self.assertEqual(used, i >= 4)
+        self.assertAlmostEqual(ekf.x[5], 0.15, delta=0.02)
+        self.assertLess(math.hypot(ekf.x[0] - 100, ekf.x[1] - 50), 1)
+
     def test_gps_is_believed_when_it_contradicts_for_long(self):
         ekf = MarineEkf(0, (0, 0), 1)
         self.assertFalse(any(ekf.update_position((300, 0), 1) for _ in range(4)))
