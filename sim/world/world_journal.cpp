@@ -80,6 +80,8 @@ void WorldJournal::forget() {
   entries_ = {};
   texts_.clear();
   text_numbers_.clear();
+  parsed_.clear();
+  vehicles_.clear();
   size_ = 0;
 }
 

@@ -79,10 +79,18 @@ sim::Vector3d home_m(int place) {
   return {20.0 * (place % 4) - 30, 20.0 * (place / 4), -20};
 }
 
+sim::VehicleInstance a_guest(const sim::World& world, const std::string& model) {
+  return sim::read_spawn_request(world.config(), "{name: guest, model: " + model + "}").vehicle;
+}
+
+void spawn(sim::World& world, const std::string& name, const sim::Vector3d& at_m, sim::VehicleInstance guest) {
+  guest.name = name;
+  guest.X_WV = sim::make_pose(at_m, sim::Vector3d::Zero());
+  world.add_vehicle(guest);
+}
+
 void spawn(sim::World& world, const std::string& name, const sim::Vector3d& at_m, const std::string& model) {
-  const std::string text = "{name: " + name + ", position_m: [" + std::to_string(at_m.x()) + ", " +
-                           std::to_string(at_m.y()) + ", -20], model: " + model + "}";
-  world.add_vehicle(sim::read_spawn_request(world.config(), text).vehicle);
+  spawn(world, name, at_m, a_guest(world, model));
 }
 
 void change(sim::World& world, const std::string& device, const std::string& values) {
@@ -151,9 +159,10 @@ TEST(WorldJournal, RollingSpawnsKeepItsSize) {
   TappedWorld test(sea);
   sim::World& world = test.world;
   constexpr int rounds = 100'000;
+  const sim::VehicleInstance models[] = {a_guest(world, drifting), a_guest(world, masted)};
   std::size_t largest = 0;
   for (int i = 0; i < rounds; ++i) {
-    spawn(world, "r" + std::to_string(i), home_m(i % 4), i % 2 == 0 ? drifting : masted);
+    spawn(world, "r" + std::to_string(i), home_m(i % 4), models[i % 2]);
     if (i >= 3) world.remove_vehicle("r" + std::to_string(i - 3));
     if (i % 10'000 == 9'999) largest = std::max(largest, world.snapshot().size());
     if (i % 10'000 == 5'000) world.step();

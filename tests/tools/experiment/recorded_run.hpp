@@ -39,6 +39,10 @@ class RecordedRun {
     service.use_journal(journal);
     if (from != nullptr) {
       world.restore(from->state);
+      auto owners = sim::StateArchive::restorer(from->owners);
+      owners.section("owners");
+      service.visit_state(owners);
+      owners.end();
       journal.begin_branch(0, 1);
     }
     service.publish_info();
