@@ -41,8 +41,7 @@ void LockstepService::add_line(sim::Bus& network, sim::MailGate& gate) {
   const int index = static_cast<int>(lines_.size());
   lines_.push_back(std::make_unique<Line>(network, gate));
   gate.set_order([this, index, line = lines_.back().get()](std::vector<sim::MailGate::Mail>& mail) {
-    if (suspended_) return;
-    line->mail.order(mail);
+    if (!suspended_) line->mail.order(mail);
     for (const sim::MailGate::Mail& each : mail) lockstep_.post(index, each.channel, each.payload);
   });
 }
@@ -55,7 +54,7 @@ void LockstepService::watch_gates() {
       lines_[i]->gate.set_watch({});
     else
       lines_[i]->gate.set_watch([this, i](std::string_view channel, std::span<const std::byte> payload) {
-        if (!suspended_) lockstep_.post(static_cast<int>(i), channel, payload);
+        lockstep_.post(static_cast<int>(i), channel, payload);
       });
   }
 }
@@ -191,6 +190,14 @@ void LockstepService::tell_dropped(const Dropped& dropped, const std::string& cl
   reply.ok = false;
   reply.text = dropped.why;
   line_of(dropped.line).publish("sim.control.reply", reply, world_.now());
+}
+
+void LockstepService::suspend(bool suspended) {
+  suspended_ = suspended;
+  if (suspended)
+    lockstep_.begin_again();
+  else
+    lockstep_.end_again();
 }
 
 void LockstepService::set_branch(std::int32_t branch) {

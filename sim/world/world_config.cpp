@@ -19,7 +19,8 @@ void OriginConfig::read(ParamReader& in) {
 
 void RunConfig::read(ParamReader& in) {
   in.read("duration_s", duration_s, between(0, 1e9), "simulated time of the run; 0: until told to quit");
-  in.read("speed", speed, between(0, 1e6), "times real time; 0: as fast as possible");
+  in.read("speed", speed, between(0, 1e6), "times real time, at least 0.001; 0: as fast as possible");
+  if (speed > 0 && speed < 1e-3) in.error("speed", "'speed' must be 0 (as fast as possible) or from 0.001 to 1e6");
   in.read("seed", seed, at_least(0), "of every random stream");
   in.read("track_rate_hz", track_rate_hz, between(1e-3, 1e6), "samples per second of the tracks in the results");
   in.read("hash_every_steps", hash_every_steps, between(0, 1e9), "steps from hash to hash on sim.hash; 0: none");

@@ -162,11 +162,11 @@ TEST_F(ReplayTest, APlantedDifferenceIsFoundWithStepVehicleAndQuantity) {
   ASSERT_TRUE(seed.first);
   EXPECT_LE(seed.first->step, 50);
   EXPECT_THAT(seed.to_text(), AllOf(HasSubstr("differs first at step "), HasSubstr("in the log and")));
-  EXPECT_THAT(seed.report, testing::Contains(HasSubstr("seed: 4")));
+  EXPECT_THAT(seed.world, testing::Contains(HasSubstr("seed: 4")));
 
   const ReplayOutcome mass = again({"objects.crate.parts.1.mass_kg=6"});
   EXPECT_EQ(mass.exit_code(), 1);
-  EXPECT_THAT(mass.report, testing::Contains(HasSubstr("mass_kg: 6")));
+  EXPECT_THAT(mass.world, testing::Contains(HasSubstr("mass_kg: 6")));
 }
 
 TEST_F(ReplayTest, OneNoisierSensorIsFoundByItsName) {
