@@ -219,7 +219,7 @@ std::string TimeControl::rewind(double seconds, bool run_on) {
                                          sim::to_seconds(world_.step_time())));
   if (world_.step_number() == first_step_) throw std::runtime_error("the run is at its begin: it cannot go back");
   // Who wants to go back further than it has come goes to the begin.
-  const std::int64_t target = std::max(world_.step_number() - std::llround(steps), first_step_);
+  const std::int64_t target = std::max<std::int64_t>(world_.step_number() - std::llround(steps), first_step_);
   auto base = ring_.newest_until(mail_.needed_from(target));
   if (!base) base = ring_.newest_until(target);  // some client will lack reports
   if (!base) {
