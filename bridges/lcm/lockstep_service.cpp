@@ -245,7 +245,7 @@ LockstepOutcome LockstepService::synchronize(const Wait& wait, const std::functi
     names = late();  // some may have joined or left
     serve(names);
     if (names.empty()) break;
-    wait(nap());
+    wait(nap(names));
     take_messages();
   }
   asked_.clear();
@@ -262,9 +262,10 @@ void LockstepService::resume() {
   spdlog::info("lockstep: the world goes on");
 }
 
-milliseconds LockstepService::nap() const {
+milliseconds LockstepService::nap(const std::vector<std::string>& late) const {
   Clock::time_point next = Clock::now() + milliseconds(20);
-  for (const auto& [client, asked] : asked_) next = std::min(next, asked.send_at);
+  for (const std::string& client : late)
+    if (const auto asked = asked_.find(client); asked != asked_.end()) next = std::min(next, asked->second.send_at);
   return std::max(milliseconds(1), std::chrono::ceil<milliseconds>(next - Clock::now()));
 }
 

@@ -126,7 +126,7 @@ class LockstepService {
   void send_again(const sim::LockstepMember& member, std::int32_t first);
   void complain(const std::string& client, const std::string& text);
   void watch_gates();
-  std::chrono::milliseconds nap() const;
+  std::chrono::milliseconds nap(const std::vector<std::string>& late) const;
   std::int64_t utime() const { return world_.epoch_us() + world_.now().count(); }
   LockstepSummary& summary_of(const std::string& client);
   Line& line_of(int number) { return *lines_[static_cast<std::size_t>(number)]; }

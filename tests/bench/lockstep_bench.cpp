@@ -142,12 +142,13 @@ Cost lockstep(const std::string& on, int clients, int steps) {
 int main(int argc, char** argv) {
   const int steps = argc > 1 ? std::atoi(argv[1]) : 2000;
   const std::string on = url();
-  const Times bare = ping_pong(on, steps);
-  std::printf("bare LCM ping-pong      p50 %7.1f us   p99 %7.1f us\n", bare.p50_us, bare.p99_us);
   std::vector<int> numbers;
   for (int i = 2; i < argc; ++i) numbers.push_back(std::atoi(argv[i]));
   if (numbers.empty()) numbers = {1, 10};
   for (const int clients : numbers) {
+    const Times bare = ping_pong(on, steps);  // each time: the load of a machine changes
+    std::printf("bare LCM ping-pong      p50 %7.1f us   p99 %7.1f us\n", bare.p50_us, bare.p99_us);
+    std::fflush(stdout);  // before the children get a copy of what waits there
     const Cost cost = lockstep(on, clients, steps);
     std::printf(
         "barrier, %2d client%s     p50 %7.1f us   p99 %7.1f us   per client p50 %6.1f us   ratio to ping-pong %.2f   "

@@ -2,6 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <thread>
+
+#include "bridges/lcm/resend.hpp"
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_resend_t.hpp"
 #include "shoal/sim_resent_t.hpp"
@@ -88,6 +92,25 @@ TEST(LockstepService, WaitsForTheClientsThatAreDueAndNamesTheMissing) {
   ASSERT_EQ(s.ticks.last().count, 1);
   s.acknowledge(0, "pilot");
   EXPECT_EQ(s.synchronize(), bridges::LockstepOutcome::done);
+}
+
+TEST(LockstepService, AClientThatHasAnsweredDoesNotMakeTheWorldLookEveryMillisecondForTheOthers) {
+  Service s;
+  ASSERT_TRUE(s.join("fast", "{session: 1, timeout_s: 60}").ok);
+  ASSERT_TRUE(s.join("slow", "{session: 2, timeout_s: 60}").ok);
+  std::vector<std::chrono::milliseconds> naps;
+  s.lockstep.synchronize(
+      [&](std::chrono::milliseconds nap) {
+        naps.push_back(nap);
+        if (naps.size() == 1) s.acknowledge(0, "fast", 1, 1);
+        const auto end = std::chrono::steady_clock::now() + 2 * bridges::resend_grace;
+        while (std::chrono::steady_clock::now() < end) std::this_thread::yield();
+        if (naps.size() == 6) s.acknowledge(0, "slow", 2, 1);
+      },
+      [] { return true; });
+  // Its tick is sent again 20 ms after the first; only the look before that is a short one.
+  ASSERT_EQ(naps.size(), 6u);
+  EXPECT_GE(std::count_if(naps.begin() + 1, naps.end(), [](auto nap) { return nap > bridges::resend_grace; }), 3);
 }
 
 TEST(LockstepService, ATickNamesWhatTheClientMustHaveAndSendsItAgain) {
