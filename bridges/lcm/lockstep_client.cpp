@@ -1,7 +1,5 @@
 #include "bridges/lcm/lockstep_client.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <random>
 
@@ -56,7 +54,7 @@ LockstepClient::LockstepClient(const std::string& url, std::string name)
       outbox_(name_, [this](std::string_view channel, std::span<const std::byte> payload) { send(channel, payload); }) {
   for (const char* channel : {tick_channel, reply_channel, question_channel, bundle_channel}) lcm_.listen(channel);
   // A program that was started again must not take the answer to its predecessor for its own.
-  request_id_ = static_cast<std::int32_t>(getpid() % 1'000'000) * 1000;
+  request_id_ = static_cast<std::int32_t>(std::random_device()() >> 2);
 }
 
 void LockstepClient::subscribe(const std::string& channel, Handler handler) {
@@ -176,13 +174,16 @@ void LockstepClient::take(Received message) {
 void LockstepClient::take_reply(std::span<const std::byte> payload) {
   const auto reply = try_decode<shoal::sim_control_reply_t>(payload);
   if (!reply || reply->client != name_) return;
+  // Another client may have our name, and even our number of a request.  What could not be read has no session.
+  const bool ours = reply->session == session_;
+  if (!ours && reply->session != 0) return;
   if (reply->id == request_id_) {
     answered_id_ = reply->id;
     refusal_ = reply->ok != 0 ? "" : reply->text.empty() ? "it does not say why" : reply->text;
   } else if (reply->id != join_id_) {
     return;
   }
-  if (joined_ && reply->id == join_id_ && reply->ok == 0) {
+  if (ours && joined_ && reply->id == join_id_ && reply->ok == 0) {
     end_ = End::dropped;
     reason_ = reply->text;
   }
@@ -202,8 +203,8 @@ void LockstepClient::take_tick(std::span<const std::byte> payload) {
     }
     return;
   }
-  if (due->sequence == sequence_ && !outbox_.is_open() && sequence_ > 0)
-    return send_ack();  // our answer was lost, or is on its way
+  if (due->sequence == sequence_ && !outbox_.is_open())
+    return send_ack();  // our answer was lost, or is on its way; or we are asked whether we live
   if (due->sequence <= sequence_ || (incomplete_ && incomplete_->sequence == due->sequence)) return;
   const shoal::sim_due_t own = *due;
   begin_tick(std::move(*tick), own);

@@ -24,6 +24,19 @@ void take_up_to(int most, sim::Mailbox& mailbox, Take&& take) {
   }
 }
 
+shoal::sim_due_t due_of(const sim::LockstepMember& member) {
+  shoal::sim_due_t due;
+  due.name = member.name;
+  due.session = member.terms.session;
+  due.sequence = member.sequence;
+  due.count = static_cast<std::int32_t>(member.list.size());
+  for (const sim::PostedMessage& posted : member.list) {
+    due.channel.push_back(posted.channel);
+    due.crc.push_back(posted.crc);
+  }
+  return due;
+}
+
 }  // namespace
 
 void LockstepService::publish_tick(const std::vector<std::string>& clients, bool last) {
@@ -36,19 +49,48 @@ void LockstepService::publish_tick(const std::vector<std::string>& clients, bool
     for (const std::string& client : clients) {
       const sim::LockstepMember* member = lockstep_.find(client);
       if (member == nullptr || member->line != static_cast<int>(i)) continue;
-      shoal::sim_due_t& due = tick.client.emplace_back();
-      due.name = client;
-      due.session = member->terms.session;
-      due.sequence = member->sequence;
-      due.count = static_cast<std::int32_t>(member->list.size());
-      for (const sim::PostedMessage& posted : member->list) {
-        due.channel.push_back(posted.channel);
-        due.crc.push_back(posted.crc);
-      }
+      tick.client.push_back(due_of(*member));
     }
     tick.count = static_cast<std::int32_t>(tick.client.size());
     if (tick.count > 0 || last) lines_[i]->publish("sim.tick", tick, world_.now());
   }
+}
+
+/// A tick of the branch that was left, to a client that had not answered it.
+void LockstepService::publish_left_tick(const sim::LockstepMember& member) {
+  shoal::sim_tick_t tick;
+  tick.step = member.left_step;
+  tick.utime = world_.epoch_us() + (world_.step_time() * member.left_step).count();
+  tick.branch = member.left_branch;
+  tick.last = false;
+  tick.client.push_back(due_of(member));
+  tick.count = 1;
+  line_of(member.line).publish("sim.tick", tick, world_.now());
+}
+
+/// Its last tick once more, or one with sequence 0: it answers both, and does nothing else.
+void LockstepService::ask_whether_it_lives(const sim::LockstepMember& member) {
+  Line& line = line_of(member.line);
+  if (!member.answered) {
+    if (member.abandoned)
+      publish_left_tick(member);
+    else
+      publish_tick({member.name}, false);
+    return line.network.end_of_step();
+  }
+  shoal::sim_tick_t tick;
+  tick.utime = utime();
+  tick.step = member.asked;
+  tick.branch = branch_;
+  tick.last = false;
+  shoal::sim_due_t& due = tick.client.emplace_back();
+  due.name = member.name;
+  due.session = member.terms.session;
+  due.sequence = member.sequence;
+  due.count = 0;
+  tick.count = 1;
+  line.publish("sim.tick", tick, world_.now());
+  line.network.end_of_step();
 }
 
 void LockstepService::ask_client(const sim::LockstepMember& member) {
@@ -94,16 +136,21 @@ void LockstepService::take_ack(int line_index, const sim::Message& message) {
       throw std::runtime_error(why);
     }
     if (heard_) heard_(ack.client);
+    if (const auto challenge = challenges_.find(ack.client); challenge != challenges_.end())
+      challenge->second.lives = true;
     if (verdict == sim::Lockstep::Verdict::repeated) return;
     sim::LockstepMember& member = *lockstep_.find(ack.client);
     Line& line = line_of(member.line);
     std::vector<sim::NamedMessage> named;
     for (std::size_t i = 0; i < ack.channel.size(); ++i)
       named.push_back({ack.channel[i], static_cast<std::uint32_t>(ack.crc[i])});
-    line.mail.release(ack.client);
     if (verdict == sim::Lockstep::Verdict::abandoned) {
-      line.mail.drop(named);
-      member.left_open = 0;  // once
+      line.mail.collect();  // what came before this answer
+      asked_.erase(ack.client);
+      if (ack.listed)
+        line.mail.drop(ack.client, named);
+      else
+        line.mail.drop_unnamed();
       return;
     }
     if (!ack.listed) return;

@@ -20,6 +20,9 @@ namespace {
 constexpr std::chrono::seconds alive_for{1};
 /// Of clients; at most 1000 of them take part at the same time.
 constexpr std::size_t most_summaries = 2000;
+constexpr std::size_t most_ended_sessions = 1000;
+/// Of sim::ClientMail.
+constexpr milliseconds mail_window{100};
 
 }  // namespace
 
@@ -72,7 +75,12 @@ LockstepSummary& LockstepService::summary_of(const std::string& client) {
 
 std::vector<LockstepSummary> LockstepService::summaries() const {
   std::vector<LockstepSummary> all;
-  for (const auto& [client, summary] : summaries_) all.push_back(summary);
+  for (const auto& [client, summary] : summaries_) {
+    all.push_back(summary);
+    for (const auto& line : lines_)
+      if (const auto repeated = line->mail.repeated().find(client); repeated != line->mail.repeated().end())
+        all.back().messages_repeated += static_cast<std::int64_t>(repeated->second);
+  }
   return all;
 }
 
@@ -99,6 +107,7 @@ bool LockstepService::join(int line, const shoal::sim_control_request_t& request
     throw std::runtime_error("'join' needs a period that is a multiple of the step of " +
                              std::to_string(sim::to_seconds(world_.step_time())) + " s");
   const sim::LockstepTerms terms = sim::read_lockstep_terms(request.text, defaults_);
+  check_session(request.client, terms.session);
   if (const sim::LockstepMember* first = lockstep_.find(request.client);
       first && (first->terms.session != terms.session || first->line != line)) {
     if (!may_join(*first, terms)) return false;
@@ -115,20 +124,40 @@ bool LockstepService::join(int line, const shoal::sim_control_request_t& request
   return true;
 }
 
-/// The other of that name may have died a moment ago; while the world waits for it, it can show that it lives.
+/// A request that the network repeated, or held back, must not take in again who has left.
+void LockstepService::check_session(const std::string& client, std::int64_t session) const {
+  if (session == 0 || std::find(ended_.begin(), ended_.end(), std::pair(client, session)) == ended_.end()) return;
+  const auto summary = summaries_.find(client);
+  throw std::runtime_error("the session " + std::to_string(session) + " of client '" + client + "' is over" +
+                           (summary == summaries_.end() || summary->second.ended.empty() || lockstep_.has(client)
+                                ? ""
+                                : " (" + summary->second.ended + ")") +
+                           "; join with another one");
+}
+
+/// The other of that name may have died a moment ago; it can show that it lives.
 bool LockstepService::may_join(const sim::LockstepMember& first, const sim::LockstepTerms& terms) {
   if (first.gone) return true;
-  const auto refuse = [&] {
-    challenges_.erase(first.name);
-    throw std::runtime_error("another client of the name '" + first.name + "' takes part, and answers" +
+  const std::string name = first.name;
+  const Clock::time_point now = Clock::now();
+  take_messages();  // what it said before it was asked tells nothing
+  const auto [entry, fresh] = challenges_.try_emplace(name);
+  Challenge& challenge = entry->second;
+  if (fresh || now - challenge.ask_at > 5 * alive_for) challenge = {now, now, false};
+  if (challenge.lives) {
+    challenges_.erase(name);
+    throw std::runtime_error("another client of the name '" + name + "' takes part, and answers" +
                              (terms.session == 0 ? "" : "; give this one another name"));
-  };
-  const std::int64_t answers = first.sequence - (first.answered ? 0 : 1);
-  const auto [challenge, fresh] = challenges_.try_emplace(first.name, answers);
-  if (!fresh && answers > challenge->second) refuse();  // it answered a tick since then
-  const auto asked = asked_.find(first.name);
-  if (asked != asked_.end() && !first.answered) return Clock::now() - asked->second.begin > alive_for;
-  if (control_.paused) refuse();
+  }
+  const auto asked = asked_.find(name);
+  const bool at_work = asked != asked_.end() && !first.answered;
+  if (at_work) return now - asked->second.since > alive_for;
+  // While the world runs its next tick will show; a program may be busy between its ticks.
+  if (control_.paused && now - challenge.since > alive_for) return true;
+  if (now >= challenge.ask_at) {
+    challenge.ask_at = now + first_resend_interval;
+    ask_whether_it_lives(first);
+  }
   return false;
 }
 
@@ -162,7 +191,10 @@ void LockstepService::forget(const std::string& client, const std::string& why) 
   if (const sim::LockstepMember* member = lockstep_.find(client)) {
     Line& line = line_of(member->line);
     line.mail.give_up(client);
-    line.mail.release(client);
+    if (member->terms.session != 0) {
+      ended_.emplace_back(client, member->terms.session);
+      if (ended_.size() > most_ended_sessions) ended_.pop_front();
+    }
   }
   lockstep_.leave(client);
   asked_.erase(client);
@@ -187,6 +219,7 @@ void LockstepService::tell_dropped(const Dropped& dropped, const std::string& cl
   reply.utime = utime();
   reply.id = dropped.join_id;
   reply.client = client;
+  reply.session = dropped.session;
   reply.ok = false;
   reply.text = dropped.why;
   line_of(dropped.line).publish("sim.control.reply", reply, world_.now());
@@ -201,15 +234,11 @@ void LockstepService::suspend(bool suspended) {
 }
 
 void LockstepService::set_branch(std::int32_t branch) {
+  for (auto& [name, member] : lockstep_.members())
+    if (!member.answered && !member.abandoned) member.left_branch = branch_;
   branch_ = branch;
-  std::set<std::string> open;
-  for (const auto& [name, member] : lockstep_.members())
-    if (!member.answered && member.terms.session != 0) open.insert(name);
   lockstep_.rewound(world_.step_number());
   for (const auto& line : lines_) line->mail.clear();
-  // What a client published for a tick of the branch that was left may still come.
-  for (const auto& [name, member] : lockstep_.members())
-    if (open.contains(name)) line_of(member.line).mail.hold(name);
   asked_.clear();
   paused_here_ = false;
 }
@@ -228,6 +257,8 @@ void LockstepService::drop_overflowing() {
 
 std::vector<std::string> LockstepService::late() {
   std::vector<std::string> names;
+  for (const sim::LockstepMember* member : lockstep_.abandoned()) names.push_back(member->name);
+  if (!names.empty()) return names;
   for (const sim::LockstepMember* member : lockstep_.missing(world_.step_number())) names.push_back(member->name);
   for (const auto& [name, member] : lockstep_.members())
     if (member.answered && !line_of(member.line).mail.is_complete(name)) names.push_back(name);
@@ -241,7 +272,7 @@ LockstepOutcome LockstepService::synchronize(const Wait& wait, const std::functi
     std::vector<std::string> names = late();
     if (names.empty()) break;
     if (!idle() || control_.quit) return LockstepOutcome::stopped;
-    lockstep_.ask(world_.step_number());
+    if (lockstep_.abandoned().empty()) lockstep_.ask(world_.step_number());
     names = late();  // some may have joined or left
     serve(names);
     if (names.empty()) break;
@@ -249,6 +280,7 @@ LockstepOutcome LockstepService::synchronize(const Wait& wait, const std::functi
     take_messages();
   }
   asked_.clear();
+  tell_repeated();
   resume();
   return LockstepOutcome::done;
 }
@@ -269,13 +301,58 @@ milliseconds LockstepService::nap(const std::vector<std::string>& late) const {
   return std::max(milliseconds(1), std::chrono::ceil<milliseconds>(next - Clock::now()));
 }
 
+std::string LockstepService::waits_for() {
+  std::string text;
+  for (const auto& [client, asked] : asked_) {
+    const sim::LockstepMember* member = lockstep_.find(client);
+    if (member == nullptr || (member->answered && line_of(member->line).mail.is_complete(client))) continue;
+    char wait[32];
+    std::snprintf(wait, sizeof wait, "waits %.1f s for '",
+                  std::chrono::duration<double>(Clock::now() - asked.since).count());
+    text += (text.empty() ? "" : ", ") + std::string(wait) + client + "'";
+    if (text.size() > 1000) return text + ", ...";
+  }
+  return text;
+}
+
+void LockstepService::look_at_clock() {
+  const Clock::time_point now = Clock::now();
+  for (std::int64_t windows = 0; now - window_began_ >= mail_window; ++windows) {
+    if (windows == sim::ClientMail::late_windows)
+      window_began_ = now;
+    else
+      window_began_ += mail_window;
+    for (const auto& line : lines_) line->mail.next_window();
+  }
+}
+
+void LockstepService::tell_repeated() {
+  for (const auto& line : lines_) {
+    const auto repeated = line->mail.take_repeated();
+    if (!repeated || told_repeated_) continue;
+    told_repeated_ = true;
+    spdlog::warn(
+        "lockstep: a message on '{}' was dropped: it equals one of client '{}' that came just before, so the "
+        "network may have repeated it (more of these are only counted)",
+        sim::printable(repeated->channel), sim::printable(repeated->client));
+  }
+}
+
+/// A world that somebody has paused gives its clients the time.
+void LockstepService::rest_time_outs(Clock::time_point now) {
+  const auto passed = now - std::exchange(served_, now);
+  if (!control_.paused || control_.single_steps > 0 || paused_here_) return;
+  for (auto& [client, asked] : asked_) asked.begin = std::min(now, asked.begin + passed);
+}
+
 void LockstepService::serve(const std::vector<std::string>& late) {
+  rest_time_outs(Clock::now());
   std::vector<std::string> to_tick;
   for (const std::string& client : late) {
     const Clock::time_point now = Clock::now();
     const auto [entry, fresh] = asked_.try_emplace(client);
     Asked& asked = entry->second;
-    if (fresh) asked = {now, now, now, first_resend_interval, false};
+    if (fresh) asked = {now, now, now, now, first_resend_interval, false};
     check_time(client, asked, now);
     const sim::LockstepMember* member = lockstep_.find(client);
     if (member == nullptr || asked.send_at > now) continue;
@@ -285,8 +362,11 @@ void LockstepService::serve(const std::vector<std::string>& late) {
       ask_client(*member);
     } else {
       LockstepSummary& summary = summary_of(client);
-      ++(fresh ? summary.ticks : summary.repeated_ticks);
-      to_tick.push_back(client);
+      ++(fresh && !member->abandoned ? summary.ticks : summary.repeated_ticks);
+      if (member->abandoned)
+        publish_left_tick(*member);
+      else
+        to_tick.push_back(client);
     }
   }
   if (!to_tick.empty()) publish_tick(to_tick, false);
@@ -298,7 +378,7 @@ void LockstepService::check_time(const std::string& client, Asked& asked, Clock:
   if (now - asked.begin < std::chrono::duration<double>(timeout_s) && !member->gone) return;
   char limit[32];
   std::snprintf(limit, sizeof limit, "%g s", timeout_s);
-  const std::string step = std::to_string(world_.step_number());
+  const std::string step = std::to_string(member->asked);
   const std::string why = member->gone
                               ? "the process of client '" + client + "' ended before it answered step " + step
                               : "no acknowledgement from '" + client + "' for step " + step + " within " + limit;
@@ -315,7 +395,7 @@ void LockstepService::check_time(const std::string& client, Asked& asked, Clock:
           pause_requests_ = control_.pause_requests;
           ++control_.changes;
         }
-      } else if (control_.may_step()) {
+      } else if (!control_.paused) {
         paused_here_ = false;
         drop(client, why);
         return;

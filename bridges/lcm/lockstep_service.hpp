@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -11,6 +12,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "bridges/lcm/lockstep_summary.hpp"
@@ -63,6 +65,10 @@ class LockstepService {
   void client_gone(const std::string& client);
   bool has(const std::string& client) const { return lockstep_.has(client); }
   bool empty() const { return lockstep_.empty(); }
+  /// For whom the world waits: `waits 1.5 s for 'pilot'`; empty: for nobody.
+  std::string waits_for();
+  /// Call now and then, also while the world is paused.
+  void look_at_clock();
 
   /// A message that went to a line beside its gate, for the clients that must have it.
   void post(int line, std::string_view channel, std::span<const std::byte> payload) {
@@ -95,9 +101,16 @@ class LockstepService {
   struct Line;
   /// A client that the world waits for.
   struct Asked {
-    Clock::time_point begin, send_at, serve_after;
+    Clock::time_point since;
+    Clock::time_point begin;  ///< of its time-out: later than `since` by what somebody had paused the world
+    Clock::time_point send_at, serve_after;
     std::chrono::milliseconds interval;
     bool told = false;  ///< that it is late
+  };
+  /// Another one wants its name: does it live?
+  struct Challenge {
+    Clock::time_point since, ask_at;
+    bool lives = false;
   };
   /// One that was dropped, and is told so when it answers late.
   struct Dropped {
@@ -107,7 +120,9 @@ class LockstepService {
     std::string why;
   };
 
+  void check_session(const std::string& client, std::int64_t session) const;
   bool may_join(const sim::LockstepMember& first, const sim::LockstepTerms& terms);
+  void ask_whether_it_lives(const sim::LockstepMember& member);
   void drop_overflowing();
   std::vector<std::string> late();
   void serve(const std::vector<std::string>& late);
@@ -117,7 +132,10 @@ class LockstepService {
   void tell_dropped(const Dropped& dropped, const std::string& client);
   void resume();
 
+  void rest_time_outs(Clock::time_point now);
+  void tell_repeated();
   void publish_tick(const std::vector<std::string>& clients, bool last);
+  void publish_left_tick(const sim::LockstepMember& member);
   void ask_client(const sim::LockstepMember& member);
   void take_messages();
   void take_ack(int line, const sim::Message& message);
@@ -139,7 +157,10 @@ class LockstepService {
   std::map<std::string, Asked, std::less<>> asked_;  // in the present step
   std::map<std::string, Dropped, std::less<>> dropped_;
   std::map<std::string, std::int32_t, std::less<>> join_ids_;
-  std::map<std::string, std::int64_t, std::less<>> challenges_;  // by name: tick of the first at the other's join
+  std::map<std::string, Challenge, std::less<>> challenges_;
+  std::deque<std::pair<std::string, std::int64_t>> ended_;  // clients and their sessions, the last ones
+  Clock::time_point served_, window_began_;
+  bool told_repeated_ = false;
   std::map<std::string, LockstepSummary, std::less<>> summaries_;
   std::set<std::string, std::less<>> told_;  // whose bad messages were told of
   std::function<void(const std::string&)> heard_;

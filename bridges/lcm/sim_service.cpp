@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "bridges/lcm/run_journal.hpp"
 #include "shoal/message_codec.hpp"
@@ -18,6 +19,8 @@ namespace bridges {
 namespace {
 
 constexpr double info_rate_hz = 0.1;
+/// Who asks whether another simulator is there.
+constexpr const char* probe_name = "shoal-run";
 
 }  // namespace
 
@@ -123,9 +126,29 @@ void SimService::publish_state() {
 bool SimService::hears_another_simulator(const Wait& wait) {
   const auto clock = network_.open_mailbox("sim.clock");
   const auto tick = network_.open_mailbox("sim.tick");
+  const auto replies = network_.open_mailbox("sim.control.reply");
+  // One that is paused publishes nothing, but answers.
+  std::random_device random;
+  probe_id_ = static_cast<std::int32_t>(random() >> 1);
+  shoal::sim_control_request_t probe{};
+  probe.id = probe_id_;
+  probe.client = probe_name;
+  probe.command = "alive";
+  const auto answered = [&] {
+    while (const auto message = replies->take()) {
+      try {
+        const auto reply = shoal::decode<shoal::sim_control_reply_t>(message->payload, shoal::Finite::any);
+        if (reply.client == probe_name && reply.id == probe_id_) return true;
+      } catch (const shoal::MessageError&) {  // somebody else's
+      }
+    }
+    return false;
+  };
+  publish(network_, "sim.control", probe);
+  network_.end_of_step();
   const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(300);
   while (std::chrono::steady_clock::now() < end) {
-    if (clock->take() || tick->take()) return true;
+    if (clock->take() || tick->take() || answered()) return true;
     wait(std::chrono::milliseconds(50));
   }
   return false;
@@ -137,6 +160,7 @@ void SimService::complain(const std::string& text) {
 
 void SimService::handle_requests() {
   visitors_.remove_silent();
+  lockstep_.look_at_clock();
   // A flood of requests must not keep the world from stepping; the rest waits, and what overflows is counted.
   constexpr int most_at_once = 50;
   for (Line& line : lines_)
@@ -149,7 +173,9 @@ void SimService::handle_requests() {
 
 void SimService::handle_request(Line& line, const sim::Message& message) {
   try {
-    answer(line, shoal::decode<shoal::sim_control_request_t>(message.payload, shoal::Finite::any));
+    const auto request = shoal::decode<shoal::sim_control_request_t>(message.payload, shoal::Finite::any);
+    if (request.client == probe_name && request.id == probe_id_) return;  // our own
+    answer(line, request);
   } catch (const shoal::MessageError& error) {
     complain(std::string("sim.control: ") + error.what());
   }
@@ -159,6 +185,8 @@ void SimService::answer(Line& line, const shoal::sim_control_request_t& request)
   shoal::sim_control_reply_t reply;
   reply.id = request.id;
   reply.client = request.client;
+  const bool joins = request.command == "join";
+  reply.session = joins || request.command == "leave" ? sim::session_in(request.text, joins) : 0;
   reply.ok = true;
   visitors_.heard_of(request.client);
   try {
@@ -186,8 +214,7 @@ std::optional<std::string> SimService::obey(Line& line, const shoal::sim_control
     control_.set_paused(command == "pause");
   } else if (command == "step") {
     if (!(request.value >= 1 && request.value <= 1e9)) throw std::runtime_error("'step' needs a value from 1 to 1e9");
-    control_.paused = true;
-    control_.single_steps += static_cast<std::int64_t>(request.value);
+    control_.add_steps(static_cast<std::int64_t>(request.value));
   } else if (command == "speed") {
     set_speed(request.value);
   } else if (command == "quit") {

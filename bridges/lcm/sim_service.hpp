@@ -57,9 +57,11 @@ class SimService {
   void client_gone(const std::string& client);
 
   using Wait = LockstepService::Wait;
-  /// Listens for 0.3 s of wall time, before anything is published: two simulators that answer the same clients would
-  /// spoil each other's runs.
+  /// Asks and listens for 0.3 s of wall time, before anything is published: two simulators that answer the same clients
+  /// would spoil each other's runs.
   bool hears_another_simulator(const Wait& wait);
+  /// For whom the world waits; empty: for nobody.
+  std::string waits_for() { return lockstep_.waits_for(); }
   /// Bad requests so far.
   std::int64_t bad_messages() const { return bad_messages_; }
 
@@ -94,6 +96,7 @@ class SimService {
   TimeMachine* time_machine_ = nullptr;
   bool muted_ = false;
   std::int64_t info_step_ = -1;  // of the last sim.info
+  std::int32_t probe_id_ = -1;   // of our question for another simulator
   std::vector<Line> lines_;      // the world's first
   sim::Bytes buffer_;
   std::int64_t bad_messages_ = 0;

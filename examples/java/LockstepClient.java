@@ -39,6 +39,7 @@ public class LockstepClient implements LCMSubscriber {
   private final LCM lcm = new LCM();
   private final String name;
   private final long session = 1 + (long) (Math.random() * (1L << 52));
+  private final int id = (int) (session & 0x7fffffff); // of the request
   private final LinkedBlockingQueue<Message> arrived = new LinkedBlockingQueue<>();
   private final List<String> receives = new ArrayList<>();
   private final Map<String, Consumer<byte[]>> handlers = new HashMap<>();
@@ -49,11 +50,16 @@ public class LockstepClient implements LCMSubscriber {
   private byte[][] messages;
   private long sequence; // of the last tick that was handled
   private int branch;
-  private sim_ack_t ack;
+  private sim_ack_t ack = new sim_ack_t(); // before the first tick it says no more than that we live
   private boolean joined, over;
 
   public LockstepClient(String name) throws IOException {
     this.name = name;
+    ack.client = name;
+    ack.session = session;
+    ack.listed = true;
+    ack.channel = new String[0];
+    ack.crc = new long[0];
     for (String channel : List.of("sim.control.reply", "sim.tick", "sim.resend", "sim.resent"))
       lcm.subscribe(channel.replace(".", "\\."), this);
   }
@@ -87,7 +93,7 @@ public class LockstepClient implements LCMSubscriber {
   public void run(double periodS, LongConsumer decide) throws IOException, InterruptedException {
     while (!joined) { // the simulator may start later than we
       sim_control_request_t request = new sim_control_request_t();
-      request.id = 1;
+      request.id = id;
       request.client = name;
       request.command = "join";
       request.value = periodS;
@@ -142,7 +148,9 @@ public class LockstepClient implements LCMSubscriber {
   }
 
   private void onReply(sim_control_reply_t reply) {
-    if (!reply.client.equals(name) || reply.id != 1) return;
+    if (!reply.client.equals(name) || reply.id != id) return;
+    // A reply to what could not be read has no session; others of our name have another one.
+    if (reply.session != session && (joined || reply.session != 0)) return;
     if (!reply.ok) throw new IllegalStateException(reply.text);
     joined = true;
   }
@@ -150,9 +158,9 @@ public class LockstepClient implements LCMSubscriber {
   private void onTick(sim_tick_t next) throws IOException {
     for (sim_due_t each : next.client) {
       if (!each.name.equals(name) || each.session != session) continue;
-      if (each.sequence == sequence && ack != null) {
-        lcm.publish("sim.ack", ack); // ours was lost
-      } else if (each.sequence > sequence && tick == null) {
+      if (each.sequence == sequence) {
+        lcm.publish("sim.ack", ack); // ours was lost, or somebody asks whether we live
+      } else if (each.sequence > (tick == null ? sequence : due.sequence)) { // takes the place of an older one
         if (next.branch != branch && sequence > 0) throw new IllegalStateException("the world went back in time");
         for (int channel : each.channel)
           if (channel < 0 || channel >= receives.size()) return; // not what we asked for

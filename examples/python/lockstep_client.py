@@ -24,11 +24,14 @@ class LockstepClient:
         self.lc = lcm.LCM()
         self.name, self.period_s, self.terms = name, period_s, terms
         self.session = random.SystemRandom().randrange(1, 1 << 53)
+        self.id = self.session & 0x7fffffff
         self.receives, self.handlers = [], []
         self.held = []  # [channel, CRC, payload] that came, and that no tick named yet
         self.tick = None  # that waits for messages
         self.sequence = self.branch = 0  # of the last tick that was handled
-        self.published, self.ack = [], None
+        self.published = []
+        self.ack = shoal.sim_ack_t()  # before the first tick it says no more than that we live
+        self.ack.client, self.ack.session, self.ack.listed = name, self.session, True
         self.joined = self.over = False
         self.decide = lambda utime: None
         self.protocol = {"sim.control.reply": self.on_reply, "sim.tick": self.on_tick,
@@ -64,7 +67,8 @@ class LockstepClient:
     def run(self):
         while not self.joined:  # the simulator may start later than we
             request = shoal.sim_control_request_t()
-            request.id, request.client, request.command, request.value = 1, self.name, "join", self.period_s
+            request.id, request.client, request.command = self.id, self.name, "join"
+            request.value = self.period_s
             request.text = f"{{session: {self.session}, receives: {self.receives}{self.terms}}}"
             self.lc.publish("sim.control", request.encode())
             again = time.monotonic() + 0.2
@@ -86,7 +90,9 @@ class LockstepClient:
 
     def on_reply(self, channel, data):
         reply = shoal.sim_control_reply_t.decode(data)
-        if reply.client == self.name and reply.id == 1:
+        # A reply to what could not be read has no session; others of our name have another one.
+        ours = reply.session == self.session or (reply.session == 0 and not self.joined)
+        if reply.client == self.name and reply.id == self.id and ours:
             if not reply.ok:  # refused, or later: the world went on without us
                 raise SystemExit(reply.text)
             self.joined = True
@@ -96,9 +102,9 @@ class LockstepClient:
         mine = [due for due in tick.client if due.name == self.name and due.session == self.session]
         if not mine:
             self.over = self.over or bool(tick.last)
-        elif mine[0].sequence == self.sequence and self.ack:
-            self.lc.publish("sim.ack", self.ack.encode())  # ours was lost
-        elif mine[0].sequence > self.sequence and not self.tick:
+        elif mine[0].sequence == self.sequence:
+            self.lc.publish("sim.ack", self.ack.encode())  # ours was lost, or somebody asks whether we live
+        elif mine[0].sequence > (self.due.sequence if self.tick else self.sequence):  # takes the place of an older one
             if tick.branch != self.branch and self.sequence > 0:
                 raise SystemExit("the world went back in time")
             if any(not 0 <= channel < len(self.receives) for channel in mine[0].channel):

@@ -1,6 +1,6 @@
 #include "sim/run/client_mail.hpp"
 
-#include <algorithm>
+#include <utility>
 
 #include "sim/bus/crc32.hpp"
 
@@ -9,7 +9,7 @@ namespace sim {
 void ClientMail::expect(const std::string& client, const std::vector<NamedMessage>& named) {
   std::vector<Expected>& list = expected_[client];
   list.clear();
-  for (const NamedMessage& each : named) list.push_back({each, gate_.reads(each.channel), false, {}});
+  for (const NamedMessage& each : named) list.push_back({each, gate_.reads(each.channel), false, false, {}});
   match(list);
 }
 
@@ -83,7 +83,7 @@ bool ClientMail::add(const std::string& client, std::int32_t place, const std::s
   if (expected.named.channel != channel || expected.named.crc != crc32(payload)) return false;
   if (!expected.wanted || expected.there) return true;
   expected.payload = payload;
-  expected.there = true;
+  expected.there = expected.sent_again = true;
   return true;
 }
 
@@ -93,70 +93,74 @@ void ClientMail::give_up(const std::string& client) {
   for (Expected& expected : found->second) expected.wanted = expected.there;
 }
 
-void ClientMail::drop(const std::vector<NamedMessage>& named) {
+void ClientMail::drop(const std::string& client, const std::vector<NamedMessage>& named) {
   for (const NamedMessage& each : named) {
     const auto found = by_key_.find({each.channel, each.crc});
-    if (found != by_key_.end())
-      take_out(strays_.find(*found->second.begin()));
-    else
-      remember(each);
+    const bool there = found != by_key_.end();
+    if (there) take_out(strays_.find(*found->second.begin()));
+    expect_twin(client, each, there ? repeat_windows : late_windows);
   }
 }
 
+void ClientMail::drop_unnamed() {
+  dropped_ += strays_.size();
+  forget_strays();
+}
+
 void ClientMail::clear() {
-  recent_.clear();
-  recent_order_.clear();
+  twins_.clear();
   for (const auto& [client, list] : expected_)
     for (const Expected& expected : list)
-      if (expected.wanted) remember(expected.named);
+      if (expected.wanted) expect_twin(client, expected.named, expected.there ? repeat_windows : late_windows);
   expected_.clear();
+  forget_strays();
+  gate_.waiting().clear();
+}
+
+void ClientMail::forget_strays() {
   strays_.clear();
   by_key_.clear();
   by_channel_.clear();
   stray_bytes_ = 0;
-  gate_.waiting().clear();
 }
 
-void ClientMail::remember(const NamedMessage& named) {
-  recent_order_.push_back({{named.channel, named.crc}, step_});
-  recent_.insert(recent_order_.back().key);
-  forget_old();
+void ClientMail::expect_twin(const std::string& client, const NamedMessage& named, std::int64_t windows) {
+  if (twins_.size() < most_twins) twins_.insert({{named.channel, named.crc}, {client, window_ + windows}});
 }
 
-void ClientMail::forget_old() {
-  while (!recent_order_.empty() &&
-         (recent_order_.size() > most_recent || recent_order_.front().step + recent_steps < step_)) {
-    recent_.erase(recent_.find(recent_order_.front().key));
-    recent_order_.pop_front();
-  }
+bool ClientMail::is_twin(const Stray& stray) {
+  const auto twin = twins_.find({stray.mail.channel, stray.crc});
+  if (twin == twins_.end()) return false;
+  ++repeated_[twin->second.client];
+  if (!first_repeated_) first_repeated_ = Repeated{twin->second.client, stray.mail.channel};
+  twins_.erase(twin);
+  return true;
+}
+
+void ClientMail::next_window() {
+  ++window_;
+  std::erase_if(twins_, [this](const auto& entry) { return entry.second.last_window < window_; });
+}
+
+std::optional<ClientMail::Repeated> ClientMail::take_repeated() {
+  return std::exchange(first_repeated_, std::nullopt);
 }
 
 void ClientMail::order(std::vector<MailGate::Mail>& mail) {
-  ++step_;
-  forget_old();
-  if (expected_.empty() && strays_.empty() && recent_order_.empty() && held_.empty())
-    return;  // nobody lists what it publishes
+  if (expected_.empty() && strays_.empty() && twins_.empty()) return;  // nobody lists what it publishes
   take(mail);
   for (auto& [client, list] : expected_) {
     match(list);
     for (Expected& expected : list) {
       if (!expected.there) continue;
-      remember(expected.named);
+      expect_twin(client, expected.named, expected.sent_again ? late_windows : repeat_windows);
       mail.push_back({std::move(expected.named.channel), std::move(expected.payload)});
     }
   }
   expected_.clear();
-  if (!held_.empty()) return;
-  for (auto& [arrival, stray] : strays_) {
-    if (recent_.contains({stray.mail.channel, stray.crc}))
-      ++repeated_;
-    else
-      mail.push_back(std::move(stray.mail));
-  }
-  strays_.clear();
-  by_key_.clear();
-  by_channel_.clear();
-  stray_bytes_ = 0;
+  for (auto& [arrival, stray] : strays_)
+    if (!is_twin(stray)) mail.push_back(std::move(stray.mail));
+  forget_strays();
 }
 
 }  // namespace sim

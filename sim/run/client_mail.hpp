@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -14,8 +14,11 @@
 namespace sim {
 
 /// Sorts the mail at a gate, so that it does not depend on how the network delivered it: first what clients say they
-/// published, by the name of the client and in their order; then what anybody else sent.  What came a second time is
-/// dropped.
+/// published, by the name of the client and in their order; then what anybody else sent.
+///
+/// Who sent a message cannot be seen.  So of mail that nobody names one message is dropped for each message of a client
+/// that has the same channel and bytes: within repeat_windows, as the network may have repeated it, and within
+/// late_windows when the client's own is still on its way.
 class ClientMail {
  public:
   /// `gate` must outlive this.
@@ -37,29 +40,35 @@ class ClientMail {
   /// Forgets what has come.  What clients have named and is still on its way is dropped when it comes.
   void clear();
   /// What a client named for a tick that counts no more: dropped, also when it comes later.
-  void drop(const std::vector<NamedMessage>& named);
-  /// Until release() nobody's mail is admitted that no client has named: it may be this client's, of a tick that counts
+  void drop(const std::string& client, const std::vector<NamedMessage>& named);
+  /// Drops what has come and nobody named: a client that does not name what it publishes did so for a tick that counts
   /// no more.
-  void hold(const std::string& client) { held_.insert(client); }
-  void release(const std::string& client) { held_.erase(client); }
-  /// Messages that came twice.  Nothing is lost with them.
-  std::uint64_t repeated() const { return repeated_; }
+  void drop_unnamed();
+  /// Begins another window; the caller does so after equal times.
+  void next_window();
+  /// A message that was dropped as one of this client's that came twice.
+  struct Repeated {
+    std::string client, channel;
+  };
+  /// The first since the call before, and how many by client in all.
+  std::optional<Repeated> take_repeated();
+  const std::map<std::string, std::uint64_t, std::less<>>& repeated() const { return repeated_; }
   /// Messages that had to make room before they were admitted.
   std::uint64_t dropped() const { return dropped_; }
 
   /// Unnamed messages that wait: of one channel, and bytes of all.
   static constexpr std::size_t most_of_channel = 10'000;
   static constexpr std::size_t most_bytes = 256'000'000;
-  /// So long what was admitted from a client is known, to drop what the network repeats.
-  static constexpr std::int64_t recent_steps = 200;
+  static constexpr std::int64_t repeat_windows = 1, late_windows = 10;
 
  private:
-  static constexpr std::size_t most_recent = 20'000;
+  static constexpr std::size_t most_twins = 50'000;
 
   struct Expected {
     NamedMessage named;
     bool wanted = false;  ///< somebody reads the channel
     bool there = false;
+    bool sent_again = false;  ///< its first copy may be on its way
     Bytes payload;
   };
   struct Stray {
@@ -67,16 +76,18 @@ class ClientMail {
     std::uint32_t crc;
   };
   using Key = std::pair<std::string, std::uint32_t>;  // channel and CRC-32
-  struct Recent {
-    Key key;
-    std::int64_t step;
+  /// What to drop once, when it comes.
+  struct Twin {
+    std::string client;
+    std::int64_t last_window;
   };
   using Strays = std::map<std::uint64_t, Stray>;  // by arrival
 
   void take(std::vector<MailGate::Mail>& mail);
   void match(std::vector<Expected>& list);
-  void remember(const NamedMessage& named);
-  void forget_old();
+  void expect_twin(const std::string& client, const NamedMessage& named, std::int64_t windows);
+  bool is_twin(const Stray& stray);
+  void forget_strays();
   /// Takes it out.
   Stray take_out(Strays::iterator stray);
   void drop_oldest(std::uint64_t arrival);
@@ -88,11 +99,11 @@ class ClientMail {
   std::map<std::string, std::set<std::uint64_t>, std::less<>> by_channel_;
   std::size_t stray_bytes_ = 0;
   std::uint64_t arrivals_ = 0;
-  std::multiset<Key> recent_;  // admitted from clients a short time ago
-  std::deque<Recent> recent_order_;
-  std::set<std::string> held_;
-  std::int64_t step_ = 0;  // counts what order() has sorted
-  std::uint64_t repeated_ = 0, dropped_ = 0;
+  std::multimap<Key, Twin> twins_;
+  std::int64_t window_ = 0;
+  std::map<std::string, std::uint64_t, std::less<>> repeated_;
+  std::optional<Repeated> first_repeated_;
+  std::uint64_t dropped_ = 0;
 };
 
 }  // namespace sim

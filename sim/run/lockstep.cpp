@@ -47,7 +47,12 @@ OnTimeout LockstepTerms::policy() const {
 }
 
 LockstepTerms read_lockstep_terms(const std::string& text, const LockstepTerms& defaults) {
-  return terms_in(text, "join", defaults);
+  LockstepTerms terms = terms_in(text, "join", defaults);
+  if (defaults.agreed) {
+    terms.on_timeout = defaults.on_timeout;
+    terms.timeout_s = std::min(terms.timeout_s, defaults.timeout_s);
+  }
+  return terms;
 }
 
 void LeaveTerms::read(ParamReader& in) {
@@ -57,6 +62,14 @@ void LeaveTerms::read(ParamReader& in) {
 
 LeaveTerms read_leave_terms(const std::string& text) {
   return terms_in(text, "leave", LeaveTerms{});
+}
+
+std::int64_t session_in(const std::string& text, bool of_join) {
+  try {
+    return of_join ? read_lockstep_terms(text, {}).session : read_leave_terms(text).session;
+  } catch (const std::runtime_error&) {
+    return 0;
+  }
 }
 
 void Lockstep::join(const std::string& client, const LockstepTerms& terms, std::int64_t period_steps, std::int64_t step,
@@ -145,6 +158,7 @@ void Lockstep::close_list(LockstepMember& member, std::int64_t step) {
   ++member.sequence;
   member.asked = step;
   member.answered = false;
+  member.abandoned = false;
   member.list.clear();
   member.list.swap(member.pending);
   member.pending_bytes = 0;
@@ -152,7 +166,7 @@ void Lockstep::close_list(LockstepMember& member, std::int64_t step) {
 
 void Lockstep::ask(std::int64_t step) {
   for (auto& [name, member] : members_)
-    if (member.due(step) && member.asked < step) close_list(member, step);
+    if (member.due(step) && member.asked < step && !member.abandoned) close_list(member, step);
 }
 
 void Lockstep::ask_all(std::int64_t step) {
@@ -166,14 +180,28 @@ std::vector<LockstepMember*> Lockstep::missing(std::int64_t step) {
   return late;
 }
 
+std::vector<LockstepMember*> Lockstep::abandoned() {
+  std::vector<LockstepMember*> members;
+  for (auto& [name, member] : members_)
+    if (member.abandoned) members.push_back(&member);
+  return members;
+}
+
 Lockstep::Verdict Lockstep::acknowledge(const LockstepAck& ack, std::int64_t step, std::string& why) {
   const std::string who = "client '" + printable(shortened(ack.client)) + "'";
   LockstepMember* member = find(ack.client);
   if (member != nullptr && member->terms.session == ack.session) {
-    const bool abandoned = ack.session != 0 ? member->left_open > 0 && ack.sequence == member->left_open
-                                            : ack.step == member->left_step && ack.step != member->asked;
-    if (abandoned) return Verdict::abandoned;
-    if (ack.session != 0 && ack.sequence < member->sequence) return Verdict::repeated;
+    const bool left = ack.session != 0 ? ack.sequence == member->left_sequence : ack.step == member->left_step;
+    if (left && member->abandoned && ack.step == member->left_step) {
+      member->abandoned = false;
+      member->answered = true;
+      member->asked = -1;
+      member->list.clear();
+      return Verdict::abandoned;
+    }
+    if (left && ack.step != member->asked) return Verdict::repeated;
+    // With sequence 0 it says that it lives, before its first tick.
+    if (ack.session != 0 && (ack.sequence < member->sequence || ack.sequence == 0)) return Verdict::repeated;
   }
   if (ack.step > step)
     why = who + " acknowledges step " + std::to_string(ack.step) + ", which is still to come";
@@ -224,13 +252,15 @@ void Lockstep::rewound(std::int64_t step) {
     // The phase stays, also for one that joined later than this.
     if (member.joined > step)
       member.joined -= (member.joined - step + member.period_steps - 1) / member.period_steps * member.period_steps;
-    if (!member.answered) {
-      member.left_open = member.sequence;
+    if (!member.answered && !member.abandoned) {
+      member.abandoned = true;
+      member.left_sequence = member.sequence;
       member.left_step = member.asked;
     }
-    member.asked = -1;
-    member.answered = true;
-    member.list.clear();
+    if (!member.abandoned) {
+      member.asked = -1;
+      member.list.clear();
+    }
     member.pending = std::exchange(member.again, {});
     member.pending_bytes = std::exchange(member.again_bytes, 0);
     member.too_much = false;

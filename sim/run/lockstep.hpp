@@ -35,7 +35,8 @@ struct LockstepTerms {
   OnTimeout policy() const;
 };
 
-/// Reads the `text` of a join; what it does not say is as in `defaults`.  Throws ConfigError.
+/// Reads the `text` of a join; what it does not say is as in `defaults`.  Where these are `agreed` the client cannot be
+/// waited for longer: their `on_timeout` counts, and their `timeout_s` is the longest.  Throws ConfigError.
 LockstepTerms read_lockstep_terms(const std::string& text, const LockstepTerms& defaults);
 
 /// The `text` of `leave`, a YAML map.
@@ -47,6 +48,9 @@ struct LeaveTerms {
 
 /// Throws ConfigError.
 LeaveTerms read_leave_terms(const std::string& text);
+
+/// Of the `text` of a join or leave; 0: it names none, or cannot be read.
+std::int64_t session_in(const std::string& text, bool of_join);
 
 /// A message that a client must have.
 struct PostedMessage {
@@ -87,9 +91,11 @@ struct LockstepMember {
   std::size_t pending_bytes = 0;
   std::vector<PostedMessage> again;  ///< pending at the step that the world goes back to
   std::size_t again_bytes = 0;
-  bool too_much = false;        ///< to keep: what it must have is lost
-  std::int64_t left_open = 0;   ///< sequence of its tick that was open when the world went back; 0: none
-  std::int64_t left_step = -1;  ///< step of that
+  bool too_much = false;            ///< to keep: what it must have is lost
+  bool abandoned = false;           ///< its last tick was open when the world went back, and still is
+  std::int64_t left_step = -1;      ///< of the last such tick
+  std::int32_t left_branch = 0;     ///< of that; kept by the caller
+  std::int64_t left_sequence = -1;  ///< of that
   bool due(std::int64_t step) const { return step >= joined && (step - joined) % period_steps == 0; }
 };
 
@@ -123,6 +129,9 @@ class Lockstep {
   void ask_all(std::int64_t step);
   /// Those due at this step that have not answered, in the order of their names.
   std::vector<LockstepMember*> missing(std::int64_t step);
+  /// Those whose tick was open when the world went back.  Nobody is to be asked for a new one before they have
+  /// answered: only then it is known what they published for the branch that was left.
+  std::vector<LockstepMember*> abandoned();
 
   /// Abandoned: it answers a tick that was open when the world went back.
   enum class Verdict { accepted, repeated, refused, abandoned };
@@ -137,7 +146,8 @@ class Lockstep {
   /// The step that the world should be simulated again from, so that the lists of `step` are whole: the last one before
   /// it at which each client was due.
   std::int64_t needed_from(std::int64_t step) const;
-  /// The world went back to `step`: lists hold what was posted again, and all are asked by their periods from there.
+  /// The world went back to `step`: lists hold what was posted again, and all are asked by their periods from there, when
+  /// those who have an open tick have answered it.
   void rewound(std::int64_t step);
 
  private:

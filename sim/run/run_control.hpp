@@ -15,7 +15,7 @@ struct RunControl {
   double speed = 0;                 ///< times real time; 0: as fast as possible
   std::int64_t single_steps = 0;    ///< to take although paused
   std::int64_t changes = 0;         ///< counts changes of paused and speed, so that pacing starts anew
-  std::int64_t pause_requests = 0;  ///< counts those of people and programs, whether to pause or to go on
+  std::int64_t pause_requests = 0;  ///< counts those of people and programs: to pause, to go on, to step
   std::optional<Time> until;        ///< the run pauses at the first step at or after this
   std::string until_event;          ///< the run pauses when this event has fired; empty: none
   std::int64_t until_firings = 0;   ///< how often it had fired before
@@ -30,6 +30,11 @@ struct RunControl {
     ++pause_requests;
     single_steps = 0;
     ++changes;
+  }
+  void add_steps(std::int64_t steps) {
+    paused = true;
+    single_steps += steps;
+    ++pause_requests;
   }
   void set_speed(double times) {
     speed = times;

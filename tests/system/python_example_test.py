@@ -67,6 +67,45 @@ class Example(unittest.TestCase):
                                   capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)
 
+    def test_python_client_ignores_replies_to_another_of_its_name(self):
+        import lockstep_client
+        import shoal
+        client = lockstep_client.Pilot("rover1").client
+        refusal = shoal.sim_control_reply_t()
+        refusal.id, refusal.client, refusal.session, refusal.ok = client.id, "pilot", client.session + 1, False
+        client.on_reply("sim.control.reply", refusal.encode())
+        self.assertFalse(client.joined)
+        grant = shoal.sim_control_reply_t()
+        grant.id, grant.client, grant.session, grant.ok = client.id, "pilot", client.session, True
+        client.on_reply("sim.control.reply", grant.encode())
+        self.assertTrue(client.joined)
+        client.on_reply("sim.control.reply", refusal.encode())
+        refusal.session = client.session
+        with self.assertRaises(SystemExit):
+            client.on_reply("sim.control.reply", refusal.encode())
+
+    def test_python_client_leaves_a_tick_that_lacks_messages_for_a_later_one(self):
+        import lockstep_client
+        import shoal
+        client = lockstep_client.Pilot("rover1").client
+
+        def tick(sequence, crcs):
+            due = shoal.sim_due_t()
+            due.name, due.session, due.sequence = "pilot", client.session, sequence
+            due.count, due.channel, due.crc = len(crcs), [0] * len(crcs), crcs
+            message = shoal.sim_tick_t()
+            message.count, message.client = 1, [due]
+            client.on_tick("sim.tick", message.encode())
+
+        tick(1, [12345])
+        self.assertFalse(client.has_all())
+        tick(2, [])
+        self.assertTrue(client.has_all())
+        client.handle()
+        self.assertEqual(client.ack.sequence, 2)
+        tick(1, [12345])  # late
+        self.assertIsNone(client.tick)
+
     def test_python_client_ignores_what_is_no_message(self):
         import lockstep_client
         client = lockstep_client.Pilot("rover1").client

@@ -90,6 +90,7 @@ std::string Summary::to_json() const {
                                {"repeated_ticks", client.repeated_ticks},
                                {"messages_sent_again", client.messages_sent_again},
                                {"messages_asked_for", client.messages_asked_for},
+                               {"messages_repeated", client.messages_repeated},
                                {"timeouts", client.timeouts},
                                {"ended", client.ended.empty() ? "with the run" : client.ended}});
   for (const auto& [vehicle, record] : zones) {

@@ -53,8 +53,7 @@ void RunKeys::obey(char key) {
     case 'n':
     case '.':
     case 'N':
-      control_.paused = true;
-      control_.single_steps += key == 'N' ? 10 : 1;
+      control_.add_steps(key == 'N' ? 10 : 1);
       return;
     case '+':
       return change_speed(2);

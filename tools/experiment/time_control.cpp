@@ -150,7 +150,10 @@ std::optional<std::string> TimeControl::obey(const std::string& command, const s
   if (command == "restore") return restore(text, value == 1);
   if (command == "rewind") return rewind(value, run_on());
   if (command == "until") return text.empty() ? run_until(value) : run_until_event(text);
-  if (command == "where") return place() + what_is_kept();
+  if (command == "where") {
+    const std::string waits = service_.waits_for();
+    return place() + (waits.empty() ? "" : ", " + waits) + what_is_kept();
+  }
   if (command == "pause" || command == "resume") {
     control_.set_paused(command == "pause");
     return place();
@@ -163,8 +166,7 @@ std::optional<std::string> TimeControl::obey(const std::string& command, const s
 std::string TimeControl::step(double count) {
   if (!(count >= 1 && count <= 1e9 && count == std::floor(count)))
     throw std::runtime_error(fmt::format("'step' needs a whole number of steps from 1 to 1e9, got {}", count));
-  control_.paused = true;
-  control_.single_steps += static_cast<std::int64_t>(count);
+  control_.add_steps(static_cast<std::int64_t>(count));
   return place() + fmt::format(", takes {} step{}", control_.single_steps, control_.single_steps == 1 ? "" : "s");
 }
 

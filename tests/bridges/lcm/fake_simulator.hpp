@@ -66,6 +66,7 @@ class FakeSimulator {
     shoal::sim_control_reply_t reply{};
     reply.id = request.id;
     reply.client = request.client;
+    reply.session = session_of(request);
     reply.ok = ok ? 1 : 0;
     reply.text = text;
     send("sim.control.reply", reply);
@@ -84,21 +85,28 @@ class FakeSimulator {
   }
   void repeat_tick() { send("sim.tick", last_tick_); }
   std::int64_t session(const std::string& client) const { return members_.at(client).due.session; }
+  std::int32_t join_id(const std::string& client) const { return members_.at(client).join_id; }
   std::vector<std::string> receives(const std::string& client) const { return members_.at(client).receives; }
 
  private:
   struct Member {
     std::vector<std::string> receives;
     shoal::sim_due_t due;
+    std::int32_t join_id = 0;  ///< number of the request
   };
 
-  void join(const shoal::sim_control_request_t& request) {
+  static std::int64_t session_of(const shoal::sim_control_request_t& request) {
     std::smatch match;
     const bool has_session = std::regex_search(request.text, match, std::regex("session: (\\d+)"));
-    const std::int64_t session = has_session ? std::stoll(match[1]) : 0;
+    return has_session ? std::stoll(match[1]) : 0;
+  }
+
+  void join(const shoal::sim_control_request_t& request) {
+    const std::int64_t session = session_of(request);
     Member& member = members_[request.client];
     if (member.due.session != session) member = {};
     member.receives.clear();
+    member.join_id = request.id;
     member.due.name = request.client;
     member.due.session = session;
     const std::regex channel("\"([^\"]*)\"");

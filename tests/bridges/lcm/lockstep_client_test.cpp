@@ -59,6 +59,79 @@ TEST(LockstepClient, RunsInStepWithTheSimulator) {
   EXPECT_EQ(client.end(), LockstepClient::End::last_tick);
 }
 
+TEST(LockstepClient, IsNotToldOfWhatAnotherClientOfItsNameIs) {
+  FakeSimulator simulator;
+  LockstepClient client(own_url(1), "pilot");
+  std::thread thread([&] {
+    const auto request = simulator.await_request();
+    shoal::sim_control_reply_t of_another{};
+    of_another.id = request.id;
+    of_another.client = "pilot";
+    of_another.session = 1234;
+    of_another.text = "there is one already";
+    simulator.send("sim.control.reply", of_another);
+    simulator.reply(request, true, "");
+    simulator.tick(0, {"pilot"});
+    EXPECT_EQ(simulator.await_ack().step, 0);
+    simulator.send("sim.control.reply", of_another);
+    of_another.session = 0;
+    simulator.send("sim.control.reply", of_another);
+    simulator.tick(1, {"pilot"}, true);
+    EXPECT_EQ(simulator.await_ack().step, 1);
+  });
+  client.join(0.1, 10s);
+  client.set_silence_limit(10s);
+  shoal::sim_tick_t tick;
+  ASSERT_TRUE(client.next_tick(tick));
+  client.acknowledge(tick);
+  EXPECT_FALSE(client.next_tick(tick));
+  thread.join();
+  EXPECT_EQ(client.end(), LockstepClient::End::last_tick);
+}
+
+TEST(LockstepClient, AsksWithANumberThatNobodyElseHas) {
+  FakeSimulator simulator;
+  std::vector<std::int32_t> ids;
+  for (int i = 0; i < 3; ++i) {
+    LockstepClient client(own_url(1), "pilot");
+    std::thread thread([&] {
+      const auto request = simulator.await_request();
+      ids.push_back(request.id);
+      simulator.reply(request, true, "");
+    });
+    client.join(0.1, 10s);
+    thread.join();
+  }
+  // In one process, so the number of the process does not make them differ.  They are drawn out of a thousand millions.
+  EXPECT_NE(ids.at(0), ids.at(1));
+  EXPECT_NE(ids.at(1), ids.at(2));
+}
+
+TEST(LockstepClient, SaysThatItLivesBeforeItsFirstTick) {
+  FakeSimulator simulator;
+  LockstepClient client(own_url(1), "pilot");
+  std::thread thread([&] {
+    simulator.reply(simulator.await_request(), true, "");
+    shoal::sim_tick_t question{};
+    question.step = -1;
+    shoal::sim_due_t& due = question.client.emplace_back();
+    due.name = "pilot";
+    due.session = simulator.session("pilot");
+    question.count = 1;
+    simulator.send("sim.tick", question);
+    const auto ack = simulator.await_ack();
+    EXPECT_EQ(ack.sequence, 0);
+    EXPECT_EQ(ack.count, 0);
+    simulator.tick(1, {"pilot"}, true);
+    EXPECT_EQ(simulator.await_ack().sequence, 1);
+  });
+  client.join(0.1, 10s);
+  client.set_silence_limit(10s);
+  shoal::sim_tick_t tick;
+  EXPECT_FALSE(client.next_tick(tick));
+  thread.join();
+}
+
 TEST(LockstepClient, EndsWithTheRunThoughTheLastTickNamesNobody) {
   FakeSimulator simulator;
   LockstepClient client(own_url(1), "pilot");
@@ -338,7 +411,8 @@ TEST(LockstepClient, SaysThatTheWorldWentOnWithoutIt) {
   reply.client = "pilot";
   reply.ok = 0;
   reply.text = "too late; join again";
-  reply.id = static_cast<std::int32_t>(getpid() % 1'000'000) * 1000 + 1;
+  reply.id = test.simulator.join_id("pilot");
+  reply.session = test.simulator.session("pilot");
   test.simulator.send("sim.control.reply", reply);
   EXPECT_FALSE(test.client.next_tick(test.tick));
   EXPECT_EQ(test.client.end(), LockstepClient::End::dropped);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "bridges/lcm/resend.hpp"
 #include "shoal/sim_ack_t.hpp"
@@ -25,23 +26,27 @@ sim::Bytes bytes_of(const std::string& text) {
 
 /// A world with one box.
 struct Service : lcm_test::ServedWorld {
-  Service()
-      : ServedWorld(
-            "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nlockstep: {timeout_s: 0.02}\nvehicles: [{name: a, "
-            "model: {shoal: 1, bodies: [{name: b, parts: [{shape: box, mass_kg: 1}]}]}}]\n") {}
+  explicit Service(const std::string& terms = "{timeout_s: 0.02}")
+      : ServedWorld("shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nlockstep: " + terms +
+                    "\nvehicles: [{name: a, model: {shoal: 1, bodies: [{name: b, parts: [{shape: box, mass_kg: "
+                    "1}]}]}}]\n") {}
 
   shoal::sim_control_reply_t join(const std::string& client, const std::string& text = "", double period_s = 0.01) {
     return ask("join", period_s, text, client);
   }
-  /// A request that is not answered yet.
-  bool is_undecided(const std::string& command, const std::string& client, const std::string& text) {
-    replies.take_all();
+  void send_request(const std::string& command, double value, const std::string& client = "",
+                    const std::string& text = "") {
     shoal::sim_control_request_t request{};
     request.client = client;
     request.command = command;
-    request.value = 0.01;
+    request.value = value;
     request.text = text;
     test.send("sim.control", request);
+  }
+  /// A request that is not answered yet.
+  bool is_undecided(const std::string& command, const std::string& client, const std::string& text) {
+    replies.take_all();
+    send_request(command, 0.01, client, text);
     service.handle_requests();
     return replies.take_all().empty();
   }
@@ -345,6 +350,142 @@ TEST(LockstepService, ALateClientPausesTheWorldUntilItAnswers) {
   EXPECT_FALSE(s.lockstep.has("pilot"));
 }
 
+TEST(LockstepService, AStepWhileALateClientPausesTheWorldDoesNotDropIt) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, on_timeout: pause, timeout_s: 0.001}").ok);
+  int waited = 0;
+  s.synchronize([&] {
+    if (!s.control.paused) return;
+    if (++waited == 1) s.send_request("step", 2);
+    if (waited == 3) s.acknowledge(0, "pilot", 5, 1);
+  });
+  EXPECT_EQ(waited, 3);
+  EXPECT_TRUE(s.lockstep.has("pilot"));
+  EXPECT_TRUE(s.control.paused);
+  EXPECT_EQ(s.control.single_steps, 2);
+}
+
+TEST(LockstepService, TimeOutsRestWhileSomebodyHasPausedTheWorld) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, on_timeout: continue, timeout_s: 0.05}").ok);
+  const auto begin = std::chrono::steady_clock::now();
+  bool answered = false;
+  s.synchronize([&] {
+    s.control.set_paused(true);
+    if (std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(200)) return;  // four time-outs
+    s.acknowledge(0, "pilot", 5, 1);
+    answered = true;
+  });
+  EXPECT_TRUE(answered);
+  EXPECT_TRUE(s.lockstep.has("pilot"));
+  s.control.set_paused(false);
+  s.test.world.step();
+  s.synchronize();
+  EXPECT_FALSE(s.lockstep.has("pilot"));
+}
+
+TEST(LockstepService, AClientCannotMakeAWorldWaitLongerThanItsFileSays) {
+  Service s("{on_timeout: continue, timeout_s: 0.02}");
+  ASSERT_TRUE(s.join("stranger", "{session: 5, on_timeout: wait, timeout_s: 1000}").ok);
+  bool named = false;
+  s.synchronize([&] {
+    if (std::exchange(named, true)) return;
+    EXPECT_THAT(s.service.waits_for(), testing::MatchesRegex("waits [0-9.]+ s for 'stranger'"));
+  });
+  EXPECT_TRUE(named);
+  EXPECT_FALSE(s.lockstep.has("stranger"));
+  EXPECT_EQ(s.service.waits_for(), "");
+}
+
+TEST(LockstepService, AJoinThatComesLateDoesNotTakeInAgainWhoHasLeft) {
+  Service s;
+  ASSERT_TRUE(s.join("guest", "{session: 77}").ok);
+  ASSERT_TRUE(s.ask("leave", 0, "", "guest").ok);
+  EXPECT_THAT(s.join("guest", "{session: 77}").text, HasSubstr("the session 77 of client 'guest' is over (left)"));
+  EXPECT_FALSE(s.lockstep.has("guest"));
+  EXPECT_TRUE(s.join("guest", "{session: 78}").ok);
+  EXPECT_FALSE(s.join("guest", "{session: 77}").ok);
+  EXPECT_TRUE(s.lockstep.has("guest"));
+}
+
+TEST(LockstepService, AReplyNamesTheSessionThatItIsFor) {
+  Service s;
+  EXPECT_EQ(s.join("pilot", "{session: 5, timeout_s: 60}").session, 5);
+  s.synchronize([&] {
+    EXPECT_TRUE(s.is_undecided("join", "pilot", "{session: 6}"));
+    s.acknowledge(0, "pilot", 5, 1);
+  });
+  const auto refused = s.join("pilot", "{session: 6}");
+  EXPECT_FALSE(refused.ok);
+  EXPECT_EQ(refused.session, 6);
+  EXPECT_EQ(s.ask("leave", 0, "{session: 5}", "pilot").session, 5);
+  EXPECT_EQ(s.ask("pause", 0, "", "pilot").session, 0);
+}
+
+TEST(LockstepService, WhileTheWorldIsPausedASecondClientIsRefusedWhenTheFirstLives) {
+  Service s;
+  for (const bool asked_before : {false, true}) {
+    const std::string name = asked_before ? "asked" : "not asked";
+    ASSERT_TRUE(s.join(name, "{session: 5, timeout_s: 60}", 100).ok);
+    if (asked_before) s.synchronize([&] { s.acknowledge(0, name, 5, 1); });
+    s.control.paused = true;
+    s.ticks.take_all();
+    EXPECT_TRUE(s.is_undecided("join", name, "{session: 6}"));
+    const auto tick = s.ticks.last();
+    ASSERT_EQ(tick.client.size(), 1u);
+    EXPECT_EQ(tick.client[0].session, 5);
+    EXPECT_EQ(tick.client[0].sequence, asked_before ? 1 : 0);
+    s.acknowledge(tick.step, name, 5, tick.client[0].sequence);
+    EXPECT_THAT(s.join(name, "{session: 6}").text, HasSubstr("takes part, and answers"));
+    EXPECT_EQ(s.lockstep.bad_messages(), 0);
+    s.control.paused = false;
+    ASSERT_TRUE(s.ask("leave", 0, "", name).ok);
+  }
+}
+
+TEST(LockstepService, WhileTheWorldIsPausedASecondClientTakesThePlaceOfAFirstThatIsSilent) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
+  s.synchronize([&] { s.acknowledge(0, "pilot", 5, 1); });
+  s.acknowledge(0, "pilot", 5, 1);  // sent before it crashed, and read only now
+  s.control.paused = true;
+  const auto begin = std::chrono::steady_clock::now();
+  while (s.is_undecided("join", "pilot", "{session: 6}"))
+    ASSERT_LT(std::chrono::steady_clock::now() - begin, std::chrono::minutes(1));
+  EXPECT_GT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+  s.control.paused = false;
+  s.test.world.step();
+  s.synchronize([&] { s.acknowledge(1, "pilot", 6, 1); });
+  EXPECT_EQ(s.lockstep.bad_messages(), 0);
+}
+
+TEST(LockstepService, AnOperatorsMessageThatEqualsOneOfAClientIsAdmitted) {
+  Service s;
+  const auto reader = s.gate.open_mailbox("cmd");
+  ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
+  s.synchronize([&] {
+    s.test.bus.publish("cmd", bytes_of("stop"), sim::Time(0));
+    s.acknowledge(0, "pilot", 5, 1, {{"cmd", "stop"}});
+  });
+  EXPECT_EQ(s.admitted(), "stop");
+  // The network may have repeated the first; the second is somebody else's.
+  for (int i = 0; i < 2; ++i) s.test.bus.publish("cmd", bytes_of("stop"), sim::Time(0));
+  EXPECT_EQ(s.admitted(), "stop");
+  EXPECT_EQ(s.lockstep.summaries().at(0).messages_repeated, 1);
+  // After a moment it can only be somebody else's, also when the world does not step meanwhile.
+  s.test.world.step();
+  s.synchronize([&] {
+    s.test.bus.publish("cmd", bytes_of("stop"), sim::Time(0));
+    s.acknowledge(1, "pilot", 5, 2, {{"cmd", "stop"}});
+  });
+  EXPECT_EQ(s.admitted(), "stop");
+  const auto begin = std::chrono::steady_clock::now();
+  while (std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(400)) s.service.handle_requests();
+  s.test.bus.publish("cmd", bytes_of("stop"), sim::Time(0));
+  EXPECT_EQ(s.admitted(), "stop");
+  EXPECT_EQ(s.lockstep.summaries().at(0).messages_repeated, 1);
+}
+
 TEST(LockstepService, AFloodOfJoinsLeavesTheClientsThatAreThere) {
   Service s;
   for (int i = 0; i < 1000; ++i) ASSERT_TRUE(s.join("client" + std::to_string(i), "", 100).ok);
@@ -366,13 +507,13 @@ TEST(LockstepService, KeepsThePauseThatSomebodyAskedForWhileAClientWasLate) {
 TEST(LockstepService, KeepsThePauseOfARewindWhileAClientWasLate) {
   Service s;
   ASSERT_TRUE(s.join("pilot", "{session: 5, on_timeout: pause, timeout_s: 0.001}").ok);
-  bool went_back = false;
+  int sequence = 0;
   s.synchronize([&] {
     if (!s.control.paused) return;
-    if (!went_back) s.lockstep.set_branch(1);
-    went_back = true;
-    s.acknowledge(0, "pilot", 5, 2);
+    if (sequence == 0) s.lockstep.set_branch(1);
+    s.acknowledge(0, "pilot", 5, ++sequence);  // that of the branch that was left, then the new one
   });
+  EXPECT_EQ(sequence, 2);
   EXPECT_TRUE(s.control.paused);
 }
 
@@ -392,14 +533,31 @@ TEST(LockstepService, WhatWasPublishedForATickBeforeARewindIsDroppedWithoutCompl
                std::logic_error);
   s.test.world.restore(before);
   s.lockstep.set_branch(1);
+  s.lockstep.set_branch(2);  // while it thinks
   s.test.bus.publish("cmd", bytes_of("old"), sim::Time(0));
-  s.synchronize();
-  EXPECT_EQ(s.admitted(), "");  // may be of the tick that was open
-  s.acknowledge(2, "pilot", 5, 2, {{"cmd", "old"}, {"cmd", "late"}});
-  s.synchronize();
+  s.ticks.take_all();
+  int ticks = 0;
+  s.synchronize([&] {
+    for (const auto& tick : s.ticks.take_all()) {
+      EXPECT_EQ(tick.step, 2);
+      EXPECT_EQ(tick.branch, 0);  // it is the tick of then, until it is answered
+      EXPECT_EQ(tick.client.at(0).sequence, 2);
+      // The first answer is lost.
+      if (++ticks == 2) s.acknowledge(2, "pilot", 5, 2, {{"cmd", "old"}, {"cmd", "late"}});
+    }
+  });
+  EXPECT_EQ(ticks, 2);
   s.test.bus.publish("cmd", bytes_of("late"), sim::Time(0));
   s.test.bus.publish("cmd", bytes_of("stranger's"), sim::Time(0));
   EXPECT_EQ(s.admitted(), "stranger's");
+  s.test.world.step();
+  s.synchronize([&] {
+    const auto tick = s.ticks.last();
+    EXPECT_EQ(tick.step, 2);
+    EXPECT_EQ(tick.branch, 2);
+    EXPECT_EQ(tick.client.at(0).sequence, 3);
+    s.acknowledge(2, "pilot", 5, 3);
+  });
   EXPECT_EQ(s.lockstep.bad_messages(), 0);
 }
 

@@ -52,6 +52,20 @@ TEST(SimService, HearsAnotherSimulatorOnItsBus) {
   }));
 }
 
+TEST(SimService, HearsAnotherSimulatorThatIsPausedAndPublishesNothing) {
+  Service s;
+  s.control.paused = true;
+  sim::RunControl control;
+  sim::MailGate gate{s.test.bus};
+  bridges::LockstepService lockstep{s.test.world, control};
+  bridges::SimService starting{s.test.bus, s.test.bus, s.test.world, control, lockstep, {"{}", "test"}};
+  EXPECT_TRUE(starting.hears_another_simulator([&](std::chrono::milliseconds) { s.service.handle_requests(); }));
+  // Its own question is no request to itself.
+  s.replies.take_all();
+  starting.handle_requests();
+  EXPECT_TRUE(s.replies.take_all().empty());
+}
+
 TEST(SimService, PublishesTheStateAtItsRate) {
   Service s;
   test::Listener<shoal::sim_state_t> states(s.test, "sim.state");

@@ -60,15 +60,20 @@ TEST(ClientMail, KnowsWhatIsMissingAndTakesItWhenItIsSentAgain) {
   EXPECT_EQ(test.admitted(), "12");
 }
 
-TEST(ClientMail, DropsWhatComesASecondTime) {
+TEST(ClientMail, DropsWhatComesASecondTimeOnce) {
   Sorted test;
   for (const char* text : {"1", "1", "s"}) test.arrive(text);
   test.mail.expect("a", {named("cmd", "1")});
   test.mail.collect();
   EXPECT_EQ(test.admitted(), "1s");
-  test.arrive("1");  // late
-  EXPECT_EQ(test.admitted(), "");
-  EXPECT_EQ(test.mail.repeated(), 2u);
+  test.arrive("1");  // somebody else's
+  EXPECT_EQ(test.admitted(), "1");
+  const auto repeated = test.mail.take_repeated();
+  ASSERT_TRUE(repeated);
+  EXPECT_EQ(repeated->client, "a");
+  EXPECT_EQ(repeated->channel, "cmd");
+  EXPECT_FALSE(test.mail.take_repeated());
+  EXPECT_EQ(test.mail.repeated().at("a"), 1u);
   // Said twice, it counts twice.
   test.arrive("1");
   test.mail.expect("a", {named("cmd", "1"), named("cmd", "1")});
@@ -77,14 +82,28 @@ TEST(ClientMail, DropsWhatComesASecondTime) {
   EXPECT_EQ(test.admitted(), "11");
 }
 
-TEST(ClientMail, WhatComesASecondTimeMuchLaterIsAnotherMessage) {
+TEST(ClientMail, AMessageLikeOneOfAClientThatComesLaterIsSomebodyElses) {
   Sorted test;
   test.arrive("1");
   test.mail.expect("a", {named("cmd", "1")});
   EXPECT_EQ(test.admitted(), "1");
-  for (std::int64_t step = 0; step < sim::ClientMail::recent_steps; ++step) EXPECT_EQ(test.admitted(), "");
+  for (std::int64_t i = 0; i < sim::ClientMail::repeat_windows; ++i) test.mail.next_window();
+  EXPECT_EQ(test.admitted(), "");
+  test.mail.next_window();
   test.arrive("1");
   EXPECT_EQ(test.admitted(), "1");
+  EXPECT_TRUE(test.mail.repeated().empty());
+}
+
+TEST(ClientMail, WhatWasSentAgainMayComeLateOnce) {
+  Sorted test;
+  test.mail.expect("a", {named("cmd", "1")});
+  test.mail.collect();
+  EXPECT_TRUE(test.mail.add("a", 0, "cmd", bytes_of("1")));
+  EXPECT_EQ(test.admitted(), "1");
+  for (std::int64_t i = 0; i < sim::ClientMail::late_windows; ++i) test.mail.next_window();
+  for (const char* text : {"1", "1"}) test.arrive(text);
+  EXPECT_EQ(test.admitted(), "1");  // the first of them was the client's own
 }
 
 TEST(ClientMail, AfterClearingOnlyWhatIsOnItsWayIsDropped) {
@@ -112,15 +131,23 @@ TEST(ClientMail, OfOneChannelOnlySoManyWaitAndTheOthersStay) {
   EXPECT_EQ(admitted.substr(0, 5), "o500 ");
 }
 
-TEST(ClientMail, HoldsTheMailOfStrangersUntilItIsKnownWhoseItIs) {
+TEST(ClientMail, DropsWhatWasNamedForATickThatCountsNoMore) {
   Sorted test;
-  test.mail.hold("a");
   for (const char* text : {"1", "2"}) test.arrive(text);
-  EXPECT_EQ(test.admitted(), "");
-  test.mail.drop({named("cmd", "1"), named("cmd", "3")});
-  test.mail.release("a");
+  test.mail.collect();
+  test.mail.drop("a", {named("cmd", "1"), named("cmd", "3")});
   test.arrive("3");
   EXPECT_EQ(test.admitted(), "2");
+}
+
+TEST(ClientMail, DropsAllThatHasComeWhenItCannotBeToldWhoseItIs) {
+  Sorted test;
+  for (const char* text : {"1", "2"}) test.arrive(text);
+  test.mail.collect();
+  test.mail.drop_unnamed();
+  test.arrive("3");
+  EXPECT_EQ(test.admitted(), "3");
+  EXPECT_EQ(test.mail.dropped(), 2u);
 }
 
 TEST(ClientMail, OfAClientThatIsGoneWhatHasComeIsAdmitted) {

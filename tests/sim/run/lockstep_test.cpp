@@ -133,6 +133,7 @@ TEST(Lockstep, AfterGoingBackEverybodyIsAskedByItsPeriod) {
   lockstep.join("late", session(8), 10, 55);
   lockstep.post(0, "x", bytes_of("1"));
   lockstep.ask(60);
+  answer(lockstep, {"a", 60, 7, 1}, 60);
   lockstep.rewound(20);
   EXPECT_EQ(missing(lockstep, 20), (Names{"a"}));
   EXPECT_EQ(missing(lockstep, 25), (Names{"late"}));
@@ -169,17 +170,29 @@ TEST(Lockstep, WhatIsPostedAgainIsOnTheListOfTheFirstTickAfterGoingBack) {
   EXPECT_EQ(list("late"), "26 27 28 29 30 31 ");
 }
 
-TEST(Lockstep, AnAnswerToATickBeforeGoingBackIsAbandoned) {
+TEST(Lockstep, ATickThatWasOpenBeforeGoingBackIsAnsweredFirst) {
   Lockstep lockstep;
-  lockstep.join("a", session(7), 10, 0);
+  lockstep.join("a", session(7, {"x"}), 10, 0);
   lockstep.join("simple", {}, 10, 0);
+  lockstep.post(0, "x", bytes_of("1"));
   lockstep.ask(60);
+  lockstep.rewound(20);
+  lockstep.rewound(10);
+  EXPECT_EQ(lockstep.abandoned().size(), 2u);
+  lockstep.ask(10);
+  EXPECT_EQ(lockstep.find("a")->sequence, 1);  // still the same
+  EXPECT_EQ(lockstep.find("a")->list.size(), 1u);
   lockstep.rewound(20);
   const auto abandoned = Lockstep::Verdict::abandoned;
   answer(lockstep, {"a", 60, 7, 1}, 20, abandoned);
   answer(lockstep, {"simple", 60, 0, 0}, 20, abandoned);
+  EXPECT_TRUE(lockstep.abandoned().empty());
+  answer(lockstep, {"a", 60, 7, 1}, 20, Lockstep::Verdict::repeated);
+  answer(lockstep, {"simple", 60, 0, 0}, 20, Lockstep::Verdict::repeated);
   lockstep.ask(20);
-  answer(lockstep, {"a", 60, 7, 1}, 20, abandoned);
+  EXPECT_EQ(lockstep.find("a")->list.size(), 0u);
+  answer(lockstep, {"a", 60, 7, 1}, 20, Lockstep::Verdict::repeated);
+  answer(lockstep, {"simple", 60, 0, 0}, 20, Lockstep::Verdict::repeated);
   EXPECT_EQ(missing(lockstep, 20), (Names{"a", "simple"}));
   answer(lockstep, {"a", 20, 7, 2}, 20);
   answer(lockstep, {"simple", 20, 0, 0}, 20);
@@ -199,6 +212,33 @@ TEST(Lockstep, JoiningAgainWithAnotherPeriodLeavesAnOpenTickOpen) {
   answer(lockstep, {"simple", 20, 0, 0}, 20);
   EXPECT_EQ(missing(lockstep, 20), (Names{}));
   EXPECT_EQ(missing(lockstep, 24), (Names{"a", "simple"}));
+}
+
+TEST(Lockstep, AClientThatWasNotAskedYetMaySayThatItLives) {
+  Lockstep lockstep;
+  lockstep.join("a", session(7), 10, 5);
+  answer(lockstep, {"a", 5, 7, 0}, 5, Lockstep::Verdict::repeated);
+  EXPECT_EQ(missing(lockstep, 5), (Names{"a"}));
+}
+
+TEST(LockstepTerms, CannotAskForMorePatienceThanTheWorldHas) {
+  sim::LockstepTerms defaults;
+  defaults.on_timeout = "continue";
+  defaults.timeout_s = 0.5;
+  const std::string text = "{on_timeout: wait, timeout_s: 60}";
+  EXPECT_EQ(sim::read_lockstep_terms(text, defaults).policy(), sim::OnTimeout::wait);  // the world does not say
+  defaults.agreed = true;
+  const auto terms = sim::read_lockstep_terms(text, defaults);
+  EXPECT_EQ(terms.policy(), sim::OnTimeout::go_on);
+  EXPECT_EQ(terms.timeout_s, 0.5);
+  EXPECT_EQ(sim::read_lockstep_terms("{timeout_s: 0.1}", defaults).timeout_s, 0.1);
+}
+
+TEST(LockstepTerms, TellTheSessionAlsoOfTextThatIsWrong) {
+  EXPECT_EQ(sim::session_in("{session: 12, receives: [a]}", true), 12);
+  EXPECT_EQ(sim::session_in("{session: 12, acknowledged: 3}", false), 12);
+  EXPECT_EQ(sim::session_in("{sesion: 12}", true), 0);
+  EXPECT_EQ(sim::session_in("{", false), 0);
 }
 
 TEST(LockstepTerms, AreReadWithClearErrors) {
