@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -35,19 +34,10 @@ struct Signal {
   std::string code;           ///< the listener's own: a frame type, who is asked
   Bytes payload;              ///< the listener's own
 
-  /// Its numbers are within what any sound in water can have: levels and rates worked out of them are finite.
-  bool possible() const {
-    constexpr double most_Hz = 1e9;
-    const auto within = [](double value) { return value > 0 && value <= most_Hz; };
-    return within(centre_Hz) && within(bandwidth_Hz) && within(bit_rate_bps) && bits >= 0 &&
-           std::abs(coding_gain_dB) <= 1000 && std::abs(source_level.dB()) <= 1000;
-  }
-
   template <typename Archive>
   void visit_state(Archive& archive) {
     archive(kind, source_level, centre_Hz, bandwidth_Hz, duration, modulation, bit_rate_bps, bits, coding_gain_dB,
             network, code, payload);
-    if (archive.restoring() && !possible()) archive.fail("a signal that cannot be");
   }
 };
 

@@ -20,8 +20,8 @@ Ended control(std::vector<std::string> arguments) {
 
 std::vector<std::string> mission(const std::string& world, const std::string& duration_s,
                                  const std::vector<std::string>& more = {}) {
-  std::vector<std::string> run{"run",         source(world), "--launch",  "--speed", "max", "--duration",
-                               duration_s,    "--lcm-url",   own_url(),   "--no-pictures"};
+  std::vector<std::string> run{"run",        source(world), "--launch",  "--speed", "max",
+                               "--duration", duration_s,    "--lcm-url", own_url(), "--no-pictures"};
   run.insert(run.end(), more.begin(), more.end());
   return run;
 }
@@ -69,16 +69,15 @@ TEST_P(ProgramsGoBack, AndTheRunEndsAsOneThatNeverWentBack) {
   for (const auto& client : summary["clients"]) EXPECT_EQ(client["ended"], "with the run") << client;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Worlds, ProgramsGoBack,
-    testing::Values(Mission{"worlds/segway.yaml", "30", {"9.005", "4.5", "14", "6.035"}},
-                    Mission{"worlds/coop_land.yaml", "30", {"12.34", "5", "20", "11.27"}},
-                    Mission{"worlds/coop_underwater.yaml", "150", {"90", "33.3", "120", "40.14"}},
-                    Mission{"worlds/coop_relay.yaml", "200", {"150", "20", "160", "50.3"}}),
-    [](const auto& test) {
-      const std::string path = test.param.world;
-      return path.substr(7, path.find('.') - 7);
-    });
+INSTANTIATE_TEST_SUITE_P(Worlds, ProgramsGoBack,
+                         testing::Values(Mission{"worlds/segway.yaml", "30", {"9.005", "4.5", "14", "6.035"}},
+                                         Mission{"worlds/coop_land.yaml", "30", {"12.34", "5", "20", "11.27"}},
+                                         Mission{"worlds/coop_underwater.yaml", "150", {"90", "33.3", "120", "40.14"}},
+                                         Mission{"worlds/coop_relay.yaml", "200", {"150", "20", "160", "50.3"}}),
+                         [](const auto& test) {
+                           const std::string path = test.param.world;
+                           return path.substr(7, path.find('.') - 7);
+                         });
 
 TEST(Rewind, AProgramThatIsNotToGoBackEndsAndSaysSo) {
   const ScratchFolder folder;
@@ -90,8 +89,8 @@ TEST(Rewind, AProgramThatIsNotToGoBackEndsAndSaysSo) {
   const std::string file = "file: segway_rmp.yaml";
   text.replace(text.find(file), file.size(), "file: " + source("vehicles/segway_rmp.yaml"));
   write_file(world, text);
-  std::vector<std::string> arguments{built("shoal"), "run",       world,     "--launch", "--speed", "max",
-                                     "--duration",   "20",        "--paused", "--lcm-url", own_url()};
+  std::vector<std::string> arguments{built("shoal"), "run", world,      "--launch",  "--speed", "max",
+                                     "--duration",   "20",  "--paused", "--lcm-url", own_url()};
   Program program(arguments);
   EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, patience));
   EXPECT_TRUE(await([] { return control({"until", "--value", "8"}).exit_code == 0; }, patience));

@@ -211,8 +211,7 @@ TEST(Keys, AJobThatComesToTheForegroundTakesTheTerminal) {
   write_file(folder.file("world.yaml"), endless_world());
   // Such a shell gives a job that runs on its terminal, and no signal.
   OnTerminal shell({"bash", "--norc", "-m", "-c",
-                    built("shoal") + " run " + folder.file("world.yaml") +
-                        " --bus none --paused & read -r line; fg"});
+                    built("shoal") + " run " + folder.file("world.yaml") + " --bus none --paused & read -r line; fg"});
   ASSERT_TRUE(shell.shows("keys: "));
   EXPECT_FALSE(shell.is_raw());
   shell.press("now\r");

@@ -54,8 +54,9 @@ class Page : public testing::Test {
   }
   std::vector<std::string> shell(const std::string& command) const {
     const std::string programs = std::filesystem::path(built("shoal")).parent_path();
-    return {"sh", "-c", "cd '" + folder_.file("") + "' && export LCM_DEFAULT_URL='" + own_url() + "' PATH='" + programs +
-                            "':$PATH && exec " + command};
+    return {"sh", "-c",
+            "cd '" + folder_.file("") + "' && export LCM_DEFAULT_URL='" + own_url() + "' PATH='" + programs +
+                "':$PATH && exec " + command};
   }
   Ended run(const std::string& command) const {
     Program program(shell(command));
@@ -77,7 +78,8 @@ TEST_F(Page, AWorkedSessionEndsAsItSays) {
     EXPECT_EQ(ended.exit_code, 0) << commands[i].text << ended.errors;
     EXPECT_THAT(ended.output, HasSubstr(commands[i].answer));
     if (commands[i].text.starts_with("shoal control until"))
-      EXPECT_TRUE(await([&] { return run("shoal control where").output.find(", paused") != std::string::npos; }, patience));
+      EXPECT_TRUE(
+          await([&] { return run("shoal control where").output.find(", paused") != std::string::npos; }, patience));
   }
   EXPECT_EQ(run_itself.wait(), 0) << run_itself.errors();
   for (const char* file : {"out/summary.json", "out/branch0/summary.json", "out.lcm", "out.branch1.lcm"}) {
