@@ -49,6 +49,11 @@ void use_preset(AcousticModem::Params& params) {
 
 constexpr std::string_view mark = "msg ";
 
+/// Those that understand each other.
+std::string group_of(const AcousticModem::Params& params) {
+  return "acoustic_modem " + params.network;
+}
+
 /// What the frame tells beside the data, in Signal::code: the sending time by the sender's clock, the destination.
 std::string code_of(sim::Time sent, const std::string& destination) {
   return std::string(mark) + std::to_string(sent.count()) + " " + destination;
@@ -120,6 +125,7 @@ AcousticModem::AcousticModem(const Params& params, const sim::DeviceContext& con
       transducer_(*this, params.receiver, context),
       now_(context.world.now()) {
   if (params.serial) serial_ = std::make_unique<SerialMessages>(*params.serial, context);
+  transducer_.belong_to({group_of(params), vehicle_.name()});
   world_.shared<MessageModems>().join(transducer_.full_name(), *this);
 }
 
@@ -197,6 +203,7 @@ void AcousticModem::transmit(sim::Time at, Outgoing message) {
   signal.network = params_.network;
   signal.code = code_of(vehicle_.clock().reading(at), message.destination);
   signal.payload = std::move(message.data);
+  signal.to = {group_of(params_), message.destination};
   transducer_.transmit(std::move(signal), at);
 }
 
@@ -236,7 +243,7 @@ void AcousticModem::visit_state(sim::StateArchive& archive) {
 void AcousticModem::read_serial(sim::Time now) {
   for (sim::Bytes& data : serial_->take(longest_message_bytes()))
     if (data.size() > longest_message_bytes())
-      ++dropped_;
+      complain_of_length(world_, transducer_.full_name(), longest_message_bytes());
     else
       send(now, "", std::move(data));
 }

@@ -77,7 +77,7 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
   /// What arrived since the last sample.
   const std::vector<Packet>& received() const { return received_; }
   const sim::Transducer& transducer() const { return transducer_; }
-  std::uint64_t dropped_from_queue() const { return dropped_; }
+  std::int64_t dropped_from_queue() const override { return dropped_; }
 
  private:
   struct Outgoing {
@@ -98,7 +98,7 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
   const sim::Vehicle& vehicle_;
   sim::Transducer transducer_;
   std::deque<Outgoing> queue_;
-  std::uint64_t dropped_ = 0;
+  std::int64_t dropped_ = 0;
   std::vector<Packet> arrived_, received_;
   std::unique_ptr<SerialMessages> serial_;
   sim::Time now_{0};  // start of this step

@@ -1,12 +1,16 @@
 #include "devices/micromodem.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "devices/named_vehicle.hpp"
 #include "devices/own_clock.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/nmea_sentence_t.hpp"
+#include "sim/config/message_text.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
@@ -23,6 +27,11 @@ MicromodemProtocol::Config protocol_config(const Micromodem::Params& params) {
   if (params.lbl) config.beacon_turnaround_s = params.lbl->turnaround_s;
   return config;
 }
+
+/// What the modems of a world are called when they are made.
+struct Addresses {
+  std::map<std::pair<std::string, int>, std::vector<std::string>> names;
+};
 
 }  // namespace
 
@@ -51,6 +60,12 @@ void Micromodem::Params::read(sim::ParamReader& in) {
   in.read("receiver", receiver, "how it hears");
   in.read("lbl", lbl, "transponders that $CCPDT and $CCPNT ask");
   in.read("serial", serial, "a pseudo-terminal or FIFO that any program can open");
+  const auto is_plain = [](char c) { return c > ' ' && c < 127 && c != ',' && c != '*' && c != '$'; };
+  if (!in.describing() && (revision.empty() || !std::all_of(revision.begin(), revision.end(), is_plain)))
+    in.error("revision",
+             "'revision' is a field of a sentence and must have letters, digits and points, no ',', '*', "
+             "'$' or space, got '" +
+                 sim::shortened(sim::printable(revision)) + "'");
 }
 
 Micromodem::Micromodem(const Params& params, const sim::DeviceContext& context)
@@ -61,6 +76,8 @@ Micromodem::Micromodem(const Params& params, const sim::DeviceContext& context)
       protocol_(protocol_config(params), *this),
       now_(context.world.now()) {
   check_beacons(context);
+  take_address();
+  warn_of_address(context);
   if (params.serial) serial_ = std::make_unique<SerialPort>(*params.serial, context);
 }
 
@@ -79,12 +96,30 @@ void Micromodem::check_beacons(const sim::DeviceContext& context) const {
   }
 }
 
+/// Two of one address answer for each other; the others cannot tell.
+void Micromodem::warn_of_address(const sim::DeviceContext& context) const {
+  auto& names = context.world.shared<Addresses>().names[{params_.network, address_}];
+  names.push_back(transducer_.full_name());
+  if (names.size() == 2)
+    spdlog::warn("micromodems '{}' and '{}' have the same address {} in network '{}'", names[0], names[1], address_,
+                 params_.network);
+}
+
 void Micromodem::take(const std::string& sentence, sim::Time now) {
   now_ = now;
   NmeaLines lines;  // by the bus every sentence is whole
   const std::string ended = sentence + "\n";
-  for (const auto& line : lines.add(std::as_bytes(std::span(ended.data(), ended.size()))))
-    protocol_.take_line(line, now);
+  for (const auto& line : lines.add(std::as_bytes(std::span(ended.data(), ended.size())))) take_line(line, now);
+}
+
+void Micromodem::take_line(const NmeaLines::Line& line, sim::Time now) {
+  protocol_.take_line(line, now);
+  if (protocol_.address() != address_) take_address();
+}
+
+void Micromodem::take_address() {
+  address_ = protocol_.address();
+  transducer_.belong_to({group(), std::to_string(address_)});
 }
 
 void Micromodem::act(const sim::ActContext& context) {
@@ -100,7 +135,7 @@ void Micromodem::act(const sim::ActContext& context) {
   }
   protocol_.tick(context.now);
   if (!serial_) return;
-  for (const auto& line : lines_.add(serial_->read())) protocol_.take_line(line, context.now);
+  for (const auto& line : lines_.add(serial_->read())) take_line(line, context.now);
 }
 
 double Micromodem::power_W() const {
@@ -138,6 +173,9 @@ MicromodemSide::Sound Micromodem::transmit(const MicromodemPacket& packet, sim::
   signal.network = params_.network;
   signal.code = packet.code();
   signal.payload = packet.payload();
+  const int to = packet.kind == MicromodemPacket::Kind::cycle_init && packet.source != address_ ? packet.source
+                                                                                                : packet.destination;
+  signal.to = {group(), to == micromodem_broadcast ? "" : std::to_string(to)};
   return send(std::move(signal), at, on_the_second);
 }
 
@@ -151,6 +189,15 @@ MicromodemSide::Sound Micromodem::ask_beacons(sim::Time at, bool on_the_second) 
   signal.duration = sim::from_seconds(beacons.ping_s);
   signal.network = beacons.network;
   return send(std::move(signal), at, on_the_second);
+}
+
+sim::Time Micromodem::call_back() {
+  transducer_.call_back();
+  return transducer_.busy_until();
+}
+
+double Micromodem::elapsed_s(sim::Time from, sim::Time to) const {
+  return sim::to_seconds(to - from) * (1 + vehicle_.clock().rate_error());
 }
 
 std::int64_t Micromodem::utc_us(sim::Time at) const {
@@ -167,7 +214,8 @@ void Micromodem::heard(const sim::Reception& heard) {
   now_ = std::max(now_, heard.ended);
   if (heard.signal.kind == sim::Signal::Kind::answer) return heard_beacon(heard);
   // One that it did not take is nothing to it.
-  const bool has_errors = heard.loss == sim::SignalLoss::noise || heard.loss == sim::SignalLoss::interference;
+  const bool has_errors = heard.loss == sim::SignalLoss::noise || heard.loss == sim::SignalLoss::interference ||
+                          heard.loss == sim::SignalLoss::sender_off;
   if (!heard.understood() && !(heard.noticed && has_errors)) return;
   const auto packet = MicromodemPacket::read(heard.signal.code, heard.signal.payload);
   if (!packet) return;
@@ -197,6 +245,7 @@ void Micromodem::measure(const sim::SenseContext&) {
 
 void Micromodem::visit_state(sim::StateArchive& archive) {
   archive(protocol_, lines_, off_, now_, saying_, said_);
+  if (archive.restoring()) address_ = protocol_.address();
 }
 
 void MicromodemReporter::report(sim::Time, sim::Publisher& out) const {

@@ -71,13 +71,20 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   static constexpr std::size_t most_sentences = 4096;  // between two samples
 
   void check_beacons(const sim::DeviceContext& context) const;
+  void warn_of_address(const sim::DeviceContext& context) const;
   bool listens_to(const sim::Signal& signal) const override;
   void heard(const sim::Reception& heard) override;
   void heard_beacon(const sim::Reception& heard);
   void say(const std::string& body) override;
   Sound transmit(const MicromodemPacket& packet, sim::Time at, bool on_the_second) override;
   Sound ask_beacons(sim::Time at, bool on_the_second) override;
+  sim::Time call_back() override;
   std::int64_t utc_us(sim::Time at) const override;
+  double elapsed_s(sim::Time from, sim::Time to) const override;
+  /// The host may have given it another address.
+  void take_address();
+  void take_line(const NmeaLines::Line& line, sim::Time now);
+  std::string group() const { return "micromodem " + params_.network; }
   Sound send(sim::Signal signal, sim::Time at, bool on_the_second);
 
   Params params_;
@@ -90,6 +97,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   std::vector<Said> said_;
   std::unique_ptr<SerialPort> serial_;
   sim::Time now_{0};
+  int address_ = 0;   // that the channel knows
   bool off_ = false;  // without power, or silent by a fault
 };
 

@@ -82,6 +82,7 @@ bool MicromodemProtocol::busy(const char* module, sim::Time now) {
 
 void MicromodemProtocol::restart(sim::Time up) {
   due_.clear();
+  sending_until_ = side_.call_back();
   cycle_.reset(), expected_.reset(), ping_.reset(), beacon_ping_.reset();
   if (!config_.synchronous) clock_offset_us_ = 0, clock_set_ = false;
   next_revision_ = up;
@@ -249,9 +250,9 @@ void MicromodemProtocol::heard_data(const MicromodemPacket& packet, const Microm
 }
 
 void MicromodemProtocol::heard_ping(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
-  if (packet.destination != address()) return;
   side_.say("CAMPA," + std::to_string(packet.source) + "," + std::to_string(packet.destination));
   say_statistics(packet, arrival, 0);
+  if (packet.destination != address()) return;
   const sim::Time at = std::max(arrival.begun + sim::from_seconds(micromodem_turnaround_s), arrival.ended);
   if (at < sending_until_) return;  // it sends something else then, and the time would be wrong
   MicromodemPacket reply;
@@ -261,13 +262,17 @@ void MicromodemProtocol::heard_ping(const MicromodemPacket& packet, const Microm
 }
 
 void MicromodemProtocol::heard_reply(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
-  if (packet.destination != address() || !ping_ || ping_->destination != packet.source) return;
-  const auto both_us = side_.utc_us(arrival.begun) - side_.utc_us(ping_->sent);
-  const double one_way_s = (static_cast<double>(both_us) * 1e-6 - micromodem_turnaround_s) / 2;
+  const std::string who = "CAMPR," + std::to_string(packet.source) + "," + std::to_string(packet.destination);
+  if (packet.destination != address() || !ping_ || ping_->destination != packet.source) {
+    // Of a ping that another one sent it knows no time.
+    side_.say(who);
+    return say_statistics(packet, arrival, 0);
+  }
+  const double one_way_s = (side_.elapsed_s(ping_->sent, arrival.begun) - micromodem_turnaround_s) / 2;
   ping_.reset();
   char time[24];
   std::snprintf(time, sizeof time, "%.4f", one_way_s);
-  side_.say("CAMPR," + std::to_string(packet.source) + "," + std::to_string(packet.destination) + "," + time);
+  side_.say(who + "," + time);
   say_statistics(packet, arrival, 0);
 }
 
@@ -282,9 +287,9 @@ void MicromodemProtocol::report_beacons(sim::Time now) {
   for (std::size_t i = 0; i < micromodem_beacons; ++i) {
     body += ",";
     if (!beacon_ping_->wanted[i] || !beacon_ping_->answered[i]) continue;
-    const auto both_us = side_.utc_us(*beacon_ping_->answered[i]) - side_.utc_us(beacon_ping_->sent);
+    const double both_s = side_.elapsed_s(beacon_ping_->sent, *beacon_ping_->answered[i]);
     char time[24];
-    std::snprintf(time, sizeof time, "%.4f", (static_cast<double>(both_us) * 1e-6 - beacon_ping_->turnaround_s) / 2);
+    std::snprintf(time, sizeof time, "%.4f", (both_s - beacon_ping_->turnaround_s) / 2);
     body += time;
   }
   side_.say(body + "," + time_of_day(beacon_ping_->sent, 2));

@@ -32,8 +32,12 @@ class MicromodemSide {
   virtual Sound transmit(const MicromodemPacket& packet, sim::Time at, bool on_the_second) = 0;
   /// Asks the transponders.
   virtual Sound ask_beacons(sim::Time at, bool on_the_second) = 0;
+  /// What it was to send and has not begun is not sent.  Until when it goes on sending.
+  virtual sim::Time call_back() = 0;
   /// By the clock of the vehicle: microseconds since 1970 in UTC.
   virtual std::int64_t utc_us(sim::Time at) const = 0;
+  /// Between two times, by a counter that runs as fast as that clock and knows nothing of its steps, s.
+  virtual double elapsed_s(sim::Time from, sim::Time to) const = 0;
 };
 
 /// How a packet came.

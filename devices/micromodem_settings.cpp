@@ -1,5 +1,7 @@
 #include "devices/micromodem_settings.hpp"
 
+#include <set>
+
 namespace devices {
 
 MicromodemSettings::MicromodemSettings()
@@ -80,6 +82,8 @@ MicromodemSettings::Outcome MicromodemSettings::set(const std::string& name, int
   if (name == "SRC" && (value < 0 || value > 126)) return Outcome::out_of_range;
   const bool is_time = name == "CTO" || name == "DTO" || name == "PTO";
   if (is_time && (value < 1 || value > 3600)) return Outcome::out_of_range;
+  static const std::set<std::string> switches{"CST", "REV", "RXD", "RXP", "SNV", "TXF", "TXP", "XST"};
+  if (switches.contains(name) && value != 0 && value != 1) return Outcome::out_of_range;
   if (name == "TAT" && (value < 0 || value > 10000)) return Outcome::out_of_range;
   found->second = value;
   return Outcome::done;

@@ -53,6 +53,10 @@ Modem::Modem(const Params& params, const sim::DeviceContext& context)
       group_(context.vehicle.group()),
       body_(context.body),
       p_BS_(context.config.position_m) {
+  if (params.through == SignalCarrier::acoustic && !context.world.medium().has_water())
+    sim::throw_config_error(context.config.place, "vehicle '" + vehicle_ + "': device '" + context.config.name + "'",
+                            "'through: acoustic' needs water to carry its sound: the world has no 'medium: {water: "
+                            "...}'");
   if (params.serial) serial_ = std::make_unique<SerialMessages>(*params.serial, context);
   // Last: a port that cannot be opened throws.
   network_.join(*this, context.world);
@@ -137,7 +141,7 @@ sim::SignalLoss Modem::loss_to(const Modem& receiver) const {
     if (zones.denied(sim::ZoneFlag::radio_denied, end->p_WS())) return sim::SignalLoss::noise;
     if (!carries(medium, params_.through, end->p_WS())) return sim::SignalLoss::blocked;
   }
-  if ((receiver.p_WS() - p_WS()).norm() > params_.range_m) return sim::SignalLoss::noise;
+  if ((receiver.p_WS() - p_WS()).norm() > params_.range_m) return sim::SignalLoss::range;
   if (lost_on_the_way_to(receiver)) return sim::SignalLoss::link;
   if (params_.line_of_sight && hidden_from(receiver)) return sim::SignalLoss::blocked;
   return sim::SignalLoss::none;
@@ -194,7 +198,7 @@ void Modem::visit_state(sim::StateArchive& archive) {
 void Modem::read_serial(sim::Time now) {
   for (sim::Bytes& data : serial_->take(longest_message_bytes()))
     if (data.size() > longest_message_bytes())
-      ++dropped_;
+      complain_of_length(network_.world(), full_name_, longest_message_bytes());
     else
       send(now, "", std::move(data));
 }

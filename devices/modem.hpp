@@ -38,8 +38,8 @@ class Modem final : public sim::Sensor, public MessageModem {
   /// What it sent, and what became of messages of its network that were for it or for everybody.
   struct Counts {
     std::int64_t sent = 0, sent_bytes = 0, received = 0;
-    /// By SignalLoss: `noise` out of range or in a zone without radio, `blocked` by what stands between or an antenna
-    /// where the signal does not go, `link` by `loss_probability`.
+    /// By SignalLoss: `range` out of range, `noise` in a zone without radio, `blocked` by what stands between or an
+    /// antenna where the signal does not go, `link` by `loss_probability`.
     std::array<std::int64_t, sim::signal_losses> lost{};
     void visit_state(sim::StateArchive& archive) { archive(sent, sent_bytes, received, lost); }
   };
@@ -68,7 +68,7 @@ class Modem final : public sim::Sensor, public MessageModem {
 
   /// What arrived since the last sample.
   const std::vector<Packet>& received() const { return received_; }
-  std::uint64_t dropped_from_queue() const { return dropped_; }
+  std::int64_t dropped_from_queue() const override { return dropped_; }
   const Counts& counts() const { return counts_; }
   const std::string& vehicle_name() const { return vehicle_; }
   const std::string& full_name() const { return full_name_; }
@@ -104,7 +104,7 @@ class Modem final : public sim::Sensor, public MessageModem {
   std::deque<Outgoing> queue_;
   sim::Time busy_until_{0};
   std::int64_t sent_ = 0;
-  std::uint64_t dropped_ = 0;
+  std::int64_t dropped_ = 0;
   Counts counts_;
   std::vector<Packet> arrived_, received_;
   std::unique_ptr<SerialMessages> serial_;

@@ -61,6 +61,11 @@ void SerialPort::write(const std::string& text) {
   write(std::as_bytes(std::span(text.data(), text.size())));
 }
 
+void complain_of_length(sim::World& world, const std::string& device, std::size_t longest_bytes) {
+  world.complain("device '" + device + "'",
+                 "what came by its serial port has more than " + std::to_string(longest_bytes) + " bytes");
+}
+
 SerialMessages::SerialMessages(const SerialMessageParams& params, const sim::DeviceContext& context)
     : port_(params, context), lines_(params.framing == "line") {}
 

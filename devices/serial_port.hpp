@@ -46,6 +46,9 @@ class SerialPort {
   std::uint64_t dropped_bytes_ = 0;  // that were counted already
 };
 
+/// What came by a serial port is too long for a message: the world is told, which counts it as a bad message.
+void complain_of_length(sim::World& world, const std::string& device, std::size_t longest_bytes);
+
 /// Messages through a serial port: lines, or what came within a step.
 class SerialMessages {
  public:

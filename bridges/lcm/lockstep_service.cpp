@@ -22,7 +22,7 @@ constexpr std::chrono::seconds alive_for{1};
 constexpr std::size_t most_summaries = 2000;
 constexpr std::size_t most_ended_sessions = 1000;
 /// Of sim::ClientMail.
-constexpr milliseconds mail_window{100};
+constexpr milliseconds mail_window{50};
 
 }  // namespace
 
@@ -317,13 +317,10 @@ std::string LockstepService::waits_for() {
 
 void LockstepService::look_at_clock() {
   const Clock::time_point now = Clock::now();
-  for (std::int64_t windows = 0; now - window_began_ >= mail_window; ++windows) {
-    if (windows == sim::ClientMail::late_windows)
-      window_began_ = now;
-    else
-      window_began_ += mail_window;
-    for (const auto& line : lines_) line->mail.next_window();
-  }
+  // One at a time: what came while this process had no processor is looked at before its time is over.
+  if (now - window_began_ < mail_window) return;
+  window_began_ = now;
+  for (const auto& line : lines_) line->mail.next_window();
 }
 
 void LockstepService::tell_repeated() {
@@ -332,8 +329,8 @@ void LockstepService::tell_repeated() {
     if (!repeated || told_repeated_) continue;
     told_repeated_ = true;
     spdlog::warn(
-        "lockstep: a message on '{}' was dropped: it equals one of client '{}' that came just before, so the "
-        "network may have repeated it (more of these are only counted)",
+        "lockstep: a message on '{}' was dropped: it equals one of client '{}', and may be the same one, late or "
+        "repeated by the network (more of these are only counted)",
         sim::printable(repeated->channel), sim::printable(repeated->client));
   }
 }

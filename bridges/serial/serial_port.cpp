@@ -111,8 +111,9 @@ void remove_stale_link(const std::string& path) {
   if (fs::exists(path, error)) {
     const bool own = fs::read_symlink(path, error).string().starts_with(own_spelling);
     if (!own || is_held(path)) {
-      errno = EEXIST;
-      fail("is in use", path);
+      // A run that was killed leaves its link, and another program's terminal may have that number since.
+      throw std::runtime_error("serial port '" + path + "': is in use: " + std::strerror(EEXIST) +
+                               "; when no run has it, remove the link");
     }
   }
   spdlog::warn("serial port '{}': replaced the link that a killed run left", path);

@@ -1,6 +1,6 @@
 """Estimates where an AUV is, beside whatever steers it, in lockstep with the simulator.
 
-    PYTHONPATH=build/release/python:examples/python python3 examples/python/coop_auv.py auv --sound-speed 1504
+    PYTHONPATH=build/release/python:examples/python python3 examples/python/coop_auv.py auv --sound-speed 1506
 
 Reads NAME.dvl, .ahrs or .compass, .pressure, .gps and .modem; publishes NAME.python_estimate.
 """
@@ -17,6 +17,7 @@ from marine_ekf import MarineEkf, turned
 PERIOD_S = 0.5
 WEEK_MS = 7 * 24 * 3600 * 1000
 NEWEST_S = 3
+LONGEST_TRAVEL_S = 60  # 90 km; below 0 the own clock is behind
 OLDEST_MS = 60 * 1000
 FIRST_SUNDAY_MS = 3 * 24 * 3600 * 1000
 
@@ -100,7 +101,7 @@ class CoopAuv:
 
     def on_modem(self, packet):
         state = decode_frame(bytes(packet.data), packet.sent_utime)
-        if state is None or self.ekf is None or not 0 <= packet.travel_time_s < 60:
+        if state is None or self.ekf is None or not abs(packet.travel_time_s) < LONGEST_TRAVEL_S:
             return
         moved_s = (packet.sent_utime - state["utime"]) * 1e-6
         # What a gateway passed on is older, and from elsewhere: its travel time says nothing of the sender.
@@ -110,7 +111,7 @@ class CoopAuv:
         beacon = (east + moved_s * state["velocity_mps"][0], north + moved_s * state["velocity_mps"][1], up)
         range_m = packet.travel_time_s * self.sound_speed_mps
         self.ekf.update_range(packet.utime * 1e-6, range_m, math.hypot(1.0, 0.001 * range_m), beacon,
-                              state["covariance_m2"], -self.depth_m)
+                              state["covariance_m2"], -self.depth_m, state["sender"])
 
     def estimate(self):
         message = shoal.estimate_t()

@@ -28,6 +28,8 @@ def turned(v, angle):
 
 class MarineEkf:
     GATE = 10.83  # 99.9 % of chi-square with one degree
+    MOST_REFUSALS = 5  # in a row, before something is held to be wrong, and not only a measurement
+    BAD_CLOCK_MPS = 0.15  # 100 ppm, the worst of usual quartz clocks, by the speed of sound
 
     def __init__(self, time_s, position_m, position_std_m, states=4, heading_bias_std_rad=0.05, speed_scale_std=0.03,
                  range_bias_std_m=30.0, range_drift_std_mps=0.005, heading_noise=0.035, speed_noise=0.01):
@@ -40,7 +42,10 @@ class MarineEkf:
         self.heading_noise, self.speed_noise = heading_noise, speed_noise
         self.time_s = time_s
         self.way = deque([(time_s, 0.0, 0.0)])  # measured, since the start
-        self.refusals = 0
+        self.refused_positions = 0
+        self.trust = {}  # of a beacon: refusals in a row, agreements in doubt, variance when the doubt began
+        self.contradictions = deque(maxlen=2 * self.MOST_REFUSALS)  # beacon, time, innovation, its variance
+        self.ranges_used = 0
 
     def predict(self, time_s, velocity_mps):
         """Moves on with a velocity over ground (east, north) as DVL and compass measure it."""
@@ -85,8 +90,12 @@ class MarineEkf:
             later = mark
         return None
 
-    def update_range(self, time_s, range_m, std_m, beacon_m, beacon_covariance, own_z_m):
-        """A slant range that arrived at time_s from a beacon at (east, north, up) with a covariance (ee, en, nn)."""
+    def update_range(self, time_s, range_m, std_m, beacon_m, beacon_covariance, own_z_m, beacon=0):
+        """A slant range that arrived at time_s from a beacon at (east, north, up) with a covariance (ee, en, nn).
+
+        What contradicts never makes the position less sure: the clock is wrong when two beacons or more contradict by
+        the same amount, or by one that grows evenly, else it is the beacon, which is then in doubt until it agrees again for a while.
+        """
         since = self.way_since(time_s)
         if since is None:
             return False
@@ -101,32 +110,99 @@ class MarineEkf:
         sideways = self.P[0][0] + self.P[1][1] - sum(u[i] * u[j] * self.P[i][j] for i in (0, 1) for j in (0, 1))
         variance = (std_m ** 2 + u[0] ** 2 * ee + 2 * u[0] * u[1] * en + u[1] ** 2 * nn
                     + 3 * (sideways / (2 * distance)) ** 2)
-        return self.update(h, range_m - distance - self.x[4] + self.x[5] * age, variance)
+        innovation = range_m - distance - self.x[4] + self.x[5] * age
+        s = self.variance_of(h) + variance
+        opinion = self.opinion_of(beacon, innovation, s)
+        if opinion == "in doubt" or not math.isfinite(innovation):
+            return False
+        if opinion == "contradicts":
+            without_clock = self.variance_of(h[:4] + [0.0, 0.0]) + variance
+            self.contradictions.append((beacon, time_s, innovation, without_clock))
+            error = self.common_error()
+            if error is None:
+                return False
+            self.open_clock(*error)
+            innovation -= error[0]
+        self.contradictions.clear()
+        self.ranges_used += 1
+        self.use(h, innovation, variance)
+        return True
+
+    def opinion_of(self, beacon, innovation, variance):
+        refusals, agreements, doubted_at = self.trust.get(beacon, (0, 0, None))
+        # A filter that hears nobody else grows unsure, which is no reason to believe who was wrong when it was sure.
+        if not innovation ** 2 <= self.GATE * min(variance, doubted_at or variance):
+            refusals += 1
+            if refusals >= self.MOST_REFUSALS and not doubted_at:
+                doubted_at = variance
+            self.trust[beacon] = refusals, 0, doubted_at
+            return "contradicts"
+        if doubted_at and agreements + 1 < self.MOST_REFUSALS:
+            self.trust[beacon] = 0, agreements + 1, doubted_at
+            return "in doubt"
+        self.trust.pop(beacon, None)
+        return "agrees"
+
+    def common_error(self):
+        """By how much all contradictions are too long now, how fast that grows, and the variance of the first; None
+        when they are of one beacon, or do not agree.  A weighted straight line over the time before the last."""
+        if self.states <= 4 or len(self.contradictions) < self.MOST_REFUSALS:
+            return None
+        if len({beacon for beacon, *_ in self.contradictions}) < 2:
+            return None
+        last = self.contradictions[-1][1]
+        points = [(1 / variance, time_s - last, error) for _, time_s, error, variance in self.contradictions]
+        w, wt, wtt = (sum(weight * t ** power for weight, t, _ in points) for power in (0, 1, 2))
+        we, wte = (sum(weight * t ** power * error for weight, t, error in points) for power in (0, 1))
+        now, rate, variance = we / w, 0.0, 1 / w
+        spread = wtt - wt * wt / w  # its inverse is the variance of the rate
+        slope = (wte - wt * we / w) / spread if spread > 0 else 0.0
+        if self.states > 5 and slope ** 2 * spread > self.GATE:
+            now, rate, variance = (we - slope * wt) / w, slope, 1 / w + (wt / w) ** 2 / spread
+        if any((error - now - rate * t) ** 2 * weight > self.GATE for weight, t, error in points):
+            return None
+        return now, rate, variance
+
+    def open_clock(self, error, rate, variance):
+        """The own clock is ahead by so much more than it was taken for, in range, and gains so much more."""
+        self.x[4] += error
+        self.x[5] += rate
+        drift_variance = max(self.P[5][5], rate ** 2)
+        if self.ranges_used > 0:  # it fitted before: the clock is one that runs away
+            drift_variance = max(drift_variance, self.BAD_CLOCK_MPS ** 2)
+        for i in range(N):
+            self.P[i][4] = self.P[4][i] = self.P[i][5] = self.P[5][i] = 0.0
+        self.P[4][4] = error ** 2 + variance
+        if self.states > 5:
+            self.P[5][5] = drift_variance
+        self.trust.clear()
 
     def update_position(self, position_m, std_m):
         """A position by GPS, of now: one coordinate after the other, as their errors are independent."""
-        east = self.update([1.0, 0, 0, 0, 0, 0], position_m[0] - self.x[0], std_m ** 2)
-        north = self.update([0, 1.0, 0, 0, 0, 0], position_m[1] - self.x[1], std_m ** 2)
-        return east and north
-
-    def update(self, h, innovation, variance):
-        """One number measured with the row h.  False when it is refused."""
-        Ph = [sum(self.P[i][j] * h[j] for j in range(N)) for i in range(N)]
-        s = sum(h[i] * Ph[i] for i in range(N)) + variance
-        if not innovation ** 2 / s <= self.GATE:
-            self.refusals += 1
-            if self.refusals < 5 or not math.isfinite(innovation):
+        rows = [1.0, 0, 0, 0, 0, 0], [0, 1.0, 0, 0, 0, 0]
+        innovations = [position_m[i] - self.x[i] for i in (0, 1)]
+        fits = all(e ** 2 <= self.GATE * (self.variance_of(h) + std_m ** 2) for h, e in zip(rows, innovations))
+        if not fits:
+            self.refused_positions += 1
+            if self.refused_positions < self.MOST_REFUSALS or not all(map(math.isfinite, innovations)):
                 return False
-            for i in (0, 1) + ((4,) if self.states > 4 else ()):  # sure and wrong: open it
-                self.P[i][i] += innovation ** 2
-            self.refusals = 0
-            return self.update(h, innovation, variance)
-        self.refusals = 0
-        k = [p / s for p in Ph]
+            for i in (0, 1):  # sure and wrong: open it
+                self.P[i][i] += sum(e ** 2 for e in innovations)
+        self.refused_positions = 0
+        for i, h in enumerate(rows):
+            self.use(h, position_m[i] - self.x[i], std_m ** 2)
+        return True
+
+    def variance_of(self, h):
+        return sum(h[i] * h[j] * self.P[i][j] for i in range(N) for j in range(N))
+
+    def use(self, h, innovation, variance):
+        """One number measured with the row h."""
+        Ph = [sum(self.P[i][j] * h[j] for j in range(N)) for i in range(N)]
+        k = [p / (sum(h[i] * Ph[i] for i in range(N)) + variance) for p in Ph]
         self.x = [self.x[i] + k[i] * innovation for i in range(N)]
         A = [[(1.0 if i == j else 0.0) - k[i] * h[j] for j in range(N)] for i in range(N)]
         self.P = times(times(A, self.P), transposed(A))  # Joseph's form
         for i in range(N):
             for j in range(N):
                 self.P[i][j] += k[i] * k[j] * variance
-        return True

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "sim/acoustics/sound_path.hpp"
@@ -24,9 +25,9 @@ constexpr Time watch_period{100'000};
 }  // namespace
 
 const char* signal_loss_word(SignalLoss loss) {
-  static constexpr const char* words[signal_losses] = {"none",         "noise",        "interference", "half_duplex",
-                                                       "busy",         "captured",     "doppler",      "blocked",
-                                                       "out_of_water", "receiver_off", "link"};
+  static constexpr const char* words[signal_losses] = {
+      "none",    "noise",        "interference", "half_duplex", "busy",  "captured",  "doppler",
+      "blocked", "out_of_water", "receiver_off", "link",        "range", "sender_off"};
   return words[static_cast<std::size_t>(loss)];
 }
 
@@ -46,7 +47,8 @@ void AcousticChannel::join(Transducer& transducer) {
   transducers_[number] = &transducer;
   transducer.number_ = static_cast<int>(number);
   transducer.join_ = ++joins_;
-  forget_places();
+  transducer.meant_before_ = messages_for(transducer.own_);
+  forget_receivers();
 }
 
 bool AcousticChannel::prescribe(std::vector<int> numbers) {
@@ -62,17 +64,33 @@ bool AcousticChannel::prescribe(std::vector<int> numbers) {
 }
 
 void AcousticChannel::leave(Transducer& transducer) {
-  const Transducer::Counts& counts = transducer.counts_;
+  const Transducer::Counts counts = transducer.counts();
   gone_.sent += counts.sent;
   gone_.sent_bytes += counts.sent_bytes;
   gone_.understood += counts.understood;
   gone_.understood_bytes += counts.understood_bytes;
   gone_.unsent += counts.unsent;
   for (std::size_t i = 0; i < counts.lost.size(); ++i) gone_.lost[i] += counts.lost[i];
+  if (transducer.sending_ >= 0) cut(transducer.sending_, SignalLoss::sender_off, around_.medium.now());
   transducers_[static_cast<std::size_t>(transducer.number())] = nullptr;
   for (const auto& sending : sendings_)
     if (sending && sending->from == &transducer) sending->from = nullptr;
+  forget_receivers();
+}
+
+void AcousticChannel::forget_receivers() {
+  faintest_.clear();
   forget_places();
+}
+
+std::int64_t AcousticChannel::messages_for(const Audience& own) const {
+  const auto group = messages_.find(own.group);
+  if (group == messages_.end()) return 0;
+  const auto to = [&](const std::string& address) {
+    const auto count = group->second.find(address);
+    return count == group->second.end() ? 0 : count->second;
+  };
+  return to("") + (own.address.empty() ? 0 : to(own.address));
 }
 
 void AcousticChannel::join(ContinuousSound& sound) {
@@ -98,6 +116,16 @@ void AcousticChannel::noise_changed() {
 }
 
 Decibels AcousticChannel::faintest(double frequency_Hz) const {
+  for (const auto& [known_Hz, below] : faintest_)
+    if (known_Hz == frequency_Hz) return below;
+  const Decibels below = work_out_faintest(frequency_Hz);
+  constexpr std::size_t most_frequencies = 64;
+  if (faintest_.size() < most_frequencies) faintest_.emplace_back(frequency_Hz, below);
+  return below;
+}
+
+Decibels AcousticChannel::work_out_faintest(double frequency_Hz) const {
+  examined_ += static_cast<std::int64_t>(transducers_.size());
   double below_dB = config_.inaudible_dB;
   for (const Transducer* each : transducers_)
     if (each != nullptr)
@@ -120,8 +148,9 @@ void AcousticChannel::watch() {
     if (each == nullptr || (each->sending_ < 0 && !each->receiver_.taking())) continue;
     more = true;
     if (can(*each)) continue;
-    if (each->sending_ >= 0) sendings_[static_cast<std::size_t>(each->sending_)]->cut = true;
-    const SignalLoss loss = each->works() ? SignalLoss::out_of_water : SignalLoss::receiver_off;
+    const bool works = each->works();
+    if (each->sending_ >= 0) cut(each->sending_, works ? SignalLoss::out_of_water : SignalLoss::sender_off, step_end_);
+    const SignalLoss loss = works ? SignalLoss::out_of_water : SignalLoss::receiver_off;
     for (std::int64_t flight = each->receiver_.drop(); flight >= 0; flight = each->receiver_.drop())
       flights_[static_cast<std::size_t>(flight)].loss = loss;
   }
@@ -181,6 +210,12 @@ void AcousticChannel::transmit(Transducer& from, Signal signal, Time at) {
   schedule(at + sending.signal.duration, emission_end_event, number);
 }
 
+Time AcousticChannel::call_back(Transducer& from) {
+  for (std::size_t i = 0; i < sendings_.size(); ++i)
+    if (sendings_[i]->from == &from && from.sending_ != static_cast<int>(i)) sendings_[i]->from = nullptr;
+  return from.sending_ >= 0 ? from.sending_until_ : around_.medium.now();
+}
+
 void AcousticChannel::set_receiver(Flight& flight, const Transducer* to) {
   flight.to = to != nullptr ? to->number() : -1;
   flight.to_join = to != nullptr ? to->join_ : 0;
@@ -221,6 +256,9 @@ void AcousticChannel::handle(const Event& event, Time now) {
     case watch_event:
       watch();
       break;
+    case silence_event:
+      fall_silent(item, event.due);
+      break;
     default:
       break;
   }
@@ -248,41 +286,87 @@ void AcousticChannel::emit(int number, Time now) {
   if (sending.signal.kind == Signal::Kind::message) {
     ++from->counts_.sent;
     from->counts_.sent_bytes += static_cast<std::int64_t>(sending.signal.payload.size());
+    ++messages_[sending.signal.to.group][sending.signal.to.address];
+    if (from->is_meant_by(sending.signal)) ++from->meant_near_;
   }
   for (std::int64_t flight = from->receiver_.drop(); flight >= 0; flight = from->receiver_.drop())
     flights_[static_cast<std::size_t>(flight)].loss = SignalLoss::half_duplex;
 
-  const double reach_m = propagation_.audible_range_m(sending.signal, faintest(sending.signal.centre_Hz));
-  if (neighbours_age_ < 0 || to_seconds(now) - neighbours_age_ > neighbours_hold_s) {
-    std::vector<Neighbourhood::Member> members;
-    for (const Transducer* each : transducers_)
-      if (each != nullptr) members.push_back({each->number(), each->p_W(now)});
-    neighbours_.build(members, reach_m);
-    neighbours_age_ = to_seconds(now);
-  }
-  neighbours_.near(sending.p_W, reach_m + stray_m, near_);
+  const double reach_m = look_around(sending.signal, now) + stray_m;
+  neighbours_.near(sending.p_W, reach_m, near_);
+  examined_ += static_cast<std::int64_t>(near_.size());
   for (const int hearer : near_) {
     Transducer* to = transducers_[static_cast<std::size_t>(hearer)];
-    if (to == nullptr || to == from) continue;
-    const Vector3d p_W = to->p_W(sending.sent);
-    if ((p_W - sending.p_W).norm() > reach_m + stray_m) continue;
-    const int flight = new_flight();
-    flights_[static_cast<std::size_t>(flight)].sending = number;
-    set_receiver(flights_[static_cast<std::size_t>(flight)], to);
-    ++sending.users;
-    const double travel_s = travel_time_s(around_.medium, sending.p_W, p_W);
-    schedule(sending.sent + from_seconds(travel_s * (1 - early)), near_event, flight);
+    if (to != nullptr && to != from && (to->p_W(sending.sent) - sending.p_W).norm() <= reach_m) send_to(number, *to);
   }
   release(number);
 }
 
+double AcousticChannel::look_around(const Signal& signal, Time now) {
+  const bool anew = neighbours_age_ < 0 || to_seconds(now) - neighbours_age_ > neighbours_hold_s;
+  std::vector<Neighbourhood::Member> members;
+  if (anew) {
+    lowest_m_ = std::numeric_limits<double>::infinity();
+    for (const Transducer* each : transducers_) {
+      if (each == nullptr) continue;
+      members.push_back({each->number(), each->p_W(now)});
+      lowest_m_ = std::min(lowest_m_, members.back().p_W.z());
+    }
+    examined_ += static_cast<std::int64_t>(transducers_.size());
+    neighbours_age_ = to_seconds(now);
+  }
+  const double deepest_m = around_.medium.highest_surface_m() - lowest_m_ + stray_m;
+  const double reach_m = propagation_.audible_range_m(signal, faintest(signal.centre_Hz), deepest_m);
+  if (anew) neighbours_.build(members, reach_m);
+  return reach_m;
+}
+
+void AcousticChannel::send_to(int number, Transducer& to) {
+  Sending& sending = *sendings_[static_cast<std::size_t>(number)];
+  const Signal& signal = sending.signal;
+  const int flight_number = new_flight();
+  Flight& flight = flights_[static_cast<std::size_t>(flight_number)];
+  flight.sending = number;
+  set_receiver(flight, &to);
+  flight.meant = signal.kind == Signal::Kind::message && to.is_meant_by(signal) && to.listener_.listens_to(signal);
+  if (flight.meant) ++to.meant_near_;
+  ++sending.users;
+  const double travel_s = travel_time_s(around_.medium, sending.p_W, to.p_W(sending.sent));
+  schedule(sending.sent + from_seconds(travel_s * (1 - early)), near_event, flight_number);
+}
+
 void AcousticChannel::end_emission(int number, Time at) {
   Sending& sending = *sendings_[static_cast<std::size_t>(number)];
-  // It left the water meanwhile, or lost its power: the end of the signal is missing.
-  Transducer* from = sending.from;
-  if (from == nullptr || !from->works() || !around_.medium.in_water(from->p_W(at))) sending.cut = true;
-  if (from != nullptr && from->sending_ == number) from->sending_ = -1;
+  Transducer* const from = sending.from;
+  if (from != nullptr && from->sending_ == number) {
+    // The end of the signal is missing.
+    if (!from->works())
+      cut(number, SignalLoss::sender_off, at);
+    else if (!around_.medium.in_water(from->p_W(at)))
+      cut(number, SignalLoss::out_of_water, at);
+    from->sending_ = -1;
+  }
   release(number);
+}
+
+void AcousticChannel::cut(int number, SignalLoss why, Time at) {
+  Sending& sending = *sendings_[static_cast<std::size_t>(number)];
+  sending.cut = why;
+  sending.cut_after = std::clamp(at - sending.sent, Time{0}, sending.signal.duration);
+  if (sending.from != nullptr) {
+    sending.from->sending_ = -1;
+    sending.from->sending_until_ = std::min(sending.from->sending_until_, at);
+  }
+  for (std::size_t i = 0; i < flights_.size(); ++i)
+    if (flights_[i].sending == number && flights_[i].present) schedule_silence(static_cast<int>(i), sending, at);
+}
+
+void AcousticChannel::schedule_silence(int number, const Sending& sending, Time now) {
+  const Flight& flight = flights_[static_cast<std::size_t>(number)];
+  const double whole_s = to_seconds(sending.signal.duration);
+  const double share = whole_s > 0 ? to_seconds(sending.cut_after) / whole_s : 1;
+  const Time at = std::max(now, flight.begun + from_seconds(share * to_seconds(flight.ended - flight.begun)));
+  if (at < flight.ended) schedule(at, silence_event, number);
 }
 
 void AcousticChannel::approach(int number, Time due) {

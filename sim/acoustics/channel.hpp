@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -42,6 +43,10 @@ class AcousticChannel {
   void handle(const Event& event, Time now);
   /// Somebody was put elsewhere: who is near whom is looked up again.
   void forget_places() { neighbours_age_ = -1; }
+  /// A receiver changed: how faint a sound may be and matter is looked up again.
+  void forget_receivers();
+  /// Messages that were sent to this one or all of its group since the start.
+  std::int64_t messages_for(const Audience& own) const;
   /// What transducers that have left sent and heard.
   const Transducer::Counts& counts_of_those_gone() const { return gone_; }
 
@@ -54,6 +59,8 @@ class AcousticChannel {
   const Propagation& propagation() const { return propagation_; }
   /// Receptions, heard or not, since the start: what the work grows with.
   std::int64_t flights() const { return flights_made_; }
+  /// Transducers that were looked at to find who hears, since the start.
+  std::int64_t examined() const { return examined_; }
   /// With the transducers and continuous sounds, whose devices do not.
   void visit_state(StateArchive& archive);
   /// `events`: all that are due later, of whomever.  Throws SnapshotError when those of the channel do not fit its
@@ -63,7 +70,7 @@ class AcousticChannel {
  private:
   friend class Transducer;
   friend class ContinuousSound;
-  enum EventKind { emission_event, emission_end_event, near_event, begin_event, end_event, watch_event };
+  enum EventKind { emission_event, emission_end_event, near_event, begin_event, end_event, watch_event, silence_event };
 
   /// A signal under way.
   struct Sending {
@@ -77,7 +84,8 @@ class AcousticChannel {
     Vector3d p_W = Vector3d::Zero(), v_W = Vector3d::Zero();
     Matrix3d R_WS = Matrix3d::Identity();
     DirectivityConfig directivity;
-    bool cut = false;                         // the sender left the water, or lost its power
+    SignalLoss cut = SignalLoss::none;        // why the sender stopped before the end
+    Time cut_after{0};                        // of what it sent until then
     int users = 0;                            // flights and events that still need it
     void visit_state(StateArchive& archive);  // but for `from`
   };
@@ -93,6 +101,7 @@ class AcousticChannel {
     SignalLoss loss = SignalLoss::none;
     std::uint32_t to_join = 0;  // else another has its number now
     bool listened = false, present = false, noticed = false, delayed = false;
+    bool meant = false;                       // it is for the receiver
     void visit_state(StateArchive& archive);  // but for `to`
   };
 
@@ -101,6 +110,8 @@ class AcousticChannel {
   void join(ContinuousSound& sound);
   void leave(ContinuousSound& sound);
   void transmit(Transducer& from, Signal signal, Time at);
+  /// Of signals that have not begun.  Until when it sends.
+  Time call_back(Transducer& from);
 
   /// Null when it left.
   Transducer* receiver_of(const Flight& flight) const {
@@ -110,9 +121,17 @@ class AcousticChannel {
   static void set_receiver(Flight& flight, const Transducer* to);
   void fetch_ahead() const;
   void emit(int sending, Time now);
+  void send_to(int sending, Transducer& to);
+  /// Who is near whom, when that is too old, for signals that are heard so far.  Returns that range, m.
+  double look_around(const Signal& signal, Time now);
   void end_emission(int sending, Time at);
+  /// The sender stops before the end.
+  void cut(int sending, SignalLoss why, Time at);
+  /// The receiver will hear that, if there is anything left to hear then.
+  void schedule_silence(int flight, const Sending& sending, Time now);
   void approach(int flight, Time due);
   void begin(int flight);
+  void fall_silent(int flight, Time due);
   /// Looks whether those who send and take signals still can.
   void watch();
   bool can(const Transducer& transducer) const;
@@ -120,10 +139,12 @@ class AcousticChannel {
   void noise_changed();
   /// By how much a signal may be below the noise and still matter to somebody.
   Decibels faintest(double frequency_Hz) const;
+  Decibels work_out_faintest(double frequency_Hz) const;
   void end(int flight);
   /// Level, end and Doppler.  Returns the power of echoes that disturb, re 1 uPa^2.
   /// `later_s`: by which the first sound is an echo's.
   PowerRatio work_out_level(Flight& flight, const Sending& sending, double& later_s);
+  /// Why it cannot be understood, whatever else is heard.
   SignalLoss obstacle(const Flight& flight) const;
   Decibels link_loss(const Transducer& to, const Sending& sending, double& loss_probability) const;
   /// Of the sea and of continuous sounds, in the band of a signal, as a receiver hears it.
@@ -158,8 +179,12 @@ class AcousticChannel {
   std::int64_t looks_ = 0;
   bool handling_ = false;
   Neighbourhood neighbours_;
-  double neighbours_age_ = -1;  // when they were looked up, s; negative: not
-  bool watching_ = false;       // a watch_event is under way
+  double neighbours_age_ = -1;                                           // when they were looked up, s; negative: not
+  double lowest_m_ = 0;                                                  // z of the lowest of them then
+  std::map<std::string, std::map<std::string, std::int64_t>> messages_;  // sent, by group and address
+  mutable std::vector<std::pair<double, Decibels>> faintest_;            // of a frequency, worked out before
+  mutable std::int64_t examined_ = 0;
+  bool watching_ = false;  // a watch_event is under way
   Transducer::Counts gone_;
   std::vector<int> near_;
 };

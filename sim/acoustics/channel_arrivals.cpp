@@ -95,9 +95,11 @@ SignalLoss AcousticChannel::obstacle(const Flight& flight) const {
   const Transducer& to = *receiver_of(flight);
   if (!around_.medium.in_water(flight.p_begun_W)) return SignalLoss::out_of_water;
   if (!to.works()) return SignalLoss::receiver_off;
+  if (flight.loss != SignalLoss::none) return flight.loss;  // blocked
+  if (flight.snr < Decibels{to.config().detection_dB}) return SignalLoss::noise;
   if (flight.begun < to.sending_until_) return SignalLoss::half_duplex;
   if (std::abs(flight.closing_mps) > to.config().doppler_limit_mps) return SignalLoss::doppler;
-  return flight.loss;  // blocked, or none
+  return SignalLoss::none;
 }
 
 void AcousticChannel::begin(int number) {
@@ -117,6 +119,7 @@ void AcousticChannel::begin(int number) {
   }
   flight.p_begun_W = p_W;
   if (config_.range_max_m && (p_W - sending.p_W).norm() > *config_.range_max_m) {
+    if (flight.meant) ++to.counts_.lost[static_cast<std::size_t>(SignalLoss::range)];
     end(number);
     return;
   }
@@ -134,11 +137,18 @@ void AcousticChannel::begin(int number) {
   flight.present = flight.loss == SignalLoss::none && around_.medium.in_water(flight.p_begun_W);
   const PowerRatio power = to_power(flight.level);
   if (flight.present)
-    to.receiver_.begin(
-        {number, sending.signal.centre_Hz, sending.signal.bandwidth_Hz, power + disturbing, flight.ended},
-        flight.begun);
+    to.receiver_.begin({number, sending.signal.centre_Hz, sending.signal.bandwidth_Hz, power + disturbing, flight.ended,
+                        sending.signal.kind == Signal::Kind::message},
+                       flight.begun);
   if (flight.listened) take(number, flight, sending, power, disturbing);
   schedule(flight.ended, end_event, number);
+  if (flight.present && sending.cut != SignalLoss::none) schedule_silence(number, sending, flight.begun);
+}
+
+void AcousticChannel::fall_silent(int number, Time due) {
+  const Flight& flight = flights_[static_cast<std::size_t>(number)];
+  Transducer* const to = receiver_of(flight);
+  if (to != nullptr && flight.present) to->receiver_.silence(number, due);
 }
 
 void AcousticChannel::take(int number, Flight& flight, const Sending& sending, PowerRatio power,
@@ -153,6 +163,7 @@ void AcousticChannel::take(int number, Flight& flight, const Sending& sending, P
   taken.bit_rate_bps = signal.bit_rate_bps;
   taken.bits = signal.bits;
   taken.coding_gain_dB = signal.coding_gain_dB;
+  taken.protection = to_power(Decibels{to.config().protection_dB});
   taken.begun = flight.begun;
   taken.ended = flight.ended;
   flight.snr = to_decibels(taken.sound.power / (taken.noise + disturbing));
@@ -186,12 +197,12 @@ void AcousticChannel::end(int number) {
       if (taken) {
         sinr = to_decibels(outcome.worst_sinr);
         finish(*to, flight, sending, outcome);
-        if (!around_.medium.in_water(to->p_W(flight.ended)) || sending.cut) flight.loss = SignalLoss::out_of_water;
+        if (sending.cut != SignalLoss::none) flight.loss = sending.cut;
+        if (!around_.medium.in_water(to->p_W(flight.ended))) flight.loss = SignalLoss::out_of_water;
         if (!to->works()) flight.loss = SignalLoss::receiver_off;
       }
-      const bool message = sending.signal.kind == Signal::Kind::message;
-      if (message) ++to->counts_.lost[static_cast<std::size_t>(flight.loss)];
-      if (message && flight.loss == SignalLoss::none) {
+      if (flight.meant) ++to->counts_.lost[static_cast<std::size_t>(flight.loss)];
+      if (flight.meant && flight.loss == SignalLoss::none) {
         ++to->counts_.understood;
         to->counts_.understood_bytes += static_cast<std::int64_t>(sending.signal.payload.size());
       }

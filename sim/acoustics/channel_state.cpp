@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include "sim/acoustics/channel.hpp"
@@ -6,14 +7,28 @@
 
 namespace sim {
 
+namespace {
+
+/// It is the place of a count.
+void check_loss(SignalLoss loss, const StateArchive& archive) {
+  if (static_cast<int>(loss) < 0 || static_cast<int>(loss) >= signal_losses)
+    archive.fail("a signal that is lost for no known cause");
+}
+
+}  // namespace
+
 void AcousticChannel::Sending::visit_state(StateArchive& archive) {
-  archive(signal, source, number, group, sequence, sent, p_W, v_W, R_WS, cut, users);
+  archive(signal, source, number, group, sequence, sent, p_W, v_W, R_WS, cut, cut_after, users);
   archive.unhashed(directivity.pattern, directivity.diameter_m, directivity.length_m, directivity.floor_dB);
+  if (!archive.restoring()) return;
+  check_loss(cut, archive);
+  if (cut_after < Time{0} || cut_after > std::max(signal.duration, Time{0})) archive.fail("a signal cut beyond its end");
 }
 
 void AcousticChannel::Flight::visit_state(StateArchive& archive) {
   archive(sending, begun, ended, travel_time_s, p_begun_W, closing_mps, level, snr, loss, listened, present, noticed,
-          delayed);
+          delayed, meant);
+  if (archive.restoring()) check_loss(loss, archive);
 }
 
 /// By its number; -1: null.  Returns what is restored.
@@ -48,8 +63,8 @@ void AcousticChannel::visit_state(StateArchive& archive) {
     if (archive.restoring()) set_receiver(flights_[i], to);
   }
   if (archive.restoring()) ++looks_;
-  archive.unhashed(free_sendings_, free_flights_, flights_made_, step_end_, neighbours_, neighbours_age_, watching_,
-                   gone_);
+  archive.unhashed(free_sendings_, free_flights_, flights_made_, step_end_, neighbours_, neighbours_age_, lowest_m_,
+                   messages_, watching_, gone_);
   if (archive.restoring()) check_numbers(archive);
 }
 
@@ -102,11 +117,12 @@ void AcousticChannel::check_events(std::span<const Event> events, const StateArc
     if (event.device != Event::of_acoustics) continue;
     const bool of_sending = event.kind == emission_event || event.kind == emission_end_event;
     const bool of_flight = event.kind == near_event || event.kind == begin_event || event.kind == end_event;
-    if (!of_sending && !of_flight) continue;
+    const bool of_silence = event.kind == silence_event;
+    if (!of_sending && !of_flight && !of_silence) continue;
     std::vector<int>& counts = of_sending ? users : flight_events;
     const std::int64_t item = event.stamp.count();
     if (item < 0 || static_cast<std::uint64_t>(item) >= counts.size()) fail_for_signal(archive);
-    ++counts[static_cast<std::size_t>(item)];
+    counts[static_cast<std::size_t>(item)] += !of_silence;
   }
   const std::vector<char> sending_used = in_use(free_sendings_, sendings_.size(), archive);
   for (std::size_t i = 0; i < sendings_.size(); ++i)

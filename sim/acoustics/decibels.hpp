@@ -38,9 +38,12 @@ class Decibels {
   template <typename Archive>
   void visit_state(Archive& archive) {
     archive(dB_);
+    if (archive.restoring() && !(dB_ <= most_dB)) archive.fail("a level above all that there is");
   }
 
  private:
+  static constexpr double most_dB = 1000;
+
   double dB_ = 0;
 };
 
@@ -65,6 +68,7 @@ class PowerRatio {
   template <typename Archive>
   void visit_state(Archive& archive) {
     archive(linear_);
+    if (archive.restoring() && !(linear_ >= 0)) archive.fail("a power below nothing");
   }
 
  private:

@@ -10,12 +10,6 @@
 
 namespace sim {
 
-namespace {
-
-constexpr double deepest_m = 12000;  // deeper than any sea
-
-}  // namespace
-
 Decibels Propagation::transmission_loss(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const {
   const double range_m = (to_W - from_W).norm();
   const double dBpkm = absorption_dBpkm(config_.absorption, frequency_Hz, medium_, from_W, to_W);
@@ -42,22 +36,26 @@ PowerRatio Propagation::ambient_power(double centre_Hz, double bandwidth_Hz, Dec
   return less.dB() == 0 ? of.ambient_power : to_power(of.ambient - less);
 }
 
-double Propagation::least_absorption_dBpkm(double frequency_Hz) const {
-  double least_dBpkm = std::numeric_limits<double>::infinity();
+std::array<double, Propagation::depths_m.size()> Propagation::least_absorption_dBpkm(double frequency_Hz) const {
+  std::array<double, depths_m.size()> least_dBpkm;
+  double so_far_dBpkm = std::numeric_limits<double>::infinity();
   const double surface_m = medium_.highest_surface_m();
-  for (const double depth_m : {0.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 12000.0}) {
-    const Vector3d p_W(0, 0, surface_m - depth_m);
-    least_dBpkm = std::min(least_dBpkm, absorption_dBpkm(config_.absorption, frequency_Hz, medium_, p_W, p_W));
+  for (std::size_t i = 0; i < depths_m.size(); ++i) {
+    const Vector3d p_W(0, 0, surface_m - depths_m[i]);
+    so_far_dBpkm = std::min(so_far_dBpkm, absorption_dBpkm(config_.absorption, frequency_Hz, medium_, p_W, p_W));
+    least_dBpkm[i] = 0.95 * so_far_dBpkm;  // between those depths
   }
-  return 0.95 * least_dBpkm;  // between those depths
+  return least_dBpkm;
 }
 
-double Propagation::audible_range_m(const Signal& signal, Decibels below) const {
+double Propagation::audible_range_m(const Signal& signal, Decibels below, double deepest_m) const {
   const Band of = band(signal.centre_Hz, signal.bandwidth_Hz);
+  const auto depth = std::lower_bound(depths_m.begin(), depths_m.end() - 1, deepest_m);
+  const double least_dBpkm = of.least_dBpkm[static_cast<std::size_t>(depth - depths_m.begin())];
   const Decibels floor = of.ambient - below;
   const double most_m = config_.range_max_m.value_or(1e6);
   const auto heard = [&](double range_m) {
-    return signal.source_level - spreading_loss(range_m, config_.spreading) - absorption_loss(range_m, of.least_dBpkm) >
+    return signal.source_level - spreading_loss(range_m, config_.spreading) - absorption_loss(range_m, least_dBpkm) >
            floor;
   };
   if (heard(most_m)) return most_m;
@@ -112,7 +110,7 @@ double Propagation::water_depth_m(const Vector3d& p_W) const {
   double below_m = 0;
   for (int passed = 0; passed < 8; ++passed) {
     const auto hit =
-        physics_.scene().cast(p_W - below_m * Vector3d::UnitZ(), -Vector3d::UnitZ(), deepest_m - below_m, filter);
+        physics_.scene().cast(p_W - below_m * Vector3d::UnitZ(), -Vector3d::UnitZ(), deepest_sea_m - below_m, filter);
     if (!hit) break;
     below_m += hit->range_m;
     const PartInfo& part = physics_.parts()[static_cast<std::size_t>(hit->part)];

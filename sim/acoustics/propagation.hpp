@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "sim/acoustics/acoustics_config.hpp"
@@ -37,8 +38,10 @@ class Propagation {
   Decibels ambient_level(double centre_Hz, double bandwidth_Hz) const;
   /// The same less a directivity index, re 1 uPa^2.
   PowerRatio ambient_power(double centre_Hz, double bandwidth_Hz, Decibels less) const;
-  /// Beyond this a signal is farther below the noise than `below` on any path.
-  double audible_range_m(const Signal& signal, Decibels below) const;
+  /// Beyond this a signal is farther below the noise than `below` on any path no deeper than `deepest_m` below the
+  /// surface.
+  double audible_range_m(const Signal& signal, Decibels below, double deepest_m = deepest_sea_m) const;
+  static constexpr double deepest_sea_m = 12000;
   /// How much of the first Fresnel zone is free of terrain, objects and hulls: 1 all, 0 nothing.
   double free_part(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group,
                    double frequency_Hz) const;
@@ -46,8 +49,10 @@ class Propagation {
  private:
   Echoes echoes_of(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, Decibels direct,
                    Random& random) const;
-  /// The least absorption anywhere in the water.
-  double least_absorption_dBpkm(double frequency_Hz) const;
+  /// Down to these depths.
+  static constexpr std::array<double, 12> depths_m{0, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, deepest_sea_m};
+  /// The least absorption anywhere between the surface and each of depths_m.
+  std::array<double, depths_m.size()> least_absorption_dBpkm(double frequency_Hz) const;
   /// Below the surface; infinite when there is no bottom.
   double water_depth_m(const Vector3d& p_W) const;
 
@@ -56,7 +61,7 @@ class Propagation {
     double centre_Hz, bandwidth_Hz;
     Decibels ambient;
     PowerRatio ambient_power;
-    double least_dBpkm;
+    std::array<double, depths_m.size()> least_dBpkm;
   };
   Band band(double centre_Hz, double bandwidth_Hz) const;
 

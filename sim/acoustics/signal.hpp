@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -10,6 +11,17 @@
 #include "sim/time.hpp"
 
 namespace sim {
+
+/// Who a message is for, and who somebody is: what the counts of delivery go by.
+struct Audience {
+  std::string group;    ///< who could understand each other, such as kind and network of modems
+  std::string address;  ///< in the group; of a message, empty: for all of the group
+
+  template <typename Archive>
+  void visit_state(Archive& archive) {
+    archive(group, address);
+  }
+};
 
 /// A sound with a beginning and an end, as a transducer gives it to the water.
 struct Signal {
@@ -33,11 +45,21 @@ struct Signal {
   std::string network;        ///< listeners of another network do not understand it
   std::string code;           ///< the listener's own: a frame type, who is asked
   Bytes payload;              ///< the listener's own
+  Audience to;                ///< of a message: who it is for
+
+  /// Its numbers are within what any sound in water can have: levels and rates worked out of them are finite.
+  bool possible() const {
+    constexpr double most_Hz = 1e9;
+    const auto within = [](double value) { return value > 0 && value <= most_Hz; };
+    return within(centre_Hz) && within(bandwidth_Hz) && within(bit_rate_bps) && bits >= 0 &&
+           std::abs(coding_gain_dB) <= 1000 && std::abs(source_level.dB()) <= 1000;
+  }
 
   template <typename Archive>
   void visit_state(Archive& archive) {
     archive(kind, source_level, centre_Hz, bandwidth_Hz, duration, modulation, bit_rate_bps, bits, coding_gain_dB,
-            network, code, payload);
+            network, code, payload, to);
+    if (archive.restoring() && !possible()) archive.fail("a signal that cannot be");
   }
 };
 
@@ -54,8 +76,10 @@ enum class SignalLoss {
   out_of_water,  ///< sender or receiver left the water
   receiver_off,  ///< without power, or silent by a fault
   link,          ///< `links:` of the world lost it
+  range,         ///< so far away that nothing of it could be heard
+  sender_off,    ///< the sender lost its power, or was removed, in the middle of it
 };
-inline constexpr int signal_losses = 11;
+inline constexpr int signal_losses = 13;
 /// The word of a cause, such as `half_duplex`.
 const char* signal_loss_word(SignalLoss loss);
 

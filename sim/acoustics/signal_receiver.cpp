@@ -17,10 +17,14 @@ inline double share_in_band(const PresentSound& of, const PresentSound& band) {
 
 }  // namespace
 
-PowerRatio SignalReceiver::others(const PresentSound& but, Time at) const {
-  PowerRatio sum{0};
-  for (const PresentSound& sound : present_)
-    if (sound.flight != but.flight && sound.ended > at) sum += share_in_band(sound, but) * sound.power;
+SignalReceiver::Others SignalReceiver::others(const PresentSound& but, Time at) const {
+  Others sum;
+  for (const PresentSound& sound : present_) {
+    if (sound.flight == but.flight || sound.ended <= at) continue;
+    const PowerRatio power = share_in_band(sound, but) * sound.power;
+    sum.all += power;
+    if (sound.message) sum.messages += power;
+  }
   return sum;
 }
 
@@ -50,10 +54,10 @@ void SignalReceiver::count_bits(Taken& taken, Time until) const {
   const TakenSignal& signal = taken.signal;
   const double span = to_seconds(std::min(until, signal.ended) - taken.counted_until);
   const double whole = to_seconds(signal.ended - signal.begun);
-  const PowerRatio other = others(signal.sound, taken.counted_until);
+  const Others other = others(signal.sound, taken.counted_until);
   taken.counted_until = until;
   const PowerRatio alone = signal.sound.power / (signal.noise + signal.disturbing);
-  const PowerRatio sinr = signal.sound.power / (signal.noise + signal.disturbing + other);
+  const PowerRatio sinr = signal.sound.power / (signal.noise + signal.disturbing + other.all);
   if (sinr < taken.worst_sinr) taken.worst_sinr = sinr;
   if (signal.bits == 0 || whole <= 0 || span <= 0) return;
   const double bits = static_cast<double>(signal.bits) * span / whole;
@@ -62,7 +66,8 @@ void SignalReceiver::count_bits(Taken& taken, Time until) const {
     const PowerRatio EbN0 = energy_per_bit(snr, signal.sound.bandwidth_Hz, signal.bit_rate_bps) * code;
     return bits * std::log1p(-bit_error_probability(signal.modulation, EbN0));
   };
-  taken.log_success += log_right(sinr);
+  const bool drowned = signal.sound.power < signal.protection * other.messages;
+  taken.log_success += drowned ? bits * std::log(0.5) : log_right(sinr);
   taken.log_success_alone += log_right(alone);
 }
 
@@ -116,6 +121,14 @@ bool SignalReceiver::flights_are_below(std::size_t count) const {
 bool SignalReceiver::takes(std::int64_t flight) const {
   return std::any_of(taken_.begin(), taken_.end(),
                      [&](const Taken& taken) { return taken.signal.sound.flight == flight; });
+}
+
+void SignalReceiver::silence(std::int64_t flight, Time at) {
+  count_bits(at);
+  for (PresentSound& sound : present_)
+    if (sound.flight == flight) sound.power = PowerRatio{0};
+  for (Taken& taken : taken_)
+    if (taken.signal.sound.flight == flight) taken.signal.sound.power = taken.signal.disturbing = PowerRatio{0};
 }
 
 bool SignalReceiver::end(std::int64_t flight, Time at, Outcome& outcome) {

@@ -13,9 +13,10 @@ namespace sim {
 struct PresentSound {
   std::int64_t flight = -1;  ///< its number in the channel
   double centre_Hz = 0, bandwidth_Hz = 0;
-  PowerRatio power{0};  ///< re 1 uPa^2, in its own band
-  Time ended{0};        ///< it is known when it will
-  void visit_state(StateArchive& archive) { archive(flight, centre_Hz, bandwidth_Hz, power, ended); }
+  PowerRatio power{0};   ///< re 1 uPa^2, in its own band
+  Time ended{0};         ///< it is known when it will
+  bool message = false;  ///< of a modem: no noise to another one's receiver, see TakenSignal::protection
+  void visit_state(StateArchive& archive) { archive(flight, centre_Hz, bandwidth_Hz, power, ended, message); }
 };
 
 /// What a receiver needs to know of a signal that it tries to take.
@@ -27,9 +28,12 @@ struct TakenSignal {
   double bit_rate_bps = 80;
   std::int64_t bits = 0;
   double coding_gain_dB = 0;
+  /// Over other messages in its band: bits that come while it has less are a guess each.  What other messages have
+  /// less than that is noise to it.
+  PowerRatio protection{0};
   Time begun{0}, ended{0};
   void visit_state(StateArchive& archive) {
-    archive(sound, noise, disturbing, modulation, bit_rate_bps, bits, coding_gain_dB, begun, ended);
+    archive(sound, noise, disturbing, modulation, bit_rate_bps, bits, coding_gain_dB, protection, begun, ended);
   }
 };
 
@@ -58,6 +62,8 @@ class SignalReceiver {
   /// From now on the noise in the band of a signal that is taken is this.
   void set_noise(std::int64_t flight, PowerRatio noise, Time at);
   bool takes(std::int64_t flight) const;
+  /// A sound stops before its end; who takes it goes on until that.
+  void silence(std::int64_t flight, Time at);
   /// A sound ends.  True, with the outcome, when it was taken.
   bool end(std::int64_t flight, Time at, Outcome& outcome);
   /// Lets go of the last signal that is taken; its flight, or -1 when there was none.
@@ -79,8 +85,11 @@ class SignalReceiver {
     }
   };
 
+  struct Others {
+    PowerRatio all{0}, messages{0};
+  };
   /// Of all sounds but one, in its band, that last beyond a time.
-  PowerRatio others(const PresentSound& but, Time at) const;
+  Others others(const PresentSound& but, Time at) const;
   /// Whether a signal is so much stronger than all else in its band.
   bool stands_out(const TakenSignal& signal, PowerRatio needed) const;
   /// Counts the bits of what is taken since the last change.

@@ -24,6 +24,8 @@ AcousticChannel& channel_of(const DeviceContext& context) {
 void ReceiverConfig::read(ParamReader& in) {
   in.read("detection_dB", detection_dB, between(-60, 100), "signal over noise and other sounds to notice a signal");
   in.read("capture_dB", capture_dB, between(0, 200), "a signal this much stronger takes over from the one it takes");
+  in.read("protection_dB", protection_dB, between(-60, 200),
+          "a message that it takes is lost where it is not this much stronger than all others in its band together");
   in.read("doppler_limit_mps", doppler_limit_mps, between(0, 1000), "closing or parting speed that it follows");
   in.read("directivity", directivity, "for sending and hearing; its axis is x of the device");
 }
@@ -47,6 +49,27 @@ Transducer::~Transducer() {
 void Transducer::transmit(Signal signal, Time at) {
   busy_until_ = std::max(busy_until_, at + signal.duration);
   channel_.transmit(*this, std::move(signal), at);
+}
+
+void Transducer::call_back() {
+  busy_until_ = channel_.call_back(*this);
+}
+
+void Transducer::belong_to(const Audience& own) {
+  counts_.lost[static_cast<std::size_t>(SignalLoss::range)] += out_of_range();
+  own_ = own;
+  meant_before_ = channel_.messages_for(own_);
+  meant_near_ = 0;
+}
+
+std::int64_t Transducer::out_of_range() const {
+  return channel_.messages_for(own_) - meant_before_ - meant_near_;
+}
+
+Transducer::Counts Transducer::counts() const {
+  Counts counts = counts_;
+  counts.lost[static_cast<std::size_t>(SignalLoss::range)] += out_of_range();
+  return counts;
 }
 
 bool Transducer::works() const {
@@ -77,7 +100,7 @@ Matrix3d Transducer::R_WS() const {
 
 void Transducer::change(const ReceiverConfig& config) {
   config_ = config;
-  channel_.forget_places();
+  channel_.forget_receivers();
   index_of_Hz_ = std::numeric_limits<double>::quiet_NaN();
 }
 

@@ -33,6 +33,7 @@ class AcousticListener {
 struct ReceiverConfig {
   double detection_dB = 6;        ///< signal over noise and other sounds that it needs to notice a signal
   double capture_dB = 6;          ///< a signal stronger by this takes it from the one it is taking
+  double protection_dB = 6;       ///< over all other messages in its band that one needs while it is taken
   double doppler_limit_mps = 5;   ///< closing or parting speed it follows
   DirectivityConfig directivity;  ///< for sending and hearing; the axis is x of the device
   void read(ParamReader& in);
@@ -42,12 +43,12 @@ struct ReceiverConfig {
 /// saves its state: the device does not visit it.
 class Transducer {
  public:
-  /// What it sent and what became of what it listened to.
+  /// Messages: what it sent, and what became of those that were for it.
   struct Counts {
-    std::int64_t sent = 0, sent_bytes = 0;  ///< signals of kind message
+    std::int64_t sent = 0, sent_bytes = 0;
     std::int64_t understood = 0, understood_bytes = 0;
     std::int64_t unsent = 0;  ///< asked for without power, silent by a fault, or out of the water
-    std::array<std::int64_t, signal_losses> lost{};  ///< signals of kind message, by SignalLoss
+    std::array<std::int64_t, signal_losses> lost{};  ///< by SignalLoss
     void visit_state(StateArchive& archive) { archive(sent, sent_bytes, understood, understood_bytes, unsent, lost); }
   };
 
@@ -60,6 +61,10 @@ class Transducer {
   /// From `at` on, which is not before now (the start of the step in act(), `Reception::ended` in heard()).  The
   /// caller lets one signal end before the next begins.
   void transmit(Signal signal, Time at);
+  /// What it was asked to send and has not begun is not sent.
+  void call_back();
+  /// Who it is from now on; before the first call, nobody in particular.
+  void belong_to(const Audience& own);
   /// It sends now, or has something scheduled, until this time.
   Time busy_until() const { return busy_until_; }
   /// It is taking a signal now.
@@ -78,9 +83,10 @@ class Transducer {
   void change(const ReceiverConfig& config);
   /// By how much noise from all sides is less through its directivity: the directivity index.
   Decibels noise_reduction(double frequency_Hz) const;
-  const Counts& counts() const { return counts_; }
+  Counts counts() const;
   void visit_state(StateArchive& archive) {
     archive(busy_until_, sending_until_, sending_, signals_, receiver_, counts_);
+    archive.unhashed(own_, meant_before_, meant_near_);
   }
 
  private:
@@ -92,6 +98,11 @@ class Transducer {
     Vector3d drift_W;  // v_W as p_W(Time) has it: the same but for rounding
   };
   const Motion& motion() const;
+  bool is_meant_by(const Signal& signal) const {
+    return signal.to.group == own_.group && (signal.to.address.empty() || signal.to.address == own_.address);
+  }
+  /// Messages for it that were sent where it could not hear them.
+  std::int64_t out_of_range() const;
 
   AcousticListener& listener_;
   ReceiverConfig config_;
@@ -108,7 +119,10 @@ class Transducer {
   int sending_ = -1;        // what it sends, in the channel; -1: nothing
   std::int64_t signals_ = 0;
   SignalReceiver receiver_;
-  Counts counts_;
+  Counts counts_;  // without those that are out of range
+  Audience own_;
+  std::int64_t meant_before_ = 0;  // messages for who it is, sent before it was
+  std::int64_t meant_near_ = 0;    // since then: those that are or were on their way to it, and its own
   // The directivity index of a frequency, worked out before; NaN: none.
   mutable double index_of_Hz_ = std::numeric_limits<double>::quiet_NaN();
   mutable Decibels index_;

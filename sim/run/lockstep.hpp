@@ -146,8 +146,8 @@ class Lockstep {
   /// The step that the world should be simulated again from, so that the lists of `step` are whole: the last one before
   /// it at which each client was due.
   std::int64_t needed_from(std::int64_t step) const;
-  /// The world went back to `step`: lists hold what was posted again, and all are asked by their periods from there, when
-  /// those who have an open tick have answered it.
+  /// The world went back to `step`: lists hold what was posted again, and all are asked by their periods from there,
+  /// when those who have an open tick have answered it.
   void rewound(std::int64_t step);
 
  private:

@@ -6,6 +6,7 @@
 #include "sim/acoustics/signal.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/device/device_registry.hpp"
 #include "sim/script/action.hpp"
 #include "sim/world/world_config.hpp"
 
@@ -24,7 +25,7 @@ struct MetricKind {
 };
 
 std::vector<std::string> delivery_figures() {
-  std::vector<std::string> figures{"sent", "received", "lost", "ratio", "bytes_sent"};
+  std::vector<std::string> figures{"sent", "received", "lost", "ratio", "bytes_sent", "unsent", "dropped"};
   for (const std::string& cause : loss_causes()) figures.push_back("lost_" + cause);
   return figures;
 }
@@ -35,7 +36,7 @@ const std::vector<MetricKind>& metric_kinds() {
        MetricType::position_error,
        {"vehicle", "channel"},
        {"from_s", "dimensions"},
-       {"rms_m", "final_m", "max_m", "samples", "per_distance_percent"}},
+       {"rms_m", "final_m", "max_m", "samples", "longest_gap_s", "per_distance_percent"}},
       {"consistency",
        MetricType::consistency,
        {"vehicle", "channel"},
@@ -191,17 +192,37 @@ void declare_figures(ParamReader& in, const std::vector<MetricConfig>& metrics) 
       for (const std::string& figure : metric.figures()) in.declare("figure", figure);
 }
 
+namespace {
+
+/// By what it takes: messages to send, or sentences of a host.
+bool is_modem(const DeviceConfig& device) {
+  const DeviceType* type = DeviceRegistry::instance().find(device.type);
+  if (type == nullptr) return true;  // that is told elsewhere
+  return type->command_messages == "shoal.modem_send_t" || type->command_messages == "shoal.nmea_sentence_t";
+}
+
+}  // namespace
+
 void check_metrics(const WorldConfig& world, Diagnostics& diagnostics) {
   for (const MetricConfig& metric : world.metrics) {
     if (metric.device.empty()) continue;
     for (const VehicleInstance& vehicle : world.vehicles) {
       if (vehicle.name != metric.vehicle || !vehicle.config) continue;
       std::vector<std::string> names;
-      for (const DeviceConfig& device : vehicle.config->devices) names.push_back(device.name);
-      if (std::find(names.begin(), names.end(), metric.device) == names.end())
+      const DeviceConfig* meant = nullptr;
+      for (const DeviceConfig& device : vehicle.config->devices) {
+        if (device.name == metric.device) meant = &device;
+        if (is_modem(device)) names.push_back(device.name);
+      }
+      const std::string which = "device '" + shortened(printable(metric.device)) + "'";
+      const std::string rest = names.empty() ? "; it has no modem" : "; its modems: " + list_text(names);
+      if (meant == nullptr)
         diagnostics.error(metric.place, "metric '" + metric.name + "'",
-                          "vehicle '" + metric.vehicle + "' has no device '" + shortened(printable(metric.device)) +
-                              "'; its devices: " + list_text(names));
+                          "vehicle '" + metric.vehicle + "' has no " + which + rest);
+      else if (!is_modem(*meant))
+        diagnostics.error(
+            metric.place, "metric '" + metric.name + "'",
+            which + " of vehicle '" + metric.vehicle + "' is no modem but of type '" + meant->type + "'" + rest);
     }
   }
 }

@@ -46,7 +46,15 @@ void World::build() {
   for (const MaterialConfig& material : config_.materials) known_materials_.insert(material.name);
   known_contacts_ = config_.contacts;
   add_objects();
-  for (const VehicleInstance& instance : config_.vehicles) build_vehicle(instance);
+  std::vector<std::string> errors;  // of all vehicles, not of the first alone
+  for (const VehicleInstance& instance : config_.vehicles) {
+    try {
+      build_vehicle(instance);
+    } catch (const ConfigError& error) {
+      errors.insert(errors.end(), error.lines().begin(), error.lines().end());
+    }
+  }
+  if (!errors.empty()) throw ConfigError(errors);
   sort_devices();
   script_ = std::make_unique<Script>(*this);
 }
@@ -120,7 +128,15 @@ void World::build_parts_of(Vehicle& vehicle, const VehicleInstance& instance) {
         joint.name, physics_->add_joint(vehicle.group(), joint, vehicle.body(joint.bodies[0]), second, instance.X_WV));
   }
   physics_->close_group(vehicle.group());
-  for (const DeviceConfig& device : config.devices) add_device(vehicle, device);
+  std::vector<std::string> errors;
+  for (const DeviceConfig& device : config.devices) {
+    try {
+      add_device(vehicle, device);
+    } catch (const ConfigError& error) {
+      errors.insert(errors.end(), error.lines().begin(), error.lines().end());
+    }
+  }
+  if (!errors.empty()) throw ConfigError(errors);
 }
 
 void World::add_device(Vehicle& vehicle, const DeviceConfig& config) {

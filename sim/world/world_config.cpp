@@ -106,10 +106,11 @@ void ProcessConfig::read(ParamReader& in) {
 void LockstepConfig::read(ParamReader& in) {
   in.read("timeout_s", timeout_s, between(0.001, 1e6), "wall time to wait for a client's acknowledgement");
   in.read("join_timeout_s", join_timeout_s, between(0.001, 1e6), "wall time to wait for launched clients to join");
-  in.read_choice("on_timeout", on_timeout, {"wait", "pause", "continue", "end"},
-                 "when a client does not answer in timeout_s: wait for it for ever, pause the world, continue without "
-                 "it, end the run with exit code 5; it then counts for all clients, and timeout_s is the longest that they "
-                 "may ask for; unset: each client may say its own when it joins");
+  in.read_choice(
+      "on_timeout", on_timeout, {"wait", "pause", "continue", "end"},
+      "when a client does not answer in timeout_s: wait for it for ever, pause the world, continue without "
+      "it, end the run with exit code 5; it then counts for all clients, and timeout_s is the longest that they "
+      "may ask for; unset: each client may say its own when it joins");
   agreed = in.has("on_timeout");
 }
 

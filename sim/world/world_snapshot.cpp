@@ -12,7 +12,7 @@ namespace sim {
 namespace {
 
 /// Grows when the order or the meaning of what a snapshot holds changes.
-constexpr std::uint32_t state_version = 2;
+constexpr std::uint32_t state_version = 3;
 
 /// Whom the events are for is looked up by number when they are due.
 void check_events(EventQueue& queue, std::size_t devices, const AcousticChannel& acoustics,

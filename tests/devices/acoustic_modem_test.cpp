@@ -125,7 +125,18 @@ TEST(AcousticModem, HearsNothingWhileItSends) {
 
 TEST(AcousticModem, TwoAtOnceAreBothLostAtAThirdButForTheStronger) {
   // a and c are equally far from b: what b takes first is drowned by the other.
-  test::TestWorld equal(three());
+  test::TestWorld alike(three());
+  test::Listener<Received> none(alike, "b.modem");
+  alike.send("a.modem.cmd", test::bytes_to("from a"));
+  alike.run_for(0.1);
+  alike.send("c.modem.cmd", test::bytes_to("from c"));
+  alike.run_for(6);
+  EXPECT_EQ(none.take_all().size(), 0u);
+  EXPECT_EQ(lost(alike, "b", sim::SignalLoss::busy), 1);
+  EXPECT_EQ(lost(alike, "b", sim::SignalLoss::interference), 1);
+
+  // One that tells them apart takes the other for noise.
+  test::TestWorld equal(three(", receiver: {protection_dB: -20}"));
   test::Listener<Received> at_b(equal, "b.modem");
   equal.send("a.modem.cmd", test::bytes_to("from a"));
   equal.run_for(0.1);
@@ -138,8 +149,8 @@ TEST(AcousticModem, TwoAtOnceAreBothLostAtAThirdButForTheStronger) {
   EXPECT_EQ(test::text_of(received[0]), "from a");
   EXPECT_NEAR(received[0].snr_db, 0, 0.1);
 
-  // Without that spreading both are lost.
-  test::TestWorld narrow(three(", bandwidth_Hz: 80"));
+  // Without that spreading both are lost, whatever it tells apart.
+  test::TestWorld narrow(three(", bandwidth_Hz: 80, receiver: {protection_dB: -20}"));
   test::Listener<Received> there(narrow, "b.modem");
   narrow.send("a.modem.cmd", test::bytes_to("from a"));
   narrow.run_for(0.1);
@@ -250,6 +261,7 @@ TEST(AcousticModem, DropsTheOldestWhenItsQueueIsFull) {
   ASSERT_EQ(received.size(), 2u);
   EXPECT_EQ(test::text_of(received[0]), "3");
   EXPECT_EQ(test::text_of(received[1]), "4");
+  EXPECT_EQ(test.world.shared<devices::MessageModems>().dropped_from_queues(), 2);
 }
 
 TEST(AcousticModem, RefusesWhatItCannotSend) {
@@ -280,7 +292,7 @@ TEST(AcousticModem, AChangedLengthHoldsForItsSerialPortToo) {
   test.ends["/nowhere/a"]->to_world = "\n" + line + "\n";  // the end of one that was cut, and a whole one
   test.run_for(8);
   EXPECT_EQ(test.ends["/nowhere/b"]->from_world, line + "\n");
-  EXPECT_EQ(test::device_of<devices::AcousticModem>(test.world, "a/modem").dropped_from_queue(), 2u);
+  EXPECT_EQ(test.world.counts().bad_messages, 2);
 }
 
 TEST(AcousticModem, TellsWhatItsClockShowedThenHoweverLateItReports) {

@@ -23,14 +23,21 @@ class Recorder final : public devices::MicromodemSide {
     return {at, at + sim::from_seconds(1)};
   }
   Sound ask_beacons(sim::Time at, bool) override { return {at, at + sim::from_seconds(0.005)}; }
+  sim::Time call_back() override {
+    ++called_back;
+    return sim::Time{0};
+  }
   /// The run began at 2026-03-04 05:06:07 UTC.
-  std::int64_t utc_us(sim::Time at) const override { return 1'772'600'767'000'000 + at.count(); }
+  std::int64_t utc_us(sim::Time at) const override { return 1'772'600'767'000'000 + stepped_us + at.count(); }
+  double elapsed_s(sim::Time from, sim::Time to) const override { return sim::to_seconds(to - from); }
 
   std::vector<std::string> take() { return std::exchange(said, {}); }
 
   std::vector<std::string> said;
   std::vector<MicromodemPacket> sent;
   std::vector<bool> seconds;
+  int called_back = 0;
+  std::int64_t stepped_us = 0;  // of the clock
 };
 
 class Modem {
@@ -128,6 +135,9 @@ TEST(MicromodemProtocol, KeepsItsSettings) {
   EXPECT_THAT(modem.host("$CCCFG,SRC,5"), ElementsAre("CACFG,SRC,5"));
   EXPECT_THAT(modem.host("$CCCFQ,SRC"), ElementsAre("CACFG,SRC,5"));
   EXPECT_EQ(modem.protocol.address(), 5);
+  EXPECT_THAT(modem.host("$CCCFG,SNV,1"), ElementsAre("CACFG,SNV,1"));
+  EXPECT_THAT(modem.host("$CCCFG,SNV,7"), ElementsAre(HasSubstr("out of range")));
+  EXPECT_THAT(modem.host("$CCCFQ,SNV"), ElementsAre("CACFG,SNV,1"));
   const auto all = modem.host("$CCCFQ,ALL");
   EXPECT_GT(all.size(), 30u);
   for (const auto& line : all) EXPECT_THAT(line, StartsWith("CACFG,"));
@@ -147,6 +157,7 @@ TEST(MicromodemProtocol, AFreshStartEndsWhatItWasAbout) {
   Modem modem;
   modem.host("$CCMUC,1,2,1fab");  // for 1 s; $CATXF and $CAXST are still to come
   modem.host("$CCMSC,1,1,0");
+  EXPECT_EQ(modem.recorder.called_back, 1);
   EXPECT_THAT(modem.wait(1), ElementsAre("CAREV,050608,INIT,0.93.0.48"));
   modem.host("$CCCYC,0,1,2,0,0,1");
   modem.protocol.restart(modem.now);  // the power was off
@@ -201,6 +212,7 @@ TEST(MicromodemProtocol, TheHashKnowsWhatItIsAbout) {
 TEST(MicromodemProtocol, AnswersAPingAfterItsTurnaroundAndTakesItOff) {
   Modem asker, target(Modem::at_address(2));
   asker.host("$CCMPC,1,2");
+  asker.recorder.stepped_us = -400'000;  // GPS sets the clock right meanwhile
   devices::MicromodemArrival there;
   there.begun = sim::from_seconds(0.5), there.ended = sim::from_seconds(1.2);
   target.now = there.ended;
@@ -212,6 +224,20 @@ TEST(MicromodemProtocol, AnswersAPingAfterItsTurnaroundAndTakesItOff) {
   asker.now = back.ended;
   asker.protocol.heard(target.recorder.sent.back(), back);
   EXPECT_THAT(asker.recorder.take(), testing::Contains("CAMPR,2,1,0.5062"));
+}
+
+TEST(MicromodemProtocol, ReportsThePingsOfOthersAndTheirAnswers) {
+  Modem third(Modem::at_address(3));
+  MicromodemPacket packet;
+  packet.kind = MicromodemPacket::Kind::ping;
+  packet.source = 1, packet.destination = 2;
+  third.protocol.heard(packet, {});
+  EXPECT_THAT(third.recorder.take(), ElementsAre("CAMPA,1,2", StartsWith("CACST,0,")));
+  packet.kind = MicromodemPacket::Kind::ping_reply;
+  packet.source = 2, packet.destination = 1;
+  third.protocol.heard(packet, {});
+  EXPECT_THAT(third.recorder.take(), ElementsAre("CAMPR,2,1", StartsWith("CACST,0,")));
+  EXPECT_TRUE(third.recorder.sent.empty());
 }
 
 TEST(MicromodemProtocol, APingWithoutAnAnswerEndsInTime) {

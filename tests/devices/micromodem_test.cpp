@@ -296,6 +296,56 @@ TEST(Micromodem, StartsAnewWhenItsPowerComesBack) {
     EXPECT_THAT(hosts.take(name), testing::ElementsAre("CAREV,000003,INIT,0.93.0.48")) << name;
 }
 
+TEST(Micromodem, AFreshStartTakesBackWhatItHasNotBegun) {
+  Hosts hosts(three());
+  hosts.run_for(0.05);
+  for (const char* line : {"$CCCYC,0,1,2,0,0,1", "$CCTXD,1,2,0,abcd", "$CCMSC,1,1,0"}) {
+    hosts.say("a", line);
+    hosts.run_for(0.1);  // the cycle init sounds, the data has not begun
+  }
+  hosts.take("b");
+  hosts.run_for(8);
+  const auto said = hosts.take("b");
+  EXPECT_THAT(said, Contains("CACYC,0,1,2,0,0,1"));
+  EXPECT_THAT(only(said, "CARXD"), testing::IsEmpty());
+  const auto& modem = test::device_of<devices::Micromodem>(hosts, "a/modem");
+  EXPECT_EQ(modem.transducer().counts().sent, 1);
+}
+
+TEST(Micromodem, APingKnowsNothingOfAClockThatIsSet) {
+  // GPS finds the clock of a 0.4 s ahead while the ping is under way, and sets it right.
+  const std::string gps = ", {name: gps, type: gps, position_m: [0, 0, 0.6], disciplines_clock: true}";
+  Hosts hosts(test::modem_sea({{"a", "[0, 0, -0.3]", modem_at(1) + gps, "clock: {offset_s: 0.4}"},
+                               {"b", "[750, 0, -5]", modem_at(2)},
+                               {"c", "[-300, 0, -5]", modem_at(3)}}));
+  hosts.world.set_fault("a/gps", {.kind = sim::FaultKind::silent});
+  hosts.run_for(9.5);
+  hosts.say("a", "$CCMPC,1,2");
+  hosts.run_for(0.4);
+  hosts.world.clear_faults("a/gps");
+  hosts.run_for(4);
+  EXPECT_LT(std::abs(hosts.world.find_vehicle("a")->clock().error_s(hosts.world.now())), 1e-3);
+  EXPECT_THAT(hosts.take("a"), Contains("CAMPR,2,1,0.5000"));
+}
+
+TEST(Micromodem, CountsPacketsForItsAddressAndForEverybody) {
+  Hosts hosts(three());
+  hosts.run_for(0.05);
+  const auto understood = [&](const std::string& vehicle) {
+    return test::device_of<devices::Micromodem>(hosts, vehicle + "/modem").transducer().counts().understood;
+  };
+  for (const char* line : {"$CCMUC,1,2,0001", "$CCMUC,1,127,0002", "$CCMUC,1,5,0003"}) {
+    hosts.say("a", line);
+    hosts.run_for(4);
+  }
+  EXPECT_EQ(understood("b"), 2);
+  EXPECT_EQ(understood("c"), 1);
+  hosts.say("c", "$CCCFG,SRC,5");
+  hosts.say("a", "$CCMUC,1,5,0004");
+  hosts.run_for(4);
+  EXPECT_EQ(understood("c"), 2);
+}
+
 TEST(Micromodem, NeedsWater) {
   const std::string error = test::error_of_world(test::modem_sea({{"a", "[0, 0, 0]", modem_at(1)}}, "", "{}"));
   EXPECT_NE(error.find("a device of type 'micromodem' needs water"), std::string::npos) << error;

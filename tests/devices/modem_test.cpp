@@ -1,3 +1,4 @@
+#include "devices/message_modem.hpp"
 #include "shoal/modem_received_t.hpp"
 #include "shoal/modem_send_t.hpp"
 #include "tests/devices/immersed_sensor_fixture.hpp"
@@ -74,7 +75,7 @@ TEST(Modem, RadioDoesNotPassWaterAndSoundDoesNotPassAir) {
   EXPECT_EQ(heard("any", 1, sea), 1u);
   EXPECT_EQ(heard("radio", 1, "{water: {surface_m: -20}}"), 1u);
   EXPECT_EQ(heard("radio", 1, "{}"), 1u);
-  EXPECT_EQ(heard("acoustic", 1, "{}"), 0u);
+  EXPECT_EQ(heard("any", 1, "{}"), 1u);
 }
 
 TEST(Modem, SoundTakesTheSpeedOfTheWaterAtItsSender) {
@@ -178,6 +179,9 @@ TEST(Modem, DropsTheOldestWhenItsQueueIsFull) {
   ASSERT_EQ(received.size(), 2u);
   EXPECT_EQ(text_of(received[0]), "3");
   EXPECT_EQ(text_of(received[1]), "4");
+  EXPECT_EQ(test.world.shared<devices::MessageModems>().dropped_from_queues(), 2);
+  test.world.remove_vehicle("a");
+  EXPECT_EQ(test.world.shared<devices::MessageModems>().dropped_from_queues(), 2) << "of those gone, too";
 }
 
 TEST(Modem, RefusesWhatItCannotSend) {
@@ -198,6 +202,14 @@ TEST(Modem, SpeaksLinesThroughItsSerialPort) {
   test.ends["/nowhere/a"]->to_world = "ne\n";
   test.run_for(0.5);
   EXPECT_EQ(test.ends["/nowhere/b"]->from_world, "hello\nworld\npart of a line\n");
+}
+
+TEST(Modem, ALineThatIsTooLongIsABadMessage) {
+  test::WorldWithPorts test(modem_world("range_m: 1000, max_message_bytes: 4, serial: {path: \"/nowhere/{vehicle}\"}"));
+  test.ends["/nowhere/a"]->to_world = "12345\n1234\n";
+  test.run_for(0.5);
+  EXPECT_EQ(test.ends["/nowhere/b"]->from_world, "1234\n");
+  EXPECT_EQ(test.world.counts().bad_messages, 1);
 }
 
 TEST(Modem, CountsWhatNobodyFetchesFromItsSerialPort) {

@@ -106,6 +106,31 @@ TEST(AcousticsCommand, SaysWhatIsWrong) {
   EXPECT_THAT(error_of({"--level", "nan"}), HasSubstr("must be from -100 to 300"));
   EXPECT_THAT(error_of({"--set", "acoustics.spreading.factor=9"}), HasSubstr("'factor' must be >= 0 and <= 4, got 9"));
   EXPECT_THAT(error_of({test_support::source_path("worlds/minimal.yaml")}), HasSubstr("no water"));
+  EXPECT_THAT(error_of({"--bandwidth", "60000"}),
+              HasSubstr("must be less than twice the frequency of 25000 Hz, got 60000"));
+}
+
+TEST(AcousticsCommand, NeedsWaterAtBothEnds) {
+  const ScratchFolder folder;
+  std::ofstream(folder.file("sea.yaml"))
+      << "shoal: 1\nmedium: {water: {}}\nobjects:\n"
+         "  - {name: bottom, fixed: true, position_m: [0, 0, -30], parts: [{shape: "
+         "plane}]}\n"
+         "  - {name: rock, fixed: true, position_m: [50, 0, -20], parts: [{shape: box, "
+         "size_m: [10, 10, 10]}]}\n"
+         "  - {name: jetty, fixed: true, position_m: [90, 0, 0], parts: [{shape: box, "
+         "size_m: [10, 10, 2]}]}\n";
+  const auto to = [&](const std::string& place) {
+    return acoustics({folder.file("sea.yaml"), "--from", "0,0,-5", "--to", place});
+  };
+  for (const auto& [place, error] :
+       {std::pair{"100,0,-40", "--to: is in the ground at 100,0,-40"},
+        {"50,0,-20", "--to: is in the ground at 50,0,-20"},
+        {"100,0,1", "--to: is in the air at 100,0,1: the surface is at z = 0.00 m there"}}) {
+    EXPECT_EQ(to(place).exit_code, 2) << place;
+    EXPECT_THAT(to(place).errors, HasSubstr(error));
+  }
+  EXPECT_EQ(to("90,0,-5").exit_code, 0) << "below the jetty";
 }
 
 }  // namespace

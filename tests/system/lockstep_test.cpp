@@ -205,6 +205,15 @@ TEST_F(Policy, ContinueGoesOnWithoutAKilledClientAtOnce) {
   EXPECT_THAT(shoal_->errors(), HasSubstr("the process of client 'pilot' ended before it answered step 40"));
 }
 
+TEST_F(Policy, AKilledClientFailsARunThatIsJudgedThoughTheWorldGoesOn) {
+  start("--die-at, '5', --on-timeout, continue, --timeout, '1000'",
+        "metrics: [{name: way, type: distance, vehicle: rover2}]\npass: [{metric: way.travelled_m, below: 1e6}]\n");
+  EXPECT_EQ(shoal_->wait(), 1) << shoal_->errors();
+  EXPECT_THAT(shoal_->output(), HasSubstr("FAILED: process 'pilot' must not fail; it was killed by signal 9"));
+  EXPECT_THAT(summary(), HasSubstr("\"passed\": false"));
+  EXPECT_THAT(summary(), HasSubstr("\"ended\": \"duration\""));
+}
+
 TEST_F(Policy, EndThatWasAgreedEndsTheRunWithAKilledClientAtOnce) {
   start("--die-at, '5'", "lockstep: {on_timeout: end, timeout_s: 1000}\n");
   EXPECT_EQ(shoal_->wait(), 5);

@@ -38,7 +38,7 @@ class Example(unittest.TestCase):
     def test_finds_the_auv_of_the_world_as_it_is(self):
         import coop_auv
         auv, bus = coop_auv.attach(coop_auv.parse(options_of_the_page()))
-        # Exit code 0: the rules are kept.  Seeds 1 to 4 have 0.9 to 1.3 m, dead reckoning some 30 m.
+        # Exit code 0: the rules are kept.  The rms error is some 1 m, that of dead reckoning some 30 m.
         self.run_world(bus, "coop_underwater.yaml", "--launch", "--await", "auv_python", "--duration", "600",
                        "--set", "metrics=[{name: python, vehicle: auv, channel: auv.python_estimate, from_s: 120}]",
                        "--set", "pass=[{metric: python.rms_m, below: 5}, {metric: python.samples, above: 900}]")

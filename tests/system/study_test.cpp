@@ -91,6 +91,17 @@ TEST(Study, ARunWhoseOwnRulesFailIsAResult) {
   EXPECT_THAT(ended.errors, HasSubstr("done, its rules failed"));
 }
 
+TEST(Study, AProgramThatFailedFailsItsRunAndTheStudy) {
+  const StudyFolder study("seeds: [1, 2]\nlaunch: true\npass: [{case: world, figure: way.travelled_m, below: 1e6}]\n",
+                          "pass: [{metric: way.travelled_m, below: 1e6}]\n"
+                          "processes: [{name: pilot, client: pilot, command: [sh, -c, exit 3]}]\n"
+                          "lockstep: {join_timeout_s: 1000}\n");
+  const Ended ended = study.run();
+  EXPECT_EQ(ended.exit_code, 1) << ended.errors;
+  EXPECT_THAT(ended.errors, HasSubstr("done, its rules failed"));
+  EXPECT_THAT(ended.output, HasSubstr("FAILED: 2 of 2 runs had programs that failed"));
+}
+
 TEST(Study, ExitCodeIs4WhenARunHasNoResult) {
   const StudyFolder study("seeds: [1]\nlaunch: true\n", "processes: [{name: ghost, command: [no-such-program]}]\n");
   const Ended ended = study.run();

@@ -435,6 +435,31 @@ TEST(Restore, ItsRecordsAreRunAgainFromTheFileOn) {
   }
 }
 
+/// A client that goes back with its world, and hears and commands its vehicle on a bus of the vehicle's own.
+TEST(Restore, InTheMiddleOfALockstepMissionOnABusOfItsOwnItsRecordIsRunAgain) {
+  const Folder folder;
+  write_file(folder.file("world.yaml"), "shoal: 1\nname: lively\nbuses: [{name: own, lcm_url: \"" + own_url(1) +
+                                            "\"}]\nobjects:\n  - {name: ground, fixed: true, parts: [{shape: plane}]}\n"
+                                            "vehicles:\n  - {name: r1, bus: own, file: " +
+                                            source("vehicles/rover.yaml") + "}\n");
+  Program pilot({built("lockstep_pilot"), "--name", "pilot", "--vehicle", "r1", "--period", "0.1", "--receive",
+                 "r1.odometry", "--go-back", "--lcm-url", own_url(1)});
+  Live live(folder, {"--record", folder.file("log.lcm"), "--await", "pilot"});
+  live.run_until("3");
+  EXPECT_EQ(control({"snapshot", "a"}).exit_code, 0);
+  live.run_until("4");
+  EXPECT_EQ(control({"restore", "a"}).output, "step 300, 3 s, branch 1, paused\n");
+  live.run_until("6");
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+  EXPECT_EQ(pilot.wait(), 0) << pilot.output() << pilot.errors();
+  for (const auto& [log, text] :
+       {std::pair("log.lcm", "equal for 400 steps ("), {"log.branch1.lcm", "equal for 300 steps (from step 300; "}}) {
+    const Ended replayed = run_shoal({"replay", folder.file(log)});
+    EXPECT_EQ(replayed.exit_code, 0) << log << replayed.output << replayed.errors;
+    EXPECT_THAT(replayed.output, HasSubstr(text)) << log;
+  }
+}
+
 TEST(Restore, OneThatDoesNotFitLeavesNoBranchBehind) {
   const Folder folder;
   const std::string results = folder.file("results");

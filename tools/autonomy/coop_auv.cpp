@@ -21,8 +21,14 @@ constexpr double late_s = 2;
 constexpr double longest_gap_s = 5;
 /// Longer without a velocity, it coasts on the last one.
 constexpr double coast_after_s = 1;
-/// An AHRS that has been silent for so long is gone.
+/// An AHRS, or all that tells a heading, that has been silent for so long is gone.
 constexpr double oldest_attitude_s = 2;
+/// The error of a heading that is not known any more lasts for so long.
+constexpr double lost_heading_s = 60;
+/// All devices together say something more often.
+constexpr double longest_quiet_s = 1;
+/// Sound comes 90 km far in that: no modem does.
+constexpr double longest_travel_s = 60;
 
 double seconds(std::int64_t time_us) {
   return static_cast<double>(time_us) * 1e-6;
@@ -54,7 +60,7 @@ void CoopAuv::note_time(std::int64_t utime) {
 void CoopAuv::set_clock(std::int64_t by_us) {
   ++counts_.clock_steps;
   utime_ += by_us;
-  for (auto* time : {&attitude_utime_, &velocity_utime_, &fix_utime_, &first_fix_utime_})
+  for (auto* time : {&attitude_utime_, &heading_utime_, &velocity_utime_, &fix_utime_, &first_fix_utime_})
     if (*time) **time += by_us;
   // How much of it is true time is not known, so the next range has to tell the clock's error.
   for (auto* filter : {&cooperative_, &dead_reckoning_})
@@ -79,8 +85,19 @@ void CoopAuv::start(std::int64_t utime, const Vector2d& p_W, double std_m) {
 void CoopAuv::predict(std::int64_t utime) {
   if (!q_WB_) return;
   const Eigen::Vector3d v_W = *q_WB_ * v_B_;
+  double noise_mpsprtHz = velocity_noise_mpsprtHz_;
+  if (heading_utime_ && seconds(utime - *heading_utime_) > oldest_attitude_s)
+    noise_mpsprtHz = std::max(noise_mpsprtHz, v_B_.norm() * std::sqrt(lost_heading_s));
   for (auto* filter : {&cooperative_, &dead_reckoning_})
-    if (*filter) (*filter)->predict(utime, v_W.head<2>(), velocity_noise_mpsprtHz_);
+    if (*filter) (*filter)->predict(utime, v_W.head<2>(), noise_mpsprtHz);
+}
+
+Eigen::Vector3d CoopAuv::turned_into_world(const Eigen::Vector3d& point_B) const {
+  return q_WB_.value_or(Eigen::Quaterniond::Identity()) * point_B;
+}
+
+bool CoopAuv::is_silent() const {
+  return steps_in_silence_ * params_.period_s > longest_quiet_s;
 }
 
 void CoopAuv::receive(const shoal::dvl_t& dvl) {
@@ -106,7 +123,7 @@ void CoopAuv::receive(const shoal::ins_t& attitude) {
   const Eigen::Quaterniond q(attitude.quat[0], attitude.quat[1], attitude.quat[2], attitude.quat[3]);
   if (!(std::abs(q.norm() - 1) < 0.01)) return;
   q_WB_ = Eigen::AngleAxisd(params_.yaw_offset_rad, Eigen::Vector3d::UnitZ()) * q.normalized();
-  attitude_utime_ = attitude.utime;
+  attitude_utime_ = heading_utime_ = attitude.utime;
 }
 
 void CoopAuv::receive(const shoal::compass_t& compass) {
@@ -115,6 +132,7 @@ void CoopAuv::receive(const shoal::compass_t& compass) {
   if (!std::isfinite(compass.heading_true_rad)) return;
   const double yaw_rad = 0.5 * std::numbers::pi - compass.heading_true_rad + params_.yaw_offset_rad;
   q_WB_ = Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ());
+  heading_utime_ = compass.utime;
 }
 
 void CoopAuv::receive(const shoal::pressure_t& pressure) {
@@ -124,7 +142,7 @@ void CoopAuv::receive(const shoal::pressure_t& pressure) {
 
 void CoopAuv::receive(const shoal::gps_data_t& fix) {
   note_time(fix.utime);
-  const Vector2d p_W(fix.xyz_pos[0], fix.xyz_pos[1]);
+  const Vector2d p_W = Vector2d(fix.xyz_pos[0], fix.xyz_pos[1]) - turned_into_world(params_.gps_B).head<2>();
   if (fix.gps_lock < 1 || !p_W.allFinite() || !(fix.horizontal_accuracy > 0)) return;
   if (!cooperative_) {
     if (!q_WB_) return;
@@ -184,17 +202,24 @@ void CoopAuv::obey(const AcousticOrder& order) {
 }
 
 void CoopAuv::use_range(const shoal::acoustic_received_t& packet, const AcousticState& beacon) {
+  if (!(std::abs(packet.travel_time_s) < longest_travel_s)) {
+    ++counts_.refused;
+    return;
+  }
   MarineEkf::Range range;
+  range.beacon = beacon.sender;
   range.utime = packet.utime;
   range.range_m = packet.travel_time_s * params_.sound_speed_mps;
   range.std_m = std::hypot(params_.range_std_m, params_.sound_speed_std * range.range_m);
-  range.p_WS.head<2>() = position_at(beacon, packet.sent_utime);
+  // To the vehicle's own point from a beacon that is moved by as much as the modem is from that point.
+  const Eigen::Vector3d modem_W = turned_into_world(params_.modem_B);
+  range.p_WS.head<2>() = position_at(beacon, packet.sent_utime) - modem_W.head<2>();
   range.p_WS.z() = -beacon.depth_m;
   const double covariance_m2 = beacon.correlation * beacon.east_std_m * beacon.north_std_m;
   range.beacon_covariance << beacon.east_std_m * beacon.east_std_m, covariance_m2, covariance_m2,
       beacon.north_std_m * beacon.north_std_m;
-  range.own_z_m = -depth_m_;
-  const MarineEkf::Outcome outcome = cooperative_->update_range(range);
+  range.own_z_m = modem_W.z() - depth_m_;
+  const MarineEkf::Outcome outcome = cooperative_->update_range(range, &*dead_reckoning_);
   const bool used = outcome == MarineEkf::Outcome::accepted || outcome == MarineEkf::Outcome::inflated;
   ++(used ? counts_.ranges : counts_.refused);
 }
@@ -215,7 +240,7 @@ CoopAuv::Decision CoopAuv::step() {
   }
   update_phase();
   decision.helm = helm();
-  if (!cooperative_) return decision;
+  if (!cooperative_ || is_silent()) return decision;  // nothing new is known
   decision.estimate = estimate(*cooperative_);
   decision.dead_reckoning = estimate(*dead_reckoning_);
   if (access_.take_turn(utime_)) decision.send = state_frame();

@@ -37,10 +37,12 @@ class CoopAuv {
     MarineEkf::Params filter;
     bool use_ranges = true;
     bool steer_by_dead_reckoning = false;
-    double sound_speed_mps = 1500;    ///< that it takes for a range
-    double range_std_m = 1.0;         ///< of one range
-    double sound_speed_std = 0.001;   ///< of the range
-    double yaw_offset_rad = 0;        ///< added to the heading that is measured
+    double sound_speed_mps = 1500;   ///< that it takes for a range
+    double range_std_m = 1.0;        ///< of one range
+    double sound_speed_std = 0.001;  ///< of the range
+    double yaw_offset_rad = 0;       ///< added to the heading that is measured
+    /// From the point whose place is estimated, in the vehicle's axes.
+    Eigen::Vector3d modem_B = Eigen::Vector3d::Zero(), gps_B = Eigen::Vector3d::Zero();
     double surface_s = 10;            ///< at the surface after the first fix
     double fix_period_s = 5;          ///< errors of GPS last, so more fixes say little more
     std::optional<Vector2d> start_W;  ///< known: it does not wait for GPS
@@ -62,7 +64,7 @@ class CoopAuv {
     int frames = 0;
     int bad_frames = 0;
     int ranges = 0;   ///< used
-    int refused = 0;  ///< by the gate, or came too late
+    int refused = 0;  ///< by the filter, or came too late, or took longer than sound takes anywhere
     int sent = 0;
     int clock_steps = 0;
     int silences = 0;        ///< of all devices
@@ -96,6 +98,9 @@ class CoopAuv {
   void coast_over_silence(std::int64_t utime);
   void start(std::int64_t utime, const Vector2d& p_W, double std_m);
   void predict(std::int64_t utime);
+  bool is_silent() const;
+  /// A point of the vehicle relative to that whose place is estimated.
+  Eigen::Vector3d turned_into_world(const Eigen::Vector3d& point_B) const;
   void obey(const AcousticOrder& order);
   OrderRefusal refusal_of(const AcousticOrder& order) const;
   void use_range(const shoal::acoustic_received_t& packet, const AcousticState& beacon);
@@ -119,6 +124,7 @@ class CoopAuv {
   int steps_in_silence_ = 0;
   std::optional<Eigen::Quaterniond> q_WB_;
   std::optional<std::int64_t> attitude_utime_;  ///< of an AHRS, which counts more than a compass
+  std::optional<std::int64_t> heading_utime_;   ///< of whichever told it
   Eigen::Vector3d v_B_ = Eigen::Vector3d::Zero();
   double velocity_noise_mpsprtHz_ = 0;  ///< more than that of a DVL that sees the bottom
   std::optional<std::int64_t> velocity_utime_;

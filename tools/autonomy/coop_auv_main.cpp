@@ -12,7 +12,7 @@ struct Options {
   autonomy::MarineOptions marine;
   autonomy::Participation participation;
   std::string steer = "cooperative";
-  std::string start;
+  std::string start, modem_at, gps_at;
   bool no_cooperation = false;
   double heading_bias_std_deg = 3;
   double clock_std_ms = 20;
@@ -91,6 +91,11 @@ void add_filter_options(CLI::App& app, Options& options) {
       ->check(autonomy::between(0.0, 1e4));
 }
 
+Eigen::Vector3d place_on_vehicle(const std::string& text) {
+  if (text.empty()) return Eigen::Vector3d::Zero();
+  return Eigen::Vector3d(autonomy::parse_numbers(text, 3, "x,y,z").data());
+}
+
 void add_options(CLI::App& app, Options& options) {
   autonomy::CoopAuv::Params& auv = options.auv;
   app.add_option("--name", auv.name, "vehicle to steer; also the name in the lockstep")->required();
@@ -100,6 +105,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--start-std", auv.start_std_m, "error of --start, m")
       ->capture_default_str()
       ->check(autonomy::between(0.001, 1000.0));
+  app.add_option("--modem-at", options.modem_at, "\"x,y,z\": where the modem is on the vehicle, m; 0,0,0 unless set");
+  app.add_option("--gps-at", options.gps_at, "the same of the GPS antenna");
   app.add_option("--surface-s", auv.surface_s, "s at the surface after the first fix")
       ->capture_default_str()
       ->check(autonomy::between(0.0, 3600.0));
@@ -141,6 +148,8 @@ int run(int argc, char** argv) {
     const auto start = autonomy::parse_numbers(options.start, 2, "x,y");
     auv.start_W = autonomy::Vector2d(start[0], start[1]);
   }
+  auv.modem_B = place_on_vehicle(options.modem_at);
+  auv.gps_B = place_on_vehicle(options.gps_at);
   auv.access = options.marine.access();
   return drive(options);
 }

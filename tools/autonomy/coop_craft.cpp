@@ -29,6 +29,7 @@ void CoopCraft::receive(const shoal::gps_data_t& fix) {
   if (std::isfinite(fix.speed) && std::isfinite(fix.heading))
     motion.v_W = turned({fix.speed, 0}, 0.5 * std::numbers::pi - fix.heading);
   motion_ = motion;
+  steps_since_fix_ = 0;
   position_std_m_ = fix.horizontal_accuracy;
 }
 
@@ -48,7 +49,9 @@ void CoopCraft::receive(const shoal::acoustic_received_t& packet) {
 CoopCraft::Decision CoopCraft::step() {
   Decision decision;
   shoal::helm_command_t helm{utime_, 0, nan, nan, nan};
-  const bool has_fix = motion_ && std::abs(seconds(utime_ - motion_->utime)) <= params_.oldest_fix_s;
+  // The time is that of GPS: when it is silent there is none, but for the calls of this.
+  const bool is_recent = ++steps_since_fix_ * params_.period_s <= params_.oldest_fix_s;
+  const bool has_fix = is_recent && motion_ && std::abs(seconds(utime_ - motion_->utime)) <= params_.oldest_fix_s;
   if (!motion_) return decision;
   if (has_fix) {
     const Course course = behaviour_->steer(*motion_);

@@ -26,6 +26,7 @@ class CoopCraft {
     int id = 1;                       ///< in its frames
     double transducer_depth_m = 0.5;  ///< of the modem, below the surface
     double oldest_fix_s = 3;          ///< an older one says nothing of where it is
+    double period_s = 0.5;            ///< between two calls of step()
     ChannelAccess::Params access;
   };
   struct Decision {
@@ -61,6 +62,7 @@ class CoopCraft {
   DirectStates direct_;
   std::int64_t utime_ = 0;  ///< newest stamp
   std::optional<Motion> motion_;
+  int steps_since_fix_ = 0;
   double position_std_m_ = 0;
   Counts counts_;
 };

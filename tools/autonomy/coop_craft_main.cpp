@@ -50,6 +50,7 @@ int run(int argc, char** argv) {
                   "  shoal-coop-craft --name boat2 --behaviour follow:auv,0,-60 --speed 2 --slot 1/3\n") +
       autonomy::exit_code_help);
   if (const auto exit_code = autonomy::parse(app, argc, argv)) return *exit_code;
+  craft.period_s = participation.period_s;
   craft.access = marine.access();
   return drive(craft, marine, participation);
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
 
 #include "tools/autonomy/pose2.hpp"
@@ -25,6 +26,8 @@ class MarineEkf {
   using State = Eigen::Matrix<double, max_states, 1>;
   using Covariance = Eigen::Matrix<double, max_states, max_states>;
 
+  using Row = Eigen::Matrix<double, 1, max_states>;
+
   struct Params {
     int states = 4;  ///< 2, 4, 5 or 6
     // At the start, one sigma.
@@ -45,11 +48,12 @@ class MarineEkf {
 
     double range_gate = 10.83;     ///< innovation squared over its variance: 99.9 % of chi-square with 1 degree
     double position_gate = 13.82;  ///< the same with 2 degrees
-    int most_refusals = 5;         ///< in a row, before the estimate is held to be the wrong one
+    int most_refusals = 5;         ///< in a row, before something is held to be wrong, and not only a measurement
   };
   struct Range {
+    int beacon = 0;          ///< whose
     std::int64_t utime = 0;  ///< of arrival, by the own clock
-    double range_m = 0;      ///< slant
+    double range_m = 0;      ///< slant; below 0: the own clock is behind
     double std_m = 1;
     Eigen::Vector3d p_WS = Eigen::Vector3d::Zero();  ///< where the beacon was when it sent
     Eigen::Matrix2d beacon_covariance = Eigen::Matrix2d::Zero();
@@ -57,8 +61,8 @@ class MarineEkf {
   };
   enum class Outcome {
     accepted,
-    refused,   ///< the gate did not let it through
-    inflated,  ///< refused once too often: the covariance was opened, and the measurement was used
+    refused,   ///< the gate did not let it through, or its beacon is in doubt
+    inflated,  ///< refused once too often: the variance of the clock (a range) or of the position (GPS) was opened
     too_old,
   };
 
@@ -69,7 +73,11 @@ class MarineEkf {
   void predict(std::int64_t utime, const Vector2d& v_measured_W, double more_noise_mpsprtHz = 0);
   /// A position by GPS.
   Outcome update_position(std::int64_t utime, const Vector2d& p_W, double std_m);
-  Outcome update_range(const Range& range);
+  /// A range that contradicts never makes the position less sure: it is the clock that is wrong when two beacons or
+  /// more contradict by the same amount, or by one that grows evenly; else the beacon, which is then in doubt until it
+  /// agrees again for a while.  Ranges that were used with a wrong clock have taught wrong things: `without_ranges`,
+  /// when it is given, is a filter of the same vehicle that used none, and from which this one starts anew.
+  Outcome update_range(const Range& range, const MarineEkf* without_ranges = nullptr);
 
   /// The own clock was set: what was at `utime` is now at `utime + by_us`, and ranges are longer by `range_m`, which is
   /// known to `range_std_m`.
@@ -105,9 +113,42 @@ class MarineEkf {
   /// Rows of the derivative of the position at an earlier time, by the state now.
   Eigen::Matrix<double, 2, max_states> earlier_position_jacobian(const Vector2d& way_W) const;
 
+  /// What is known of a beacon.
+  struct Trust {
+    int refusals = 0;          ///< in a row
+    int agreements = 0;        ///< in a row while it is in doubt
+    double doubted_at_m2 = 0;  ///< variance of the innovation when its doubt began; 0: it is trusted
+  };
+  /// A range that did not fit.
+  struct Contradiction {
+    int beacon;
+    std::int64_t utime;
+    double innovation_m;
+    double variance_m2;  ///< without what the clock's states add
+  };
+  /// By how much the own clock is ahead of what it was taken for, and gains, in range.
+  struct ClockError {
+    double now_m = 0;
+    double rate_mps = 0;
+    double variance_m2 = 0;
+  };
+  enum class Opinion { agrees, agrees_in_doubt, contradicts, nonsense };
+
+  Opinion opinion_of(int beacon, double innovation_m, double variance_m2);
+  /// What the last contradiction and those before it say of the clock; nothing: they may be the beacons' fault.
+  std::optional<ClockError> error_behind(const Contradiction& last, bool can_start_anew);
+  /// What all contradictions say alike, when they are of two beacons or more.
+  std::optional<ClockError> common_error() const;
+  /// When none of the last ranges of several beacons fits, though some did before: what those have taught is wrong.
+  /// The clock may be off by as much as the ranges are.
+  std::optional<ClockError> anything_but_the_ranges() const;
+  bool several_beacons_contradict() const;
+  void open_clock(const ClockError& error);
+  void take_motion_of(const MarineEkf& other);
+
   template <int n>
-  Outcome update(const Eigen::Matrix<double, n, 1>& innovation, const Eigen::Matrix<double, n, max_states>& H,
-                 const Eigen::Matrix<double, n, n>& R, double gate);
+  void use(const Eigen::Matrix<double, n, 1>& innovation, const Eigen::Matrix<double, n, max_states>& H,
+           const Eigen::Matrix<double, n, n>& R);
 
   Params params_;
   std::int64_t utime_;
@@ -115,7 +156,10 @@ class MarineEkf {
   Covariance P_ = Covariance::Zero();
   Vector2d v_measured_W_ = Vector2d::Zero();
   std::deque<Mark> marks_;
-  int refusals_in_a_row_ = 0;
+  int refused_positions_ = 0;                 ///< in a row
+  std::map<int, Trust> trust_;                ///< by beacon
+  std::deque<Contradiction> contradictions_;  ///< since the last range that fitted
+  int ranges_used_ = 0;
   int accepted_ = 0;
   int refused_ = 0;
   int inflated_ = 0;

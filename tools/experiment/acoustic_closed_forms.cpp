@@ -106,7 +106,8 @@ std::vector<ClosedFormRow> acoustic_closed_forms(const std::string& file) {
   std::ifstream in(file);
   std::vector<ClosedFormRow> rows;
   std::string line;
-  if (!std::getline(in, line)) throw std::runtime_error(file + ": cannot be read");
+  if (!in) throw std::runtime_error(file + ": cannot be read");
+  if (!std::getline(in, line)) throw std::runtime_error(file + ": is empty, or no file");
   for (int number = 2; std::getline(in, line); ++number) {
     std::istringstream fields(line);
     std::string field[7];

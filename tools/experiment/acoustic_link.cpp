@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "devices/micromodem_rates.hpp"
 #include "sim/acoustics/echoes.hpp"
 #include "sim/acoustics/fading.hpp"
 #include "sim/acoustics/sound_path.hpp"
@@ -72,19 +73,10 @@ std::optional<AcousticPacket> parse_packet(const std::string& text) {
 }
 
 std::vector<AcousticPacket> micromodem_packets() {
-  struct Rate {
-    Modulation modulation;
-    double bit_rate_bps;
-    std::int64_t bytes;
-  };
-  // docs/acoustics.md has the source.
-  constexpr Rate rates[] = {{Modulation::fsk, 80, 32},    {Modulation::psk, 250, 64},   {Modulation::psk, 500, 64},
-                            {Modulation::psk, 1200, 256}, {Modulation::psk, 1300, 256}, {Modulation::psk, 5300, 256},
-                            {Modulation::psk, 490, 32}};
   std::vector<AcousticPacket> packets;
-  for (const Rate& rate : rates)
-    packets.push_back(
-        {rate.modulation, rate.bit_rate_bps, rate.bytes, packet_name(rate.modulation, rate.bit_rate_bps, rate.bytes)});
+  for (const devices::MicromodemRate& rate : devices::micromodem_rates())
+    packets.push_back({rate.modulation, rate.bit_rate_bps, rate.frame_bytes,
+                       packet_name(rate.modulation, rate.bit_rate_bps, rate.frame_bytes), rate.bandwidth_Hz});
   return packets;
 }
 
@@ -119,9 +111,11 @@ LinkBudget link_budget(const AcousticLink& link, const sim::AcousticsConfig& aco
   return budget;
 }
 
-double delivery_probability(const AcousticLink& link, const AcousticPacket& packet,
+double delivery_probability(const AcousticLink& between, const AcousticPacket& packet,
                             const sim::AcousticsConfig& acoustics, const sim::Medium& medium,
                             std::optional<double> water_depth_m) {
+  AcousticLink link = between;
+  link.bandwidth_Hz = packet.bandwidth_Hz.value_or(link.bandwidth_Hz);
   const LinkBudget budget = link_budget(link, acoustics, medium, water_depth_m);
   const bool fades = acoustics.fading.type != sim::FadingConfig::Type::none;
   if (!fades && !acoustics.multipath) return success_at(link, packet, sim::to_power(budget.snr));

@@ -17,13 +17,14 @@ struct AcousticPacket {
   sim::Modulation modulation = sim::Modulation::fsk;
   double bit_rate_bps = 80;
   std::int64_t bytes = 32;
-  std::string name;  ///< such as `fsk_80_32`
+  std::string name;                    ///< such as `fsk_80_32`
+  std::optional<double> bandwidth_Hz;  ///< unset: that of the link
 };
 
 /// Of the text `fsk:80:32` (modulation, bit/s, bytes).  Nothing when it is something else.
 std::optional<AcousticPacket> parse_packet(const std::string& text);
 
-/// A frame of each rate of the WHOI Micro-Modem, 0 to 6.
+/// A frame of each rate of the WHOI Micro-Modem, 0 to 6, in its own bandwidth.
 std::vector<AcousticPacket> micromodem_packets();
 
 /// An end of a link.

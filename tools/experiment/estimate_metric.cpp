@@ -53,12 +53,15 @@ class EstimateMetric final : public Metric {
       : Metric(config), world_(world), truth_(truth), mailbox_(vehicle().bus().open_mailbox(config.channel)) {}
 
   void after_step() override {
+    if (!begun_s_) begun_s_ = sim::to_seconds(world_.now());
     std::erase_if(early_, [this](const Early& early) { return compare(early.time, early.estimate); });
     while (const auto message = mailbox_->take()) {
       try {
         take(decode_estimate(message->payload));
+        say_how_many();
       } catch (const std::runtime_error& error) {
-        if (++bad_messages_ <= 100) spdlog::warn("{}: {} (ignored)", message->channel, error.what());
+        ++bad_messages_;
+        complain(message->channel, error.what());
       }
     }
   }
@@ -75,7 +78,7 @@ class EstimateMetric final : public Metric {
   std::int64_t bad_messages() const override { return bad_messages_; }
 
   void visit_state(sim::StateArchive& archive, History history) override {
-    archive(early_, bad_messages_);
+    archive(early_, bad_messages_, begun_s_);
     std::uint64_t count = samples_.size();
     archive(count);
     if (history == History::whole)
@@ -99,6 +102,21 @@ class EstimateMetric final : public Metric {
 
   /// A restored world may have built it anew.
   const sim::Vehicle& vehicle() const { return *world_.find_vehicle(config().vehicle); }
+
+  /// Says once what is wrong, however often it comes.
+  void complain(const std::string& channel, const std::string& what) {
+    if (what != complaint_) {
+      say_how_many();
+      complaint_ = what;
+      spdlog::warn("metric '{}': {}: {} (ignored, as are all more of this)", config().name, channel, what);
+    }
+    ++ignored_;
+  }
+  void say_how_many() {
+    if (ignored_ > 1) spdlog::warn("metric '{}': {} messages in a row were ignored", config().name, ignored_);
+    ignored_ = 0;
+    complaint_.clear();
+  }
 
   void take(const Estimate& estimate) {
     check_covariance(estimate);
@@ -158,7 +176,20 @@ class EstimateMetric final : public Metric {
     add(figures, "rms_m", any ? std::sqrt(squares / count) : no_figure);
     add(figures, "final_m", any ? samples_.back().error_m : no_figure);
     add(figures, "max_m", any ? largest : no_figure);
+    add(figures, "longest_gap_s", longest_gap_s());
     add(figures, "per_distance_percent", way_m >= shortest_way_m ? 100 * samples_.back().error_m / way_m : no_figure);
+  }
+
+  /// Until the first estimate, between two, or since the last.
+  double longest_gap_s() const {
+    const double now_s = sim::to_seconds(world_.now());
+    double last_s = std::max(config().from_s, begun_s_.value_or(now_s));
+    double gap_s = 0;
+    for (const ErrorSample& sample : samples_) {
+      gap_s = std::max(gap_s, sample.time_s - last_s);
+      last_s = std::max(last_s, sample.time_s);
+    }
+    return std::max(gap_s, now_s - last_s);
   }
 
   void add_consistency(Figures& figures) const {
@@ -179,7 +210,10 @@ class EstimateMetric final : public Metric {
   std::unique_ptr<sim::Mailbox> mailbox_;
   std::vector<Early> early_;
   std::vector<ErrorSample> samples_;
+  std::optional<double> begun_s_;  ///< when it began to listen
   std::int64_t bad_messages_ = 0;
+  std::string complaint_;     ///< the last one
+  std::int64_t ignored_ = 0;  ///< messages, since that was said
 };
 
 class DistanceMetric final : public Metric {

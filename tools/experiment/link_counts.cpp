@@ -1,5 +1,6 @@
 #include "tools/experiment/link_counts.hpp"
 
+#include "devices/acoustic_modem.hpp"
 #include "devices/modem.hpp"
 #include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/transducer.hpp"
@@ -19,16 +20,22 @@ void add_losses(LinkCounts& sum, const std::array<std::int64_t, sim::signal_loss
   for (std::size_t i = 0; i < causes.size(); ++i) sum.lost[causes[i]] += lost[i + 1];  // 0: none
 }
 
+/// Of a vehicle (empty: of all) and one of its devices (empty: of all).
+bool is_asked(const std::string& full_name, const std::string& vehicle, const std::string& device) {
+  if (vehicle.empty()) return true;
+  return device.empty() ? full_name.starts_with(vehicle + "/") : full_name == vehicle + "/" + device;
+}
+
 LinkCounts radio_counts(const sim::World& world, const std::string& vehicle, const std::string& device) {
   LinkCounts sum = no_counts();
   for (const auto& mounted : world.devices()) {
     const auto* modem = mounted ? dynamic_cast<const devices::Modem*>(mounted->sensor()) : nullptr;
-    if (modem == nullptr || (!vehicle.empty() && modem->vehicle_name() != vehicle)) continue;
-    if (!device.empty() && modem->full_name() != vehicle + "/" + device) continue;
+    if (modem == nullptr || !is_asked(modem->full_name(), vehicle, device)) continue;
     const devices::Modem::Counts& counts = modem->counts();
     sum.sent += counts.sent;
     sum.bytes_sent += counts.sent_bytes;
     sum.received += counts.received;
+    sum.dropped += modem->dropped_from_queue();
     add_losses(sum, counts.lost);
   }
   return sum;
@@ -48,11 +55,13 @@ LinkCounts link_counts(const sim::World& world, const std::string& vehicle, cons
   };
   if (vehicle.empty()) add(world.acoustics().counts_of_those_gone());
   for (const sim::Transducer* transducer : world.acoustics().transducers()) {
-    if (transducer == nullptr) continue;
-    if (!vehicle.empty() && transducer->vehicle().name() != vehicle) continue;
-    if (!device.empty() && transducer->full_name() != vehicle + "/" + device) continue;
+    if (transducer == nullptr || !is_asked(transducer->full_name(), vehicle, device)) continue;
     add(transducer->counts());
     sum.acoustic = true;
+  }
+  for (const auto& mounted : world.devices()) {
+    const auto* modem = mounted ? dynamic_cast<const devices::AcousticModem*>(mounted->sensor()) : nullptr;
+    if (modem != nullptr && is_asked(mounted->full_name(), vehicle, device)) sum.dropped += modem->dropped_from_queue();
   }
   return sum;
 }

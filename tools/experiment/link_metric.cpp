@@ -14,12 +14,14 @@ class DeliveryMetric final : public Metric {
     const LinkCounts counts = any_link_counts(world_, config().vehicle, config().device);
     std::int64_t all_lost = 0;
     for (const auto& [cause, count] : counts.lost) all_lost += count;
-    const auto heard = static_cast<double>(counts.received + all_lost);
+    const auto meant = static_cast<double>(counts.received + all_lost);
     add(figures, "sent", static_cast<double>(counts.sent));
     add(figures, "bytes_sent", static_cast<double>(counts.bytes_sent));
     add(figures, "received", static_cast<double>(counts.received));
     add(figures, "lost", static_cast<double>(all_lost));
-    add(figures, "ratio", heard > 0 ? static_cast<double>(counts.received) / heard : no_figure);
+    add(figures, "ratio", meant > 0 ? static_cast<double>(counts.received) / meant : no_figure);
+    add(figures, "unsent", static_cast<double>(counts.unsent));
+    add(figures, "dropped", static_cast<double>(counts.dropped));
     for (const auto& [cause, count] : counts.lost) add(figures, "lost_" + cause, static_cast<double>(count));
   }
 

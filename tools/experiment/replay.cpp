@@ -260,7 +260,8 @@ class Replay {
   void compare_hashes(const ReplayLog::Hashes& logged) {
     ++outcome_.hashes;
     if (logged.whole == world_.state_hash()) {
-      for (const sim::PartHash& part : logged.parts) equal_parts_.insert(part.part);
+      if (equal_parts_.size() < logged.parts.size())
+        for (const sim::PartHash& part : logged.parts) equal_parts_.insert(part.part);
       return;
     }
     if (!outcome_.first || outcome_.first->step == world_.step_number()) differ("the world", "its state hash differs");
@@ -348,7 +349,8 @@ class Replay {
       load.encode_message = shoal::encode_own_message;
       const sim::WorldConfig logged =
           sim::load_world_text(log_.info.resolved_config, log_.path + ": sim.info", load).config;
-      for (const std::string& thing : things_only_in(logged, loaded_.config)) world.push_back("only in the log: " + thing);
+      for (const std::string& thing : things_only_in(logged, loaded_.config))
+        world.push_back("only in the log: " + thing);
       for (const std::string& thing : things_only_in(loaded_.config, logged)) world.push_back("only here: " + thing);
     } catch (const std::exception&) {
       // A mesh of the log may be gone; its lines can be compared all the same.
@@ -361,7 +363,8 @@ class Replay {
     const ReplayMessages::Difference* first = messages_.first_motion();
     if (first != nullptr && (!motion_step_ || first->step <= *motion_step_))
       return at(first->step) + ", by sim.state: " + first->what;
-    if (motion_step_) return at(*motion_step_) + ", by the hash: " + fmt::format("{}", fmt::join(few(moved_parts_), ", "));
+    if (motion_step_)
+      return at(*motion_step_) + ", by the hash: " + fmt::format("{}", fmt::join(few(moved_parts_), ", "));
     return "";
   }
 
@@ -427,36 +430,12 @@ class Replay {
   bool cut_ = false;
   std::vector<std::string> parts_;
   std::int64_t parts_step_ = 0;
-  std::set<std::string> equal_parts_;         // that move, and were equal at a hash
-  std::vector<std::string> moved_parts_;      // that differ at the first hash at which one of those does
+  std::set<std::string> equal_parts_;        // that move, and were equal at a hash
+  std::vector<std::string> moved_parts_;     // that differ at the first hash at which one of those does
   std::optional<std::int64_t> motion_step_;  // of that hash
 };
 
 }  // namespace
-
-int ReplayOutcome::exit_code() const {
-  if (first) return 1;
-  return complete ? 0 : 4;
-}
-
-std::string ReplayOutcome::to_text() const {
-  std::string text;
-  if (!world.empty()) text += "World (- in the log, + here):\n";
-  for (const std::string& line : world) text += "  " + line + "\n";
-  if (first) {
-    text += fmt::format("differs first at step {} ({:.3f} s) of {}:\n", first->step,
-                       static_cast<double>(first->step) * step_s, begin_step + steps);
-    for (const std::string& what : first->what) text += "  " + what + "\n";
-    text += motion.empty() ? "no difference of motion was seen\n" : "motion differs first at " + motion + "\n";
-  } else {
-    const std::string from = begin_step > 0 ? fmt::format("from step {}; ", begin_step) : "";
-    text += fmt::format("equal for {} steps ({}{} hashes, {} messages)\n", steps, from, hashes, messages);
-  }
-  text += fmt::format("{:.3f} s in {:.2f} s: {:.1f} times real time\n", sim_time_s, wall_s,
-                      wall_s > 0 ? sim_time_s / wall_s : 0.0);
-  for (const std::string& note : notes) text += "note: " + note + "\n";
-  return text;
-}
 
 ReplayOutcome replay(const ReplayOptions& options) {
   return std::make_unique<Replay>(options)->run();

@@ -34,7 +34,7 @@ std::int64_t number_at(std::span<const std::byte> payload, std::size_t index) {
 
 class Reader {
  public:
-  explicit Reader(const std::string& path) : file_(path), pieces_(file_.file_bytes()) { log_.path = path; }
+  explicit Reader(const std::string& path) : file_(path) { log_.path = path; }
 
   ReplayLog read() {
     bridges::LogEventView event;
@@ -210,7 +210,8 @@ class Reader {
     if (log_.last_step > info.step) log_.goes_back = true;
     std::erase_if(log_.letters, [&](const ReplayLog::Letter& letter) { return letter.step >= info.step; });
     log_.hashes.erase(log_.hashes.upper_bound(info.step), log_.hashes.end());
-    if (info.step < log_.begin_step()) {
+    const bool before_snapshot = info.step < log_.begin_step();
+    if (before_snapshot) {
       log_.snapshot.reset();
       log_.bad_snapshot = fmt::format("sim.snapshot: the log goes back to step {}, before its snapshot", info.step);
     }
@@ -220,6 +221,7 @@ class Reader {
     std::erase_if(holes_, [&](const Hole& hole) { return hole.first >= info.mail_sequence; });
     if (!holes_.empty()) holes_.back().last = std::min(holes_.back().last, info.mail_sequence - 1);
     next_sequence_ = std::min(next_sequence_, info.mail_sequence);  // a larger one is a hole
+    if (before_snapshot) holes_.push_back({0, std::max<std::int64_t>(info.mail_sequence - 1, 0), 0, info.step});
   }
 
   /// `next`: the number of the first sim.mail that may still come.

@@ -11,6 +11,7 @@
 #include <unordered_map>
 
 #include "bridges/lcm/event_log.hpp"
+#include "tools/experiment/read_ahead.hpp"
 #include "tools/experiment/replay_log.hpp"
 
 namespace tools {
@@ -78,7 +79,7 @@ class ReplayMessages {
   void compare_states(Payload logged, Payload here, std::int64_t step);
 
   const ReplayLog& log_;
-  bridges::EventLogReader file_;
+  ReadAhead file_;
   bool at_end_ = false;
   std::int64_t look_until_ = 0;   // stamp up to which a record is read
   std::size_t queued_bytes_ = 0;  // of all channels

@@ -1,6 +1,7 @@
 #include "tools/experiment/report_page.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include <stdexcept>
 
 #include "tools/experiment/html.hpp"
+#include "tools/experiment/png_check.hpp"
 #include "tools/experiment/run_pictures.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/experiment/study_report.hpp"
@@ -22,6 +24,8 @@ namespace fs = std::filesystem;
 /// Lines at the end of a program's log that the page shows.
 constexpr std::size_t log_lines = 30;
 constexpr std::size_t most_log_bytes = 20000;
+/// Without an estimate for longer a score says less than it seems to.
+constexpr double long_gap_s = 30;
 
 std::string paragraph(const std::string& html, const char* look = "") {
   return "<p" + (*look != '\0' ? " class=\"" + std::string(look) + "\"" : "") + ">" + html + "</p>\n";
@@ -48,7 +52,13 @@ std::string why_not_passed(const RunRecord& run) {
   return fmt::format("Exit code {}.", run.exit_code);
 }
 
+/// Nothing was wrong, and nothing was looked at.
+bool is_unjudged(const RunRecord& run) {
+  return run.passed && !run.judged;
+}
+
 std::string verdicts_html(const RunRecord& run) {
+  if (is_unjudged(run)) return paragraph("Not judged: the world has no rules, or its programs took no part.");
   std::string html = paragraph(verdict_html(run.passed) + (run.passed ? "" : ": " + html_text(why_not_passed(run))));
   if (run.event)
     html += paragraph(verdict_html(run.event->passed) + ": ended by an event: " + html_text(run.event->rule));
@@ -101,8 +111,15 @@ std::string warnings_html(const RunRecord& run) {
     if (count > 0) warnings.push_back(fmt::format("{} {}", count, what));
   };
   warn(run.dropped_messages, "messages were lost in full queues or refused by LCM.");
+  warn(run.modem_dropped_messages, "messages were dropped from full queues of modems.");
   warn(run.bad_messages, "messages were received and not usable.");
   warn(run.quick_steps, "steps used QuickStep, for an island of bodies was too large.");
+  const auto failed = [](const RunRecord::Process& process) { return process.failed; };
+  if (is_unjudged(run) && std::any_of(run.processes.begin(), run.processes.end(), failed))
+    warnings.emplace_back("Programs of the world failed.");
+  for (const auto& [name, value] : run.metrics)
+    if (name.ends_with(".longest_gap_s") && value.value_or(0) > long_gap_s)
+      warnings.push_back(fmt::format("For {:.1f} s there was no estimate: {}.", *value, name));
   for (const auto& [name, value] : run.metrics)
     if (!value && (name.ends_with(".rms_m") || name.ends_with(".nees_mean")))
       warnings.push_back("There was no estimate to make " + name + " of.");
@@ -158,8 +175,9 @@ std::string pictures_html(const std::string& directory, const std::vector<std::s
       html += paragraph(html_text(file + " is missing."), "soft");
       continue;
     }
-    if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) {
-      html += paragraph(html_text(file + " is no PNG picture."), "soft");
+    if (!is_whole_png(bytes)) {
+      spdlog::warn("{}/{}: is no whole PNG picture; the page goes without it", directory, file);
+      html += paragraph(html_text(file + " is no whole PNG picture."), "soft");
       continue;
     }
     html +=
@@ -169,10 +187,11 @@ std::string pictures_html(const std::string& directory, const std::vector<std::s
 }
 
 std::string run_report(const RunRecord& run) {
-  return html_page(title_of(run), "<h1>" + html_text(title_of(run)) + "</h1>\n" + verdicts_html(run) +
-                                      paragraph(html_text(facts_of(run)), "soft") + warnings_html(run) +
-                                      figures_html(run) + pictures_html(run.directory, pictures_of(run)) +
-                                      processes_html(run) + made_by());
+  return html_page(title_of(run), "<h1>" + html_text(title_of(run)) + "</h1>\n" +
+                                      (run.description.empty() ? "" : paragraph(html_text(run.description))) +
+                                      verdicts_html(run) + paragraph(html_text(facts_of(run)), "soft") +
+                                      warnings_html(run) + figures_html(run) +
+                                      pictures_html(run.directory, pictures_of(run)) + processes_html(run) + made_by());
 }
 
 std::string comparison_report(const std::vector<RunRecord>& runs) {
@@ -183,7 +202,10 @@ std::string comparison_report(const std::vector<RunRecord>& runs) {
   std::vector<std::vector<std::string>> rows{{"world"}, {"seed"}, {"verdict"}, {"simulated, s"}, {"state hash"}};
   for (const RunRecord& run : runs) {
     head.push_back(run.directory);
-    const std::string cells[] = {run.world, fmt::format("{}", run.seed), run.passed ? "passed" : "FAILED",
+    const std::string cells[] = {run.world, fmt::format("{}", run.seed),
+                                 is_unjudged(run) ? "not judged"
+                                 : run.passed     ? "passed"
+                                                  : "FAILED",
                                  fmt::format("{:.2f}", run.sim_time_s), run.state_hash};
     for (std::size_t i = 0; i < std::size(cells); ++i) rows[i].push_back(cells[i]);
   }

@@ -56,6 +56,15 @@ bool Summary::passed() const {
   return std::all_of(verdicts.begin(), verdicts.end(), [](const Scoring::Verdict& v) { return v.passed; });
 }
 
+void Summary::judge_processes() {
+  if (!judged()) return;
+  for (const Process& process : processes)
+    if (process.failed)
+      verdicts.push_back(
+          {fmt::format("process '{}' must not fail; it {} at {:.2f} s", process.name, process.how, process.sim_time_s),
+           false});
+}
+
 void Summary::fail(int code, const std::string& how_ended, const std::string& why) {
   exit_code = code;
   ended = how_ended;
@@ -65,6 +74,7 @@ void Summary::fail(int code, const std::string& how_ended, const std::string& wh
 std::string Summary::to_json() const {
   nlohmann::ordered_json json;
   json["world"] = world;
+  json["description"] = description;
   json["seed"] = seed;
   json["steps"] = steps;
   json["sim_time_s"] = sim_time_s;
@@ -82,7 +92,8 @@ std::string Summary::to_json() const {
     json["rules"].push_back({{"rule", verdict.rule}, {"passed", verdict.passed}});
   json["processes"] = nlohmann::ordered_json::array();
   for (const Process& process : processes)
-    json["processes"].push_back({{"name", process.name}, {"how", process.how}, {"sim_time_s", process.sim_time_s}});
+    json["processes"].push_back(
+        {{"name", process.name}, {"how", process.how}, {"sim_time_s", process.sim_time_s}, {"failed", process.failed}});
   if (!clients.empty()) json["clients"] = nlohmann::ordered_json::array();
   for (const bridges::LockstepSummary& client : clients)
     json["clients"].push_back({{"name", client.client},
@@ -104,8 +115,10 @@ std::string Summary::to_json() const {
     for (const auto& [cause, count] : acoustics->lost)
       if (count > 0) json["acoustics"]["lost"][cause] = count;
   }
+  json["modem_dropped_messages"] = modem_dropped_messages;
   json["serial_dropped_bytes"] = serial_dropped_bytes;
   if (event) json["event"] = {{"text", event->text}, {"passed", event->passed}};
+  json["judged"] = judged();
   json["passed"] = passed() && exit_code == 0;
   json["ended"] = ended;
   json["error"] = error;
@@ -135,12 +148,16 @@ std::string Summary::to_text() const {
     if (acoustics->unsent > 0) text += fmt::format(", {} not sent", acoustics->unsent);
     text += '\n';
   }
+  if (modem_dropped_messages > 0)
+    text += fmt::format("  {} messages were dropped from full queues of modems\n", modem_dropped_messages);
   if (serial_dropped_bytes > 0) text += fmt::format("  {} bytes were fetched from no port\n", serial_dropped_bytes);
   for (const auto& [name, value] : metrics) text += fmt::format("  {:<28} {:.4g}\n", name, value);
   for (const Scoring::Verdict& verdict : verdicts)
     text += fmt::format("  {}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.rule);
   for (const Process& process : processes)
     text += fmt::format("  process '{}' {} at {:.2f} s\n", process.name, process.how, process.sim_time_s);
+  const bool failed = std::any_of(processes.begin(), processes.end(), [](const Process& p) { return p.failed; });
+  if (failed && !judged()) text += "  programs of the world failed; as it has no rules, nothing was judged\n";
   for (const auto& [vehicle, record] : zones) {
     if (record.finish_s) text += fmt::format("  {} finished at {:.2f} s\n", vehicle, *record.finish_s);
     if (record.speeding_s > 0) text += fmt::format("  {} was too fast for {:.2f} s\n", vehicle, record.speeding_s);

@@ -24,9 +24,11 @@ struct Summary {
     std::string name;
     std::string how;  ///< `exited with code 1`
     double sim_time_s = 0;
+    bool failed = false;  ///< with an exit code, or by a signal
   };
 
   std::string world;
+  std::string description;  ///< of the world
   std::int64_t seed = 0;
   std::int64_t steps = 0;
   double sim_time_s = 0;
@@ -42,6 +44,7 @@ struct Summary {
   std::vector<bridges::LockstepSummary> clients;  ///< that took part in the lockstep, by name
   std::map<std::string, sim::ZoneRecord> zones;   ///< by vehicle, when the world has zones with rules
   std::optional<LinkCounts> acoustics;            ///< of all modems under water, when there are any
+  std::int64_t modem_dropped_messages = 0;        ///< that waited in queues of modems that were full
   std::uint64_t serial_dropped_bytes = 0;         ///< that no program fetched from pseudo-terminals and FIFOs
   std::optional<sim::EndOfRun> event;             ///< of the world that ended the run
   std::string ended =
@@ -56,6 +59,10 @@ struct Summary {
 
   double real_time_factor() const { return wall_s > 0 ? stepped_s / wall_s : 0; }
   bool passed() const;
+  /// There was a rule, or an event that said what it means.
+  bool judged() const { return !verdicts.empty() || event.has_value(); }
+  /// Where something is judged each program that failed is a rule that failed.
+  void judge_processes();
   void fail(int code, const std::string& how_ended, const std::string& why);
   std::string to_json() const;
   /// The end summary on a terminal.

@@ -83,8 +83,8 @@ class Run {
   bool synchronized_ = true;  ///< the clients have answered the present step
   bool alone_ = true;         ///< no other simulator was heard at the start
   std::unique_ptr<Results> results_;
-  std::unique_ptr<RunKeys> keys_;      ///< null: no terminal
-  std::int64_t steps_taken_ = 0;       ///< in this process
+  std::unique_ptr<RunKeys> keys_;          ///< null: no terminal
+  std::int64_t steps_taken_ = 0;           ///< in this process
   std::set<std::int64_t> snapshot_steps_;  ///< still to come
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };

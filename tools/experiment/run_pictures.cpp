@@ -3,7 +3,9 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "tools/experiment/gnuplot.hpp"
@@ -51,7 +53,29 @@ std::string joined(const std::vector<std::string>& curves) {
   return text + "\n";
 }
 
+/// A canvas of the shape of what is on it: a long way is not lost on a white square.
+constexpr const char* canvas_for_tracks =
+    "stats 'tracks.csv' every ::1 using 3 name 'E' nooutput\nstats 'tracks.csv' every ::1 using 4 name 'N' nooutput\n"
+    "stats 'outlines.dat' using (real(word(strcol(1),1))) name 'OE' nooutput\n"
+    "stats 'outlines.dat' using (real(word(strcol(1),2))) name 'ON' nooutput\n"
+    "larger(a, b) = a > b ? a : b\n"
+    "width = larger(larger(E_max, OE_max) + larger(-E_min, -OE_min), 1e-3)\n"
+    "height = larger(larger(N_max, ON_max) + larger(-N_min, -ON_min), 1e-3)\n"
+    "across = larger(400, 900 * (height > width ? width / height : 1))\n"
+    "up = larger(250, 900 * (width > height ? height / width : 1))\n"
+    "set terminal pngcairo size across + 100, up + 180\n";
+
+constexpr std::array pale_colors{"#9ecae1", "#fdbe85", "#a1d99b", "#d4b9da", "#e0c9a6", "#fcc5c0"};
+constexpr std::array strong_colors{"#000000", "#cb181d", "#54278f", "#006d2c"};
+
+template <std::size_t n>
+const char* cycled(const std::array<const char*, n>& colors, std::size_t i) {
+  return colors[i % n];
+}
+
+/// Tracks are drawn pale and broad, estimates dark and thin on top of them, so that both are seen.
 std::string tracks_script(const sim::World& world, const Tracks& tracks) {
+  std::size_t vehicles = 0, estimates = 0;
   std::vector<std::string> curves{
       "'outlines.dat' using (real(word(strcol(1),1))):(real(word(strcol(1),2))) with lines lc 'gray40' notitle"};
   if (world.vehicles().size() > most_named_tracks) {
@@ -59,17 +83,36 @@ std::string tracks_script(const sim::World& world, const Tracks& tracks) {
   } else {
     for (const auto& vehicle : world.vehicles())
       curves.push_back(
-          fmt::format("'tracks.csv' every ::1 using (strcol(2) eq {0} ? $3 : NaN):4 with lines lw 2 title {0} "
+          fmt::format("'tracks.csv' every ::1 using (strcol(2) eq {0} ? $3 : NaN):4 with lines lw 5 lc '{1}' title {0} "
                       "noenhanced",
-                      gnuplot_text(vehicle->name())));
+                      gnuplot_text(vehicle->name()), cycled(pale_colors, vehicles++)));
   }
   std::set<std::string> drawn;
   for (const Scoring::Track& track : tracks)
     if (drawn.insert(track.metric).second)
-      curves.push_back(
-          curve(track.metric, 4, "5",
-                "dt 2 title " + gnuplot_text(track.metric + " estimate of " + track.vehicle) + " noenhanced"));
-  return "set output 'tracks.png'\nset size ratio -1\nset xlabel 'east (m)'\nset ylabel 'north (m)'\n" + joined(curves);
+      curves.push_back(curve(track.metric, 4, "5",
+                             fmt::format("lw 1.5 dt 2 lc '{}' title {} noenhanced", cycled(strong_colors, estimates++),
+                                         gnuplot_text(track.metric + " estimate of " + track.vehicle))));
+  return canvas_for_tracks + std::string("set output 'tracks.png'\nset size ratio -1\nset xlabel 'east (m)'\n") +
+         "set ylabel 'north (m)'\n" + joined(curves);
+}
+
+double rms_of(const Scoring::Track& track) {
+  double squares = 0;
+  for (const ErrorSample& sample : *track.samples) squares += sample.error_m * sample.error_m;
+  return std::sqrt(squares / static_cast<double>(track.samples->size()));
+}
+
+/// Beside a much larger error a small one would be a line on the axis.
+std::string axis_of_errors(const Tracks& tracks) {
+  constexpr double very_different = 5;
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (const Scoring::Track& track : tracks) {
+    least = std::min(least, rms_of(track));
+    most = std::max(most, rms_of(track));
+  }
+  if (!(least > 0) || most < very_different * least) return "set yrange [0:*]\n";
+  return fmt::format("set logscale y\nset yrange [{:.3g}:*]\n", 0.1 * least);
 }
 
 /// Errors over a column, with three times the sigma that the estimate tells.
@@ -87,7 +130,7 @@ std::string errors_script(const Tracks& tracks, const char* file, const char* x_
   }
   return fmt::format("set output '{}'\nset size noratio\nset xlabel '{}'\nset ylabel 'position error (m)'\n", file,
                      x_label) +
-         joined(curves);
+         axis_of_errors(tracks) + joined(curves) + "unset logscale y\nset autoscale y\n";
 }
 
 /// Consistency over time, with the value it has on average and the bound of 95 of 100 samples.

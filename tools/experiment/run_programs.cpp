@@ -33,7 +33,7 @@ void RunPrograms::check(sim::Time now, const std::function<bool(const std::strin
   if (processes_.empty()) return;
   for (const ProcessGroup::Exit& exit : processes_.reap()) {
     const std::string text = "process '" + exit.name + "' " + exit.how;
-    ended_.push_back({exit.name, exit.how, sim::to_seconds(now)});
+    note(exit, now);
     if (exit.ends_run) throw RunError(1, "process", text + "; the world says the run ends with it");
     const bool goes_on = told_of(exit.client);
     if (exit.failed)
@@ -42,6 +42,14 @@ void RunPrograms::check(sim::Time now, const std::function<bool(const std::strin
       spdlog::info("{}", text);
     gone_.insert(exit.client);
   }
+}
+
+void RunPrograms::note(const ProcessGroup::Exit& exit, sim::Time now) {
+  ended_.push_back({exit.name, exit.how, sim::to_seconds(now), exit.failed});
+}
+
+void RunPrograms::note_last(sim::Time now) {
+  for (const ProcessGroup::Exit& exit : processes_.reap()) note(exit, now);
 }
 
 }  // namespace tools

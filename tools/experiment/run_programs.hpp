@@ -24,6 +24,8 @@ class RunPrograms {
   /// without it at once; else its `on_timeout` decides.  Throws RunError when the world says that the run ends with
   /// one.
   void check(sim::Time now, const std::function<bool(const std::string& client)>& told_of);
+  /// The run is about to end, and to tell the programs: notes those that have ended by themselves.
+  void note_last(sim::Time now);
   bool is_gone(const std::string& client) const { return gone_.contains(client); }
   /// Lets those that take part in the lockstep end by themselves.
   void await_clients() { processes_.await_clients(); }
@@ -32,6 +34,8 @@ class RunPrograms {
   const std::vector<Summary::Process>& ended() const { return ended_; }
 
  private:
+  void note(const ProcessGroup::Exit& exit, sim::Time now);
+
   const sim::WorldConfig& config_;
   const RunOptions& options_;
   RunBuses& buses_;

@@ -52,6 +52,7 @@ RunRecord read_run(const std::string& directory) {
   RunRecord run;
   run.directory = directory;
   run.world = in.text("world");
+  if (in.has("description")) run.description = in.text("description");
   run.seed = in.whole("seed");
   run.steps = in.whole("steps");
   run.sim_time_s = in.number("sim_time_s");
@@ -61,6 +62,7 @@ RunRecord read_run(const std::string& directory) {
   run.dropped_messages = in.whole("dropped_messages");
   run.bad_messages = in.whole("bad_messages");
   run.quick_steps = in.whole("quick_steps");
+  if (in.has("modem_dropped_messages")) run.modem_dropped_messages = in.whole("modem_dropped_messages");
   run.metrics = read_figures(in);
   for (const auto& item : in.list("rules")) {
     const JsonReader rule(item, path + ": rules");
@@ -68,12 +70,14 @@ RunRecord read_run(const std::string& directory) {
   }
   for (const auto& item : in.list("processes")) {
     const JsonReader process(item, path + ": processes");
-    run.processes.push_back({process.text("name"), process.text("how"), process.number("sim_time_s")});
+    run.processes.push_back({process.text("name"), process.text("how"), process.number("sim_time_s"),
+                             process.has("failed") && process.boolean("failed")});
   }
   if (in.has("event")) {
     const JsonReader event(in.object("event"), path + ": event");
     run.event = RunRecord::Rule{event.text("text"), event.boolean("passed")};
   }
+  run.judged = in.has("judged") ? in.boolean("judged") : !run.rules.empty() || run.event;
   run.passed = in.boolean("passed");
   run.ended = in.text("ended");
   run.error = in.text("error");

@@ -18,20 +18,23 @@ struct RunRecord {
   struct Process {
     std::string name, how;
     double sim_time_s = 0;
+    bool failed = false;
   };
 
   std::string directory;
-  std::string world;
+  std::string world, description;
   std::int64_t seed = 0;
   std::int64_t steps = 0;
   double sim_time_s = 0;
   double wall_s = 0;
   std::string state_hash;
   std::int64_t messages = 0, dropped_messages = 0, bad_messages = 0, quick_steps = 0;
+  std::int64_t modem_dropped_messages = 0;
   std::map<std::string, std::optional<double>> metrics;  ///< unset: there was nothing to make the figure of
   std::vector<Rule> rules;
   std::vector<Process> processes;
   std::optional<Rule> event;  ///< what the event said that ended the run
+  bool judged = false;        ///< by a rule or an event
   bool passed = false;
   std::string ended, error;
   int exit_code = 0;

@@ -1,5 +1,6 @@
 #include <spdlog/spdlog.h>
 
+#include "devices/message_modem.hpp"
 #include "devices/serial_port.hpp"
 #include "sim/acoustics/channel.hpp"
 #include "tools/experiment/run.hpp"
@@ -19,6 +20,7 @@ void note_signal(Summary& summary) {
 void Run::finish(Summary& summary) {
   admit_mail();  // what came after the last step is in the log: the journal says that it came from outside
   journal_.finish(summary.ended != "fault" && summary.ended != "error");
+  programs_.note_last(world_.now());
   if (alone_) {  // else it would end the other simulator's clients
     lockstep_.publish_end([this](std::chrono::milliseconds time) { buses_.wait(time); },
                           std::chrono::milliseconds(caught_signal() == 0 ? 1000 : 200));
@@ -37,6 +39,7 @@ void Run::finish(Summary& summary) {
 void Run::add_figures(Summary& summary) {
   const sim::BusCounts counts = buses_.counts();
   summary.world = loaded_.config.name;
+  summary.description = loaded_.config.description;
   summary.seed = loaded_.config.run.seed;
   summary.branch = control_.branch;
   summary.snapshot = options_.from_file;
@@ -53,6 +56,7 @@ void Run::add_figures(Summary& summary) {
   summary.quick_steps = world_.physics().quick_steps();
   const LinkCounts links = link_counts(world_, "", "");
   if (!world_.acoustics().transducers().empty()) summary.acoustics = links;
+  summary.modem_dropped_messages = world_.shared<devices::MessageModems>().dropped_from_queues();
   summary.serial_dropped_bytes = devices::serial_dropped_bytes(world_);
   summary.metrics = scoring_.figures();
   summary.verdicts = scoring_.verdicts();
@@ -63,6 +67,7 @@ void Run::add_figures(Summary& summary) {
   // Without the programs that a world names there is nothing to judge.
   const bool judged = loaded_.config.processes.empty() || options_.launch || !options_.await.empty();
   if (!judged) summary.verdicts.clear();
+  summary.judge_processes();
 }
 
 void Run::write_results(Summary& summary) {

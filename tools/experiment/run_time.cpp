@@ -62,8 +62,9 @@ void Run::plan_snapshots() {
   const double step_s = sim::to_seconds(world_.step_time());
   for (const double time_s : options_.snapshot_at_s) {
     if (duration_s_ > 0 && std::llround(time_s / step_s) > std::llround(duration_s_ / step_s))
-      throw RunError(2, "configuration",
-                     fmt::format("--snapshot-at: {:.6g} s is after the end of the run at {:.6g} s", time_s, duration_s_));
+      throw RunError(
+          2, "configuration",
+          fmt::format("--snapshot-at: {:.6g} s is after the end of the run at {:.6g} s", time_s, duration_s_));
     if (std::llround(time_s / step_s) < world_.step_number())
       throw RunError(2, "configuration",
                      fmt::format("--snapshot-at: {:.6g} s is before the begin of the run at {:.6g} s", time_s,

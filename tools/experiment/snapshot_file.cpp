@@ -36,8 +36,8 @@ T number_at(const sim::Bytes& bytes, std::size_t at) {
 
 void visit(sim::StateArchive& archive, Snapshot& s) {
   archive.section("file");
-  archive(s.version, s.world, s.resolved_world, s.files, s.seed, s.epoch_us, s.step_us, s.step, s.branch, s.from_s, s.state_hash,
-          s.vehicles, s.state, s.scores, s.owners);
+  archive(s.version, s.world, s.resolved_world, s.files, s.seed, s.epoch_us, s.step_us, s.step, s.branch, s.from_s,
+          s.state_hash, s.vehicles, s.state, s.scores, s.owners);
   archive.end();
 }
 

@@ -43,8 +43,7 @@ bool SnapshotPieces::continues(const shoal::sim_snapshot_t& piece) const {
 }
 
 std::optional<sim::Bytes> SnapshotPieces::add(const shoal::sim_snapshot_t& piece) {
-  if (piece.piece < 0 || piece.piece >= piece.pieces || piece.bytes < 0 ||
-      static_cast<std::uint64_t>(piece.bytes) > most_bytes_)
+  if (piece.piece < 0 || piece.piece >= piece.pieces || piece.bytes < 0)
     throw shoal::MessageError(
         fmt::format("piece {} of {} of a snapshot of {} bytes cannot be", piece.piece, piece.pieces, piece.bytes));
   if (!continues(piece)) {

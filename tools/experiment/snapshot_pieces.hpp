@@ -18,9 +18,6 @@ std::vector<shoal::sim_snapshot_t> in_pieces(const Snapshot& snapshot, std::int3
 /// Puts the pieces together again.  They come from a log: some may be missing, twice, or anybody's.
 class SnapshotPieces {
  public:
-  /// `most_bytes`: no snapshot is larger.
-  explicit SnapshotPieces(std::uint64_t most_bytes) : most_bytes_(most_bytes) {}
-
   /// The bytes of the snapshot file when this was the last piece.  Throws shoal::MessageError for one that cannot be,
   /// or that comes after others were lost.
   std::optional<sim::Bytes> add(const shoal::sim_snapshot_t& piece);
@@ -31,7 +28,6 @@ class SnapshotPieces {
  private:
   bool continues(const shoal::sim_snapshot_t& piece) const;
 
-  std::uint64_t most_bytes_;
   std::optional<shoal::sim_snapshot_t> first_;  // without its data
   std::int32_t next_ = 0;                       // piece that comes next
   std::int32_t lost_until_ = 0;                 // pieces before this one are lost, from next_ on

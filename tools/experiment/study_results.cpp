@@ -125,12 +125,22 @@ Scoring::Verdict StudyResults::judge(const StudyRule& rule) const {
 std::vector<Scoring::Verdict> StudyResults::verdicts() const {
   std::vector<Scoring::Verdict> verdicts;
   for (const StudyRule& rule : study_.config.pass) verdicts.push_back(judge(rule));
+  if (!verdicts.empty() && runs_with_failed_programs() > 0)
+    verdicts.push_back(
+        {fmt::format("{} of {} runs had programs that failed", runs_with_failed_programs(), runs_.size()), false});
   return verdicts;
 }
 
 std::size_t StudyResults::failed_runs() const {
   return static_cast<std::size_t>(
       std::count_if(runs_.begin(), runs_.end(), [](const StudyRun& run) { return !run.record; }));
+}
+
+std::size_t StudyResults::runs_with_failed_programs() const {
+  return static_cast<std::size_t>(std::count_if(runs_.begin(), runs_.end(), [](const StudyRun& run) {
+    return run.record && std::any_of(run.record->processes.begin(), run.record->processes.end(),
+                                     [](const RunRecord::Process& process) { return process.failed; });
+  }));
 }
 
 bool StudyResults::passed() const {
@@ -158,6 +168,9 @@ std::string StudyResults::to_text() const {
     }
   for (const Scoring::Verdict& verdict : verdicts())
     text += fmt::format("{}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.rule);
+  if (study_.config.pass.empty() && runs_with_failed_programs() > 0)
+    text += fmt::format("{} runs had programs that failed; as the study has no rules, nothing was judged\n",
+                        runs_with_failed_programs());
   if (failed_runs() > 0) text += fmt::format("{} runs have no result\n", failed_runs());
   return text;
 }

@@ -39,6 +39,8 @@ class StudyResults {
   std::vector<Scoring::Verdict> verdicts() const;
   bool passed() const;
   std::size_t failed_runs() const;
+  /// That came to their end all the same.
+  std::size_t runs_with_failed_programs() const;
 
   /// The table on a terminal, and the rules.
   std::string to_text() const;

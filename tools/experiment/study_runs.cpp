@@ -208,7 +208,7 @@ class StudyChildren {
     std::string outcome = "failed: " + run.failure + "; see " + run.directory + "/run.log";
     if (run.record) {
       std::ofstream(stamp_file(run), std::ios::binary) << stamp_of(study_, run);
-      outcome = run.record->passed ? "passed" : "done, its rules failed";
+      outcome = !run.record->passed ? "done, its rules failed" : run.record->judged ? "passed" : "done, not judged";
     }
     const double wall_s = std::chrono::duration<double>(Clock::now() - ended.begun).count();
     say(fmt::format("[{}/{}] {}, seed {}: {} ({:.1f} s)", done_, runs_.size(), study_.config.cases[run.in_case].name,

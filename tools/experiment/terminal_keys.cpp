@@ -55,7 +55,6 @@ void on_stop(int) {
   raise(SIGSTOP);
 }
 
-
 void on_death(int signal) {
   use_before();
   raise(signal);  // SA_RESETHAND: as if it had not been caught

@@ -172,7 +172,8 @@ std::string TimeControl::step(double count) {
 
 std::string TimeControl::set_speed(double times) {
   if (times != 0 && !(times >= 1e-3 && times <= 1e6))
-    throw std::runtime_error(fmt::format("'speed' must be 0 (as fast as possible) or from 0.001 to 1e6, got {}", times));
+    throw std::runtime_error(
+        fmt::format("'speed' must be 0 (as fast as possible) or from 0.001 to 1e6, got {}", times));
   control_.set_speed(times);
   return place() + (times > 0 ? fmt::format(", {:g} x real time", times) : ", as fast as possible");
 }
@@ -377,8 +378,8 @@ std::string TimeControl::restore(const std::string& name, bool run_on) {
     throw std::runtime_error(path + ": is of another world or other values: " +
                              first_difference(snapshot.resolved_world, options_.resolved_world));
   if (snapshot.files != options_.files)
-    throw std::runtime_error(path + ": its world used other files than this run: " +
-                             first_difference(snapshot.files, options_.files));
+    throw std::runtime_error(
+        path + ": its world used other files than this run: " + first_difference(snapshot.files, options_.files));
   travel(
       [&] {
         load({snapshot.state, snapshot.scores, snapshot.owners}, History::whole);

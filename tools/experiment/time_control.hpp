@@ -52,7 +52,8 @@ class TimeControl final : public bridges::TimeMachine {
   /// Pauses a run that has come where `until` said.  True: it did so now.
   bool stop_when_there();
 
-  /// All that concerns time: pause, resume, step, speed, until, rewind, snapshot, restore and where.  Throws std::runtime_error that says why it was refused.
+  /// All that concerns time: pause, resume, step, speed, until, rewind, snapshot, restore and where.  Throws
+  /// std::runtime_error that says why it was refused.
   std::optional<std::string> obey(const std::string& command, const std::string& text, double value) override;
   /// Takes so many steps, a whole number, and stands still.
   std::string step(double count);
@@ -114,7 +115,7 @@ class TimeControl final : public bridges::TimeMachine {
   std::int64_t steps_per_second_;
   SnapshotRing ring_;
   Clock::time_point not_before_;  // the next snapshot for going back
-  std::int64_t first_step_ = 0;  ///< where this run began
+  std::int64_t first_step_ = 0;   ///< where this run began
   int files_ = 0;
   bool moved_ = false;
   std::string broken_;

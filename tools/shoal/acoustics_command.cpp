@@ -99,7 +99,10 @@ std::vector<AcousticPacket> packets_of(const AcousticsArguments& arguments,
     packets.push_back(*packet);
   }
   if (arguments.micromodem)
-    for (const AcousticPacket& packet : micromodem_packets()) packets.push_back(packet);
+    for (AcousticPacket packet : micromodem_packets()) {
+      if (arguments.bandwidth_Hz) packet.bandwidth_Hz.reset();
+      packets.push_back(packet);
+    }
   if (!packets.empty()) return packets;
   if (modem != nullptr)
     return {*parse_packet(fmt::format("{}:{}:{}", sim::to_string(modem->modulation), modem->bit_rate_bps,
@@ -131,6 +134,9 @@ void take_signal(AcousticLink& link, const AcousticsArguments& arguments, const 
   if (arguments.level_dB) link.source_level = sim::Decibels(*arguments.level_dB);
   link.centre_Hz = arguments.frequency_Hz.value_or(link.centre_Hz);
   link.bandwidth_Hz = arguments.bandwidth_Hz.value_or(link.bandwidth_Hz);
+  if (link.bandwidth_Hz >= 2 * link.centre_Hz)
+    throw CLI::ValidationError("--bandwidth", fmt::format("must be less than twice the frequency of {:g} Hz, got {:g}",
+                                                          link.centre_Hz, link.bandwidth_Hz));
   if (arguments.coding_gain_dB) link.coding_gain = sim::Decibels(*arguments.coding_gain_dB);
 }
 
@@ -173,9 +179,41 @@ std::optional<double> water_depth_m(const AcousticLink& link, const sim::World& 
   return std::nullopt;
 }
 
+/// A place below terrain or a plane, or inside of something fixed.
+bool in_ground(const sim::Vector3d& p_W, const sim::World& world) {
+  constexpr double far_m = 12000;
+  const auto fixed_part = [&](const sim::Vector3d& way_W) -> int {
+    sim::RayFilter filter;
+    filter.kind = sim::RayKind::sound;
+    const auto hit = world.scene().cast(p_W, way_W, far_m, filter);
+    if (!hit) return -1;
+    const int body = world.physics().parts()[static_cast<std::size_t>(hit->part)].body;
+    return world.physics().bodies()[static_cast<std::size_t>(body)]->fixed() ? hit->part : -1;
+  };
+  const int above = fixed_part(sim::Vector3d::UnitZ());
+  if (above < 0) return false;
+  if (above == fixed_part(-sim::Vector3d::UnitZ())) return true;
+  const sim::PartInfo& part = world.physics().parts()[static_cast<std::size_t>(above)];
+  if (part.plane) return true;
+  const sim::Body* body = world.physics().bodies()[static_cast<std::size_t>(part.body)].get();
+  for (const auto& [name, object] : world.objects())
+    if (object.body == body)
+      for (const sim::PartConfig& each : object.config.parts)
+        if (each.shape == "terrain") return true;
+  return false;
+}
+
+/// Sound needs water at both ends.
+void check_end(const char* option, const LinkEnd& end, const sim::World& world) {
+  const sim::Vector3d& p_W = end.p_W;
+  const std::string place = fmt::format("{:g},{:g},{:g}", p_W.x(), p_W.y(), p_W.z());
+  if (!world.medium().in_water(p_W))
+    throw CLI::ValidationError(option, fmt::format("is in the air at {}: the surface is at z = {:.2f} m there", place,
+                                                   world.medium().surface_m(p_W.x(), p_W.y())));
+  if (in_ground(p_W, world)) throw CLI::ValidationError(option, "is in the ground at " + place);
+}
+
 void warn(const AcousticLink& link, const sim::World& world) {
-  for (const LinkEnd* end : {&link.from, &link.to})
-    if (!world.medium().in_water(end->p_W)) std::cerr << "shoal: one end of the link is not under water\n";
   sim::Random random(1, "look");
   random.begin_step(0);
   const int none = -2;  // a group that nothing has
@@ -209,6 +247,8 @@ int show(AcousticsArguments& arguments) {
   if (!world.medium().has_water()) throw CLI::ValidationError("WORLD", "has no water to carry sound");
   const AcousticLink link = link_of(arguments, world);
   const std::vector<AcousticPacket> packets = packets_of(arguments, modem_keys(arguments.from, world));
+  check_end(arguments.from.empty() ? "--depth" : "--from", link.from, world);
+  check_end(arguments.to.empty() ? "--depth" : "--to", link.to, world);
   warn(link, world);
   const std::optional<double> depth_m = arguments.water_depth_m ? arguments.water_depth_m : water_depth_m(link, world);
   if (ranges_m.empty()) {
@@ -282,7 +322,7 @@ void add_acoustics_command(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  shoal acoustics --range 1500 --set acoustics.absorption.model=thorp\n"
       "  shoal acoustics --micromodem --set acoustics.fading.type=rayleigh --ranges 500:10000:500\n"
-      "  shoal acoustics worlds/proving_sea.yaml --from 0,0,-5 --to 900,0,-40 --packet psk:500:64\n"
+      "  shoal acoustics worlds/proving_sea.yaml --from 0,0,-5 --to 900,0,-25 --packet psk:500:64\n"
       "  shoal acoustics --closed-forms tests/fidelity/reference/closed_forms.csv\n"
       "docs/acoustics.md has the equations.");
   command->callback([arguments, &exit_code] { exit_code = show(*arguments); });

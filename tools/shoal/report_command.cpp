@@ -39,7 +39,8 @@ void add_report_command(CLI::App& app, int& exit_code) {
   };
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("DIR", arguments->directories, "results folders; several of runs are compared")->required();
-  command->add_option("--output", arguments->output, "the page; unset: DIR/report.html; of several folders comparison.html in the first");
+  command->add_option("--output", arguments->output,
+                      "the page; unset: DIR/report.html; of several folders comparison.html in the first");
   command->footer(
       "Examples:\n  shoal report results/coop_land\n"
       "  shoal report results/seed1 results/seed2 --output comparison.html\n"

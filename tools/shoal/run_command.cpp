@@ -34,7 +34,8 @@ std::optional<double> parse_speed(const std::string& text) {
     if (used == text.size() && (speed == 0 || (speed >= 0.001 && speed <= 1e6))) return speed;
   } catch (const std::exception&) {
   }
-  throw CLI::ValidationError("--speed", "must be 0 or 'max' (as fast as possible), or from 0.001 to 1e6, got '" + text + "'");
+  throw CLI::ValidationError("--speed",
+                             "must be 0 or 'max' (as fast as possible), or from 0.001 to 1e6, got '" + text + "'");
 }
 
 std::string check_seed(const std::string& text) {

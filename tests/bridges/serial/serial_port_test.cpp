@@ -174,7 +174,8 @@ TEST(SerialPort, RefusesALinkThatAnotherProgramMadeToALiveTerminal) {
   char name[128];
   ASSERT_EQ(openpty(&master, &slave, name, nullptr, nullptr), 0);
   fs::create_symlink(name, folder.file("modem"));
-  EXPECT_THAT(error_of("pty", folder.file("modem")), testing::HasSubstr("is in use"));
+  EXPECT_THAT(error_of("pty", folder.file("modem")),
+              testing::HasSubstr("is in use: File exists; when no run has it, remove the link"));
   EXPECT_EQ(fs::read_symlink(folder.file("modem")), name);
   close(master);
   close(slave);

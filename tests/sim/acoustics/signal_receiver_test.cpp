@@ -113,6 +113,43 @@ TEST(SignalReceiver, OnlyWhatFallsIntoTheBandDisturbs) {
   }
 }
 
+/// Spread over 100 times its bits a signal stands noise as loud as itself, but no other message.
+TEST(SignalReceiver, AnotherMessageIsNoNoiseWhereItIsNotMuchWeaker) {
+  for (const bool message : {true, false}) {
+    for (const double other_dB : {20.0, 13.9, 14.1}) {
+      SignalReceiver receiver;
+      TakenSignal taken = signal(1, 20);
+      taken.bit_rate_bps = 40;
+      taken.protection = to_power(Decibels{6});
+      ASSERT_EQ(arrive(receiver, taken), SignalLoss::none);
+      receiver.begin({2, 25000, 4000, to_power(Decibels{other_dB}), 1200ms, message}, 900ms);
+      SignalReceiver::Outcome outcome;
+      ASSERT_TRUE(receiver.end(1, 1s, outcome));
+      // 10 of the 100 bits are guessed; as noise it leaves at least 19 dB.
+      const bool destroyed = message && other_dB > 14;
+      EXPECT_NEAR(outcome.success, destroyed ? std::pow(0.5, 10) : 1, 1e-6) << other_dB;
+      EXPECT_NEAR(outcome.success_alone, 1, 1e-6);
+    }
+  }
+}
+
+TEST(SignalReceiver, ASoundThatStopsDisturbsNoLongerAndIsNotUnderstood) {
+  SignalReceiver receiver;
+  ASSERT_EQ(arrive(receiver, signal(1, 14)), SignalLoss::none);
+  receiver.begin({2, 25000, 4000, to_power(Decibels{4}), 1s}, 0s);
+  receiver.silence(2, 250ms);
+  SignalReceiver::Outcome outcome;
+  ASSERT_TRUE(receiver.end(1, 1s, outcome));
+  const double sinr_dB = 14 - 10 * std::log10(1 + std::pow(10, 0.4));
+  EXPECT_NEAR(outcome.success, success(sinr_dB, 25) * success(14, 75), 1e-12);
+
+  SignalReceiver cut;
+  ASSERT_EQ(arrive(cut, signal(4, 14)), SignalLoss::none);
+  cut.silence(4, 500ms);
+  ASSERT_TRUE(cut.end(4, 1s, outcome));
+  EXPECT_LT(outcome.success, std::pow(0.5, 49));
+}
+
 TEST(SignalReceiver, ASignalIsCapturedByOneThatIsStrongerByTheRule) {
   for (const double level_dB : {25.9, 26.1}) {
     SignalReceiver receiver;

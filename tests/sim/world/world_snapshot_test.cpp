@@ -409,8 +409,10 @@ TEST_F(ForgedSnapshot, WithBodiesWhereNoneCanBeIsRefused) {
 
 /// What is late would be made up for in small steps, as many as a forger likes.
 TEST_F(ForgedSnapshot, WithAClockThatIsLateIsRefused) {
-  // 60 steps of 5 ms, and a node of the clock's wander every 0.1 s up to 2 s after that.
-  const std::size_t at = behind(good, std::array<std::int64_t, 4>{300'000, 25, 0, 100'000}) - 4 * sizeof(std::int64_t);
+  // 60 steps of 5 ms; a node of the clock's wander every 0.1 s up to 2 s after that, each a time and a number, of which
+  // the first are 0.
+  const std::array<std::int64_t, 5> clock{300'000, 2 * 25, 0, 0, 100'000};
+  const std::size_t at = behind(good, clock) - sizeof clock;
   put(good, at, std::int64_t{200'000});
   EXPECT_THAT(error_of(world(), good), HasSubstr("a clock that stands at another time than the world"));
 }

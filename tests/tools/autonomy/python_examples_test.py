@@ -52,11 +52,32 @@ class Filter(unittest.TestCase):
         self.assertLess(math.hypot(ekf.x[0] - 1200, ekf.x[1]), 4)
         self.assertAlmostEqual(ekf.x[4], clock_m, delta=3)
 
-    def test_outliers_are_refused_until_there_are_too_many(self):
-        ekf = MarineEkf(0, (100, 0), 1)
-        used = [ekf.update_range(0, 150, 1, (0, 0, 0), (0, 0, 0), 0) for _ in range(5)]
+    def test_beacon_that_contradicts_is_refused_and_moves_nothing(self):
+        ekf = MarineEkf(0, (100, 0), 1, states=6)
+        before = list(ekf.x), [list(row) for row in ekf.P]
+        for range_m in [250] * 20 + [math.nan] * 20:
+            self.assertFalse(ekf.update_range(0, range_m, 1, (0, 0, 0), (0, 0, 0), 0, beacon=1))
+        self.assertEqual((ekf.x, ekf.P), before)
+        # It is believed again after five that fit.
+        used = [ekf.update_range(0, 100, 1, (0, 0, 0), (0, 0, 0), 0, beacon=1) for _ in range(5)]
         self.assertEqual(used, [False] * 4 + [True])
-        self.assertFalse(ekf.update_range(0, math.nan, 1, (0, 0, 0), (0, 0, 0), 0))
+
+    def test_what_two_beacons_say_alike_is_the_clock(self):
+        ekf = MarineEkf(0, (100, 50), 1, states=6)
+        ranges = (1, (0, 50, 0), 100), (2, (100, 0, 0), 50)
+        used = [ekf.update_range(0, slant - 1500, 1, beacon_m, (0, 0, 0), 0, beacon)
+                for beacon, beacon_m, slant in ranges * 3]
+        self.assertEqual(used, [False] * 4 + [True] * 2)
+        self.assertAlmostEqual(ekf.x[4], -1500, delta=3)
+        self.assertAlmostEqual(math.hypot(ekf.x[0] - 100, ekf.x[1] - 50), 0, delta=0.1)
+        self.assertLess(ekf.P[0][0], 1.01)
+
+    def test_gps_is_believed_when_it_contradicts_for_long(self):
+        ekf = MarineEkf(0, (0, 0), 1)
+        self.assertFalse(any(ekf.update_position((300, 0), 1) for _ in range(4)))
+        self.assertFalse(ekf.update_position((math.nan, 0), 1))
+        self.assertTrue(ekf.update_position((300, 0), 1))
+        self.assertAlmostEqual(ekf.x[0], 300, delta=0.1)
 
 
 class Frame(unittest.TestCase):

@@ -13,6 +13,7 @@
 #include "shoal/twist_command_t.hpp"
 #include "tests/devices/modem_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
+#include "tests/sim/medium/log_capture.hpp"
 #include "tools/experiment/link_counts.hpp"
 #include "tools/experiment/scoring.hpp"
 
@@ -155,6 +156,36 @@ TEST(PositionError, TakesAnEstimateWithoutAUsableCovariance) {
   world.run_for(0.01);
   EXPECT_NEAR(world.figure("flat.final_m"), 5, creep_m);
   EXPECT_EQ(world.scoring.bad_messages(), 0);
+}
+
+TEST(PositionError, ShowsHowLongThereWasNoEstimate) {
+  MetricWorld world("  - {name: e, vehicle: r1, channel: est, from_s: 0.5}\n");
+  world.run_for(1.5);
+  EXPECT_NEAR(world.figure("e.longest_gap_s"), 1, 1e-9);  // none yet
+  for (const double pause_s : {0.4, 1.6, 0.2}) {
+    world.estimate({1, 0, 0}, some_covariance());
+    world.run_for(pause_s);
+  }
+  EXPECT_NEAR(world.figure("e.longest_gap_s"), 1.6, 1e-9);
+  world.run_for(2);
+  EXPECT_NEAR(world.figure("e.longest_gap_s"), 2.2, 1e-9);  // since the last
+}
+
+TEST(PositionError, SaysOnceWhatIsWrongAndThenHowOften) {
+  MetricWorld world("  - {name: e, vehicle: r1, channel: est}\n");
+  const test_support::LogCapture log;
+  world.run_for(0.1);
+  for (int i = 0; i < 300; ++i) {
+    world.estimate({1, 0, 0}, some_covariance(), -20);
+    if (i % 100 == 99) world.run_for(0.01);
+  }
+  world.estimate({1, 0, 0}, some_covariance());
+  world.run_for(0.01);
+  const std::string said = log.text();
+  EXPECT_EQ(world.scoring.bad_messages(), 300);
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 2) << said;
+  EXPECT_NE(said.find("metric 'e': est: 'utime' is not within the last 10 s"), said.npos) << said;
+  EXPECT_NE(said.find("metric 'e': 300 messages in a row were ignored"), said.npos) << said;
 }
 
 TEST(PositionError, PerDistanceIsOfTheWayThatWasTravelled) {
@@ -352,6 +383,38 @@ TEST(Delivery, CountsWhatModemsSentAndWhatTheOthersHeard) {
   EXPECT_EQ(figures.at("all.ratio"), figures.at("all.received") / (figures.at("all.received") + lost));
 }
 
+/// far cannot hear a, near can.
+TEST(Delivery, IsOfWhatWasSentToAModem) {
+  const std::string modem = "{name: modem, type: acoustic_modem}";
+  test::TestWorld test(test::modem_sea(
+      {{"a", "[0, 0, -20]", modem}, {"near", "[300, 0, -20]", modem}, {"far", "[200000, 0, -20]", modem}},
+      "metrics:\n  - {name: all, type: delivery}\n  - {name: far, type: delivery, vehicle: far}\n"));
+  tools::Scoring scoring(test.world);
+  test.send("a.modem.cmd", test::bytes_to("hello", "near"));
+  test.run_for(5);
+  EXPECT_EQ(scoring.figures().at("all.ratio"), 1) << "nobody sent to the other one";
+  EXPECT_TRUE(std::isnan(scoring.figures().at("far.ratio")));
+  test.send("a.modem.cmd", test::bytes_to("hello"));
+  test.send("a.modem.cmd", test::bytes_to("hello", "far"));
+  test.run_for(10);
+  EXPECT_EQ(scoring.figures().at("all.received"), 2);
+  EXPECT_EQ(scoring.figures().at("all.lost_range"), 2);
+  EXPECT_EQ(scoring.figures().at("all.ratio"), 0.5);
+  EXPECT_EQ(scoring.figures().at("far.ratio"), 0);
+}
+
+TEST(Delivery, CountsWhatWasNotSent) {
+  const std::string modem = "{name: modem, type: acoustic_modem, queue_messages: 2}";
+  test::TestWorld test(test::modem_sea({{"a", "[0, 0, -20]", modem}, {"b", "[300, 0, -20]", modem}},
+                                       "metrics:\n  - {name: a, type: delivery, vehicle: a}\n"));
+  tools::Scoring scoring(test.world);
+  for (int i = 0; i < 5; ++i) test.send("a.modem.cmd", test::bytes_to("hello"));
+  test.run_for(10);
+  EXPECT_EQ(scoring.figures().at("a.dropped"), 3);
+  EXPECT_EQ(scoring.figures().at("a.sent"), 2);
+  EXPECT_EQ(scoring.figures().at("a.unsent"), 0);
+}
+
 /// b is in range of a, c is not; d is out of the water that hides it.
 TEST(Delivery, OfARadioModemCountsWhatCameAndWhatDidNot) {
   const std::string radio = "{name: radio, type: modem, range_m: 500}";
@@ -375,7 +438,7 @@ TEST(Delivery, OfARadioModemCountsWhatCameAndWhatDidNot) {
   EXPECT_TRUE(std::isnan(figures.at("a.ratio"))) << "nobody sent to it";
   EXPECT_EQ(figures.at("b.received"), 2);
   EXPECT_EQ(figures.at("b.ratio"), 1);
-  EXPECT_EQ(figures.at("c.lost_noise"), 1);
+  EXPECT_EQ(figures.at("c.lost_range"), 1);
   EXPECT_EQ(figures.at("c.ratio"), 0);
   EXPECT_EQ(figures.at("d.lost_blocked"), 1);
   EXPECT_EQ(figures.at("all.ratio"), 0.5) << "two of four";

@@ -2,12 +2,16 @@
 
 #include <gmock/gmock.h>
 
+#include <set>
+
 #include "bridges/lcm/recording_bus.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_mail_t.hpp"
+#include "shoal/sim_state_t.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tools/experiment/replay_messages.hpp"
+#include "tools/experiment/snapshot_pieces.hpp"
 
 // What a log tells of its run, from logs made by hand.
 
@@ -42,6 +46,22 @@ class HandMade {
     mail.letter[0].step = step - 1;
     mail.letter[0].channel = "a.cmd";
     publish("sim.mail", mail, step);
+  }
+  void state(std::int64_t step) {
+    shoal::sim_state_t state{};
+    state.utime = step * step_us;
+    state.step = step;
+    publish("sim.state", state, step);
+  }
+  /// All pieces but those of the numbers in `lost`.
+  void snapshot(std::int32_t branch, std::int64_t step, std::int64_t mail_sequence,
+                const std::set<std::int32_t>& lost = {}) {
+    tools::Snapshot snapshot;
+    snapshot.step = step;
+    snapshot.step_us = step_us;
+    snapshot.state = sim::Bytes(150'000, std::byte{1});
+    for (const auto& piece : tools::in_pieces(snapshot, branch, mail_sequence))
+      if (!lost.contains(piece.piece)) publish("sim.snapshot", piece, step);
   }
   template <typename Message>
   void publish(const std::string& channel, const Message& message, std::int64_t step) {
@@ -96,6 +116,73 @@ TEST(ReplayLog, MailThatWasLostJustBeforeABranchEndsTheProof) {
   const tools::ReplayLog read = log.read();
   EXPECT_THAT(read.holes, ElementsAre("sim.mail 1 (of a step from 5 to 10) is missing"));
   EXPECT_EQ(read.usable_step(), 5);
+}
+
+TEST(ReplayLog, BeginsWithTheSnapshotOfARun) {
+  HandMade log;
+  log.info(0, 100, 1);
+  log.snapshot(0, 100, 1);
+  log.state(100);
+  log.mail(0, 110, 1);
+  log.state(120);
+  const tools::ReplayLog read = log.read();
+  EXPECT_EQ(read.begin_step(), 100);
+  EXPECT_EQ(read.usable_step(), 120);
+  EXPECT_EQ(read.letters.size(), 1u);
+  EXPECT_FALSE(read.goes_back);
+  EXPECT_THAT(read.holes, IsEmpty());
+  EXPECT_THAT(read.problems, IsEmpty());
+}
+
+/// The first branch is not needed any more, also where it has holes.  `to`: earlier and later than where it was left.
+TEST(ReplayLog, BeginsWithTheLastSnapshotOfALogOverARestore) {
+  for (const std::int64_t to : {20, 300}) {
+    HandMade log;
+    log.info(0, 0, 0);
+    log.state(0);
+    log.mail(0, 30, 2);
+    log.state(40);
+    log.info(1, to, 5);
+    log.snapshot(1, to, 5);
+    log.state(to);
+    log.mail(1, to + 10, 5);
+    log.state(to + 20);
+    const tools::ReplayLog read = log.read();
+    EXPECT_EQ(read.begin_step(), to);
+    EXPECT_EQ(read.usable_step(), to + 20);
+    EXPECT_EQ(read.letters.size(), 1u);
+    EXPECT_TRUE(read.goes_back);
+    EXPECT_THAT(read.holes, IsEmpty());
+    EXPECT_EQ(read.bad_snapshot, "");
+  }
+}
+
+TEST(ReplayLog, ASnapshotThatLacksAPieceEndsTheProof) {
+  HandMade log;
+  log.info(0, 0, 0);
+  log.state(0);
+  log.mail(0, 30, 0);
+  log.state(40);
+  log.info(1, 300, 2);  // number 1 was skipped
+  log.snapshot(1, 300, 2, {1});
+  log.mail(1, 310, 2);
+  const tools::ReplayLog read = log.read();
+  EXPECT_EQ(read.begin_step(), 0);
+  EXPECT_EQ(read.usable_step(), 30);
+  EXPECT_EQ(read.bad_snapshot, "sim.snapshot: piece 2 of 3 of the snapshot of step 300 is missing");
+}
+
+TEST(ReplayLog, GoesBackBehindItsSnapshotOnlyWithAnother) {
+  HandMade log;
+  log.info(0, 100, 1);
+  log.snapshot(0, 100, 1);
+  log.state(120);
+  log.info(1, 50, 1);
+  log.mail(1, 60, 1);
+  const tools::ReplayLog read = log.read();
+  EXPECT_FALSE(read.snapshot);
+  EXPECT_EQ(read.bad_snapshot, "sim.snapshot: the log goes back to step 50, before its snapshot");
+  EXPECT_EQ(read.usable_step(), 0);  // nobody knows what came before
 }
 
 TEST(ReplayMessages, ARecordIsNotReadAheadOfTheStep) {

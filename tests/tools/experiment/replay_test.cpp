@@ -10,14 +10,17 @@
 #include "shoal/twist_command_t.hpp"
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
-#include "tests/tools/experiment/recorded_run.hpp"
+#include "tests/tools/experiment/replay_fixture.hpp"
 
 // A log of a run is enough to run it again, and to find where it differs.
 
 namespace {
 
+using test::driven_world;
+using test::forward;
 using test::RecordedRun;
-using test_support::ScratchFolder;
+using test::ReplayTest;
+using test::steps;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -25,60 +28,8 @@ using tools::replay;
 using tools::ReplayOptions;
 using tools::ReplayOutcome;
 
-constexpr std::int64_t steps = 300;
-
-/// One rover with a noisy IMU and a wall before it; steps of 0.01 s, a hash every 50.
-std::string rover_world(const std::string& more = "") {
-  return "shoal: 1\nname: testing ground\nrun: {seed: 3, hash_every_steps: 50}\nphysics: {step_s: 0.01}\n"
-         "objects:\n  - {name: ground, fixed: true, parts: [{shape: plane}]}\n"
-         "  - {name: crate, position_m: [3, 0, 0.5], parts: [{shape: box, mass_kg: 5}]}\n"
-         "vehicles:\n  - {name: r1, file: rover.yaml}\n" +
-         more;
-}
-
-shoal::twist_command_t forward(double mps) {
-  shoal::twist_command_t command{};
-  command.forward_mps = mps;
-  return command;
-}
-
-class ReplayTest : public testing::Test {
- protected:
-  /// A client drives: ten messages a second.
-  void record(const std::string& yaml, const std::function<void(RecordedRun&, std::int64_t)>& more = {}) {
-    RecordedRun run(yaml, log);
-    run.run(steps, [&](std::int64_t step) {
-      if (step % 10 == 0) run.send("r1.drive.cmd", forward(0.5 + 0.001 * static_cast<double>(step)));
-      if (more) more(run, step);
-    });
-    state_hash = run.world.state_hash();
-  }
-
-  ReplayOutcome again(const std::vector<std::string>& sets = {}) const {
-    ReplayOptions options;
-    options.log = log;
-    options.sets = sets;
-    options.quiet = true;
-    options.threads = 1;
-    return replay(options);
-  }
-
-  std::string error() const {
-    try {
-      again();
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "no error";
-  }
-
-  ScratchFolder folder;
-  std::string log = folder.file("run.lcm");
-  std::uint64_t state_hash = 0;
-};
-
 TEST_F(ReplayTest, ARunWithAClientIsEqualWithoutIt) {
-  record(rover_world());
+  record(driven_world());
   const ReplayOutcome outcome = again();
   EXPECT_EQ(outcome.exit_code(), 0);
   EXPECT_EQ(outcome.steps, steps);
@@ -90,7 +41,7 @@ TEST_F(ReplayTest, ARunWithAClientIsEqualWithoutIt) {
 }
 
 TEST_F(ReplayTest, TheMailIsNeeded) {
-  record(rover_world());
+  record(driven_world());
   const std::string whole = log;
   log = folder.file("without.lcm");
   test::copy_log(whole, log, [](const auto& event) { return event.channel == "sim.mail"; });
@@ -99,7 +50,7 @@ TEST_F(ReplayTest, TheMailIsNeeded) {
 
 TEST_F(ReplayTest, MailThatIsThrownAwayIsNoDifference) {
   // As a rewind does, a second copy of a datagram, a gate that is full, or a run that ends before its next step.
-  record(rover_world(), [](RecordedRun& run, std::int64_t step) {
+  record(driven_world(), [](RecordedRun& run, std::int64_t step) {
     if (step != steps - 5) return;
     run.gate.collect();
     run.gate.waiting().clear();
@@ -112,7 +63,7 @@ TEST_F(ReplayTest, MailThatIsThrownAwayIsNoDifference) {
 }
 
 TEST_F(ReplayTest, RequestsThatChangeTheWorldAreObeyedAtTheSameSteps) {
-  record(rover_world(), [](RecordedRun& run, std::int64_t step) {
+  record(driven_world(), [](RecordedRun& run, std::int64_t step) {
     if (step == 40) run.request("spawn", "{name: guest, file: rover_small.yaml, position_m: [0, 3, 0]}");
     if (step == 60) run.request("do", "{fault: r1/lidar, kind: silent}");
     if (step == 60) run.request("spawn", "{name: guest, file: rover_small.yaml}");  // is refused
@@ -127,7 +78,7 @@ TEST_F(ReplayTest, RequestsThatChangeTheWorldAreObeyedAtTheSameSteps) {
 }
 
 TEST_F(ReplayTest, VehicleFilesAreInTheLog) {
-  RecordedRun run(rover_world(), log);
+  RecordedRun run(driven_world(), log);
   run.request("spawn", "{name: guest, file: rover_small.yaml, position_m: [0, 3, 0]}");
   run.run(100);
   const std::filesystem::path before = std::filesystem::current_path();
@@ -143,7 +94,7 @@ TEST_F(ReplayTest, BytesOfSerialPortsAreReadAgain) {
       "mass_kg: 5}]}], devices: [{name: modem, type: modem, network: n, range_m: 100, serial: {path: "
       "\"/nowhere/{vehicle}\"}}]}}\n";
   RecordedRun run(
-      rover_world("  - {name: a, position_m: [0, 5, 0]" + box + "  - {name: b, position_m: [0, 9, 0]" + box), log);
+      driven_world("  - {name: a, position_m: [0, 5, 0]" + box + "  - {name: b, position_m: [0, 9, 0]" + box), log);
   run.run(200, [&](std::int64_t step) {
     if (step == 20) run.ends["/nowhere/a"]->to_world = "hello\npart ";
     if (step == 50) run.ends["/nowhere/a"]->to_world = "of a line\n";
@@ -157,7 +108,7 @@ TEST_F(ReplayTest, BytesOfSerialPortsAreReadAgain) {
 }
 
 TEST_F(ReplayTest, APlantedDifferenceIsFoundWithStepVehicleAndQuantity) {
-  record(rover_world());
+  record(driven_world());
   const ReplayOutcome seed = again({"run.seed=4"});
   EXPECT_EQ(seed.exit_code(), 1);
   ASSERT_TRUE(seed.first);
@@ -171,7 +122,7 @@ TEST_F(ReplayTest, APlantedDifferenceIsFoundWithStepVehicleAndQuantity) {
 }
 
 TEST_F(ReplayTest, OneNoisierSensorIsFoundByItsName) {
-  record(rover_world());
+  record(driven_world());
   const ReplayOutcome outcome = again({"vehicles.r1.devices.odometry.noise.gaussian_std=0.5"});
   EXPECT_EQ(outcome.exit_code(), 1);
   ASSERT_TRUE(outcome.first);
@@ -203,7 +154,7 @@ TEST_F(ReplayTest, AnotherWorldIsComparedByItsNamesAndByItsMotion) {
 }
 
 TEST_F(ReplayTest, ALetterThatIsMissingEndsTheProof) {
-  record(rover_world());
+  record(driven_world());
   const std::string whole = log;
   log = folder.file("hole.lcm");
   test::copy_log(whole, log, [](const bridges::LogEvent& event) {
@@ -221,7 +172,7 @@ TEST_F(ReplayTest, ALetterThatIsMissingEndsTheProof) {
 }
 
 TEST_F(ReplayTest, MessagesThatALoggerLostAreCountedOnly) {
-  record(rover_world());
+  record(driven_world());
   const std::string whole = log;
   log = folder.file("lossy.lcm");
   int odometry = 0;
@@ -243,7 +194,7 @@ TEST_F(ReplayTest, MessagesThatALoggerLostAreCountedOnly) {
 }
 
 TEST_F(ReplayTest, ALogThatIsCutOffIsEqualAsFarAsItGoes) {
-  record(rover_world());
+  record(driven_world());
   std::filesystem::resize_file(log, std::filesystem::file_size(log) * 2 / 3);
   const ReplayOutcome outcome = again();
   EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
@@ -266,7 +217,7 @@ TEST_F(ReplayTest, ARunThatAFaultEndedIsEqualUpToIt) {
 }
 
 TEST_F(ReplayTest, UntilEndsEarlier) {
-  record(rover_world());
+  record(driven_world());
   ReplayOptions options;
   options.log = log;
   options.until_s = 1.2;
@@ -281,7 +232,7 @@ TEST_F(ReplayTest, RefusesWhatIsNoLogOfARun) {
   std::ofstream(log) << "this is text";
   EXPECT_THAT(error(), HasSubstr("holds no event that can be read"));
   std::filesystem::remove(log);
-  record(rover_world());
+  record(driven_world());
   const std::string whole = log;
   log = folder.file("other.lcm");
   test::copy_log(whole, log, [](const auto& event) { return event.channel.starts_with("sim."); });
@@ -289,7 +240,7 @@ TEST_F(ReplayTest, RefusesWhatIsNoLogOfARun) {
 }
 
 TEST_F(ReplayTest, RefusesTwoRunsInOneLog) {
-  record(rover_world());
+  record(driven_world());
   std::ifstream in(log, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   std::ofstream(log, std::ios::binary | std::ios::app) << bytes;
@@ -297,7 +248,7 @@ TEST_F(ReplayTest, RefusesTwoRunsInOneLog) {
 }
 
 TEST_F(ReplayTest, HostileMessagesAreToldOfAndPassedOver) {
-  record(rover_world());
+  record(driven_world());
   const std::string whole = log;
   log = folder.file("hostile.lcm");
   bridges::EventLogReader reader(whole);
@@ -314,7 +265,7 @@ TEST_F(ReplayTest, HostileMessagesAreToldOfAndPassedOver) {
 }
 
 TEST_F(ReplayTest, AWorldWithAnotherStepCannotBeCompared) {
-  record(rover_world());
+  record(driven_world());
   try {
     again({"physics.step_s=0.005"});
     FAIL() << "was compared";
@@ -323,128 +274,10 @@ TEST_F(ReplayTest, AWorldWithAnotherStepCannotBeCompared) {
   }
 }
 
-/// A run of 100 steps, in which a guest comes; a record that begins there.
-class ReplayFromASnapshot : public ReplayTest {
- protected:
-  static constexpr std::int64_t first_steps = 100;
-  /// Steers too, so that nothing is equal by chance.
-  static void drive(RecordedRun& run, std::int64_t step) {
-    if (step % 10 == 0) run.send("r1.drive.cmd", forward(0.5 + 0.001 * static_cast<double>(step)));
-    if (step == 40) run.request("spawn", "{name: guest, file: rover_small.yaml, position_m: [0, 3, 0]}");
-    if (step == 150) run.send("guest.drive.cmd", forward(1));
-    if (step == 160) run.request("remove", "guest");
-  }
-  ReplayFromASnapshot() {
-    RecordedRun first(rover_world(padding()), folder.file("first.lcm"));
-    first.run(first_steps, [&](std::int64_t step) { drive(first, step); });
-    begin = first.snapshot();
-    write();
-  }
-  /// The world in the snapshot takes several pieces.
-  static std::string padding() {
-    return "events: [{name: never, at: 1000, do: [{log: " + std::string(70'000, 'x') + "}]}]\n";
-  }
-  void write() {
-    std::filesystem::remove(log);
-    RecordedRun run(rover_world(padding()), log, &begin);
-    run.run(steps, [&](std::int64_t step) { drive(run, step); });
-  }
-  /// The log without some of the pieces, or with one that was changed.
-  void change_pieces(const std::function<bool(shoal::sim_snapshot_t&)>& keep) {
-    const std::string whole = log;
-    log = folder.file("changed.lcm");
-    test::change_log(whole, log, [&](bridges::LogEvent& event) {
-      if (event.channel != "sim.snapshot") return true;
-      auto piece = shoal::decode<shoal::sim_snapshot_t>(event.payload, shoal::Finite::any);
-      if (!keep(piece)) return false;
-      event.payload = shoal::encode(piece);
-      return true;
-    });
-  }
-
-  tools::Snapshot begin;
-};
-
-TEST_F(ReplayFromASnapshot, IsEqualFromThereOn) {
-  const ReplayOutcome outcome = again();
-  EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
-  EXPECT_EQ(outcome.begin_step, first_steps);
-  EXPECT_EQ(outcome.steps, steps);
-  EXPECT_EQ(outcome.hashes, 7u);  // steps 100, 150, ... 400
-  EXPECT_EQ(outcome.missing_messages, 0u);
-  EXPECT_THAT(outcome.notes, IsEmpty());
-  EXPECT_THAT(outcome.to_text(),
-              AllOf(HasSubstr("equal for 300 steps (from step 100; 7 hashes, "), HasSubstr("3.000 s in ")));
-}
-
-TEST_F(ReplayFromASnapshot, ADifferenceIsFound) {
-  const ReplayOutcome outcome = again({"vehicles.r1.devices.odometry.noise.gaussian_std=0.5"});
-  EXPECT_EQ(outcome.exit_code(), 1);
-  EXPECT_THAT(outcome.to_text(), AllOf(HasSubstr("r1/odometry (r1.odometry): "), HasSubstr(" of 400:")));
-}
-
-TEST_F(ReplayFromASnapshot, APieceThatIsMissingIsTold) {
-  change_pieces([](const shoal::sim_snapshot_t& piece) { return piece.piece != 0; });
-  EXPECT_THAT(error(), HasSubstr("cannot be run again: sim.snapshot: piece 1 of "));
-}
-
-TEST_F(ReplayFromASnapshot, WithoutItsSnapshotTheLogCannotBeRun) {
-  change_pieces([](const shoal::sim_snapshot_t&) { return false; });
-  EXPECT_THAT(error(), HasSubstr("cannot be run again from the start: sim.mail 0"));
-}
-
-TEST_F(ReplayFromASnapshot, PiecesThatComeTwiceDoNoHarm) {
-  const std::string whole = log;
-  log = folder.file("twice.lcm");
-  bridges::EventLogReader reader(whole);
-  bridges::RecordingBus out(std::make_unique<sim::InProcessBus>(), log, 0);
-  while (const auto event = reader.next())
-    for (int i = 0; i < (event->channel == "sim.snapshot" ? 2 : 1); ++i)
-      out.publish(event->channel, event->payload, sim::Time(event->utime));
-  out.close();
-  EXPECT_EQ(again().exit_code(), 0);
-}
-
-TEST_F(ReplayFromASnapshot, ADamagedOneIsTold) {
-  change_pieces([](shoal::sim_snapshot_t& piece) {
-    piece.data[piece.data.size() / 2] ^= 1;
-    return true;
-  });
-  EXPECT_THAT(error(), HasSubstr("cannot be run again: sim.snapshot: is damaged or cut off: its checksum must be "));
-}
-
-TEST_F(ReplayFromASnapshot, OneOfAnotherWorldOrBuildIsTold) {
-  begin.seed = 4;
-  write();
-  EXPECT_THAT(error(), HasSubstr("sim.snapshot: is of another world, seed, epoch or step than sim.info tells of"));
-  begin.seed = 3;
-  begin.version = "0.0.1";
-  write();
-  EXPECT_THAT(error(), HasSubstr("sim.snapshot: was written by shoal 0.0.1, this is "));
-}
-
-TEST_F(ReplayFromASnapshot, ForgedPiecesArePassedOver) {
-  change_pieces([](shoal::sim_snapshot_t& piece) {
-    piece.bytes = INT64_MAX;
-    return true;
-  });
-  EXPECT_THAT(error(), HasSubstr("sim.mail 0"));
-}
-
-TEST_F(ReplayFromASnapshot, UntilBeforeItsBeginIsRefused) {
-  ReplayOptions options;
-  options.log = log;
-  options.until_s = 0.5;
-  options.quiet = true;
-  EXPECT_THROW(replay(options), std::runtime_error);
-  options.until_s = 1.5;
-  EXPECT_EQ(replay(options).steps, 50);
-}
-
 TEST_F(ReplayTest, AMeshThatIsAnotherOneIsTold) {
   const std::string mesh = folder.file("plate.obj");
   std::ofstream(mesh) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
-  const std::string world = rover_world(
+  const std::string world = driven_world(
       "  - {name: stone, position_m: [9, 9, 1], model: {shoal: 1, bodies: [{name: b, parts: [{shape: mesh, "
       "mesh: \"" +
       mesh + "\", mass_kg: 4}]}]}}\n");

@@ -9,6 +9,7 @@
 #include "tests/devices/world_fixture.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tools/experiment/html.hpp"
+#include "tools/experiment/png_check.hpp"
 #include "tools/experiment/runner.hpp"
 
 namespace {
@@ -153,8 +154,52 @@ TEST(Report, NamesPicturesThatAreMissingOrNone) {
   write(directory + "/errors.png", "GIF89a");
   const std::string page = tools::report_page({directory});
   EXPECT_THAT(page, HasSubstr("tracks.png is missing."));
-  EXPECT_THAT(page, HasSubstr("errors.png is no PNG picture."));
+  EXPECT_THAT(page, HasSubstr("errors.png is no whole PNG picture."));
   EXPECT_EQ(problems_of_page(page), "");
+}
+
+TEST(Report, TakesNoPictureThatIsCutOffOrDamaged) {
+  const ScratchFolder folder;
+  const std::string directory = folder.file("run");
+  run_into(directory, "");
+  const std::string good = text_of_file(directory + "/tracks.png");
+  ASSERT_TRUE(tools::is_whole_png(good));
+  std::string damaged = good;
+  damaged[good.size() / 2] ^= 1;
+  for (const std::string& bad : {good.substr(0, 8), good.substr(0, good.size() / 2), good + "x", damaged}) {
+    EXPECT_FALSE(tools::is_whole_png(bad));
+    write(directory + "/tracks.png", bad);
+    const std::string page = tools::report_page({directory});
+    EXPECT_THAT(page, HasSubstr("tracks.png is no whole PNG picture."));
+    EXPECT_THAT(page, Not(HasSubstr("<img")));
+  }
+}
+
+TEST(Report, SaysWhatTheWorldIsAndThatNothingWasJudged) {
+  const ScratchFolder folder;
+  run_into(folder.file("a"), "description: A rover & its <lidar>.\n");
+  const std::string page = tools::report_page({folder.file("a")});
+  EXPECT_THAT(page, HasSubstr("<p>A rover &amp; its &lt;lidar&gt;.</p>"));
+  EXPECT_THAT(page, HasSubstr("Not judged: the world has no rules"));
+  EXPECT_THAT(page, Not(HasSubstr("passed</span>")));
+  run_into(folder.file("b"),
+           "metrics: [{name: way, type: distance, vehicle: r1}]\n"
+           "pass: [{metric: way.travelled_m, below: 1}]\n");
+  EXPECT_THAT(tools::report_page({folder.file("a"), folder.file("b")}),
+              HasSubstr("<tr><td>verdict</td><td>not judged</td><td>passed</td></tr>"));
+}
+
+TEST(Report, TellsOfProgramsThatFailedAndOfAnOutage) {
+  const ScratchFolder folder;
+  const std::string directory = folder.file("run");
+  const tools::Summary run = run_into(directory, "");
+  tools::Summary summary = run;
+  summary.processes = {{"pilot", "was killed by signal 9 (Killed)", 2, true}};
+  summary.metrics["place.longest_gap_s"] = 60;
+  tools::write_summary(directory, summary);
+  const std::string page = tools::report_page({directory});
+  EXPECT_THAT(page, HasSubstr("Programs of the world failed."));
+  EXPECT_THAT(page, HasSubstr("For 60.0 s there was no estimate: place.longest_gap_s."));
 }
 
 TEST(Report, OfSeveralRunsComparesThem) {

@@ -76,10 +76,11 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   const auto json = nlohmann::ordered_json::parse(summary.to_json());
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(keys, testing::ElementsAre("world", "seed", "steps", "sim_time_s", "wall_s", "real_time_factor",
-                                         "state_hash", "messages", "dropped_messages", "bad_messages", "quick_steps",
-                                         "metrics", "rules", "processes", "serial_dropped_bytes", "passed", "ended",
-                                         "error", "exit_code", "shoal"));
+  EXPECT_THAT(
+      keys, testing::ElementsAre("world", "description", "seed", "steps", "sim_time_s", "wall_s", "real_time_factor",
+                                 "state_hash", "messages", "dropped_messages", "bad_messages", "quick_steps", "metrics",
+                                 "rules", "processes", "modem_dropped_messages", "serial_dropped_bytes", "judged",
+                                 "passed", "ended", "error", "exit_code", "shoal"));
   EXPECT_EQ(json["world"], "harbor");
   EXPECT_EQ(json["seed"], 3);
   EXPECT_EQ(json["steps"], 1000);
@@ -94,6 +95,24 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   EXPECT_THAT(summary.to_text(), testing::HasSubstr("process 'pilot' exited with code 1 at 2.50 s"));
 }
 
+TEST(Summary, AProgramThatFailedIsARuleThatFailedWhereSomethingIsJudged) {
+  tools::Summary summary;
+  summary.processes = {{"done", "exited with code 0", 1, false}, {"pilot", "exited with code 2", 0.5, true}};
+  summary.judge_processes();
+  EXPECT_FALSE(summary.judged());
+  EXPECT_TRUE(summary.passed());
+  EXPECT_THAT(summary.to_text(), testing::HasSubstr("programs of the world failed; as it has no rules, nothing was"));
+  summary.verdicts = {{"a", true}};
+  summary.judge_processes();
+  ASSERT_EQ(summary.verdicts.size(), 2u);
+  EXPECT_EQ(summary.verdicts[1].rule, "process 'pilot' must not fail; it exited with code 2 at 0.50 s");
+  EXPECT_FALSE(summary.passed());
+  const auto json = nlohmann::json::parse(summary.to_json());
+  EXPECT_EQ(json["judged"], true);
+  EXPECT_EQ(json["processes"][0]["failed"], false);
+  EXPECT_EQ(json["processes"][1]["failed"], true);
+}
+
 TEST(Summary, TellsWhatBecameOfAcousticPackets) {
   tools::Summary summary;
   EXPECT_FALSE(nlohmann::json::parse(summary.to_json()).contains("acoustics"));
@@ -104,13 +123,16 @@ TEST(Summary, TellsWhatBecameOfAcousticPackets) {
   summary.acoustics->unsent = 1;
   summary.acoustics->lost = {{"busy", 0}, {"noise", 2}};
   summary.serial_dropped_bytes = 7;
+  summary.modem_dropped_messages = 4;
   const auto json = nlohmann::json::parse(summary.to_json());
   EXPECT_EQ(json["acoustics"],
             nlohmann::json::parse(R"({"sent": 5, "received": 3, "unsent": 1, "lost": {"noise": 2}})"));
   EXPECT_EQ(json["serial_dropped_bytes"], 7);
+  EXPECT_EQ(json["modem_dropped_messages"], 4);
   EXPECT_THAT(summary.to_text(),
               testing::HasSubstr("acoustic packets: 5 sent, 3 received, 2 lost (noise), 1 not sent\n"));
   EXPECT_THAT(summary.to_text(), testing::HasSubstr("  7 bytes were fetched from no port\n"));
+  EXPECT_THAT(summary.to_text(), testing::HasSubstr("  4 messages were dropped from full queues of modems\n"));
 }
 
 TEST(RunWorld, CountsAcousticPacketsOnlyWhereThereAreModems) {
@@ -190,6 +212,33 @@ TEST(Results, ShowErrorsWithWhatTheEstimateSaysOfThem) {
   options.pictures = false;
   EXPECT_EQ(tools::run_world(loaded, options).exit_code, 0);
   EXPECT_FALSE(fs::exists(options.results + "/nees.png"));
+}
+
+TEST(Results, ErrorsThatAreVeryDifferentHaveALogarithmicAxis) {
+  for (const bool very : {true, false}) {
+    const ScratchFolder folder;
+    sim::LoadOptions load;
+    load.encode_message = shoal::encode_own_message;
+    const auto loaded = sim::load_world_text(
+        test::rover_world(
+            "        - {name: lidar, type: lidar}\n", "", "",
+            "run: {duration_s: 1}\n"
+            "events:\n"
+            "  - {name: near, every: 0.1, do: [{publish: near, type: shoal.pose_t, value: {pos: [1, 0, 0]}}]}\n"
+            "  - {name: far, every: 0.1, do: [{publish: far, type: shoal.pose_t, value: {pos: [" +
+                std::string(very ? "6" : "4") +
+                ", 0, 0]}}]}\n"
+                "metrics:\n"
+                "  - {name: n, vehicle: r1, channel: near}\n"
+                "  - {name: f, vehicle: r1, channel: far}\n"),
+        "small.yaml", load);
+    auto options = quiet_run();
+    options.results = folder.file("results");
+    tools::run_world(loaded, options);
+    const std::string script = text_of_file(options.results + "/plot.gp");
+    EXPECT_EQ(script.find("\nset logscale y") != script.npos, very) << script;
+    EXPECT_THAT(text_of_file(options.results + "/errors.png"), testing::StartsWith("\x89PNG"));
+  }
 }
 
 TEST(Results, AreLeftByARunThatFailed) {

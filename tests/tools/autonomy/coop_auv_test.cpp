@@ -1,209 +1,14 @@
+#include "tools/autonomy/coop_auv.hpp"
+
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
-#include "sim/random/random.hpp"
-#include "tools/autonomy/behaviour_text.hpp"
-#include "tools/autonomy/coop_auv.hpp"
-#include "tools/autonomy/coop_craft.hpp"
-#include "tools/autonomy/state_packet.hpp"
+#include "tests/tools/autonomy/voyage.hpp"
 
 namespace {
 
-using autonomy::AcousticState;
-using autonomy::CoopAuv;
-using autonomy::CoopCraft;
-using autonomy::make_behaviour;
-using autonomy::Vector2d;
-
-constexpr std::int64_t second = 1'000'000;
-constexpr std::int64_t epoch = 1'767'225'600 * second;  // a multiple of 20 s
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double pi = std::numbers::pi;
-
-shoal::gps_data_t fix_at(std::int64_t utime, const Vector2d& p_W, double std_m = 0.5) {
-  shoal::gps_data_t fix{};
-  fix.utime = utime;
-  fix.gps_lock = 1;
-  fix.horizontal_accuracy = std_m;
-  fix.xyz_pos[0] = p_W.x();
-  fix.xyz_pos[1] = p_W.y();
-  return fix;
-}
-
-shoal::dvl_t dvl_at(std::int64_t utime, double ahead_mps) {
-  shoal::dvl_t dvl{};
-  dvl.utime = utime;
-  dvl.bottom_lock = 1;
-  dvl.velocity_mps[0] = ahead_mps;
-  return dvl;
-}
-
-shoal::compass_t compass_at(std::int64_t utime, double yaw_rad) {
-  shoal::compass_t compass{};
-  compass.utime = utime;
-  compass.heading_true_rad = 0.5 * pi - yaw_rad;
-  return compass;
-}
-
-shoal::pressure_t depth_at(std::int64_t utime, double depth_m) {
-  shoal::pressure_t pressure{};
-  pressure.utime = utime;
-  pressure.depth_m = depth_m;
-  return pressure;
-}
-
-/// A frame from a beacon at rest.
-shoal::acoustic_received_t packet(const Vector2d& beacon_W, std::int64_t sent, std::int64_t arrival) {
-  AcousticState state;
-  state.sender = 1;
-  state.utime = sent - second / 5;
-  state.east_m = beacon_W.x();
-  state.north_m = beacon_W.y();
-  state.depth_m = 1;
-  state.east_std_m = state.north_std_m = 0.5;
-  const shoal::modem_send_t sent_message = *autonomy::to_everybody(state);
-  shoal::acoustic_received_t received{};
-  received.utime = arrival;
-  received.sent_utime = sent;
-  received.travel_time_s = static_cast<double>(arrival - sent) * 1e-6;
-  received.source = "boat1";
-  received.size = sent_message.size;
-  received.data = sent_message.data;
-  return received;
-}
-
-CoopCraft::Params craft_params() {
-  CoopCraft::Params params;
-  params.name = "boat1";
-  params.id = 7;
-  params.access.slot.emplace();
-  params.access.slot->slots = 2;
-  return params;
-}
-
-TEST(CoopCraft, TellsItsPlaceInItsSlotsByItsOwnClock) {
-  CoopCraft craft(craft_params(), make_behaviour("circle:0,0,30", {}, 1.5, false));
-  std::vector<std::int64_t> sent;
-  for (std::int64_t t = epoch; t < epoch + 60 * second; t += second / 2) {
-    shoal::gps_data_t fix = fix_at(t, {3, -4});
-    fix.speed = 1.5;
-    fix.heading = 0.5 * pi;  // east
-    craft.receive(fix);
-    const auto decision = craft.step();
-    ASSERT_TRUE(decision.helm && decision.estimate);
-    EXPECT_EQ(decision.estimate->utime, t);
-    if (!decision.send) continue;
-    sent.push_back((t - epoch) / second);
-    EXPECT_EQ(decision.send->destination, "");
-    EXPECT_LE(decision.send->size, 32);
-    const auto state = autonomy::acoustic_frame::decode(decision.send->data, t);
-    ASSERT_TRUE(state);
-    EXPECT_EQ(state->sender, 7);
-    EXPECT_EQ(state->utime, t);
-    EXPECT_NEAR(state->east_m, 3, 0.01);
-    EXPECT_NEAR(state->east_std_m, 0.5, 0.011);
-    EXPECT_NEAR(autonomy::motion_of(*state).v_W.x(), 1.5, 0.01);
-  }
-  EXPECT_EQ(sent, (std::vector<std::int64_t>{0, 20, 40}));
-  EXPECT_EQ(craft.counts().sent, 3);
-}
-
-TEST(CoopCraft, StopsAndSaysNothingWithoutAFix) {
-  CoopCraft craft(craft_params(), make_behaviour("route", {{100, 0}}, 1.5, false));
-  EXPECT_FALSE(craft.step().helm);
-  craft.receive(fix_at(epoch, {0, 0}));
-  EXPECT_EQ(craft.step().helm->speed_mps, 1.5);
-  shoal::gps_data_t lost = fix_at(epoch + 20 * second, {nan, nan});
-  lost.gps_lock = 0;
-  craft.receive(lost);
-  const auto decision = craft.step();
-  EXPECT_EQ(decision.helm->speed_mps, 0);
-  EXPECT_FALSE(decision.send || decision.estimate);
-}
-
-TEST(CoopCraft, FollowsWhatItHears) {
-  CoopCraft craft(craft_params(), make_behaviour("follow:boat1,0,0", {}, 2, false));
-  craft.receive(fix_at(epoch, {0, 0}));
-  EXPECT_EQ(craft.step().helm->speed_mps, 0);
-  craft.receive(packet({500, 0}, epoch, epoch + second));
-  EXPECT_EQ(craft.step().helm->speed_mps, 2);
-  shoal::acoustic_received_t bad = packet({500, 0}, epoch, epoch + second);
-  bad.data[5] ^= 1;
-  craft.receive(bad);
-  EXPECT_EQ(craft.counts().heard, 1);
-  EXPECT_EQ(craft.counts().bad_frames, 1);
-}
-
-TEST(CoopCraft, FollowsNobodyByARelayedStateAndTakesNoOrders) {
-  CoopCraft craft(craft_params(), make_behaviour("follow:boat1,0,0", {}, 2, false));
-  craft.receive(fix_at(epoch, {0, 0}));
-  craft.receive(packet({500, 0}, epoch, epoch + second));
-  shoal::acoustic_received_t relayed = packet({0, 500}, epoch + 10 * second, epoch + 11 * second);
-  relayed.sent_utime += 5 * second;
-  craft.receive(relayed);
-  const shoal::modem_send_t order = *autonomy::to_everybody(autonomy::AcousticOrder{200, 7, 1, epoch, 0, 500, 1, 1});
-  relayed.sent_utime = epoch + second;
-  relayed.data = order.data;
-  craft.receive(relayed);
-  EXPECT_EQ(craft.counts().relayed, 1);
-  EXPECT_EQ(craft.counts().orders, 1);
-  EXPECT_EQ(craft.counts().bad_frames, 0);
-  EXPECT_NEAR(craft.step().helm->heading_rad, 0, 1e-9);  // east, where the other said that it was
-}
-
-/// An AUV that goes east at 1.5 m/s with a compass that is 4 degrees off, between two beacons that send each 10 s; a
-/// packet takes 3 s, and is reported when it is complete.
-struct Voyage {
-  explicit Voyage(const CoopAuv::Params& params) : auv(params, make_behaviour("route", {{5000, 0}}, 1.5, false)) {}
-
-  void run(int seconds) {
-    sim::Random random(1, "voyage");
-    for (int i = 1; i <= 5 * seconds; ++i) {
-      t += second / 5;
-      random.begin_step(i);
-      const std::int64_t own = t + clock_error_us;
-      const bool submerged = decision.helm && decision.helm->depth_m > 0;
-      if (submerged) p_W.x() += 0.3;
-      auv.receive(compass_at(own, 0.07 + 0.02 * random.gaussian()));
-      auv.receive(depth_at(own, submerged ? 20 : 0));
-      auv.receive(dvl_at(own, submerged ? 1.5 : 0));
-      if (!submerged && i % 5 == 0) auv.receive(fix_at(own, p_W));
-      if (i % 50 == 0) hear(beacons[static_cast<std::size_t>(i / 50 % 2)], own, random.gaussian());
-      while (!waiting.empty() && waiting.front().utime + 3 * second <= own) {
-        auv.receive(waiting.front());
-        waiting.erase(waiting.begin());
-      }
-      if (i % 2 == 0) decision = auv.step();
-    }
-  }
-  void hear(const Vector2d& beacon_W, std::int64_t own, double noise_m) {
-    const double depth_m = decision.helm && decision.helm->depth_m > 0 ? 19 : -1;
-    const double range_m = std::hypot((p_W - beacon_W).norm(), depth_m) + noise_m;
-    waiting.push_back(packet(beacon_W, own - clock_error_us - std::llround(range_m / 1500 * 1e6), own));
-  }
-  double error_m() const { return (auv.cooperative()->position_at(t + clock_error_us) - p_W).norm(); }
-  double reckoned_error_m() const { return (auv.dead_reckoning()->position_at(t + clock_error_us) - p_W).norm(); }
-
-  CoopAuv auv;
-  CoopAuv::Decision decision;
-  std::int64_t t = epoch;
-  std::int64_t clock_error_us = 0;
-  Vector2d p_W = Vector2d::Zero();
-  std::array<Vector2d, 2> beacons = {Vector2d(300, 300), Vector2d(900, -250)};
-  std::vector<shoal::acoustic_received_t> waiting;
-};
-
-CoopAuv::Params auv_params() {
-  CoopAuv::Params params;
-  params.name = "auv";
-  params.depth_m = 20;
-  params.filter.heading_bias_std_rad = 0.07;
-  return params;
-}
+using namespace voyage_test;
 
 TEST(CoopAuv, WaitsForAFixAndDives) {
   Voyage voyage(auv_params());
@@ -362,19 +167,19 @@ TEST(CoopAuv, NonsenseDoesNoHarm) {
     bad.data.resize(random.integer_below(40));
     voyage.auv.receive(bad);
     bad = packet({0, 0}, voyage.t, voyage.t);
-    bad.travel_time_s = nan;
+    bad.travel_time_s = not_a_number;
     voyage.auv.receive(bad);
     bad = packet({0, 0}, voyage.t, voyage.t);
     bad.sent_utime += 3600 * second;  // the frame says another time
     voyage.auv.receive(bad);
-    shoal::dvl_t dvl = dvl_at(voyage.t, nan);
+    shoal::dvl_t dvl = dvl_at(voyage.t, not_a_number);
     voyage.auv.receive(dvl);
     shoal::ins_t attitude{};
     attitude.utime = voyage.t;
     voyage.auv.receive(attitude);  // a quaternion of zeros
-    voyage.auv.receive(fix_at(voyage.t, {nan, 0}));
-    voyage.auv.receive(depth_at(voyage.t, nan));
-    voyage.auv.receive(compass_at(voyage.t, nan));
+    voyage.auv.receive(fix_at(voyage.t, {not_a_number, 0}));
+    voyage.auv.receive(depth_at(voyage.t, not_a_number));
+    voyage.auv.receive(compass_at(voyage.t, not_a_number));
   }
   EXPECT_EQ(voyage.auv.counts().bad_frames, 1000);
   EXPECT_LT(voyage.error_m(), 3);
