@@ -41,8 +41,7 @@ void LockstepService::add_line(sim::Bus& network, sim::MailGate& gate) {
   const int index = static_cast<int>(lines_.size());
   lines_.push_back(std::make_unique<Line>(network, gate));
   gate.set_order([this, index, line = lines_.back().get()](std::vector<sim::MailGate::Mail>& mail) {
-    if (suspended_) return;
-    line->mail.order(mail);
+    if (!suspended_) line->mail.order(mail);
     for (const sim::MailGate::Mail& each : mail) lockstep_.post(index, each.channel, each.payload);
   });
 }
@@ -55,7 +54,7 @@ void LockstepService::watch_gates() {
       lines_[i]->gate.set_watch({});
     else
       lines_[i]->gate.set_watch([this, i](std::string_view channel, std::span<const std::byte> payload) {
-        if (!suspended_) lockstep_.post(static_cast<int>(i), channel, payload);
+        lockstep_.post(static_cast<int>(i), channel, payload);
       });
   }
 }
@@ -92,6 +91,14 @@ void LockstepService::complain(const std::string& client, const std::string& tex
   ++bad_messages_;
   if (told_.size() < 100 && told_.insert(client).second)
     spdlog::warn("{} (ignored; more of this client are only counted)", sim::shortened(sim::printable(text), 300));
+}
+
+void LockstepService::suspend(bool suspended) {
+  suspended_ = suspended;
+  if (suspended)
+    lockstep_.begin_again();
+  else
+    lockstep_.end_again();
 }
 
 void LockstepService::set_branch(std::int32_t branch) {

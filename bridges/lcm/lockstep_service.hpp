@@ -83,8 +83,12 @@ class LockstepService {
   /// The world went back, to its present step, as another branch.
   void set_branch(std::int32_t branch);
   std::int32_t branch() const { return branch_; }
-  /// While suspended the mail at the gates keeps its order: it is played in again.
-  void suspend(bool suspended) { suspended_ = suspended; }
+  /// While suspended the mail at the gates keeps its order: it is played in again, and with what the world publishes
+  /// makes the lists of the step that the world goes back to.
+  void suspend(bool suspended);
+  /// See sim::Lockstep.
+  void pass_again(std::int64_t step) { lockstep_.pass(step); }
+  std::int64_t needed_from(std::int64_t step) const { return lockstep_.needed_from(step); }
   /// Bad acknowledgements and questions so far.
   std::int64_t bad_messages() const { return bad_messages_; }
   /// Messages from outside that had to make room before they were admitted.

@@ -69,8 +69,9 @@ void SimService::publish_step() {
   shoal::utime_t clock;
   clock.utime = world_.epoch_us() + world_.now().count();
   publish(bus_, "sim.clock", clock);
-  for (std::size_t i = 1; i < lines_.size() && !muted_; ++i) {
-    publish(*lines_[i].network, "sim.clock", clock);
+  for (std::size_t i = 1; i < lines_.size(); ++i) {
+    shoal::encode_into(clock, buffer_);
+    if (!muted_) lines_[i].network->publish("sim.clock", buffer_, world_.now());
     lockstep_.post(static_cast<int>(i), "sim.clock", buffer_);
   }
   publish_state();
@@ -182,7 +183,6 @@ void SimService::handle_request(Line& line, const sim::Message& message) {
 
 void SimService::answer(Line& line, const shoal::sim_control_request_t& request) {
   shoal::sim_control_reply_t reply;
-  reply.utime = world_.epoch_us() + world_.now().count();
   reply.id = request.id;
   reply.client = request.client;
   const bool joins = request.command == "join";
@@ -201,6 +201,7 @@ void SimService::answer(Line& line, const shoal::sim_control_request_t& request)
     reply.text = sim::shortened(error.what(), 4000);
     complain("sim.control: client '" + sim::shortened(request.client) + "': " + error.what());
   }
+  reply.utime = world_.epoch_us() + world_.now().count();  // after a rewind the new time
   publish(*line.network, "sim.control.reply", reply);
   line.network->end_of_step();
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "sim/bus/crc32.hpp"
 #include "sim/config/message_text.hpp"
@@ -134,6 +135,14 @@ void Lockstep::post(int line, std::string_view channel, std::span<const std::byt
       crc = crc32(payload);
     }
     LockstepMember& member = *receiver.member;
+    if (again_) {
+      member.again_bytes += payload.size() + sizeof(PostedMessage);
+      if (member.again_bytes > most_pending_bytes)
+        member.again.clear();
+      else
+        member.again.push_back({receiver.channel, crc, shared});
+      continue;
+    }
     if (member.too_much) continue;
     member.pending_bytes += payload.size() + sizeof(PostedMessage);
     if (member.pending_bytes > most_pending_bytes) {
@@ -212,6 +221,32 @@ Lockstep::Verdict Lockstep::acknowledge(const LockstepAck& ack, std::int64_t ste
   return Verdict::accepted;
 }
 
+void Lockstep::begin_again() {
+  again_ = true;
+  for (auto& [name, member] : members_) {
+    member.again.clear();
+    member.again_bytes = 0;
+  }
+}
+
+void Lockstep::pass(std::int64_t step) {
+  for (auto& [name, member] : members_) {
+    if ((step - member.joined) % member.period_steps != 0) continue;  // its phase, also before it joined
+    member.again.clear();
+    member.again_bytes = 0;
+  }
+}
+
+std::int64_t Lockstep::needed_from(std::int64_t step) const {
+  std::int64_t needed = step;
+  for (const auto& [name, member] : members_) {
+    if (member.terms.receives.empty()) continue;
+    const std::int64_t since = (step - 1 - member.joined) % member.period_steps;
+    needed = std::min(needed, step - 1 - (since < 0 ? since + member.period_steps : since));
+  }
+  return std::max<std::int64_t>(needed, 0);
+}
+
 void Lockstep::rewound(std::int64_t step) {
   for (auto& [name, member] : members_) {
     // The phase stays, also for one that joined later than this.
@@ -226,8 +261,8 @@ void Lockstep::rewound(std::int64_t step) {
       member.asked = -1;
       member.list.clear();
     }
-    member.pending.clear();
-    member.pending_bytes = 0;
+    member.pending = std::exchange(member.again, {});
+    member.pending_bytes = std::exchange(member.again_bytes, 0);
     member.too_much = false;
   }
 }

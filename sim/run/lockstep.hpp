@@ -89,6 +89,8 @@ struct LockstepMember {
   std::vector<PostedMessage> list;     ///< of its last tick
   std::vector<PostedMessage> pending;  ///< for the next
   std::size_t pending_bytes = 0;
+  std::vector<PostedMessage> again;  ///< pending at the step that the world goes back to
+  std::size_t again_bytes = 0;
   bool too_much = false;            ///< to keep: what it must have is lost
   bool abandoned = false;           ///< its last tick was open when the world went back, and still is
   std::int64_t left_step = -1;      ///< of the last such tick
@@ -135,8 +137,17 @@ class Lockstep {
   enum class Verdict { accepted, repeated, refused, abandoned };
   /// `why` says what is wrong with one that is refused.
   Verdict acknowledge(const LockstepAck& ack, std::int64_t step, std::string& why);
-  /// The world went back to `step`: lists are empty, and all are asked by their periods from there, when those who have
-  /// an open tick have answered it.
+  /// The world is about to go back: what is posted from here on comes for a second time.
+  void begin_again();
+  /// Call after each step that is simulated again, without the last one: who was due had what came up to then.
+  void pass(std::int64_t step);
+  /// What is posted from here on comes for the first time.
+  void end_again() { again_ = false; }
+  /// The step that the world should be simulated again from, so that the lists of `step` are whole: the last one before
+  /// it at which each client was due.
+  std::int64_t needed_from(std::int64_t step) const;
+  /// The world went back to `step`: lists hold what was posted again, and all are asked by their periods from there,
+  /// when those who have an open tick have answered it.
   void rewound(std::int64_t step);
 
  private:
@@ -147,6 +158,7 @@ class Lockstep {
   void close_list(LockstepMember& member, std::int64_t step);
   void index_receivers();
 
+  bool again_ = false;
   std::map<std::string, LockstepMember, std::less<>> members_;
   std::map<std::string, std::vector<Receiver>, std::less<>> receivers_;  // by channel
 };

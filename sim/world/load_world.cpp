@@ -136,12 +136,19 @@ bool load_plugins(ConfigNode& root, const LoadOptions& options, Diagnostics& dia
 
 }  // namespace
 
-void make_paths_absolute(ConfigNode& node, bool of_terrain) {
+bool names_data_file(const ConfigNode& map, const std::string& map_key, const std::string& key) {
+  if (key == "mesh" || key == "east_file" || key == "north_file") return true;
+  if (key != "file") return false;
+  const ConfigNode* type = map.find("type");
+  return map_key == "terrain" || map_key == "texture" || (type != nullptr && type->scalar == "grid");
+}
+
+void make_paths_absolute(ConfigNode& node, const std::string& node_key) {
   for (ConfigNode& item : node.items) make_paths_absolute(item);
   for (ConfigNode::Entry& entry : node.entries) {
-    const bool path_key = entry.key == "mesh" || (of_terrain && entry.key == "file");
+    const bool path_key = names_data_file(node, node_key, entry.key);
     if (!path_key || entry.value.scalar.empty() || entry.value.place.file == nullptr) {
-      make_paths_absolute(entry.value, entry.key == "terrain");
+      make_paths_absolute(entry.value, entry.key);
       continue;
     }
     std::error_code error;

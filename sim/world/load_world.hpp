@@ -28,7 +28,10 @@ LoadedWorld load_world_text(const std::string& text, const std::string& file_nam
 /// The same from a tree, whose errors are at the places that its nodes know.
 LoadedWorld load_world_tree(ConfigNode root, const std::string& file_name, const LoadOptions& options = {});
 
-/// Names files of meshes and terrain by their whole path, so that the tree may be written anywhere.
-void make_paths_absolute(ConfigNode& node, bool of_terrain = false);
+/// Whether a key of `map` names a file of a mesh, a terrain, a texture or a current.  `map_key`: the key that the map
+/// itself is the value of; empty: it is an item of a list.
+bool names_data_file(const ConfigNode& map, const std::string& map_key, const std::string& key);
+/// Names those files by their whole path, so that the tree may be written anywhere.
+void make_paths_absolute(ConfigNode& node, const std::string& node_key = {});
 
 }  // namespace sim

@@ -19,7 +19,8 @@ void OriginConfig::read(ParamReader& in) {
 
 void RunConfig::read(ParamReader& in) {
   in.read("duration_s", duration_s, between(0, 1e9), "simulated time of the run; 0: until told to quit");
-  in.read("speed", speed, between(0, 1e6), "times real time; 0: as fast as possible");
+  in.read("speed", speed, between(0, 1e6), "times real time, at least 0.001; 0: as fast as possible");
+  if (speed > 0 && speed < 1e-3) in.error("speed", "'speed' must be 0 (as fast as possible) or from 0.001 to 1e6");
   in.read("seed", seed, at_least(0), "of every random stream");
   in.read("track_rate_hz", track_rate_hz, between(1e-3, 1e6), "samples per second of the tracks in the results");
   in.read("hash_every_steps", hash_every_steps, between(0, 1e9), "steps from hash to hash on sim.hash; 0: none");
@@ -105,10 +106,11 @@ void ProcessConfig::read(ParamReader& in) {
 void LockstepConfig::read(ParamReader& in) {
   in.read("timeout_s", timeout_s, between(0.001, 1e6), "wall time to wait for a client's acknowledgement");
   in.read("join_timeout_s", join_timeout_s, between(0.001, 1e6), "wall time to wait for launched clients to join");
-  in.read_choice("on_timeout", on_timeout, {"wait", "pause", "continue", "end"},
-                 "when a client does not answer in timeout_s: wait for it for ever, pause the world, continue without "
-                 "it, end the run with exit code 5; it then counts for all clients, and timeout_s is the longest that they "
-                 "may ask for; unset: each client may say its own when it joins");
+  in.read_choice(
+      "on_timeout", on_timeout, {"wait", "pause", "continue", "end"},
+      "when a client does not answer in timeout_s: wait for it for ever, pause the world, continue without "
+      "it, end the run with exit code 5; it then counts for all clients, and timeout_s is the longest that they "
+      "may ask for; unset: each client may say its own when it joins");
   agreed = in.has("on_timeout");
 }
 

@@ -54,8 +54,9 @@ TEST(Replay, FindsAPlantedDifferenceAndWritesAReport) {
   EXPECT_EQ(changed.exit_code, 1) << changed.output << changed.errors;
   EXPECT_THAT(changed.output, HasSubstr("rover1/odometry (rover1.odometry): "));
   const std::string report = text_of_file(folder.file("report.txt"));
-  EXPECT_THAT(report, AllOf(HasSubstr("World (- in the log, + here):"), HasSubstr("gaussian_std: 0.5"),
-                            HasSubstr("Channels, where each differs first")));
+  EXPECT_THAT(report,
+              AllOf(HasSubstr("World (- in the log, + here):"), HasSubstr("gaussian_std: 0.5"),
+                    HasSubstr("no difference of motion was seen"), HasSubstr("Channels, where each differs first")));
   EXPECT_EQ(replay({log, "--world", source("worlds/minimal.yaml")}).exit_code, 0);
   EXPECT_EQ(replay({log, "--set", "no.such.key=1"}).exit_code, 2);
   EXPECT_EQ(replay({folder.file("report.txt")}).exit_code, 4);

@@ -124,10 +124,10 @@ TEST(Keys, StepGoBackBranchAndQuit) {
   shoal.shows("paused");
   shoal.press("r");
   shoal.shows("step 500, 5 s, branch 1, paused");
-  shoal.press("r");
-  shoal.shows("cannot go back 10 s from 5 s: what is kept begins at 0 s");
   shoal.press("u1\r");
   shoal.shows("'until' needs a time after now (5 s)");
+  shoal.press("r");
+  shoal.shows("step 0, 0 s, branch 2, paused");
   shoal.press("u99\033");
   shoal.shows("not");
   shoal.press("?");
@@ -204,6 +204,23 @@ TEST(Keys, AJobInTheBackgroundIsNotStopped) {
                         " --bus none --duration 2 --speed max && echo all is over & wait"});
   EXPECT_TRUE(shell.shows("all is over"));
   EXPECT_EQ(shell.wait(), 0);
+}
+
+TEST(Keys, AJobThatComesToTheForegroundTakesTheTerminal) {
+  const ScratchFolder folder;
+  write_file(folder.file("world.yaml"), endless_world());
+  // Such a shell gives a job that runs on its terminal, and no signal.
+  OnTerminal shell({"bash", "--norc", "-m", "-c",
+                    built("shoal") + " run " + folder.file("world.yaml") + " --bus none --paused & read -r line; fg"});
+  ASSERT_TRUE(shell.shows("keys: "));
+  EXPECT_FALSE(shell.is_raw());
+  shell.press("now\r");
+  EXPECT_TRUE(await([&] { return shell.is_raw(); }, patience));
+  shell.press("N");
+  shell.shows("0.10 s");
+  shell.press("q");
+  EXPECT_EQ(shell.wait(), 0);
+  EXPECT_FALSE(shell.is_raw());
 }
 
 TEST(Keys, CanBeTurnedOff) {

@@ -238,7 +238,7 @@ TEST(Run, ItsProgramsEndWhenItIsKilled) {
 TEST(Report, ExitCodesTellWhatIsWrong) {
   const ScratchFolder folder;
   EXPECT_EQ(run_shoal({"report"}).exit_code, 2);
-  EXPECT_EQ(run_shoal({"report", folder.file("a"), folder.file("b")}).exit_code, 2);  // where shall it go?
+  EXPECT_EQ(run_shoal({"report", folder.file("a"), folder.file("b")}).exit_code, 4);
   const Ended none = run_shoal({"report", folder.file("a")});
   EXPECT_EQ(none.exit_code, 4);
   EXPECT_THAT(none.errors, HasSubstr("is no folder"));
@@ -247,6 +247,8 @@ TEST(Report, ExitCodesTellWhatIsWrong) {
                 .exit_code,
             0);
   EXPECT_EQ(run_shoal({"report", folder.file("run"), "--output", folder.file("no/page.html")}).exit_code, 4);
+  const Ended compared = run_shoal({"report", folder.file("run"), folder.file("run")});
+  EXPECT_EQ(compared.output, folder.file("run/comparison.html") + "\n") << compared.errors;
   const Ended made = run_shoal({"report", folder.file("run"), "--output", folder.file("page.html")});
   EXPECT_EQ(made.exit_code, 0) << made.errors;
   EXPECT_EQ(made.output, folder.file("page.html") + "\n");

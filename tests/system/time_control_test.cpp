@@ -6,6 +6,8 @@
 
 #include "bridges/lcm/lcm_listener.hpp"
 #include "shoal/message_codec.hpp"
+#include "shoal/sim_control_reply_t.hpp"
+#include "shoal/sim_control_request_t.hpp"
 #include "shoal/sim_vehicle_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "tests/system/shoal_program.hpp"
@@ -146,6 +148,69 @@ TEST(Snapshot, WhatTheCommandLineAsksForHasNoLimit) {
   EXPECT_EQ(files, 1010);  // the requests of others are limited to 1000
 }
 
+TEST(Snapshot, IsTakenAtTheStepNearestToTheTimeThatWasAskedFor) {
+  const Folder folder;
+  const auto run = [&](const std::string& times, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"run",         folder.world(),       "--bus",
+                                       "none",        "--snapshot-at",      times,
+                                       "--snapshots", folder.file("snaps"), "--overwrite"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_shoal(arguments);
+  };
+  const Ended between = run("0.005,0.024,0", {"--duration", "1"});
+  EXPECT_EQ(between.exit_code, 0) << between.errors;
+  for (const char* step : {"0", "1", "2"})
+    EXPECT_TRUE(std::filesystem::exists(folder.file("snaps") + "/branch0_step" + step + ".snapshot")) << step;
+  const Ended late = run("1,5", {"--duration", "3"});
+  EXPECT_EQ(late.exit_code, 2);
+  EXPECT_THAT(late.errors, HasSubstr("--snapshot-at: 5 s is after the end of the run at 3 s"));
+  const Ended early = run_shoal({"run", "--from", folder.file("snaps") + "/branch0_step2.snapshot", "--bus", "none",
+                                 "--duration", "1", "--snapshot-at", "0.01", "--snapshots", folder.file("snaps")});
+  EXPECT_EQ(early.exit_code, 2);
+  EXPECT_THAT(early.errors, HasSubstr("--snapshot-at: 0.01 s is before the begin of the run at 0.02 s"));
+  // A run that ends before its time.
+  write_file(folder.world(), lively_world() + "  - {name: stop, at: 2, do: [{end: enough, passed: true}]}\n");
+  const Ended short_run = run("1,5");
+  EXPECT_EQ(short_run.exit_code, 0);
+  EXPECT_THAT(short_run.errors, HasSubstr("--snapshot-at: no snapshot of 5 s was written: the run did not come there"));
+  EXPECT_THAT(short_run.errors, Not(HasSubstr("no snapshot of 1 s")));
+}
+
+TEST(Snapshot, NoticesThatAFileOfItsWorldIsAnotherOne) {
+  const Folder folder;
+  const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  const std::string flow = "x_m,y_m,east_mps,north_mps\n0,0,0.5,0\n10,0,0.5,0\n0,10,0.5,0\n10,10,0.5,0\n";
+  write_file(folder.file("stone.obj"), mesh);
+  write_file(folder.file("flow.csv"), flow);
+  std::string world = lively_world();
+  world.insert(world.find("objects:\n") + 9,
+               "  - {name: stone, fixed: true, position_m: [3, 3, 2], parts: [{shape: mesh, mesh: stone.obj}]}\n");
+  write_file(folder.world(), world + "medium: {water: {}, current: [{type: grid, file: flow.csv}]}\n");
+  const std::string snaps = folder.file("snaps"), snapshot = snaps + "/branch0_step100.snapshot";
+  const Ended whole = run_shoal(
+      {"run", folder.world(), "--bus", "none", "--duration", "2", "--snapshot-at", "1", "--snapshots", snaps});
+  ASSERT_EQ(whole.exit_code, 0) << whole.errors;
+  const auto from = [&] { return run_shoal({"run", "--from", snapshot, "--bus", "none", "--duration", "2"}); };
+  EXPECT_EQ(state_hash_in(from()), state_hash_in(whole)) << "from another folder than its world's";
+  for (const auto& [file, text] : {std::pair("stone.obj", mesh), {"flow.csv", flow}}) {
+    write_file(folder.file(file), text + (text == mesh ? "v 2 2 2\n" : "20,0,0.5,0\n20,10,0.5,0\n"));
+    for (const Ended& refused : {from(), run_shoal({"snapshot", snapshot, "--check"})}) {
+      EXPECT_EQ(refused.exit_code, 4) << refused.output;
+      EXPECT_THAT(refused.errors, HasSubstr("its world used files that are not as they were then"));
+      EXPECT_THAT(refused.errors, HasSubstr(std::string(file) + ": is another file than in the run"));
+    }
+    if (text == mesh) {
+      Live live(folder, {"--overwrite"});
+      const Ended refused = control({"restore", "branch0_step100"});
+      EXPECT_EQ(refused.exit_code, 1) << refused.output;
+      EXPECT_THAT(refused.errors, HasSubstr("its world used other files than this run"));
+      EXPECT_EQ(live.quit(), 0) << live.program.errors();
+    }
+    write_file(folder.file(file), text);
+    EXPECT_EQ(from().exit_code, 0);
+  }
+}
+
 TEST(Snapshot, RefusesWhatIsNone) {
   const Folder folder;
   write_file(folder.file("foreign"), "not a snapshot at all");
@@ -233,6 +298,12 @@ TEST(Rewind, RefusesWhatCannotBeAndSaysSo) {
     EXPECT_EQ(ended.exit_code, 1) << ended.output;
     return ended.errors;
   };
+  EXPECT_THAT(refused({"rewind", "--value", "0.001"}),
+              HasSubstr("'rewind' by 0.001 s is less than half a step of 0.01"));
+  EXPECT_THAT(refused({"step", "--value", "1.7"}),
+              HasSubstr("'step' needs a whole number of steps from 1 to 1e9, got 1.7"));
+  EXPECT_THAT(refused({"speed", "--value", "1e-4"}),
+              HasSubstr("'speed' must be 0 (as fast as possible) or from 0.001"));
   EXPECT_THAT(refused({"rewind", "--value", "49"}),
               HasSubstr("cannot go back 49 s from 50 s: what is kept begins at "));
   EXPECT_THAT(refused({"rewind", "--value", "-1"}), HasSubstr("'rewind' needs a value above 0, in seconds, got -1"));
@@ -250,6 +321,61 @@ TEST(Rewind, RefusesWhatCannotBeAndSaysSo) {
   EXPECT_THAT(refused({"restore", "bad"}), HasSubstr("bad.snapshot: is cut off after 8 bytes"));
   EXPECT_EQ(Live::where(), "step 5000, 50 s, branch 0, paused");
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
+}
+
+TEST(Rewind, FurtherThanTheRunHasComeGoesToItsBegin) {
+  const Folder folder;
+  Live live(folder);
+  EXPECT_THAT(control({"rewind", "--value", "1"}).errors, HasSubstr("the run is at its begin: it cannot go back"));
+  live.run_until("4.7");
+  EXPECT_EQ(control({"rewind", "--value", "10"}).output, "step 0, 0 s, branch 1, paused\n");
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+}
+
+TEST(Time, EveryRequestIsAnsweredWithThePlace) {
+  const Folder folder;
+  Live live(folder);
+  live.run_until("1");
+  EXPECT_EQ(control({"pause"}).output, "step 100, 1 s, branch 0, paused\n");
+  EXPECT_EQ(control({"speed", "--value", "0.001"}).output, "step 100, 1 s, branch 0, paused, 0.001 x real time\n");
+  EXPECT_EQ(control({"resume"}).output, "step 100, 1 s, branch 0\n");
+  EXPECT_THAT(control({"pause"}).output, EndsWith(" s, branch 0, paused\n"));
+  EXPECT_THAT(control({"step", "--value", "2"}).output, EndsWith(" s, branch 0, paused, takes 2 steps\n"));
+  EXPECT_THAT(control({"speed", "--value", "0"}).output, HasSubstr("as fast as possible"));
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+}
+
+TEST(Time, TheReplyToARewindHasTheTimeThereIs) {
+  const Folder folder;
+  Live live(folder);
+  live.run_until("3");
+  bridges::LcmListener listener(own_url());
+  listener.listen("sim.control.reply");
+  shoal::sim_control_request_t request{};
+  request.id = 77;
+  request.client = "tester";
+  request.command = "rewind";
+  request.value = 1.5;
+  listener.publish("sim.control", shoal::encode(request));
+  EXPECT_TRUE(await(
+      [&] {
+        const auto message = listener.next(100ms);
+        if (!message) return false;
+        const auto reply = shoal::decode<shoal::sim_control_reply_t>(message->payload, shoal::Finite::any);
+        if (reply.id != 77) return false;
+        EXPECT_EQ(reply.utime, 1'767'225'600'000'000 + 1'500'000) << reply.text;  // the usual epoch
+        return true;
+      },
+      patience));
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+}
+
+TEST(Time, ZeroIsAsFastAsPossibleOnTheCommandLineToo) {
+  const Folder folder;
+  EXPECT_EQ(run_shoal({"run", folder.world(), "--bus", "none", "--duration", "1", "--speed", "0"}).exit_code, 0);
+  EXPECT_EQ(run_shoal({"run", folder.world(), "--bus", "none", "--duration", "1", "--speed", "0.0001"}).exit_code, 2);
+  EXPECT_EQ(
+      run_shoal({"run", folder.world(), "--bus", "none", "--duration", "1", "--set", "run.speed=0.0001"}).exit_code, 2);
 }
 
 TEST(Rewind, ABranchWhoseRecordCannotBeMadeLeavesTheRunAsItWas) {
@@ -353,6 +479,27 @@ TEST(Restore, OneThatDoesNotFitLeavesNoBranchBehind) {
   EXPECT_EQ(control({"restore", "good"}).exit_code, 0);
   EXPECT_EQ(summary_value(results + "/branch0", "steps"), "200");
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
+}
+
+TEST(Restore, OfALaterTimeBeginsTheTracksAnew) {
+  const Folder folder;
+  const std::string results = folder.file("results");
+  Live live(folder, {"--results", results, "--no-pictures"});
+  live.run_until("6");
+  EXPECT_EQ(control({"snapshot", "six"}).exit_code, 0);
+  EXPECT_EQ(control({"rewind", "--value", "4"}).exit_code, 0);
+  EXPECT_EQ(control({"do", "{move: r1, position_m: [5, 5, 0.2]}"}).exit_code, 0);
+  live.run_until("3");
+  EXPECT_EQ(control({"restore", "six"}).exit_code, 0);
+  EXPECT_THAT(control({"rewind", "--value", "1"}).errors, HasSubstr("what is kept begins at 6 s"));
+  live.run_until("8");
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+  const auto first_time = [](const std::string& directory) {
+    const std::string text = text_of_file(directory + "/tracks.csv");
+    return std::stod(text.substr(text.find('\n') + 1));
+  };
+  EXPECT_GT(first_time(results), 6) << "of branch 2, which began at 6 s; what branch 1 did is in branch1";
+  EXPECT_LT(first_time(results + "/branch1"), 1);
 }
 
 TEST(Restore, GoesOnFromAFileAndRefusesAnotherWorldsOne) {

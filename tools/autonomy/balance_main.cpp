@@ -17,8 +17,16 @@ struct Options {
   autonomy::Participation participation;
 };
 
+/// What it knows: all of it goes back with the world.
+struct State {
+  autonomy::Balance balance;
+  std::optional<std::int64_t> began_utime = {}, fell_utime = {};
+  std::size_t next_speed = 0;
+};
+
 int balance(const Options& options) {
-  autonomy::Balance balance(options.balance);
+  State state{autonomy::Balance(options.balance)};
+  autonomy::Balance& balance = state.balance;
   const std::vector<autonomy::SpeedPoint> speeds = autonomy::parse_speeds(options.speeds);
   shoal::Client client(options.name, options.participation.lcm_url);
 
@@ -28,13 +36,11 @@ int balance(const Options& options) {
   client.subscribe<shoal::wheel_encoder_t>(prefix + "encoder", take, shoal::Finite::required);
   client.subscribe<shoal::twist_command_t>(prefix + "balance.cmd", take, shoal::Finite::required);
 
-  std::optional<std::int64_t> began_utime, fell_utime;
-  std::size_t next_speed = 0;
-  const int exit_code = autonomy::take_part(client, options.participation, [&](std::int64_t utime) {
-    if (!began_utime) began_utime = utime;
-    const double now_s = static_cast<double>(utime - *began_utime) * 1e-6;
-    for (; next_speed < speeds.size() && speeds[next_speed].from_s <= now_s; ++next_speed)
-      balance.drive(speeds[next_speed].forward_mps, speeds[next_speed].turn_radps);
+  const int exit_code = autonomy::take_part(client, options.participation, state, [&](std::int64_t utime) {
+    if (!state.began_utime) state.began_utime = utime;
+    const double now_s = static_cast<double>(utime - *state.began_utime) * 1e-6;
+    for (std::size_t& next = state.next_speed; next < speeds.size() && speeds[next].from_s <= now_s; ++next)
+      balance.drive(speeds[next].forward_mps, speeds[next].turn_radps);
 
     const auto torques = balance.step();
     if (!torques) return;
@@ -47,14 +53,14 @@ int balance(const Options& options) {
     };
     publish("left_motor.cmd", torques->left_Nm);
     publish("right_motor.cmd", torques->right_Nm);
-    if (!balance.fallen() || fell_utime) return;
-    fell_utime = utime;
+    if (!balance.fallen() || state.fell_utime) return;
+    state.fell_utime = utime;
     std::cerr << options.name << ": fell after " << now_s << " s\n";
     shoal::utime_t fell{};
     fell.utime = utime;
     client.publish(prefix + "fallen", fell);
   });
-  if (!fell_utime) std::cerr << options.name << ": did not fall\n";
+  if (!state.fell_utime) std::cerr << options.name << ": did not fall\n";
   return exit_code;
 }
 

@@ -17,6 +17,7 @@
 #include "shoal/pressure_t.hpp"
 #include "tools/autonomy/acoustic_frame.hpp"
 #include "tools/autonomy/channel_access.hpp"
+#include "tools/autonomy/cloned.hpp"
 #include "tools/autonomy/helm_behaviour.hpp"
 #include "tools/autonomy/marine_ekf.hpp"
 #include "tools/autonomy/state_packet.hpp"
@@ -109,7 +110,7 @@ class CoopAuv {
   std::optional<shoal::modem_send_t> state_frame();
 
   Params params_;
-  std::unique_ptr<HelmBehaviour> behaviour_;
+  Cloned<HelmBehaviour> behaviour_;
   ChannelAccess access_;
   DirectStates direct_;
   int order_ = 0;          ///< number of the last one obeyed

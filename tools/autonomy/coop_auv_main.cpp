@@ -36,7 +36,7 @@ int drive(const Options& options) {
   autonomy::CoopAuv auv(options.auv, options.marine.make(name));
   shoal::Client client(name, options.participation.lcm_url);
   subscribe(client, auv, name);
-  const int exit_code = autonomy::take_part(client, options.participation, [&](std::int64_t) {
+  const int exit_code = autonomy::take_part(client, options.participation, auv, [&](std::int64_t) {
     const autonomy::CoopAuv::Decision decision = auv.step();
     if (decision.helm) client.publish(name + ".autopilot.cmd", *decision.helm);
     if (decision.estimate) client.publish(name + ".estimate", *decision.estimate);

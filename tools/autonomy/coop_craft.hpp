@@ -11,6 +11,7 @@
 #include "shoal/helm_command_t.hpp"
 #include "shoal/modem_send_t.hpp"
 #include "tools/autonomy/channel_access.hpp"
+#include "tools/autonomy/cloned.hpp"
 #include "tools/autonomy/helm_behaviour.hpp"
 #include "tools/autonomy/state_packet.hpp"
 
@@ -56,7 +57,7 @@ class CoopCraft {
   std::optional<shoal::modem_send_t> state_frame();
 
   Params params_;
-  std::unique_ptr<HelmBehaviour> behaviour_;
+  Cloned<HelmBehaviour> behaviour_;
   ChannelAccess access_;
   DirectStates direct_;
   std::int64_t utime_ = 0;  ///< newest stamp

@@ -15,7 +15,7 @@ int drive(const autonomy::CoopCraft::Params& params, const autonomy::MarineOptio
   };
   listen.operator()<shoal::gps_data_t>(".gps");
   listen.operator()<shoal::acoustic_received_t>(".modem");
-  const int exit_code = autonomy::take_part(client, participation, [&](std::int64_t) {
+  const int exit_code = autonomy::take_part(client, participation, craft, [&](std::int64_t) {
     const autonomy::CoopCraft::Decision decision = craft.step();
     if (decision.helm) client.publish(params.name + ".autopilot.cmd", *decision.helm);
     if (decision.estimate) client.publish(params.name + ".estimate", *decision.estimate);

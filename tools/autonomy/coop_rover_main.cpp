@@ -12,7 +12,7 @@ int drive(const autonomy::CoopRover::Params& params, const autonomy::Participati
   for (const std::string_view device : autonomy::CoopRover::devices())
     client.subscribe_bytes(params.name + "." + std::string(device),
                            [&rover, device](std::span<const std::byte> payload) { rover.receive(device, payload); });
-  const int exit_code = autonomy::take_part(client, participation, [&](std::int64_t utime) {
+  const int exit_code = autonomy::take_part(client, participation, rover, [&](std::int64_t utime) {
     for (const autonomy::CoopRover::Outgoing& out : rover.step(utime)) client.publish_bytes(out.channel, out.payload);
   });
   std::cerr << params.name << ": " << rover.follower().reached() << " waypoints reached, "

@@ -13,7 +13,7 @@ int drive(const autonomy::CoopStation::Params& params, const autonomy::Participa
                                       [&](const shoal::gps_data_t& fix) { station.receive(fix); });
   client.subscribe<shoal::modem_received_t>(params.name + ".radio",
                                             [&](const shoal::modem_received_t& packet) { station.receive(packet); });
-  const int exit_code = autonomy::take_part(client, participation, [&](std::int64_t) {
+  const int exit_code = autonomy::take_part(client, participation, station, [&](std::int64_t) {
     const autonomy::CoopStation::Decision decision = station.step();
     if (!decision.news.empty()) std::cerr << params.name << ": " << decision.news << std::endl;
     if (decision.knowledge) client.publish(params.name + ".knowledge", *decision.knowledge);

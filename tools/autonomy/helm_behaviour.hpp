@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ class HelmBehaviour {
  public:
   virtual ~HelmBehaviour() = default;
   virtual Course steer(const Motion& own) = 0;
+  /// A copy, as it is now: a program goes back with the world.
+  virtual std::unique_ptr<HelmBehaviour> clone() const = 0;
   /// What another vehicle said of itself.
   virtual void hear(const std::string& /*vehicle*/, const Motion& /*other*/) {}
   virtual bool finished() const { return false; }
@@ -49,6 +52,7 @@ class RouteBehaviour final : public HelmBehaviour {
   /// Throws std::invalid_argument without waypoints.
   RouteBehaviour(std::vector<Vector2d> waypoints_W, const Params& params);
   Course steer(const Motion& own) override;
+  std::unique_ptr<HelmBehaviour> clone() const override { return std::make_unique<RouteBehaviour>(*this); }
   bool finished() const override { return current_ >= waypoints_W_.size(); }
   std::size_t current() const { return current_; }
 
@@ -73,6 +77,7 @@ class CircleBehaviour final : public HelmBehaviour {
   };
   explicit CircleBehaviour(const Params& params) : params_(params) {}
   Course steer(const Motion& own) override;
+  std::unique_ptr<HelmBehaviour> clone() const override { return std::make_unique<CircleBehaviour>(*this); }
 
  private:
   Params params_;
@@ -84,6 +89,7 @@ class HoldBehaviour final : public HelmBehaviour {
   /// `hold`: the circle round the place.
   explicit HoldBehaviour(const CircleBehaviour::Params& hold);
   Course steer(const Motion& own) override;
+  std::unique_ptr<HelmBehaviour> clone() const override { return std::make_unique<HoldBehaviour>(*this); }
 
  private:
   RouteBehaviour way_;
@@ -107,6 +113,7 @@ class FollowBehaviour final : public HelmBehaviour {
   void hear(const std::string& vehicle, const Motion& other) override;
   /// Stands still until it has heard of the other.
   Course steer(const Motion& own) override;
+  std::unique_ptr<HelmBehaviour> clone() const override { return std::make_unique<FollowBehaviour>(*this); }
   std::string remark() const override;
   /// Where it wants to be.
   std::optional<Vector2d> place_W(std::int64_t utime) const;

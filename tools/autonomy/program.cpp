@@ -51,20 +51,38 @@ void Participation::add_options(CLI::App& app) {
   app.add_option("--period", period_s, "s of simulated time between decisions")
       ->capture_default_str()
       ->check(between(0.001, 10.0));
+  app.add_option("--rewind-s", rewind_s, "s of simulated time: how far it can go back with the world; 0: not at all")
+      ->capture_default_str()
+      ->check(between(0.0, 1e6));
   app.add_option("--join-timeout", join_timeout_s, "s to wait for the simulator")
       ->capture_default_str()
       ->check(between(0.1, 3600.0));
   app.add_option("--lcm-url", lcm_url, "unset: LCM_DEFAULT_URL, then LCM's default");
 }
 
-int take_part(shoal::Client& client, const Participation& participation,
+int take_part(shoal::Client& client, const Participation& participation, Memory memory,
               const std::function<void(std::int64_t utime)>& decide) {
   const StopBySignal stop(client);
+  bool lost = false;
+  client.on_rewind([&](std::int64_t utime) {
+    if (memory.go_back(utime)) return;
+    lost = true;
+    client.stop();
+  });
   if (participation.free_running)
     client.follow(participation.period_s);
   else
     client.join(participation.period_s, std::chrono::milliseconds(std::llround(1000 * participation.join_timeout_s)));
-  while (const auto utime = client.next_tick()) decide(*utime);
+  while (const auto utime = client.next_tick()) {
+    if (lost) break;
+    decide(*utime);
+    memory.keep(*utime);
+  }
+  if (lost) {
+    std::cerr << "the world went back further than this program can, " << participation.rewind_s
+              << " s (--rewind-s); it ends\n";
+    return exit_rewound;
+  }
   if (signal_caught != 0) return 128 + signal_caught;
   switch (client.end()) {
     case shoal::Client::End::silence:
@@ -72,9 +90,6 @@ int take_part(shoal::Client& client, const Participation& participation,
     case shoal::Client::End::dropped:
       std::cerr << client.reason() << '\n';
       return exit_timeout;
-    case shoal::Client::End::rewound:
-      std::cerr << "the world went back in time; this program does not go back with it, and ends\n";
-      return exit_rewound;
     default:
       return exit_ok;
   }

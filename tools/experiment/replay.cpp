@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "bridges/lcm/lockstep_service.hpp"
 #include "bridges/lcm/run_journal.hpp"
@@ -21,6 +22,7 @@
 #include "tools/experiment/replay_messages.hpp"
 #include "tools/experiment/run_identity.hpp"
 #include "tools/experiment/runner.hpp"
+#include "tools/experiment/world_difference.hpp"
 
 namespace tools {
 
@@ -69,7 +71,9 @@ sim::LoadedWorld load(const ReplayLog& log, const ReplayOptions& options) {
   load.sets = options.sets;
   load.encode_message = shoal::encode_own_message;
   if (!options.world.empty()) {
-    load.seed = log.info.seed;
+    sim::LoadedWorld loaded = sim::load_world(options.world, load);
+    if (static_cast<std::int64_t>(loaded.config.run.seed) == log.info.seed) return loaded;
+    load.seed = log.info.seed;  // the resolved world then says so
     return sim::load_world(options.world, load);
   }
   const std::vector<std::string> changed = changed_files(log.info.files);
@@ -255,27 +259,47 @@ class Replay {
 
   void compare_hashes(const ReplayLog::Hashes& logged) {
     ++outcome_.hashes;
-    if (logged.whole == world_.state_hash()) return;
+    if (logged.whole == world_.state_hash()) {
+      if (equal_parts_.size() < logged.parts.size())
+        for (const sim::PartHash& part : logged.parts) equal_parts_.insert(part.part);
+      return;
+    }
     if (!outcome_.first || outcome_.first->step == world_.step_number()) differ("the world", "its state hash differs");
-    compare_parts(logged);
+    if (!parts_.empty() && motion_step_) return;  // later on nearly all differ
+    std::map<std::string, std::uint64_t> here;
+    for (const auto& part : world_.part_hashes()) here[part.part] = part.hash;
+    compare_motion(logged, here);
+    compare_parts(logged, here);
   }
 
-  void compare_parts(const ReplayLog::Hashes& logged) {
-    if (!parts_.empty()) return;  // later on nearly all differ
-    const auto compare = [&](const auto& world) {
-      if constexpr (requires { world.part_hashes(); }) {
-        std::map<std::string, std::uint64_t> here;
-        for (const auto& part : world.part_hashes()) here[part.part] = part.hash;
-        for (const sim::PartHash& part : logged.parts) {
-          const auto own = here.find(part.part);
-          if (own == here.end())
-            parts_.push_back(part.part + " (only in the log)");
-          else if (own->second != part.hash)
-            parts_.push_back(part.part);
-        }
+  /// Of vehicles and objects that were equal at an earlier hash: those that are made otherwise differ from the start.
+  void compare_motion(const ReplayLog::Hashes& logged, const std::map<std::string, std::uint64_t>& here) {
+    if (motion_step_) return;
+    for (const sim::PartHash& part : logged.parts) {
+      const bool moves = part.part == "objects" || world_.find_vehicle(part.part) != nullptr;
+      const auto own = here.find(part.part);
+      if (!moves || own == here.end()) continue;
+      if (own->second == part.hash) {
+        equal_parts_.insert(part.part);
+      } else if (equal_parts_.contains(part.part)) {
+        motion_step_ = world_.step_number();
+        moved_parts_.push_back(part.part);
       }
-    };
-    compare(world_);
+    }
+  }
+
+  void compare_parts(const ReplayLog::Hashes& logged, std::map<std::string, std::uint64_t> here) {
+    if (!parts_.empty()) return;
+    for (const sim::PartHash& part : logged.parts) {
+      const auto own = here.find(part.part);
+      if (own == here.end())
+        parts_.push_back(part.part + " (only in the log)");
+      else if (own->second != part.hash)
+        parts_.push_back(part.part);
+      if (own != here.end()) here.erase(own);
+    }
+    for (const auto& [part, hash] : here)
+      if (!logged.parts.empty()) parts_.push_back(part + " (only here)");
     if (parts_.empty()) return;
     parts_step_ = world_.step_number();
     if (outcome_.first && outcome_.first->step == parts_step_)
@@ -312,7 +336,36 @@ class Replay {
     if (outcome_.hashes + outcome_.messages == 0 && !outcome_.first)
       throw std::runtime_error(log_.path + ": holds neither hashes nor messages to compare with");
     tell_of_log();
+    if (!options_.world.empty() || !options_.sets.empty()) compare_worlds();
+    if (outcome_.first) outcome_.motion = motion();
     if (outcome_.first) write_report();
+  }
+
+  void compare_worlds() {
+    constexpr std::size_t most_lines = 12;
+    std::vector<std::string>& world = outcome_.world;
+    try {
+      sim::LoadOptions load;
+      load.encode_message = shoal::encode_own_message;
+      const sim::WorldConfig logged =
+          sim::load_world_text(log_.info.resolved_config, log_.path + ": sim.info", load).config;
+      for (const std::string& thing : things_only_in(logged, loaded_.config))
+        world.push_back("only in the log: " + thing);
+      for (const std::string& thing : things_only_in(loaded_.config, logged)) world.push_back("only here: " + thing);
+    } catch (const std::exception&) {
+      // A mesh of the log may be gone; its lines can be compared all the same.
+    }
+    for (std::string& line : line_difference(log_.info.resolved_config, sim::to_yaml(loaded_.resolved), most_lines))
+      world.push_back(std::move(line));
+  }
+
+  std::string motion() const {
+    const ReplayMessages::Difference* first = messages_.first_motion();
+    if (first != nullptr && (!motion_step_ || first->step <= *motion_step_))
+      return at(first->step) + ", by sim.state: " + first->what;
+    if (motion_step_)
+      return at(*motion_step_) + ", by the hash: " + fmt::format("{}", fmt::join(few(moved_parts_), ", "));
+    return "";
   }
 
   void tell_of_log() {
@@ -345,7 +398,6 @@ class Replay {
     };
     section("Versions (- in the log, + here)", line_difference(log_.info.versions, version_text()));
     section("Machine (- in the log, + here)", line_difference(log_.info.build, build_text()));
-    section("World (- in the log, + here)", line_difference(log_.info.resolved_config, sim::to_yaml(loaded_.resolved)));
     if (!parts_.empty()) section("State that differs at the first hash that does, " + at(parts_step_), few(parts_));
     std::vector<std::string> lines;
     for (const auto& [vehicle, distance] : messages_.distances())
@@ -378,6 +430,9 @@ class Replay {
   bool cut_ = false;
   std::vector<std::string> parts_;
   std::int64_t parts_step_ = 0;
+  std::set<std::string> equal_parts_;        // that move, and were equal at a hash
+  std::vector<std::string> moved_parts_;     // that differ at the first hash at which one of those does
+  std::optional<std::int64_t> motion_step_;  // of that hash
 };
 
 }  // namespace

@@ -31,6 +31,8 @@ struct ReplayOutcome {
   double sim_time_s = 0, step_s = 0, wall_s = 0;
   std::uint64_t hashes = 0, messages = 0, missing_messages = 0;
   std::optional<First> first;
+  std::vector<std::string> world;   ///< how the world here is another one than the log's
+  std::string motion;               ///< the first step at which something moves differently; empty: none was seen
   bool complete = true;             ///< the proof holds to the end of the log, or to until_s
   bool interrupted = false;         ///< by a signal
   std::vector<std::string> notes;   ///< what keeps it from being a whole proof, or should be known of the log

@@ -240,6 +240,7 @@ void ReplayMessages::compare_states(Payload logged, Payload here, std::int64_t s
     distance.largest_m = apart_m;
     distance.largest_step = step;
   }
+  if (what != "differs" && !first_motion_) first_motion_ = Difference{step, "sim.state", what};
   differ("sim.state", step, what);
 }
 

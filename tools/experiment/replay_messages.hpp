@@ -45,6 +45,8 @@ class ReplayMessages {
   std::uint64_t missing() const { return missing_; }
   /// In order of discovery; null: none.
   const Difference* first() const { return first_ ? &*first_ : nullptr; }
+  /// The first on sim.state of a vehicle that is in the log as well; null: none.
+  const Difference* first_motion() const { return first_motion_ ? &*first_motion_ : nullptr; }
   /// The first on each channel.
   const std::map<std::string, Difference>& by_channel() const { return by_channel_; }
   /// Of vehicles whose true positions differ, by name.
@@ -87,7 +89,7 @@ class ReplayMessages {
   std::map<std::string, Channel, std::less<>> channels_;
   std::unordered_map<std::string_view, Channel*> by_name_;  // asked, never iterated
   std::uint64_t equal_ = 0, different_ = 0, missing_ = 0;
-  std::optional<Difference> first_;
+  std::optional<Difference> first_, first_motion_;
   std::map<std::string, Difference> by_channel_;
   std::map<std::string, Distance> distances_;
 };

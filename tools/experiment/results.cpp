@@ -255,7 +255,7 @@ void Results::drop_branch() {
   kept_.clear();
 }
 
-void Results::begin_branch(sim::Time back_to) {
+void Results::begin_branch(sim::Time back_to, bool ours) {
   kept_.clear();
   const std::string path = directory_ + "/tracks.csv";
   const auto cannot_cut = [&] { return cannot_write(path, std::strerror(errno)); };
@@ -265,7 +265,7 @@ void Results::begin_branch(sim::Time back_to) {
   std::uintmax_t keep = 0;
   // Times are written with all their digits.
   for (bool first = true; std::getline(in, line); first = false) {
-    if (!first && std::strtod(line.c_str(), nullptr) > sim::to_seconds(back_to) + 1e-7) break;
+    if (!first && (!ours || std::strtod(line.c_str(), nullptr) > sim::to_seconds(back_to) + 1e-7)) break;
     keep += line.size() + 1;
   }
   std::error_code error;

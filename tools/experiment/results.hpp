@@ -91,8 +91,9 @@ class Results {
   void keep_branch(const Summary& left, const Scoring& scoring, const sim::ConfigNode& resolved);
   /// It has not gone back after all: nothing of keep_branch() stays.
   void drop_branch();
-  /// It has gone back: drops what the tracks know of later.  Throws std::runtime_error.
-  void begin_branch(sim::Time back_to);
+  /// It has gone back: drops what the tracks know of later.  `ours`: it has been there in this run; else the tracks
+  /// begin anew, for what they hold is of another branch.  Throws std::runtime_error.
+  void begin_branch(sim::Time back_to, bool ours);
   /// summary.json, metrics.csv, errors.csv, world.yaml and the pictures.  Plotting ends once `give_up` says so.
   /// What cannot be written does not keep the rest from being written.  Throws std::runtime_error about the first.
   void finish(const Summary& summary, const Scoring& scoring, const sim::ConfigNode& resolved,

@@ -29,6 +29,7 @@ sim::PortOpener port_opener(const std::string& run_name) {
 Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
     : loaded_(loaded),
       options_(options),
+      files_(files_text(loaded.resolved)),
       buses_(loaded.config, options),
       journal_(buses_.outer()),
       world_(loaded.config, buses_.outer(),
@@ -36,7 +37,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
              [this](const std::string& name) -> sim::Bus& { return buses_.of(name); }),
       lockstep_(world_, control_),
       service_(buses_.outer(), buses_.network(), world_, control_, lockstep_,
-               {sim::to_yaml(loaded.resolved), version_text(), build_text(), files_text(loaded.resolved)}),
+               {sim::to_yaml(loaded.resolved), version_text(), build_text(), files_}),
       scoring_(world_),
       mail_(buses_, journal_, service_, lockstep_),
       branch_log_(buses_, journal_, options.record, options.overwrite),
@@ -68,8 +69,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
   }
   if (!options.results.empty()) results_ = std::make_unique<Results>(options.results, world_, options.pictures);
   progress_.restart(world_.now());
-  snapshot_at_s_ = options.snapshot_at_s;
-  std::sort(snapshot_at_s_.begin(), snapshot_at_s_.end(), std::greater<>());
+  plan_snapshots();
   if (options.keys && !options.quiet && TerminalKeys::possible()) {
     keys_ = std::make_unique<RunKeys>(
         time_, control_, [this](const std::string& text) { progress_.say(text); },
@@ -89,6 +89,7 @@ TimeControl::Options Run::time_options() const {
   if (time.directory.empty() && !options_.results.empty()) time.directory = options_.results + "/snapshots";
   time.overwrite = options_.overwrite;
   time.resolved_world = sim::to_yaml(loaded_.resolved);
+  time.files = files_;
   time.version = short_version();
   return time;
 }

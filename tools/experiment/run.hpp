@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
 
 #include "bridges/lcm/lockstep_service.hpp"
@@ -44,7 +45,10 @@ class Run {
   /// What the run goes on from: a log that begins here can be run again.
   void publish_snapshot();
   bool heard();
+  /// Which steps are nearest to the times of --snapshot-at.  Throws RunError for one that the run cannot come to.
+  void plan_snapshots();
   void take_snapshots();
+  void tell_missed_snapshots() const;
   /// Requests and keys.
   void obey();
   void synchronize();
@@ -61,6 +65,7 @@ class Run {
 
   const sim::LoadedWorld& loaded_;
   const RunOptions& options_;
+  const std::string files_;  ///< hashes of those that the world names
   RunBuses buses_;
   sim::RunControl control_;
   bridges::RunJournal journal_;
@@ -78,9 +83,9 @@ class Run {
   bool synchronized_ = true;  ///< the clients have answered the present step
   bool alone_ = true;         ///< no other simulator was heard at the start
   std::unique_ptr<Results> results_;
-  std::unique_ptr<RunKeys> keys_;      ///< null: no terminal
-  std::int64_t steps_taken_ = 0;       ///< in this process
-  std::vector<double> snapshot_at_s_;  ///< still to come, the last one first
+  std::unique_ptr<RunKeys> keys_;          ///< null: no terminal
+  std::int64_t steps_taken_ = 0;           ///< in this process
+  std::set<std::int64_t> snapshot_steps_;  ///< still to come
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 

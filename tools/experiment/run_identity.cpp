@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "sim/state_hash.hpp"
+#include "sim/world/load_world.hpp"
 
 namespace tools {
 
@@ -39,14 +40,14 @@ std::string hash_of_file(const std::string& path) {
   return in.bad() ? no_hash : fmt::format("{:016x}", hash.value());
 }
 
-void find_files(const sim::ConfigNode& node, bool of_terrain, std::set<std::string>& paths) {
-  for (const sim::ConfigNode& item : node.items) find_files(item, of_terrain, paths);
+void find_files(const sim::ConfigNode& node, const std::string& node_key, std::set<std::string>& paths) {
+  for (const sim::ConfigNode& item : node.items) find_files(item, "", paths);
   for (const sim::ConfigNode::Entry& entry : node.entries) {
-    const bool names_file = entry.key == "mesh" || (of_terrain && entry.key == "file");
+    const bool names_file = sim::names_data_file(node, node_key, entry.key);
     if (names_file && entry.value.scalar.find('/') != std::string::npos)
       paths.insert(entry.value.scalar);
     else
-      find_files(entry.value, of_terrain || entry.key == "terrain", paths);
+      find_files(entry.value, entry.key, paths);
   }
 }
 
@@ -58,7 +59,7 @@ std::string build_text() {
 
 std::string files_text(const sim::ConfigNode& resolved) {
   std::set<std::string> paths;
-  find_files(resolved, false, paths);
+  find_files(resolved, "", paths);
   std::string text;
   for (const std::string& path : paths) text += hash_of_file(path) + " " + path + "\n";
   return text;

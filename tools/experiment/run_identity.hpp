@@ -11,8 +11,8 @@ namespace tools {
 /// `x86-64-v3, glibc 2.36`.
 std::string build_text();
 
-/// The meshes and the terrain that a resolved world names, a line `HASH PATH` for each, by path.  A file that cannot
-/// be read has 16 dashes.
+/// The files of meshes, terrain, textures and currents that a resolved world names, a line `HASH PATH` for each, by
+/// path.  A file that cannot be read has 16 dashes.
 std::string files_text(const sim::ConfigNode& resolved);
 
 /// A line for each file of `text` (from files_text) that is not there now, or is another one.

@@ -30,6 +30,10 @@ class RunMail {
   void begin_again(std::int64_t from_step);
   /// What came after the reports of a step, up to the next, takes effect again.
   void deliver(std::int64_t step);
+  /// Call after each step that is run again, without the last one.
+  void pass(std::int64_t step) { lockstep_.pass_again(step); }
+  /// Where to begin, so that lockstep clients get at `step` what they got the first time.
+  std::int64_t needed_from(std::int64_t step) const { return lockstep_.needed_from(step); }
   void end_again();
 
  private:

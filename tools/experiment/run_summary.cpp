@@ -33,6 +33,7 @@ void Run::finish(Summary& summary) {
   if (summary.exit_code == 0 && !summary.passed()) summary.exit_code = 1;  // a rule, or the event that ended it
   note_signal(summary);
   if (results_) write_results(summary);
+  tell_missed_snapshots();
 }
 
 void Run::add_figures(Summary& summary) {

@@ -1,3 +1,4 @@
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <cmath>
@@ -54,21 +55,37 @@ void Run::begin_branch(bool ours) {
   buses_.end_of_step();
   branch_log_.mark(world_.step_number(), time_.oldest_step().value_or(world_.step_number()));
   progress_.restart(world_.now());
-  if (results_) results_->begin_branch(world_.now());
+  if (results_) results_->begin_branch(world_.now(), ours);
+}
+
+void Run::plan_snapshots() {
+  const double step_s = sim::to_seconds(world_.step_time());
+  for (const double time_s : options_.snapshot_at_s) {
+    if (duration_s_ > 0 && std::llround(time_s / step_s) > std::llround(duration_s_ / step_s))
+      throw RunError(
+          2, "configuration",
+          fmt::format("--snapshot-at: {:.6g} s is after the end of the run at {:.6g} s", time_s, duration_s_));
+    if (std::llround(time_s / step_s) < world_.step_number())
+      throw RunError(2, "configuration",
+                     fmt::format("--snapshot-at: {:.6g} s is before the begin of the run at {:.6g} s", time_s,
+                                 sim::to_seconds(world_.now())));
+    snapshot_steps_.insert(std::llround(time_s / step_s));
+  }
+}
+
+void Run::tell_missed_snapshots() const {
+  for (const std::int64_t step : snapshot_steps_)
+    spdlog::warn("--snapshot-at: no snapshot of {:.6g} s was written: the run did not come there",
+                 sim::to_seconds(world_.step_time() * step));
 }
 
 void Run::take_snapshots() {
-  const double now_s = sim::to_seconds(world_.now());
-  const double half_step_s = sim::to_seconds(world_.step_time()) / 2;
-  bool due = false;
-  while (!snapshot_at_s_.empty() && snapshot_at_s_.back() < now_s + half_step_s) {
-    due = due || snapshot_at_s_.back() > now_s - half_step_s;
-    snapshot_at_s_.pop_back();
-  }
+  const std::int64_t step = world_.step_number();
+  bool due = snapshot_steps_.erase(step) > 0;
   if (options_.snapshot_every_s && steps_taken_ > 0) {
-    const double since = std::floor((now_s + half_step_s) / *options_.snapshot_every_s);
-    const double before = std::floor((now_s - half_step_s) / *options_.snapshot_every_s);
-    due = due || since > before;
+    const double per_step = sim::to_seconds(world_.step_time()) / *options_.snapshot_every_s;
+    const auto half_steps = static_cast<double>(2 * step);  // whole numbers: a time in the middle counts once
+    due = due || std::floor((half_steps + 1) * per_step / 2) > std::floor((half_steps - 1) * per_step / 2);
   }
   if (!due) return;
   try {

@@ -15,13 +15,14 @@
 #include "sim/bus/crc32.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/state/state_archive.hpp"
+#include "tools/experiment/run_identity.hpp"
 
 namespace tools {
 
 namespace {
 
 constexpr char magic[8] = {'S', 'H', 'O', 'A', 'L', 'S', 'N', 'P'};
-constexpr std::uint32_t format_version = 1;
+constexpr std::uint32_t format_version = 2;
 constexpr std::size_t head_bytes = sizeof magic + sizeof format_version;
 constexpr std::size_t checksum_bytes = sizeof(std::uint32_t);
 constexpr std::intmax_t most_bytes = std::intmax_t{4} << 30;
@@ -35,8 +36,8 @@ T number_at(const sim::Bytes& bytes, std::size_t at) {
 
 void visit(sim::StateArchive& archive, Snapshot& s) {
   archive.section("file");
-  archive(s.version, s.world, s.resolved_world, s.seed, s.epoch_us, s.step_us, s.step, s.branch, s.from_s, s.state_hash,
-          s.vehicles, s.state, s.scores, s.owners);
+  archive(s.version, s.world, s.resolved_world, s.files, s.seed, s.epoch_us, s.step_us, s.step, s.branch, s.from_s,
+          s.state_hash, s.vehicles, s.state, s.scores, s.owners);
   archive.end();
 }
 
@@ -130,6 +131,14 @@ void check_version(const Snapshot& snapshot, const std::string& path, const std:
   if (snapshot.version == own_version) return;
   throw SnapshotFileError(path + ": was written by shoal " + sim::shortened(sim::printable(snapshot.version)) +
                           ", this is " + own_version + ": only the same build can go on from it");
+}
+
+void check_files(const Snapshot& snapshot, const std::string& path) {
+  const std::vector<std::string> changed = changed_files(snapshot.files);
+  if (changed.empty()) return;
+  std::string text = path + ": its world used files that are not as they were then:";
+  for (const std::string& file : changed) text += "\n  " + sim::printable(file);
+  throw SnapshotFileError(text);
 }
 
 }  // namespace tools

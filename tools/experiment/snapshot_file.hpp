@@ -20,6 +20,7 @@ struct Snapshot {
   std::string version;         ///< of shoal that wrote it
   std::string world;           ///< its name
   std::string resolved_world;  ///< YAML
+  std::string files;           ///< hashes of the files that it names: files_text()
   std::int64_t seed = 0;
   std::int64_t epoch_us = 0;
   std::int64_t step_us = 0;
@@ -48,5 +49,7 @@ void write_snapshot(const std::string& path, const Snapshot& snapshot);
 Snapshot read_snapshot(const std::string& path);
 /// Throws SnapshotFileError when another build of shoal wrote it: the order of the state may have changed.
 void check_version(const Snapshot& snapshot, const std::string& path, const std::string& own_version);
+/// Throws SnapshotFileError when a file that its world names is gone, or is another one.
+void check_files(const Snapshot& snapshot, const std::string& path);
 
 }  // namespace tools

@@ -6,14 +6,23 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 
 namespace tools {
 
 namespace {
 
-// Signal handlers have no other way to know them.
-termios before{}, raw{};
+using Clock = std::chrono::steady_clock;
+
+// Signal handlers have no other way to know them.  Of the settings as they were before one is in use while the other
+// is filled.
+termios before[2]{};
+std::atomic<int> in_use{0};
+termios raw{};
 std::atomic<bool> active{false};
+
+/// From one look at the settings of the terminal to the next.
+constexpr std::chrono::milliseconds between_looks{50};
 
 bool in_foreground() {
   return tcgetpgrp(STDIN_FILENO) == getpgrp();
@@ -23,18 +32,31 @@ void use(const termios& settings) {
   if (in_foreground()) tcsetattr(STDIN_FILENO, TCSANOW, &settings);
 }
 
+void use_before() {
+  use(before[in_use]);
+}
+
+/// Keys one by one, without echo; Ctrl-C and Ctrl-Z stay signals.
+void take_over() {
+  termios now{};
+  if (tcgetattr(STDIN_FILENO, &now) != 0 || (now.c_lflag & (ICANON | ECHO)) == 0) return;
+  before[1 - in_use] = now;
+  in_use = 1 - in_use;
+  raw = now;
+  raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+  raw.c_cc[VMIN] = 0;
+  raw.c_cc[VTIME] = 0;
+  tcsetattr(STDIN_FILENO, TCSANOW, &raw);
+}
+
 void on_stop(int) {
-  use(before);
+  use_before();
   // SIGSTOP rather than SIGTSTP once more: it needs no handler put away and back again.
   raise(SIGSTOP);
 }
 
-void on_continue(int) {
-  use(raw);
-}
-
 void on_death(int signal) {
-  use(before);
+  use_before();
   raise(signal);  // SA_RESETHAND: as if it had not been caught
 }
 
@@ -51,34 +73,34 @@ constexpr int deadly[] = {SIGQUIT, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL};
 }  // namespace
 
 bool TerminalKeys::possible() {
-  return isatty(STDIN_FILENO) != 0 && isatty(STDERR_FILENO) != 0 && tcgetattr(STDIN_FILENO, &before) == 0;
+  return isatty(STDIN_FILENO) != 0 && isatty(STDERR_FILENO) != 0 && tcgetattr(STDIN_FILENO, &before[in_use]) == 0;
 }
 
 TerminalKeys::TerminalKeys() {
-  if (tcgetattr(STDIN_FILENO, &before) != 0) return;
-  raw = before;
-  raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);  // Ctrl-C and Ctrl-Z stay signals
-  raw.c_cc[VMIN] = 0;
-  raw.c_cc[VTIME] = 0;
+  if (tcgetattr(STDIN_FILENO, &before[in_use]) != 0) return;
   active = true;
   handle(SIGTSTP, on_stop, SA_RESTART);
-  handle(SIGCONT, on_continue, SA_RESTART);
   for (const int signal : deadly) handle(signal, on_death, SA_RESETHAND | SA_NODEFER);
-  use(raw);
+  if (in_foreground()) take_over();
 }
 
 TerminalKeys::~TerminalKeys() {
   if (!active) return;
-  for (const int signal : {SIGTSTP, SIGCONT}) handle(signal, SIG_DFL, 0);
+  handle(SIGTSTP, SIG_DFL, 0);
   for (const int signal : deadly) handle(signal, SIG_DFL, 0);
   active = false;
-  use(before);
+  use_before();
 }
 
 std::optional<char> TerminalKeys::next() {
-  if (!active || !in_foreground()) return std::nullopt;
+  if (!active) return std::nullopt;
+  // A shell gives the terminal to a job that comes to the foreground, with settings of its own, and need not say so.
+  if (const auto now = Clock::now(); now >= look_at_) {
+    look_at_ = now + between_looks;
+    if (in_foreground()) take_over();
+  }
   pollfd waiting{STDIN_FILENO, POLLIN, 0};
-  if (poll(&waiting, 1, 0) <= 0 || (waiting.revents & POLLIN) == 0) return std::nullopt;
+  if (poll(&waiting, 1, 0) <= 0 || (waiting.revents & POLLIN) == 0 || !in_foreground()) return std::nullopt;
   char key = 0;
   if (read(STDIN_FILENO, &key, 1) != 1) return std::nullopt;
   return key;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 
@@ -7,7 +8,7 @@ namespace tools {
 
 /// Reads single keys from the terminal while a run goes.  The terminal gets its settings back when this goes, when the
 /// program is stopped (Ctrl-Z) and when a signal kills it.  In the background nothing is read, so that the job is not
-/// stopped.
+/// stopped; it takes the terminal when it comes to the foreground.
 class TerminalKeys {
  public:
   /// Standard input and standard error are terminals.
@@ -20,6 +21,9 @@ class TerminalKeys {
 
   /// The next key, when one was pressed.  Never waits.
   std::optional<char> next();
+
+ private:
+  std::chrono::steady_clock::time_point look_at_{};  ///< at the settings
 };
 
 }  // namespace tools

@@ -154,7 +154,28 @@ std::optional<std::string> TimeControl::obey(const std::string& command, const s
     const std::string waits = service_.waits_for();
     return place() + (waits.empty() ? "" : ", " + waits) + what_is_kept();
   }
+  if (command == "pause" || command == "resume") {
+    control_.set_paused(command == "pause");
+    return place();
+  }
+  if (command == "step") return step(value);
+  if (command == "speed") return set_speed(value);
   return std::nullopt;
+}
+
+std::string TimeControl::step(double count) {
+  if (!(count >= 1 && count <= 1e9 && count == std::floor(count)))
+    throw std::runtime_error(fmt::format("'step' needs a whole number of steps from 1 to 1e9, got {}", count));
+  control_.add_steps(static_cast<std::int64_t>(count));
+  return place() + fmt::format(", takes {} step{}", control_.single_steps, control_.single_steps == 1 ? "" : "s");
+}
+
+std::string TimeControl::set_speed(double times) {
+  if (times != 0 && !(times >= 1e-3 && times <= 1e6))
+    throw std::runtime_error(
+        fmt::format("'speed' must be 0 (as fast as possible) or from 0.001 to 1e6, got {}", times));
+  control_.set_speed(times);
+  return place() + (times > 0 ? fmt::format(", {:g} x real time", times) : ", as fast as possible");
 }
 
 std::string TimeControl::place() const {
@@ -196,8 +217,14 @@ std::string TimeControl::rewind(double seconds, bool run_on) {
   if (!(seconds > 0 && seconds <= 1e9))
     throw std::runtime_error(fmt::format("'rewind' needs a value above 0, in seconds, got {}", seconds));
   const double steps = seconds * 1e6 / static_cast<double>(world_.step_time().count());
-  const std::int64_t target = world_.step_number() - std::llround(steps);
-  const auto base = ring_.newest_until(target);
+  if (std::llround(steps) < 1)
+    throw std::runtime_error(fmt::format("'rewind' by {} s is less than half a step of {:.6g} s", seconds,
+                                         sim::to_seconds(world_.step_time())));
+  if (world_.step_number() == first_step_) throw std::runtime_error("the run is at its begin: it cannot go back");
+  // Who wants to go back further than it has come goes to the begin.
+  const std::int64_t target = std::max<std::int64_t>(world_.step_number() - std::llround(steps), first_step_);
+  auto base = ring_.newest_until(mail_.needed_from(target));
+  if (!base) base = ring_.newest_until(target);  // some client will lack reports
   if (!base) {
     const double oldest_s = sim::to_seconds(sim::Time{ring_.oldest().value_or(0) * world_.step_time().count()});
     throw std::runtime_error(fmt::format("cannot go back {:.6g} s from {:.6g} s: what is kept begins at {:.6g} s",
@@ -228,6 +255,7 @@ void TimeControl::simulate_again(std::int64_t to_step) {
     world_.step();
     service_.publish_step();  // metrics may count it; nobody else hears it
     scoring_.after_step();
+    if (world_.step_number() < to_step) mail_.pass(world_.step_number());
   }
 }
 
@@ -275,6 +303,7 @@ void TimeControl::go_on_from(const Snapshot& snapshot) {
         "the snapshot has a step of {} us and an epoch of {}, this world {} us and {}: they cannot be changed",
         snapshot.step_us, snapshot.epoch_us, world_.step_time().count(), world_.epoch_us()));
   world_.restore(snapshot.state);
+  first_step_ = world_.step_number();
   options_.scores_from_s = snapshot.from_s;
   try {
     load_beside({{}, snapshot.scores, snapshot.owners}, History::whole);
@@ -288,6 +317,7 @@ Snapshot TimeControl::snapshot() const {
   s.version = options_.version;
   s.world = world_.config().name;
   s.resolved_world = options_.resolved_world;
+  s.files = options_.files;
   s.seed = world_.config().run.seed;
   s.epoch_us = world_.epoch_us();
   s.step_us = world_.step_time().count();
@@ -347,6 +377,9 @@ std::string TimeControl::restore(const std::string& name, bool run_on) {
   if (snapshot.resolved_world != options_.resolved_world)
     throw std::runtime_error(path + ": is of another world or other values: " +
                              first_difference(snapshot.resolved_world, options_.resolved_world));
+  if (snapshot.files != options_.files)
+    throw std::runtime_error(
+        path + ": its world used other files than this run: " + first_difference(snapshot.files, options_.files));
   travel(
       [&] {
         load({snapshot.state, snapshot.scores, snapshot.owners}, History::whole);

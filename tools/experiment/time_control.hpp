@@ -30,6 +30,7 @@ class TimeControl final : public bridges::TimeMachine {
     std::string directory;       ///< of snapshot files; empty: none can be asked for
     bool overwrite = false;      ///< snapshot files may replace others
     std::string resolved_world;  ///< YAML
+    std::string files;           ///< files_text() of it
     std::string version;         ///< of shoal
     double scores_from_s = 0;    ///< since when the scores count
   };
@@ -51,9 +52,14 @@ class TimeControl final : public bridges::TimeMachine {
   /// Pauses a run that has come where `until` said.  True: it did so now.
   bool stop_when_there();
 
-  /// snapshot, restore, rewind, until and where.  Throws std::runtime_error that says why it was refused.
+  /// All that concerns time: pause, resume, step, speed, until, rewind, snapshot, restore and where.  Throws
+  /// std::runtime_error that says why it was refused.
   std::optional<std::string> obey(const std::string& command, const std::string& text, double value) override;
-  /// Goes back by so many seconds.
+  /// Takes so many steps, a whole number, and stands still.
+  std::string step(double count);
+  /// Times real time; 0: as fast as possible.
+  std::string set_speed(double times);
+  /// Goes back by so many seconds, at most to where this run began.
   std::string rewind(double seconds, bool run_on);
   /// Runs to a time, or up to the next time an event fires, and pauses there.
   std::string run_until(double time_s);
@@ -109,6 +115,7 @@ class TimeControl final : public bridges::TimeMachine {
   std::int64_t steps_per_second_;
   SnapshotRing ring_;
   Clock::time_point not_before_;  // the next snapshot for going back
+  std::int64_t first_step_ = 0;   ///< where this run began
   int files_ = 0;
   bool moved_ = false;
   std::string broken_;

@@ -14,8 +14,7 @@ namespace tools {
 namespace {
 
 int report(const std::vector<std::string>& directories, std::string output) {
-  if (output.empty() && directories.size() > 1) throw CLI::ValidationError("--output", "is needed for several folders");
-  if (output.empty()) output = directories.front() + "/report.html";
+  if (output.empty()) output = directories.front() + (directories.size() > 1 ? "/comparison.html" : "/report.html");
   try {
     const std::string page = report_page(directories);
     check_writable(output);
@@ -40,7 +39,8 @@ void add_report_command(CLI::App& app, int& exit_code) {
   };
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("DIR", arguments->directories, "results folders; several of runs are compared")->required();
-  command->add_option("--output", arguments->output, "the page; unset: DIR/report.html");
+  command->add_option("--output", arguments->output,
+                      "the page; unset: DIR/report.html; of several folders comparison.html in the first");
   command->footer(
       "Examples:\n  shoal report results/coop_land\n"
       "  shoal report results/seed1 results/seed2 --output comparison.html\n"

@@ -31,10 +31,11 @@ std::optional<double> parse_speed(const std::string& text) {
   try {
     std::size_t used = 0;
     const double speed = std::stod(text, &used);
-    if (used == text.size() && speed >= 0.001 && speed <= 1e6) return speed;
+    if (used == text.size() && (speed == 0 || (speed >= 0.001 && speed <= 1e6))) return speed;
   } catch (const std::exception&) {
   }
-  throw CLI::ValidationError("--speed", "must be 'max' or from 0.001 to 1e6, got '" + text + "'");
+  throw CLI::ValidationError("--speed",
+                             "must be 0 or 'max' (as fast as possible), or from 0.001 to 1e6, got '" + text + "'");
 }
 
 std::string check_seed(const std::string& text) {
@@ -65,6 +66,7 @@ sim::LoadedWorld load_from(RunArguments& arguments) {
   arguments.run.from = read_snapshot(arguments.from);
   arguments.run.from_file = arguments.from;
   check_version(*arguments.run.from, arguments.from, short_version());
+  check_files(*arguments.run.from, arguments.from);
   return sim::load_world_text(arguments.run.from->resolved_world, arguments.from, arguments.load);
 }
 
@@ -113,7 +115,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->check(number_from(1, 1e5))
       ->capture_default_str();
   command->add_flag("!--no-keys", arguments->run.keys, "keys of the terminal do nothing");
-  command->add_option("--speed", arguments->speed, "times real time, from 0.001 to 1e6, or max");
+  command->add_option("--speed", arguments->speed, "times real time, from 0.001 to 1e6; 0 or max: as fast as possible");
   command->add_option("--seed", arguments->load.seed, "of every random stream")->check(check_seed);
   command->add_option("--set", arguments->load.sets, "path=value: change a value of the world file")
       ->type_size(1)

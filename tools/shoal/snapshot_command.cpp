@@ -23,6 +23,7 @@ struct SnapshotArguments {
 /// Builds the world, restores it, and compares the hash.
 bool restores(const Snapshot& snapshot, const std::string& path) {
   check_version(snapshot, path, short_version());
+  check_files(snapshot, path);
   sim::LoadOptions load;
   load.encode_message = shoal::encode_own_message;
   const sim::LoadedWorld loaded = sim::load_world_text(snapshot.resolved_world, path, load);
@@ -66,7 +67,8 @@ void add_snapshot_command(CLI::App& app, int& exit_code) {
       "  shoal run worlds/minimal.yaml --duration 20 --snapshot-at 10 --snapshots snaps\n"
       "  shoal snapshot snaps/branch0_step1000.snapshot --check\n"
       "  shoal run --from snaps/branch0_step1000.snapshot\n"
-      "Exit codes: 0 good, 1 restored with another hash, 4 no snapshot, damaged, or of another build.");
+      "Exit codes: 0 good, 1 restored with another hash, 4 no snapshot, damaged, of another build, or a\nfile of its "
+      "world (mesh, terrain, texture, current) is not as it was.");
   command->callback([arguments, &exit_code] { exit_code = show(*arguments); });
 }
 

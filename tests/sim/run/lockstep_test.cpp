@@ -142,6 +142,34 @@ TEST(Lockstep, AfterGoingBackEverybodyIsAskedByItsPeriod) {
   EXPECT_EQ(lockstep.find("a")->sequence, 2);
 }
 
+TEST(Lockstep, WhatIsPostedAgainIsOnTheListOfTheFirstTickAfterGoingBack) {
+  Lockstep lockstep;
+  lockstep.join("a", session(7, {"x"}), 10, 0);
+  lockstep.join("late", session(8, {"x"}), 10, 55);  // due at 5, 15, 25 as well
+  lockstep.post(0, "x", bytes_of("of the branch that is left"));
+  EXPECT_EQ(lockstep.needed_from(30), 20);
+  EXPECT_EQ(lockstep.needed_from(33), 25);  // late at 25, a at 30
+  EXPECT_EQ(lockstep.needed_from(3), 0);
+  lockstep.begin_again();
+  for (std::int64_t step = 16; step <= 30; ++step) {  // the world is simulated again up to step 30
+    lockstep.post(0, "x", bytes_of(std::to_string(step)));
+    if (step < 30) lockstep.pass(step);
+  }
+  lockstep.end_again();
+  lockstep.rewound(30);
+  lockstep.post(0, "x", bytes_of("31"));
+  const auto list = [&](const std::string& name) {
+    std::string text;
+    for (const sim::PostedMessage& message : lockstep.find(name)->list)
+      text += std::string(reinterpret_cast<const char*>(message.payload->data()), message.payload->size()) + " ";
+    return text;
+  };
+  lockstep.ask(30);
+  EXPECT_EQ(list("a"), "21 22 23 24 25 26 27 28 29 30 31 ");
+  lockstep.ask(35);
+  EXPECT_EQ(list("late"), "26 27 28 29 30 31 ");
+}
+
 TEST(Lockstep, ATickThatWasOpenBeforeGoingBackIsAnsweredFirst) {
   Lockstep lockstep;
   lockstep.join("a", session(7, {"x"}), 10, 0);

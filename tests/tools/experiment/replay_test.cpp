@@ -8,6 +8,7 @@
 
 #include "shoal/sim_mail_t.hpp"
 #include "shoal/twist_command_t.hpp"
+#include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/experiment/replay_fixture.hpp"
 
@@ -113,11 +114,11 @@ TEST_F(ReplayTest, APlantedDifferenceIsFoundWithStepVehicleAndQuantity) {
   ASSERT_TRUE(seed.first);
   EXPECT_LE(seed.first->step, 50);
   EXPECT_THAT(seed.to_text(), AllOf(HasSubstr("differs first at step "), HasSubstr("in the log and")));
-  EXPECT_THAT(seed.report, testing::Contains(HasSubstr("seed: 4")));
+  EXPECT_THAT(seed.world, testing::Contains(HasSubstr("seed: 4")));
 
   const ReplayOutcome mass = again({"objects.crate.parts.1.mass_kg=6"});
   EXPECT_EQ(mass.exit_code(), 1);
-  EXPECT_THAT(mass.report, testing::Contains(HasSubstr("mass_kg: 6")));
+  EXPECT_THAT(mass.world, testing::Contains(HasSubstr("mass_kg: 6")));
 }
 
 TEST_F(ReplayTest, OneNoisierSensorIsFoundByItsName) {
@@ -126,6 +127,30 @@ TEST_F(ReplayTest, OneNoisierSensorIsFoundByItsName) {
   EXPECT_EQ(outcome.exit_code(), 1);
   ASSERT_TRUE(outcome.first);
   EXPECT_THAT(outcome.to_text(), HasSubstr("r1/odometry (r1.odometry): "));
+}
+
+TEST_F(ReplayTest, AnotherWorldIsComparedByItsNamesAndByItsMotion) {
+  record(rover_world());
+  std::string other = rover_world("events:\n  - {name: kick, at: 2, do: [{move: r1, position_m: [5, 5, 0.2]}]}\n");
+  const std::string objects = "objects:\n", file = "file: rover.yaml";
+  other.insert(other.find(objects) + objects.size(),
+               "  - {name: box, position_m: [9, 9, 0.5], parts: [{shape: box, mass_kg: 5}]}\n");
+  other.replace(other.find(file), file.size(), "file: " + test_support::source_path("vehicles/rover.yaml"));
+  ReplayOptions options;
+  options.log = log;
+  options.world = folder.file("other.yaml");
+  options.quiet = true;
+  std::ofstream(options.world) << other;
+  const ReplayOutcome outcome = replay(options);
+  EXPECT_EQ(outcome.exit_code(), 1);
+  ASSERT_TRUE(outcome.first);
+  EXPECT_EQ(outcome.first->step, 0) << "the state of another world";
+  EXPECT_THAT(outcome.world, testing::Contains("only here: object 'box'"));
+  EXPECT_THAT(outcome.world, testing::Contains("only here: event 'kick'"));
+  EXPECT_THAT(outcome.world, testing::Not(testing::Contains(HasSubstr("seed")))) << "it is the same";
+  // The event acts in the step that begins at 2 s; sim.state comes every 10 steps.
+  EXPECT_THAT(outcome.motion, testing::StartsWith("step 210 (2.100 s), by sim.state: vehicle 'r1': position_m[0] is"));
+  EXPECT_THAT(outcome.to_text(), testing::StartsWith("World (- in the log, + here):\n  only here: object 'box'\n"));
 }
 
 TEST_F(ReplayTest, ALetterThatIsMissingEndsTheProof) {

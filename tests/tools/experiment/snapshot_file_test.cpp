@@ -90,8 +90,8 @@ TEST(SnapshotFile, RefusesForeignFilesAndOtherFormats) {
   EXPECT_EQ(error_of_bytes(sim::Bytes(100, std::byte{'x'})),
             "a.snapshot: is no snapshot of shoal: it must begin with 'SHOALSNP'");
   sim::Bytes other = tools::to_bytes(example());
-  other[8] = std::byte{2};
-  EXPECT_EQ(error_of_bytes(other), "a.snapshot: its format version must be 1, got 2");
+  other[8] = std::byte{3};
+  EXPECT_EQ(error_of_bytes(other), "a.snapshot: its format version must be 2, got 3");
 }
 
 TEST(SnapshotFile, RefusesTimesThatAreNone) {

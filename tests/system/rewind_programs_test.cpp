@@ -1,0 +1,104 @@
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/system/shoal_program.hpp"
+
+// The programs of a world go back with it: a run that goes back and changes nothing ends as one that never did.
+
+namespace {
+
+using namespace system_test;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Ended control(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "control");
+  arguments.insert(arguments.end(), {"--lcm-url", own_url()});
+  return run_shoal(arguments);
+}
+
+std::vector<std::string> mission(const std::string& world, const std::string& duration_s,
+                                 const std::vector<std::string>& more = {}) {
+  std::vector<std::string> run{"run",        source(world), "--launch",  "--speed", "max",
+                               "--duration", duration_s,    "--lcm-url", own_url(), "--no-pictures"};
+  run.insert(run.end(), more.begin(), more.end());
+  return run;
+}
+
+/// Runs a world to its end, and goes back on the way: from the first time by the second, and once more from the third
+/// by the fourth.
+Ended run_with_two_rewinds(const std::string& world, const std::string& duration_s,
+                           const std::vector<std::string>& times_s, const std::string& results) {
+  std::vector<std::string> arguments = mission(world, duration_s, {"--paused", "--results", results});
+  arguments.insert(arguments.begin(), built("shoal"));
+  Program program(arguments);
+  EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, patience));
+  for (std::size_t i = 0; i < times_s.size(); i += 2) {
+    EXPECT_TRUE(await([&] { return control({"until", "--value", times_s[i]}).exit_code == 0; }, patience));
+    EXPECT_TRUE(await([] { return control({"where"}).output.find(", paused") != std::string::npos; }, patience));
+    const Ended back = control({"rewind", "run", "--value", times_s[i + 1]});
+    EXPECT_EQ(back.exit_code, 0) << back.errors;
+  }
+  Ended ended;
+  ended.exit_code = program.wait(std::chrono::minutes(3));
+  ended.output = program.output();
+  ended.errors = program.errors();
+  return ended;
+}
+
+struct Mission {
+  const char* world;
+  const char* duration_s;
+  std::vector<std::string> times_s;  ///< some are ticks of the programs, some lie between them
+};
+
+class ProgramsGoBack : public testing::TestWithParam<Mission> {};
+
+TEST_P(ProgramsGoBack, AndTheRunEndsAsOneThatNeverWentBack) {
+  const Mission& of = GetParam();
+  const Ended straight = run_shoal(mission(of.world, of.duration_s), std::chrono::minutes(3));
+  const ScratchFolder folder;
+  const Ended ended = run_with_two_rewinds(of.world, of.duration_s, of.times_s, folder.file("results"));
+  EXPECT_EQ(ended.exit_code, straight.exit_code) << ended.output << ended.errors;
+  EXPECT_EQ(state_hash_in(ended), state_hash_in(straight));
+  EXPECT_THAT(ended.output, HasSubstr("branch 2: the run went back"));
+  const auto summary = nlohmann::json::parse(text_of_file(folder.file("results/summary.json")));
+  EXPECT_THAT(summary["processes"], IsEmpty()) << "a program ended before the run did";
+  ASSERT_FALSE(summary["clients"].empty());
+  for (const auto& client : summary["clients"]) EXPECT_EQ(client["ended"], "with the run") << client;
+}
+
+INSTANTIATE_TEST_SUITE_P(Worlds, ProgramsGoBack,
+                         testing::Values(Mission{"worlds/segway.yaml", "30", {"9.005", "4.5", "14", "6.035"}},
+                                         Mission{"worlds/coop_land.yaml", "30", {"12.34", "5", "20", "11.27"}},
+                                         Mission{"worlds/coop_underwater.yaml", "150", {"90", "33.3", "120", "40.14"}},
+                                         Mission{"worlds/coop_relay.yaml", "200", {"150", "20", "160", "50.3"}}),
+                         [](const auto& test) {
+                           const std::string path = test.param.world;
+                           return path.substr(7, path.find('.') - 7);
+                         });
+
+TEST(Rewind, AProgramThatIsNotToGoBackEndsAndSaysSo) {
+  const ScratchFolder folder;
+  const std::string world = folder.file("segway.yaml");
+  std::string text = text_of_file(source("worlds/segway.yaml"));
+  const std::string command = "[shoal-balance, --name, segway1";
+  ASSERT_NE(text.find(command), std::string::npos);
+  text.insert(text.find(command) + command.size(), ", --rewind-s, \"2\"");
+  const std::string file = "file: segway_rmp.yaml";
+  text.replace(text.find(file), file.size(), "file: " + source("vehicles/segway_rmp.yaml"));
+  write_file(world, text);
+  std::vector<std::string> arguments{built("shoal"), "run", world,      "--launch",  "--speed", "max",
+                                     "--duration",   "20",  "--paused", "--lcm-url", own_url()};
+  Program program(arguments);
+  EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, patience));
+  EXPECT_TRUE(await([] { return control({"until", "--value", "8"}).exit_code == 0; }, patience));
+  EXPECT_TRUE(await([] { return control({"where"}).output.find(", paused") != std::string::npos; }, patience));
+  EXPECT_EQ(control({"rewind", "run", "--value", "5"}).exit_code, 0);
+  EXPECT_NE(program.wait(), 0);  // nobody balances it any more
+  EXPECT_THAT(program.errors(), HasSubstr("the world went back further than this program can, 2 s (--rewind-s)"));
+  EXPECT_THAT(program.output(), HasSubstr("process 'balance' exited with code 6"));
+}
+
+}  // namespace
