@@ -22,7 +22,8 @@ void AcousticChannel::Sending::visit_state(StateArchive& archive) {
   archive.unhashed(directivity.pattern, directivity.diameter_m, directivity.length_m, directivity.floor_dB);
   if (!archive.restoring()) return;
   check_loss(cut, archive);
-  if (cut_after < Time{0} || cut_after > std::max(signal.duration, Time{0})) archive.fail("a signal cut beyond its end");
+  if (cut_after < Time{0} || cut_after > std::max(signal.duration, Time{0}))
+    archive.fail("a signal cut beyond its end");
 }
 
 void AcousticChannel::Flight::visit_state(StateArchive& archive) {

@@ -174,8 +174,9 @@ TEST(StudyConfig, TellsWhatIsWrong) {
   EXPECT_THAT(error("cases: [{name: a, set: {physics.step_s: -1}}]\n"), HasSubstr("'step_s' must be"));
   EXPECT_THAT(error("cases: [{name: a, set: {run.duration_s: 0}}]\n"),
               HasSubstr("case 'a': its world runs without end"));
-  EXPECT_THAT(error("figures: [e.rms]\n"), HasSubstr("study.yaml:5:10: 'figures' names nothing of this world: 'e.rms'; "
-                                                     "known: e.final_m, e.longest_gap_s, e.max_m, e.per_distance_percent"));
+  EXPECT_THAT(error("figures: [e.rms]\n"),
+              HasSubstr("study.yaml:5:10: 'figures' names nothing of this world: 'e.rms'; "
+                        "known: e.final_m, e.longest_gap_s, e.max_m, e.per_distance_percent"));
   EXPECT_THAT(error("plots: [{name: p}]\n"), HasSubstr("plot 'p': needs either 'figure' or 'metrics'"));
   EXPECT_THAT(error("plots: [{name: p, metrics: [e]}]\n"), HasSubstr("'metrics' are drawn over 'distance' or 'time'"));
   EXPECT_THAT(error("plots: [{name: p, metrics: [f], over: time}]\n"), HasSubstr("names nothing of this world: 'f'"));
