@@ -130,8 +130,8 @@ TEST_F(ReplayTest, OneNoisierSensorIsFoundByItsName) {
 }
 
 TEST_F(ReplayTest, AnotherWorldIsComparedByItsNamesAndByItsMotion) {
-  record(rover_world());
-  std::string other = rover_world("events:\n  - {name: kick, at: 2, do: [{move: r1, position_m: [5, 5, 0.2]}]}\n");
+  record(driven_world());
+  std::string other = driven_world("events:\n  - {name: kick, at: 2, do: [{move: r1, position_m: [5, 5, 0.2]}]}\n");
   const std::string objects = "objects:\n", file = "file: rover.yaml";
   other.insert(other.find(objects) + objects.size(),
                "  - {name: box, position_m: [9, 9, 0.5], parts: [{shape: box, mass_kg: 5}]}\n");
