@@ -19,7 +19,7 @@ Arrivals::~Arrivals() {
 }
 
 void Arrivals::add(Port& port, int fd) {
-  readable_.add(fd, &port);
+  if (fd >= 0) readable_.add(fd, &port);
   ports_.push_back({&port, fd});
 }
 
@@ -27,7 +27,7 @@ void Arrivals::remove(Port& port) {
   const auto watched =
       std::find_if(ports_.begin(), ports_.end(), [&](const Watched& each) { return each.port == &port; });
   if (watched == ports_.end()) return;
-  readable_.remove(watched->fd);
+  if (watched->fd >= 0) readable_.remove(watched->fd);
   ports_.erase(watched);
 }
 

@@ -10,12 +10,14 @@
 namespace bridges {
 
 /// Lets one thread sleep until a message comes on any of the buses that share this.  That thread sends what the buses
-/// have queued before it sleeps, and receives for them: no other thread stands between it and the answer.
+/// have queued before it sleeps, and receives for them: no other thread stands between it and the answer.  A bus that
+/// may block does both itself, and is only told when to send.
 class Arrivals {
  public:
   /// A bus, as the thread that waits sees it.
   class Port {
    public:
+    /// Sends, or begins to.
     virtual void send_queued() = 0;
     /// Gives what has come to the mailboxes.  False: nothing will come any more.
     virtual bool receive() = 0;
@@ -30,8 +32,8 @@ class Arrivals {
   Arrivals(const Arrivals&) = delete;
   Arrivals& operator=(const Arrivals&) = delete;
 
-  /// While it lives the thread that waits serves `port`, which can receive when `fd` is readable.  Made and destroyed
-  /// by that thread.
+  /// While it lives the thread that waits serves `port`, which can receive when `fd` is readable; negative: it receives
+  /// by itself.  Made and destroyed by that thread.
   class Place {
    public:
     Place(Arrivals& arrivals, Port& port, int fd) : arrivals_(arrivals), port_(port) { arrivals.add(port, fd); }

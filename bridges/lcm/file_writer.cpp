@@ -45,9 +45,10 @@ void FileWriter::write_all() {
     if (next_.used == 0) return;
     std::swap(next_, block);
     busy_ = true;
+    const bool lost = error_ != 0;  // it waited while an earlier one failed
     lock.unlock();
     changed_.notify_all();
-    const int error = write(block) ? 0 : (errno != 0 ? errno : EIO);
+    const int error = lost || write(block) ? 0 : (errno != 0 ? errno : EIO);
     block.used = 0;
     lock.lock();
     busy_ = false;

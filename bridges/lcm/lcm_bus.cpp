@@ -165,7 +165,7 @@ struct LcmBus::Threads final : Arrivals::Port {
     if (stop_fd < 0) throw BusError("no file descriptor is left for the bus");
     if (!options.arrivals) options.arrivals = std::make_shared<Arrivals>();
     // Before the receiver: of the two the first wakes.
-    if (!connection.may_block()) place.emplace(*options.arrivals, *this, connection.fd());
+    place.emplace(*options.arrivals, *this, connection.may_block() ? -1 : connection.fd());
     readable.add(connection.fd(), this);
     readable.add(stop_fd, nullptr);
     receiver = std::thread([this] { receive_all(); });
@@ -191,7 +191,12 @@ struct LcmBus::Threads final : Arrivals::Port {
     if (!sent) count_refused();
   }
 
-  void send_queued() override { outgoing.help(); }
+  void send_queued() override {
+    if (connection.may_block())
+      outgoing.wake();
+    else
+      outgoing.help();
+  }
 
   Channel& open_channel(const std::string& name) {
     const std::lock_guard lock(channels_mutex);

@@ -22,7 +22,8 @@ struct LcmBusOptions {
 
 /// The bus over LCM.  One thread sends, one receives: publish() and take() only move messages, and the
 /// physics loop never waits for the network.  Messages go out at end_of_step(), earlier when many wait.  Who calls
-/// wait_for_message() does the work of both threads while it waits.
+/// wait_for_message() does the work of both threads while it waits; over tcpq, which may block, he only wakes the one
+/// that sends.
 /// Messages of one sender arrive in the order it sent them, over all channels: when a later one is in a
 /// mailbox, the earlier ones are in theirs.  A subscriber hears also what this process publishes: at once, and not
 /// again when it comes back from the network.
@@ -39,8 +40,8 @@ class LcmBus final : public sim::Bus {
   void end_of_step() override;
   sim::BusCounts counts() const override;
 
-  /// Sends what is queued, and sleeps until a message arrived (on any bus that shares the arrivals) after the last call
-  /// returned; at once if one did already.  Drain the mailboxes, then call: nothing is missed.  False on time-out.
+  /// Has what is queued sent, and sleeps until a message arrived (on any bus that shares the arrivals) after the last
+  /// call returned; at once if one did already.  Drain the mailboxes, then call: nothing is missed.  False on time-out.
   bool wait_for_message(std::chrono::milliseconds timeout);
   /// Sends all that is queued.  False on time-out.
   bool flush(std::chrono::milliseconds timeout);

@@ -32,8 +32,11 @@ bool LockstepService::join(int line, const shoal::sim_control_request_t& request
                              std::to_string(sim::to_seconds(world_.step_time())) + " s");
   const sim::LockstepTerms terms = sim::read_lockstep_terms(request.text, defaults_);
   check_session(request.client, terms.session);
-  if (const sim::LockstepMember* first = lockstep_.find(request.client);
-      first && (first->terms.session != terms.session || first->line != line)) {
+  const sim::LockstepMember* first = lockstep_.find(request.client);
+  if (first && terms.session != 0 && first->terms.session == terms.session && first->line != line)
+    throw std::runtime_error("the session " + std::to_string(terms.session) + " of client '" + request.client +
+                             "' takes part on another bus; join with another one");
+  if (first && (first->terms.session != terms.session || first->line != line)) {
     if (!may_join(*first, terms)) return false;
     forget(request.client, "another client of its name took its place");
   }

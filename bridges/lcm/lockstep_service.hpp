@@ -41,7 +41,7 @@ enum class LockstepOutcome {
 /// neither a tick nor a message between world and client is lost.  See docs/lockstep.md.
 class LockstepService {
  public:
-  /// Sends what was published, and waits for messages up to the given time, or returns earlier.
+  /// Has what was published sent, and waits for messages up to the given time, or returns earlier.
   using Wait = std::function<void(std::chrono::milliseconds)>;
 
   /// The defaults are those of the world's `lockstep`.
@@ -88,7 +88,9 @@ class LockstepService {
   void suspend(bool suspended);
   /// See sim::Lockstep.
   void pass_again(std::int64_t step) { lockstep_.pass(step); }
-  std::int64_t needed_from(std::int64_t step) const { return lockstep_.needed_from(step); }
+  std::int64_t needed_from(std::int64_t step, std::int64_t most_steps) const {
+    return lockstep_.needed_from(step, most_steps);
+  }
   /// Bad acknowledgements and questions so far.
   std::int64_t bad_messages() const { return bad_messages_; }
   /// Messages from outside that had to make room before they were admitted.

@@ -71,13 +71,17 @@ void RecordingBus::record(std::string_view channel, std::span<const std::byte> p
   bytes_ += event_head_bytes + channel.size() + payload.size();
   // Once a simulated second, but not more often than it is worth it: a killed run loses little, and `tail` sees it
   // grow.
-  if (const std::int64_t second = (utime_ - epoch_utime_) / 1'000'000; second > handed_over_s_) {
-    handed_over_s_ = second;
-    if (const auto now = std::chrono::steady_clock::now(); now - handed_over_ >= shortest_pause) {
-      handed_over_ = now;
-      if (!log_->hand_over()) fail(errno);
-    }
-  }
+  if ((utime_ - epoch_utime_) / 1'000'000 > handed_over_s_) hand_over();
+}
+
+void RecordingBus::hand_over() {
+  if (first_) return first_->hand_over();
+  if (!log_ || error_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now - handed_over_ < shortest_pause) return;
+  handed_over_ = now;
+  handed_over_s_ = (utime_ - epoch_utime_) / 1'000'000;
+  if (!log_->hand_over()) fail(errno);
 }
 
 void RecordingBus::prepare(const std::string& path, std::uint64_t events, std::uint64_t bytes, Existing existing) {

@@ -59,6 +59,9 @@ class RecordingBus final : public sim::Bus {
   void go_on();
   /// Removes the one that was prepared.
   void give_up();
+  /// Lets what is buffered be written, and does not wait for it: for a run that stands still.  Not more often than it
+  /// is worth it, so call it again.
+  void hand_over();
   /// Writes what is buffered.  The bus goes on without recording.
   void close();
   sim::Bus& inner() { return inner_; }
@@ -79,7 +82,7 @@ class RecordingBus final : public sim::Bus {
   std::string path_;
   std::int64_t epoch_utime_ = 0;
   std::int64_t utime_ = 0;          // of the last event; never goes back
-  std::int64_t handed_over_s_ = 0;  // simulated second in which the file was last thought of
+  std::int64_t handed_over_s_ = 0;  // simulated second in which the file was last handed over
   std::chrono::steady_clock::time_point handed_over_;
   std::unique_ptr<EventLogWriter> log_;
   std::optional<Next> next_;  // prepared

@@ -98,7 +98,7 @@ void ClientMail::drop(const std::string& client, const std::vector<NamedMessage>
     const auto found = by_key_.find({each.channel, each.crc});
     const bool there = found != by_key_.end();
     if (there) take_out(strays_.find(*found->second.begin()));
-    expect_twin(client, each, there ? repeat_windows : late_windows);
+    expect_twin(client, each, there ? repeat_windows : late_windows, false);
   }
 }
 
@@ -111,7 +111,7 @@ void ClientMail::clear() {
   twins_.clear();
   for (const auto& [client, list] : expected_)
     for (const Expected& expected : list)
-      if (expected.wanted) expect_twin(client, expected.named, expected.there ? repeat_windows : late_windows);
+      if (expected.wanted) expect_twin(client, expected.named, expected.there ? repeat_windows : late_windows, false);
   expected_.clear();
   forget_strays();
   gate_.waiting().clear();
@@ -124,15 +124,17 @@ void ClientMail::forget_strays() {
   stray_bytes_ = 0;
 }
 
-void ClientMail::expect_twin(const std::string& client, const NamedMessage& named, std::int64_t windows) {
-  if (twins_.size() < most_twins) twins_.insert({{named.channel, named.crc}, {client, window_ + windows}});
+void ClientMail::expect_twin(const std::string& client, const NamedMessage& named, std::int64_t windows, bool counts) {
+  if (twins_.size() < most_twins) twins_.insert({{named.channel, named.crc}, {client, window_ + windows, counts}});
 }
 
 bool ClientMail::is_twin(const Stray& stray) {
   const auto twin = twins_.find({stray.mail.channel, stray.crc});
   if (twin == twins_.end()) return false;
-  ++repeated_[twin->second.client];
-  if (!first_repeated_) first_repeated_ = Repeated{twin->second.client, stray.mail.channel};
+  if (const std::string& client = twin->second.client; twin->second.counts) {
+    if (repeated_.size() < most_names || repeated_.contains(client)) ++repeated_[client];
+    if (!first_repeated_) first_repeated_ = Repeated{client, stray.mail.channel};
+  }
   twins_.erase(twin);
   return true;
 }
@@ -153,7 +155,7 @@ void ClientMail::order(std::vector<MailGate::Mail>& mail) {
     match(list);
     for (Expected& expected : list) {
       if (!expected.there) continue;
-      expect_twin(client, expected.named, expected.sent_again ? late_windows : repeat_windows);
+      expect_twin(client, expected.named, expected.sent_again ? late_windows : repeat_windows, true);
       mail.push_back({std::move(expected.named.channel), std::move(expected.payload)});
     }
   }

@@ -60,6 +60,8 @@ class ClientMail {
   static constexpr std::size_t most_of_channel = 10'000;
   static constexpr std::size_t most_bytes = 256'000'000;
   static constexpr std::int64_t repeat_windows = 1, late_windows = 10;
+  /// Of repeated(); those who come later are not counted.
+  static constexpr std::size_t most_names = 2000;
 
  private:
   static constexpr std::size_t most_twins = 50'000;
@@ -80,12 +82,13 @@ class ClientMail {
   struct Twin {
     std::string client;
     std::int64_t last_window;
+    bool counts;  ///< as repeated; false: its tick was abandoned
   };
   using Strays = std::map<std::uint64_t, Stray>;  // by arrival
 
   void take(std::vector<MailGate::Mail>& mail);
   void match(std::vector<Expected>& list);
-  void expect_twin(const std::string& client, const NamedMessage& named, std::int64_t windows);
+  void expect_twin(const std::string& client, const NamedMessage& named, std::int64_t windows, bool counts);
   bool is_twin(const Stray& stray);
   void forget_strays();
   /// Takes it out.

@@ -237,12 +237,13 @@ void Lockstep::pass(std::int64_t step) {
   }
 }
 
-std::int64_t Lockstep::needed_from(std::int64_t step) const {
+std::int64_t Lockstep::needed_from(std::int64_t step, std::int64_t most_steps) const {
   std::int64_t needed = step;
   for (const auto& [name, member] : members_) {
     if (member.terms.receives.empty()) continue;
     const std::int64_t since = (step - 1 - member.joined) % member.period_steps;
-    needed = std::min(needed, step - 1 - (since < 0 ? since + member.period_steps : since));
+    const std::int64_t last = step - 1 - (since < 0 ? since + member.period_steps : since);
+    if (step - last <= most_steps) needed = std::min(needed, last);
   }
   return std::max<std::int64_t>(needed, 0);
 }
@@ -261,9 +262,9 @@ void Lockstep::rewound(std::int64_t step) {
       member.asked = -1;
       member.list.clear();
     }
+    member.too_much = member.again_bytes > most_pending_bytes;
     member.pending = std::exchange(member.again, {});
     member.pending_bytes = std::exchange(member.again_bytes, 0);
-    member.too_much = false;
   }
 }
 

@@ -144,8 +144,8 @@ class Lockstep {
   /// What is posted from here on comes for the first time.
   void end_again() { again_ = false; }
   /// The step that the world should be simulated again from, so that the lists of `step` are whole: the last one before
-  /// it at which each client was due.
-  std::int64_t needed_from(std::int64_t step) const;
+  /// it at which each client was due.  Clients that were due more than `most_steps` before it do not count.
+  std::int64_t needed_from(std::int64_t step, std::int64_t most_steps) const;
   /// The world went back to `step`: lists hold what was posted again, and all are asked by their periods from there,
   /// when those who have an open tick have answered it.
   void rewound(std::int64_t step);

@@ -50,8 +50,6 @@ class WorldJournal {
 
   /// All of it, as replay() takes it.
   Bytes bytes() const;
-  /// How many bytes that are, about.
-  std::size_t size() const { return size_; }
   /// Why it cannot be told; empty: it can.
   const std::string& gap() const { return gap_; }
   /// Does it all again, in a world that was just built.  Nothing in it may be later than `last_step`.  Throws

@@ -60,6 +60,7 @@ struct Live {
     std::vector<std::string> all{built("shoal"), "run",         folder.world(),       "--paused", "--lcm-url",
                                  own_url(),      "--snapshots", folder.file("snaps"), "--speed",  "max"};
     all.insert(all.end(), more.begin(), more.end());
+    if (std::find(all.begin(), all.end(), "--from") != all.end()) all.erase(all.begin() + 2);  // it has its world
     if (std::find(all.begin(), all.end(), "--duration") == all.end()) all.insert(all.end(), {"--duration", "0"});
     return all;
   }
@@ -521,6 +522,20 @@ TEST(Restore, GoesOnFromAFileAndRefusesAnotherWorldsOne) {
   const Ended other = control({"restore", "branch0_step100"});
   EXPECT_EQ(other.exit_code, 1);
   EXPECT_THAT(other.errors, HasSubstr("is of another world or other values: line "));
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+}
+
+TEST(Restore, OfAnEarlierFileThanTheRunBeganWithLetsItGoBackThere) {
+  const Folder folder;
+  ASSERT_EQ(run_shoal({"run", folder.world(), "--bus", "none", "--duration", "5", "--snapshot-at", "1,5", "--snapshots",
+                       folder.file("snaps")})
+                .exit_code,
+            0);
+  Live live(folder, {"--from", folder.file("snaps") + "/branch0_step500.snapshot"});
+  EXPECT_EQ(control({"restore", "branch0_step100"}).output, "step 100, 1 s, branch 1, paused\n");
+  live.run_until("3");
+  EXPECT_EQ(control({"rewind", "--value", "0.5"}).output, "step 250, 2.5 s, branch 2, paused\n");
+  EXPECT_EQ(control({"rewind", "--value", "9"}).output, "step 100, 1 s, branch 3, paused\n");
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
 }
 

@@ -182,6 +182,7 @@ void Run::loop() {
       progress_.update(world_.now(), messages(), control_, true);
       check_programs();
       check_bus();
+      buses_.hand_over_record();
       buses_.wait(std::chrono::milliseconds(20));
       continue;
     }
@@ -236,6 +237,7 @@ void Run::synchronize() {
                                                  progress_.update(world_.now(), messages(), control_, true);
                                                check_programs();
                                                check_bus();
+                                               buses_.hand_over_record();
                                                return caught_signal() == 0 && !time_.has_moved();
                                              });
   synchronized_ = outcome == bridges::LockstepOutcome::done && !time_.has_moved();

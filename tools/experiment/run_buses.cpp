@@ -91,6 +91,10 @@ void RunBuses::close_record() {
   if (main_.recorder) main_.recorder->close();
 }
 
+void RunBuses::hand_over_record() {
+  if (main_.recorder) main_.recorder->hand_over();
+}
+
 RunBuses::RecordMark RunBuses::record_mark() const {
   return main_.recorder ? RecordMark{main_.recorder->recorded(), main_.recorder->bytes()} : RecordMark{};
 }

@@ -50,6 +50,8 @@ class RunBuses {
   std::optional<std::string> lost_connection() const;
   std::optional<std::string> record_error() const;
   void close_record();
+  /// Lets the record be written as far as it is; for a run that stands still.
+  void hand_over_record();
   /// Where the record is.
   struct RecordMark {
     std::uint64_t events = 0, bytes = 0;

@@ -33,7 +33,9 @@ class RunMail {
   /// Call after each step that is run again, without the last one.
   void pass(std::int64_t step) { lockstep_.pass_again(step); }
   /// Where to begin, so that lockstep clients get at `step` what they got the first time.
-  std::int64_t needed_from(std::int64_t step) const { return lockstep_.needed_from(step); }
+  std::int64_t needed_from(std::int64_t step, std::int64_t most_steps) const {
+    return lockstep_.needed_from(step, most_steps);
+  }
   void end_again();
 
  private:

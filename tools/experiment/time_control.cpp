@@ -21,6 +21,9 @@ constexpr const char* suffix = ".snapshot";
 /// longer too, for their memory is not in the caches any more): in a run that is much faster
 /// than real time they are further apart, and the steps between them take the less time to work out again.
 constexpr int rest_per_snapshot = 80;
+/// A client whose last tick is further before the step that the world goes back to gets a list that is not whole:
+/// running all that again would take too long.
+constexpr std::int64_t longest_lead_s = 60;
 
 /// One run of bytes that the ring can compare part by part, and back.  Its last bytes tell the three sizes.
 constexpr std::size_t trailer_bytes = 3 * sizeof(std::uint64_t);
@@ -223,7 +226,7 @@ std::string TimeControl::rewind(double seconds, bool run_on) {
   if (world_.step_number() == first_step_) throw std::runtime_error("the run is at its begin: it cannot go back");
   // Who wants to go back further than it has come goes to the begin.
   const std::int64_t target = std::max<std::int64_t>(world_.step_number() - std::llround(steps), first_step_);
-  auto base = ring_.newest_until(mail_.needed_from(target));
+  auto base = ring_.newest_until(mail_.needed_from(target, longest_lead_s * steps_per_second_));
   if (!base) base = ring_.newest_until(target);  // some client will lack reports
   if (!base) {
     const double oldest_s = sim::to_seconds(sim::Time{ring_.oldest().value_or(0) * world_.step_time().count()});
@@ -386,6 +389,7 @@ std::string TimeControl::restore(const std::string& name, bool run_on) {
         options_.scores_from_s = snapshot.from_s;
         forget_all();
         after_step();
+        first_step_ = std::min(first_step_, snapshot.step);
       },
       snapshot.step, run_on, false);
   return place();

@@ -115,7 +115,7 @@ class TimeControl final : public bridges::TimeMachine {
   std::int64_t steps_per_second_;
   SnapshotRing ring_;
   Clock::time_point not_before_;  // the next snapshot for going back
-  std::int64_t first_step_ = 0;   ///< where this run began
+  std::int64_t first_step_ = 0;   ///< where this run began, or an earlier file
   int files_ = 0;
   bool moved_ = false;
   std::string broken_;

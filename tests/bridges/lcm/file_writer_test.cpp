@@ -2,8 +2,13 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <fstream>
 #include <iterator>
@@ -91,6 +96,29 @@ TEST(FileWriter, SaysThatTheDiskIsFullWhenItIsWaitedForAndEverAfter) {
   block = block_of("more");
   EXPECT_FALSE(writer.hand_over(block));
   EXPECT_EQ(errno, ENOSPC);
+}
+
+TEST(FileWriter, WritesNothingThatWaitedWhileABlockFailed) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
+  const FileDescriptor reader(ends[1]);
+  const timeval patience{0, 300'000};  // then a write fails
+  ASSERT_EQ(setsockopt(ends[0], SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience), 0);
+  FileWriter writer{FileDescriptor(ends[0])};
+  FileWriter::Block block = block_of(std::string(4'000'000, 'a'));  // more than the socket holds
+  ASSERT_TRUE(writer.hand_over(block));
+  block = block_of("b");
+  ASSERT_TRUE(writer.hand_over(block));
+  block = block_of("c");
+  EXPECT_FALSE(writer.hand_over(block)) << "waits until the first has failed";
+  std::string got;
+  std::array<char, 65536> part{};
+  for (pollfd readable{reader.number(), POLLIN, 0}; poll(&readable, 1, 500) == 1;) {
+    const ssize_t size = read(reader.number(), part.data(), part.size());
+    if (size <= 0) break;
+    got.append(part.data(), static_cast<std::size_t>(size));
+  }
+  EXPECT_EQ(std::count(got.begin(), got.end(), 'a'), static_cast<std::ptrdiff_t>(got.size()));
 }
 
 }  // namespace

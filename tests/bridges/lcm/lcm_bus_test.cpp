@@ -1,9 +1,15 @@
 #include "bridges/lcm/lcm_bus.hpp"
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
+#include <mutex>
+#include <thread>
 
 #include "bridges/lcm/lcm_listener.hpp"
 #include "lcm_test_support.hpp"
@@ -71,6 +77,65 @@ TEST(LcmUrl, NoTcpServerIsSaidAtOnce) {
   } catch (const BusError& error) {
     EXPECT_NE(std::string(error.what()).find("no LCM server at 127.0.0.1:9"), std::string::npos) << error.what();
   }
+}
+
+/// Takes what a bus sends over TCP.
+class TcpServer {
+ public:
+  TcpServer() : listener_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    address_.sin_family = AF_INET;
+    address_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address_;
+    EXPECT_EQ(bind(listener_, reinterpret_cast<sockaddr*>(&address_), size), 0);
+    EXPECT_EQ(getsockname(listener_, reinterpret_cast<sockaddr*>(&address_), &size), 0);
+    EXPECT_EQ(listen(listener_, 8), 0);
+    thread_ = std::thread([this] { serve(); });
+  }
+  ~TcpServer() {
+    shutdown(listener_, SHUT_RDWR);
+    thread_.join();
+    close(listener_);
+  }
+  std::string url() const { return "tcpq://127.0.0.1:" + std::to_string(ntohs(address_.sin_port)); }
+  bool has(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    return got_.find(text) != std::string::npos;
+  }
+
+ private:
+  void serve() {
+    for (int fd = 0; (fd = accept(listener_, nullptr, nullptr)) >= 0; close(fd)) {
+      std::array<char, 4096> part{};
+      if (recv(fd, part.data(), 8, MSG_WAITALL) != 8) continue;  // somebody knocked only
+      const std::array<std::uint32_t, 2> answer{htonl(0x287617fa), htonl(0x0100)};
+      if (send(fd, answer.data(), sizeof answer, MSG_NOSIGNAL) < 0) continue;
+      for (ssize_t size = 0; (size = read(fd, part.data(), part.size())) > 0;) {
+        const std::lock_guard lock(mutex_);
+        got_.append(part.data(), static_cast<std::size_t>(size));
+      }
+    }
+  }
+
+  int listener_;
+  sockaddr_in address_{};
+  std::mutex mutex_;
+  std::string got_;
+  std::thread thread_;
+};
+
+TEST(LcmBus, WhoWaitsHasMessagesSentOverTcpToo) {
+  TcpServer server;
+  LcmBus bus(server.url());
+  int quick = 0;
+  for (int i = 0; i < 20; ++i) {
+    const std::string text = "message " + std::to_string(i) + ".";
+    const auto begin = std::chrono::steady_clock::now();
+    bus.publish("a", bytes_of(text), now);
+    EXPECT_FALSE(bus.wait_for_message(1ms));
+    EXPECT_TRUE(await([&] { return server.has(text); }));
+    if (std::chrono::steady_clock::now() - begin < 10ms) ++quick;
+  }
+  EXPECT_GE(quick, 5) << "nobody else wakes the sender, which looks every 20 ms";
 }
 
 /// Messages from another bus come over the network, those of the bus itself at once.

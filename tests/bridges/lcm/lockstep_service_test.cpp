@@ -613,6 +613,25 @@ TEST(LockstepService, AClientOfTheSameNameOnAnotherBusIsASecondOne) {
   EXPECT_THROW(s.lockstep.join(1, request), std::runtime_error);
 }
 
+TEST(LockstepService, ASessionStaysOnItsBus) {
+  sim::InProcessBus other_bus;
+  sim::MailGate other_gate(other_bus);
+  Service s;
+  s.lockstep.add_line(other_bus, other_gate);
+  ASSERT_TRUE(s.join("pilot", "{session: 7}").ok);
+  shoal::sim_control_request_t request{};
+  request.client = "pilot";
+  request.value = 0.01;
+  request.text = "{session: 7}";
+  try {
+    s.lockstep.join(1, request);
+    ADD_FAILURE();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the session 7 of client 'pilot' takes part on another bus"));
+  }
+  EXPECT_TRUE(s.join("pilot", "{session: 7}").ok);
+}
+
 TEST(LockstepService, TellsTheEndUntilAllKnow) {
   Service s;
   ASSERT_TRUE(s.join("pilot", "{session: 5, receives: [x]}", 1).ok);

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 #include <lcm/eventlog.h>
 
+#include <filesystem>
 #include <fstream>
 #include <queue>
 #include <random>
 #include <sstream>
+#include <thread>
 
 #include "bridges/lcm/event_log.hpp"
 #include "bridges/lcm/lcm_bus.hpp"
@@ -19,6 +21,7 @@ using lcm_test::await;
 using lcm_test::bytes_of;
 using lcm_test::ScratchFolder;
 using lcm_test::text_of;
+using namespace std::chrono_literals;
 
 constexpr std::int64_t epoch = 1'700'000'000'000'000;
 
@@ -174,6 +177,26 @@ TEST(RecordingBus, AFullDiskIsReportedAlsoWhenItShowsAtTheEnd) {
   EXPECT_FALSE(bus.error());
   bus.close();
   EXPECT_EQ(bus.error().value_or(""), "/dev/full: cannot record: No space left on device");
+}
+
+TEST(RecordingBus, NothingStaysInMemoryForLong) {
+  const ScratchFolder folder;
+  ScriptedBus inner;
+  RecordingBus bus(inner, folder.file("log"), epoch);
+  const auto in_file = [&](std::uintmax_t events) {
+    return await([&] { return std::filesystem::file_size(folder.file("log")) == events * 30; }, 3s);
+  };
+  bus.publish("a", bytes_of("x"), sim::Time(1'000'000));
+  EXPECT_TRUE(in_file(1)) << "once a simulated second";
+  bus.publish("a", bytes_of("x"), sim::Time(2'000'000));  // too early, if this machine is fast
+  bus.publish("a", bytes_of("x"), sim::Time(3'000'000));
+  std::this_thread::sleep_for(60ms);
+  bus.publish("a", bytes_of("x"), sim::Time(3'100'000));
+  EXPECT_TRUE(in_file(4)) << "what came too early is written soon";
+  bus.publish("a", bytes_of("x"), sim::Time(3'200'000));
+  std::this_thread::sleep_for(60ms);
+  bus.hand_over();
+  EXPECT_TRUE(in_file(5)) << "the run stands still";
 }
 
 TEST(RecordingBus, OverwritesOnlyWhenTold) {

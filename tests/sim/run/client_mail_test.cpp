@@ -115,6 +115,7 @@ TEST(ClientMail, AfterClearingOnlyWhatIsOnItsWayIsDropped) {
   test.mail.clear();
   for (const char* text : {"1", "2", "3"}) test.arrive(text);
   EXPECT_EQ(test.admitted(), "13");
+  EXPECT_FALSE(test.mail.take_repeated());
 }
 
 TEST(ClientMail, OfOneChannelOnlySoManyWaitAndTheOthersStay) {
@@ -138,6 +139,22 @@ TEST(ClientMail, DropsWhatWasNamedForATickThatCountsNoMore) {
   test.mail.drop("a", {named("cmd", "1"), named("cmd", "3")});
   test.arrive("3");
   EXPECT_EQ(test.admitted(), "2");
+  EXPECT_FALSE(test.mail.take_repeated());  // it is late, and no copy
+  EXPECT_TRUE(test.mail.repeated().empty());
+}
+
+TEST(ClientMail, CountsWhatIsRepeatedForSoManyClients) {
+  Sorted test;
+  const auto repeat = [&](std::size_t client) {
+    const std::string name = std::to_string(client);
+    for (int i = 0; i < 2; ++i) test.arrive(name);
+    test.mail.expect(name, {named("cmd", name)});
+    EXPECT_EQ(test.admitted(), name);
+  };
+  for (std::size_t i = 0; i < sim::ClientMail::most_names + 10; ++i) repeat(i);
+  repeat(0);
+  EXPECT_EQ(test.mail.repeated().size(), sim::ClientMail::most_names);
+  EXPECT_EQ(test.mail.repeated().at("0"), 2u);
 }
 
 TEST(ClientMail, DropsAllThatHasComeWhenItCannotBeToldWhoseItIs) {

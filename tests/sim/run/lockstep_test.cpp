@@ -147,9 +147,11 @@ TEST(Lockstep, WhatIsPostedAgainIsOnTheListOfTheFirstTickAfterGoingBack) {
   lockstep.join("a", session(7, {"x"}), 10, 0);
   lockstep.join("late", session(8, {"x"}), 10, 55);  // due at 5, 15, 25 as well
   lockstep.post(0, "x", bytes_of("of the branch that is left"));
-  EXPECT_EQ(lockstep.needed_from(30), 20);
-  EXPECT_EQ(lockstep.needed_from(33), 25);  // late at 25, a at 30
-  EXPECT_EQ(lockstep.needed_from(3), 0);
+  EXPECT_EQ(lockstep.needed_from(30, 1000), 20);
+  EXPECT_EQ(lockstep.needed_from(33, 1000), 25);  // late at 25, a at 30
+  EXPECT_EQ(lockstep.needed_from(33, 7), 30);     // late was due too long ago
+  EXPECT_EQ(lockstep.needed_from(33, 2), 33);
+  EXPECT_EQ(lockstep.needed_from(3, 1000), 0);
   lockstep.begin_again();
   for (std::int64_t step = 16; step <= 30; ++step) {  // the world is simulated again up to step 30
     lockstep.post(0, "x", bytes_of(std::to_string(step)));
@@ -168,6 +170,20 @@ TEST(Lockstep, WhatIsPostedAgainIsOnTheListOfTheFirstTickAfterGoingBack) {
   EXPECT_EQ(list("a"), "21 22 23 24 25 26 27 28 29 30 31 ");
   lockstep.ask(35);
   EXPECT_EQ(list("late"), "26 27 28 29 30 31 ");
+}
+
+TEST(Lockstep, AListThatHadNoRoomWhileGoingBackIsNotWhole) {
+  Lockstep lockstep;
+  lockstep.join("a", session(7, {"x"}), 10, 0);
+  const sim::Bytes half(Lockstep::most_pending_bytes / 2);
+  for (const bool too_much : {true, false}) {
+    lockstep.begin_again();
+    for (int i = 0; i < (too_much ? 2 : 1); ++i) lockstep.post(0, "x", half);
+    lockstep.end_again();
+    lockstep.rewound(0);
+    EXPECT_EQ(lockstep.find("a")->too_much, too_much);
+    EXPECT_EQ(lockstep.find("a")->pending.size(), too_much ? 0u : 1u);
+  }
 }
 
 TEST(Lockstep, ATickThatWasOpenBeforeGoingBackIsAnsweredFirst) {
