@@ -71,7 +71,10 @@ void RecordingBus::record(std::string_view channel, std::span<const std::byte> p
   bytes_ += event_head_bytes + channel.size() + payload.size();
   // Once a simulated second, but not more often than it is worth it: a killed run loses little, and `tail` sees it
   // grow.
-  if ((utime_ - epoch_utime_) / 1'000'000 > handed_over_s_) hand_over();
+  if (const std::int64_t second = (utime_ - epoch_utime_) / 1'000'000; second > looked_s_) {
+    looked_s_ = second;
+    hand_over();
+  }
 }
 
 void RecordingBus::hand_over() {
@@ -80,7 +83,6 @@ void RecordingBus::hand_over() {
   const auto now = std::chrono::steady_clock::now();
   if (now - handed_over_ < shortest_pause) return;
   handed_over_ = now;
-  handed_over_s_ = (utime_ - epoch_utime_) / 1'000'000;
   if (!log_->hand_over()) fail(errno);
 }
 
@@ -118,7 +120,7 @@ void RecordingBus::go_on() {
   bytes_ = next_->bytes;
   next_.reset();
   utime_ = epoch_utime_;  // time went back: the next set_time() tells
-  handed_over_s_ = 0;
+  looked_s_ = 0;
 }
 
 void RecordingBus::fail(int error_number) {

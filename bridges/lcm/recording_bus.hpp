@@ -81,8 +81,8 @@ class RecordingBus final : public sim::Bus {
   RecordingBus* first_ = nullptr;  // whose log is used; null: our own
   std::string path_;
   std::int64_t epoch_utime_ = 0;
-  std::int64_t utime_ = 0;          // of the last event; never goes back
-  std::int64_t handed_over_s_ = 0;  // simulated second in which the file was last handed over
+  std::int64_t utime_ = 0;     // of the last event; never goes back
+  std::int64_t looked_s_ = 0;  // simulated second in which it was last looked whether to hand over
   std::chrono::steady_clock::time_point handed_over_;
   std::unique_ptr<EventLogWriter> log_;
   std::optional<Next> next_;  // prepared
