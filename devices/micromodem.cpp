@@ -28,12 +28,12 @@ MicromodemProtocol::Config protocol_config(const Micromodem::Params& params) {
   return config;
 }
 
-/// What the modems of a world are called when they are made.
-struct Addresses {
+}  // namespace
+
+/// What the modems of a world are called, by network and address.
+struct Micromodem::Addresses {
   std::map<std::pair<std::string, int>, std::vector<std::string>> names;
 };
-
-}  // namespace
 
 void Micromodem::BeaconParams::read(sim::ParamReader& in) {
   in.read("network", network, "of the transponders");
@@ -72,13 +72,18 @@ Micromodem::Micromodem(const Params& params, const sim::DeviceContext& context)
     : params_(params),
       vehicle_(context.vehicle),
       epoch_us_(context.world.epoch_us()),
+      addresses_(context.world.shared<Addresses>()),
       transducer_(*this, params.receiver, context),
       protocol_(protocol_config(params), *this),
       now_(context.world.now()) {
   check_beacons(context);
-  take_address();
-  warn_of_address(context);
   if (params.serial) serial_ = std::make_unique<SerialPort>(*params.serial, context);
+  take_address();  // nothing fails after it, so the destructor takes it back
+  warn_of_address();
+}
+
+Micromodem::~Micromodem() {
+  unlist();
 }
 
 void Micromodem::check_beacons(const sim::DeviceContext& context) const {
@@ -97,12 +102,25 @@ void Micromodem::check_beacons(const sim::DeviceContext& context) const {
 }
 
 /// Two of one address answer for each other; the others cannot tell.
-void Micromodem::warn_of_address(const sim::DeviceContext& context) const {
-  auto& names = context.world.shared<Addresses>().names[{params_.network, address_}];
-  names.push_back(transducer_.full_name());
-  if (names.size() == 2)
+void Micromodem::warn_of_address() const {
+  const auto& names = addresses_.names[{params_.network, address_}];
+  if (names.size() == 2 && names[0] != names[1])
     spdlog::warn("micromodems '{}' and '{}' have the same address {} in network '{}'", names[0], names[1], address_,
                  params_.network);
+}
+
+void Micromodem::list(int address) {
+  unlist();
+  address_ = address;
+  addresses_.names[{params_.network, address_}].push_back(transducer_.full_name());
+}
+
+void Micromodem::unlist() {
+  const auto names = addresses_.names.find({params_.network, address_});
+  if (names == addresses_.names.end()) return;
+  const auto own = std::find(names->second.begin(), names->second.end(), transducer_.full_name());
+  if (own != names->second.end()) names->second.erase(own);
+  if (names->second.empty()) addresses_.names.erase(names);
 }
 
 void Micromodem::take(const std::string& sentence, sim::Time now) {
@@ -114,11 +132,13 @@ void Micromodem::take(const std::string& sentence, sim::Time now) {
 
 void Micromodem::take_line(const NmeaLines::Line& line, sim::Time now) {
   protocol_.take_line(line, now);
-  if (protocol_.address() != address_) take_address();
+  if (protocol_.address() == address_) return;
+  take_address();
+  warn_of_address();
 }
 
 void Micromodem::take_address() {
-  address_ = protocol_.address();
+  list(protocol_.address());
   transducer_.belong_to({group(), std::to_string(address_)});
 }
 
@@ -213,9 +233,9 @@ bool Micromodem::listens_to(const sim::Signal& signal) const {
 void Micromodem::heard(const sim::Reception& heard) {
   now_ = std::max(now_, heard.ended);
   if (heard.signal.kind == sim::Signal::Kind::answer) return heard_beacon(heard);
-  // One that it did not take is nothing to it.
+  // One that it did not take is nothing to it.  Out of the water is the sender: it would hear nothing there itself.
   const bool has_errors = heard.loss == sim::SignalLoss::noise || heard.loss == sim::SignalLoss::interference ||
-                          heard.loss == sim::SignalLoss::sender_off;
+                          heard.loss == sim::SignalLoss::sender_off || heard.loss == sim::SignalLoss::out_of_water;
   if (!heard.understood() && !(heard.noticed && has_errors)) return;
   const auto packet = MicromodemPacket::read(heard.signal.code, heard.signal.payload);
   if (!packet) return;
@@ -245,7 +265,7 @@ void Micromodem::measure(const sim::SenseContext&) {
 
 void Micromodem::visit_state(sim::StateArchive& archive) {
   archive(protocol_, lines_, off_, now_, saying_, said_);
-  if (archive.restoring()) address_ = protocol_.address();
+  if (archive.restoring()) list(protocol_.address());
 }
 
 void MicromodemReporter::report(sim::Time, sim::Publisher& out) const {

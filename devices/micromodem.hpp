@@ -52,6 +52,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
 
   /// Throws ConfigError when the world has no water, or `lbl` names no transponder of the world.
   Micromodem(const Params& params, const sim::DeviceContext& context);
+  ~Micromodem() override;
 
   /// A sentence from the host by the bus; an end of line is not needed.
   void take(const std::string& sentence, sim::Time now);
@@ -68,10 +69,14 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   const sim::Transducer& transducer() const { return transducer_; }
 
  private:
+  struct Addresses;
   static constexpr std::size_t most_sentences = 4096;  // between two samples
 
   void check_beacons(const sim::DeviceContext& context) const;
-  void warn_of_address(const sim::DeviceContext& context) const;
+  void warn_of_address() const;
+  /// In the addresses of the world.
+  void list(int address);
+  void unlist();
   bool listens_to(const sim::Signal& signal) const override;
   void heard(const sim::Reception& heard) override;
   void heard_beacon(const sim::Reception& heard);
@@ -90,6 +95,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   Params params_;
   const sim::Vehicle& vehicle_;
   std::int64_t epoch_us_;
+  Addresses& addresses_;
   sim::Transducer transducer_;
   MicromodemProtocol protocol_;
   NmeaLines lines_;
@@ -97,7 +103,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   std::vector<Said> said_;
   std::unique_ptr<SerialPort> serial_;
   sim::Time now_{0};
-  int address_ = 0;   // that the channel knows
+  int address_ = -1;  // that the channel knows; -1: none yet
   bool off_ = false;  // without power, or silent by a fault
 };
 

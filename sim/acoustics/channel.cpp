@@ -75,7 +75,18 @@ void AcousticChannel::leave(Transducer& transducer) {
   transducers_[static_cast<std::size_t>(transducer.number())] = nullptr;
   for (const auto& sending : sendings_)
     if (sending && sending->from == &transducer) sending->from = nullptr;
+  forget_messages_for(transducer.own_);
   forget_receivers();
+}
+
+/// The counts of names that come and go would be more and more.
+void AcousticChannel::forget_messages_for(const Audience& gone) {
+  const auto group = messages_.find(gone.group);
+  if (gone.address.empty() || group == messages_.end() || !group->second.contains(gone.address)) return;
+  const bool is_used = std::any_of(transducers_.begin(), transducers_.end(), [&](const Transducer* each) {
+    return each != nullptr && each->own_.address == gone.address && each->own_.group == gone.group;
+  });
+  if (!is_used) group->second.erase(gone.address);
 }
 
 void AcousticChannel::forget_receivers() {

@@ -45,7 +45,7 @@ class AcousticChannel {
   void forget_places() { neighbours_age_ = -1; }
   /// A receiver changed: how faint a sound may be and matter is looked up again.
   void forget_receivers();
-  /// Messages that were sent to this one or all of its group since the start.
+  /// Messages that were sent to this one, since the last with its address left, or all of its group since the start.
   std::int64_t messages_for(const Audience& own) const;
   /// What transducers that have left sent and heard.
   const Transducer::Counts& counts_of_those_gone() const { return gone_; }
@@ -107,6 +107,8 @@ class AcousticChannel {
 
   void join(Transducer& transducer);
   void leave(Transducer& transducer);
+  /// When nobody else is of that address.
+  void forget_messages_for(const Audience& gone);
   void join(ContinuousSound& sound);
   void leave(ContinuousSound& sound);
   void transmit(Transducer& from, Signal signal, Time at);

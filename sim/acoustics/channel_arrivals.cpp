@@ -96,6 +96,7 @@ SignalLoss AcousticChannel::obstacle(const Flight& flight) const {
   if (!around_.medium.in_water(flight.p_begun_W)) return SignalLoss::out_of_water;
   if (!to.works()) return SignalLoss::receiver_off;
   if (flight.loss != SignalLoss::none) return flight.loss;  // blocked
+  // SignalReceiver::take() looks, too; but what nobody could notice is lost in the noise, whatever is below.
   if (flight.snr < Decibels{to.config().detection_dB}) return SignalLoss::noise;
   if (flight.begun < to.sending_until_) return SignalLoss::half_duplex;
   if (std::abs(flight.closing_mps) > to.config().doppler_limit_mps) return SignalLoss::doppler;
@@ -206,8 +207,10 @@ void AcousticChannel::end(int number) {
         ++to->counts_.understood;
         to->counts_.understood_bytes += static_cast<std::int64_t>(sending.signal.payload.size());
       }
-      const bool deaf = flight.loss == SignalLoss::receiver_off || flight.loss == SignalLoss::out_of_water ||
-                        flight.loss == SignalLoss::blocked;
+      // By what is so of the receiver: a sender that went out of the water is heard to stop.
+      const bool out_itself = flight.loss == SignalLoss::out_of_water && sending.cut != SignalLoss::out_of_water;
+      const bool deaf = out_itself || flight.loss == SignalLoss::receiver_off || flight.loss == SignalLoss::blocked ||
+                        !to->works() || !around_.medium.in_water(to->p_W(flight.ended));
       if (!deaf)
         to->listener_.heard({sending.signal, sending.source, sending.number, sending.sent, flight.begun, flight.ended,
                              flight.travel_time_s, sending.p_W, flight.p_begun_W, flight.level, flight.snr, sinr,

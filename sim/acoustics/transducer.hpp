@@ -65,6 +65,8 @@ class Transducer {
   void call_back();
   /// Who it is from now on; before the first call, nobody in particular.
   void belong_to(const Audience& own);
+  /// It was called: messages may be for this one, as for that of a modem.
+  bool belongs_to_somebody() const { return !own_.group.empty(); }
   /// It sends now, or has something scheduled, until this time.
   Time busy_until() const { return busy_until_; }
   /// It is taking a signal now.

@@ -5,6 +5,7 @@
 #include "shoal/nmea_sentence_t.hpp"
 #include "tests/devices/modem_fixture.hpp"
 #include "tests/fidelity/closed_forms.hpp"
+#include "tests/sim/medium/log_capture.hpp"
 
 namespace {
 
@@ -366,6 +367,21 @@ TEST(Micromodem, TheSameWorldGivesTheSameHashes) {
     return all;
   };
   EXPECT_EQ(hashes(), hashes());
+}
+
+TEST(Micromodem, WarnsOfTwoWithOneAddressAndNotOfOneThatComesBack) {
+  Hosts hosts(three());
+  const test_support::LogCapture log;
+  const sim::VehicleInstance a = hosts.loaded.config.vehicles[0];
+  for (int i = 0; i < 3; ++i) {
+    hosts.world.remove_vehicle("a");
+    hosts.world.add_vehicle(a);
+    hosts.run_for(0.1);
+  }
+  EXPECT_EQ(log.text(), "");
+  hosts.say("a", "$CCCFG,SRC,2");
+  hosts.run_for(0.1);
+  EXPECT_THAT(log.text(), HasSubstr("'b/modem' and 'a/modem' have the same address 2 in network 'micromodem'"));
 }
 
 }  // namespace

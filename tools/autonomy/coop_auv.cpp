@@ -97,7 +97,8 @@ Eigen::Vector3d CoopAuv::turned_into_world(const Eigen::Vector3d& point_B) const
 }
 
 bool CoopAuv::is_silent() const {
-  return steps_in_silence_ * params_.period_s > longest_quiet_s;
+  // Of the steps that are counted, the first ends the period in which something was said.
+  return (steps_in_silence_ - 1) * params_.period_s > longest_quiet_s;
 }
 
 void CoopAuv::receive(const shoal::dvl_t& dvl) {

@@ -50,7 +50,7 @@ CoopCraft::Decision CoopCraft::step() {
   Decision decision;
   shoal::helm_command_t helm{utime_, 0, nan, nan, nan};
   // The time is that of GPS: when it is silent there is none, but for the calls of this.
-  const bool is_recent = ++steps_since_fix_ * params_.period_s <= params_.oldest_fix_s;
+  const bool is_recent = steps_since_fix_++ * params_.period_s <= params_.oldest_fix_s;
   const bool has_fix = is_recent && motion_ && std::abs(seconds(utime_ - motion_->utime)) <= params_.oldest_fix_s;
   if (!motion_) return decision;
   if (has_fix) {

@@ -83,6 +83,7 @@ void MarineEkf::predict(std::int64_t utime, const Vector2d& v_measured_W, double
 void MarineEkf::shift_clock(std::int64_t by_us, double range_m, double range_std_m) {
   utime_ += by_us;
   for (Mark& mark : marks_) mark.utime += by_us;
+  trust_.clear();  // they may have been right
   contradictions_.clear();
   if (params_.states <= 4) return;
   x_[4] += range_m;
@@ -275,6 +276,7 @@ void MarineEkf::take_motion_of(const MarineEkf& other) {
   P_.topRows<4>().setZero();
   P_.leftCols<4>().setZero();
   P_.topLeftCorner<4, 4>() = other.P_.topLeftCorner<4, 4>();
+  ranges_used_ = 0;
 }
 
 template <int n>

@@ -69,10 +69,7 @@ int take_part(shoal::Client& client, const Participation& participation, Memory 
     lost = true;
     client.stop();
   });
-  if (participation.free_running)
-    client.follow(participation.period_s);
-  else
-    client.join(participation.period_s, std::chrono::milliseconds(std::llround(1000 * participation.join_timeout_s)));
+  client.join(participation.period_s, std::chrono::milliseconds(std::llround(1000 * participation.join_timeout_s)));
   while (const auto utime = client.next_tick()) {
     if (lost) break;
     decide(*utime);

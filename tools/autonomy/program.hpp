@@ -25,7 +25,6 @@ struct Participation {
   std::string lcm_url;
   double period_s = 0.1;
   double join_timeout_s = 30;
-  bool free_running = false;
   double rewind_s = 60;  ///< of simulated time: how far back the program goes with the world; 0: not at all
 
   void add_options(CLI::App& app);
@@ -40,8 +39,7 @@ int take_part(shoal::Client& client, const Participation& participation, Memory 
 template <class State>
 int take_part(shoal::Client& client, const Participation& participation, State& state,
               const std::function<void(std::int64_t utime)>& decide) {
-  return take_part(client, participation, Memory(state, participation.free_running ? 0 : participation.rewind_s),
-                   decide);
+  return take_part(client, participation, Memory(state, participation.rewind_s), decide);
 }
 
 /// Runs a program: what std::invalid_argument says is wrong usage, any other exception is bus trouble.

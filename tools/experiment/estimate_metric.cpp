@@ -18,6 +18,9 @@ namespace {
 /// How far ahead of the truth an estimate may be: the clock of a vehicle is not perfect.
 constexpr sim::Time most_ahead{1'000'000};
 
+/// Of one metric; the count of bad messages is in the summary.
+constexpr int most_warnings = 100;
+
 struct Estimate {
   std::int64_t utime = 0;
   sim::Vector3d position_m = sim::Vector3d::Zero();
@@ -51,6 +54,12 @@ class EstimateMetric final : public Metric {
  public:
   EstimateMetric(const sim::MetricConfig& config, const sim::World& world, const TruthHistory& truth)
       : Metric(config), world_(world), truth_(truth), mailbox_(vehicle().bus().open_mailbox(config.channel)) {}
+
+  ~EstimateMetric() override {
+    say_how_many();
+    if (warnings_ > most_warnings)
+      spdlog::warn("metric '{}': {} messages were ignored in all", config().name, bad_messages_);
+  }
 
   void after_step() override {
     if (!begun_s_) begun_s_ = sim::to_seconds(world_.now());
@@ -108,14 +117,17 @@ class EstimateMetric final : public Metric {
     if (what != complaint_) {
       say_how_many();
       complaint_ = what;
-      spdlog::warn("metric '{}': {}: {} (ignored, as are all more of this)", config().name, channel, what);
+      warn(fmt::format("{}: {} (ignored, as are all more of this)", channel, what));
     }
     ++ignored_;
   }
   void say_how_many() {
-    if (ignored_ > 1) spdlog::warn("metric '{}': {} messages in a row were ignored", config().name, ignored_);
+    if (ignored_ > 1) warn(fmt::format("{} messages in a row were ignored", ignored_));
     ignored_ = 0;
-    complaint_.clear();
+  }
+  void warn(const std::string& text) {
+    if (warnings_ < most_warnings) spdlog::warn("metric '{}': {}", config().name, text);
+    ++warnings_;
   }
 
   void take(const Estimate& estimate) {
@@ -213,7 +225,8 @@ class EstimateMetric final : public Metric {
   std::optional<double> begun_s_;  ///< when it began to listen
   std::int64_t bad_messages_ = 0;
   std::string complaint_;     ///< the last one
-  std::int64_t ignored_ = 0;  ///< messages, since that was said
+  std::int64_t ignored_ = 0;  ///< messages in a row
+  int warnings_ = 0;
 };
 
 class DistanceMetric final : public Metric {

@@ -2,9 +2,12 @@
 
 #include <signal.h>
 #include <spawn.h>
+#include <spdlog/fmt/fmt.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <limits>
 #include <thread>
 
 extern char** environ;
@@ -44,6 +47,17 @@ std::string gnuplot_text(const std::string& text) {
     if (c == '\'') quoted += c;
   }
   return quoted + "'";
+}
+
+std::string axis_of_errors(const std::vector<double>& errors_m) {
+  constexpr double very_different = 5;
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (const double error_m : errors_m) {
+    least = std::min(least, error_m);
+    most = std::max(most, error_m);
+  }
+  if (!(least > 0) || !(most > very_different * least)) return "set yrange [0:*]\n";
+  return fmt::format("set logscale y\nset yrange [{:.3g}:*]\n", 0.05 * least);
 }
 
 bool run_gnuplot(const std::string& directory, const std::string& script, std::chrono::milliseconds limit,

@@ -1,5 +1,7 @@
 #include "tools/experiment/link_counts.hpp"
 
+#include <algorithm>
+
 #include "devices/acoustic_modem.hpp"
 #include "devices/modem.hpp"
 #include "sim/acoustics/channel.hpp"
@@ -45,7 +47,6 @@ LinkCounts radio_counts(const sim::World& world, const std::string& vehicle, con
 
 LinkCounts link_counts(const sim::World& world, const std::string& vehicle, const std::string& device) {
   LinkCounts sum = no_counts();
-  sum.acoustic = vehicle.empty() && !world.acoustics().transducers().empty();  // they may have left since
   const auto add = [&](const sim::Transducer::Counts& counts) {
     sum.sent += counts.sent;
     sum.bytes_sent += counts.sent_bytes;
@@ -54,10 +55,12 @@ LinkCounts link_counts(const sim::World& world, const std::string& vehicle, cons
     add_losses(sum, counts.lost);
   };
   if (vehicle.empty()) add(world.acoustics().counts_of_those_gone());
+  const bool any_lost = std::any_of(sum.lost.begin(), sum.lost.end(), [](const auto& lost) { return lost.second > 0; });
+  sum.acoustic = sum.sent > 0 || sum.received > 0 || any_lost;  // modems that have left
   for (const sim::Transducer* transducer : world.acoustics().transducers()) {
     if (transducer == nullptr || !is_asked(transducer->full_name(), vehicle, device)) continue;
     add(transducer->counts());
-    sum.acoustic = true;
+    sum.acoustic = sum.acoustic || transducer->belongs_to_somebody();
   }
   for (const auto& mounted : world.devices()) {
     const auto* modem = mounted ? dynamic_cast<const devices::AcousticModem*>(mounted->sensor()) : nullptr;

@@ -10,7 +10,7 @@ namespace tools {
 
 /// What modems sent, and what came of the messages that were for them: to their address, or to all of their kind.
 struct LinkCounts {
-  bool acoustic = false;                     ///< there are some that are
+  bool acoustic = false;                     ///< there are some that are: not transponders and the like
   std::int64_t sent = 0;                     ///< packets
   std::int64_t bytes_sent = 0;               ///< in them
   std::int64_t received = 0;                 ///< as often as one that a packet was for understood it

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "tools/experiment/gnuplot.hpp"
@@ -103,23 +102,13 @@ double rms_of(const Scoring::Track& track) {
   return std::sqrt(squares / static_cast<double>(track.samples->size()));
 }
 
-/// Beside a much larger error a small one would be a line on the axis.
-std::string axis_of_errors(const Tracks& tracks) {
-  constexpr double very_different = 5;
-  double least = std::numeric_limits<double>::infinity(), most = 0;
-  for (const Scoring::Track& track : tracks) {
-    least = std::min(least, rms_of(track));
-    most = std::max(most, rms_of(track));
-  }
-  if (!(least > 0) || most < very_different * least) return "set yrange [0:*]\n";
-  return fmt::format("set logscale y\nset yrange [{:.3g}:*]\n", 0.1 * least);
-}
-
 /// Errors over a column, with three times the sigma that the estimate tells.
 std::string errors_script(const Tracks& tracks, const char* file, const char* x_label, int x) {
   std::vector<std::string> curves;
+  std::vector<double> errors_m;
   int color = 1;
   for (const Scoring::Track& track : tracks) {
+    errors_m.push_back(rms_of(track));
     curves.push_back(
         curve(track.metric, x, "3", fmt::format("lw 2 lc {} title {} noenhanced", color, gnuplot_text(track.metric))));
     if (has_covariance(track))
@@ -130,7 +119,7 @@ std::string errors_script(const Tracks& tracks, const char* file, const char* x_
   }
   return fmt::format("set output '{}'\nset size noratio\nset xlabel '{}'\nset ylabel 'position error (m)'\n", file,
                      x_label) +
-         axis_of_errors(tracks) + joined(curves) + "unset logscale y\nset autoscale y\n";
+         axis_of_errors(errors_m) + joined(curves) + "unset logscale y\nset autoscale y\n";
 }
 
 /// Consistency over time, with the value it has on average and the bound of 95 of 100 samples.

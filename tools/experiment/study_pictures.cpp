@@ -7,7 +7,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <stdexcept>
 
 #include "tools/experiment/gnuplot.hpp"
@@ -82,17 +81,15 @@ class StudyPainter {
   std::string along(const StudyPlot& plot) {
     std::string data, plots;
     int index = 0;
-    double least = std::numeric_limits<double>::infinity(), most = 0;  // of what the curves reach
+    std::vector<double> reached_m;
     const std::string file = gnuplot_text(plot.name + ".dat");
     const auto cases = cases_of(plot, study_.config);
     for (const std::string& name : cases)
       for (const std::string& metric : plot.metrics) {
         const std::vector<Band> bands = bands_of(curves(plot, name, metric));
         if (bands.empty()) continue;
-        double reached = 0;
-        for (const Band& band : bands) reached = std::max(reached, band.median);
-        least = std::min(least, reached);
-        most = std::max(most, reached);
+        reached_m.push_back(0);
+        for (const Band& band : bands) reached_m.back() = std::max(reached_m.back(), band.median);
         for (const Band& band : bands)
           data += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g} {}\n", band.x, band.low, band.median, band.high, band.runs);
         data += "\n\n";
@@ -107,13 +104,8 @@ class StudyPainter {
     if (plots.empty()) return {};
     write_file(directory_ + "/" + plot.name + ".dat", data);
     const bool distance = plot.over == StudyPlot::Over::distance;
-    // Beside a much larger error a small one would be a line on the axis.
-    constexpr double very_different = 5;
-    const std::string axis = least > 0 && most > very_different * least
-                                 ? fmt::format("set logscale y\nset yrange [{:.3g}:*]\n", 0.05 * least)
-                                 : "set yrange [0:*]\n";
     return fmt::format("{}set xlabel '{}'\nset ylabel 'error (m): median, 5 to 95 % of the runs'\n{}\nunset logscale y",
-                       axis, distance ? "distance travelled (m)" : "time (s)", plots);
+                       axis_of_errors(reached_m), distance ? "distance travelled (m)" : "time (s)", plots);
   }
 
   std::vector<Curve> curves(const StudyPlot& plot, const std::string& name, const std::string& metric) const {

@@ -85,6 +85,24 @@ TEST(AcousticChannel, CountsMessagesForThoseTheyAreFor) {
   EXPECT_EQ(lost(test, "d", SignalLoss::range), 2);
 }
 
+TEST(AcousticChannel, ForgetsTheMessagesForThoseWhoHaveLeft) {
+  TestWorld test(
+      sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]") + vehicle("c", "[0, 150, -10]")));
+  for (const char* name : {"b", "c"}) phone(test, name).transducer().belong_to({"modems", "x"});
+  Signal to_x = message();
+  to_x.to = {"modems", "x"};
+  phone(test, "a").transducer().transmit(to_x, 0ms);
+  test.run_for(5);
+  const auto& acoustics = test.world.acoustics();
+  test.world.remove_vehicle("b");
+  EXPECT_EQ(acoustics.messages_for({"modems", "x"}), 1) << "c has the same address";
+  EXPECT_EQ(acoustics.counts_of_those_gone().understood, 1);
+  test.world.remove_vehicle("c");
+  EXPECT_EQ(acoustics.messages_for({"modems", "x"}), 0);
+  EXPECT_EQ(acoustics.counts_of_those_gone().understood, 2);
+  EXPECT_EQ(acoustics.counts_of_those_gone().lost[static_cast<std::size_t>(SignalLoss::range)], 0);
+}
+
 TEST(AcousticChannel, WhatHasNotBegunCanBeCalledBack) {
   TestWorld test(sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]")));
   phone(test, "a").transducer().transmit(message(), 0ms);

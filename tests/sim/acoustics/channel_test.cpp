@@ -10,6 +10,7 @@ using sim::Signal;
 using sim::SignalLoss;
 using test::Heard;
 using test::Hydrophone;
+using test::lost;
 using test::message;
 using test::phone;
 using test::sea;
@@ -272,7 +273,22 @@ TEST(AcousticChannel, WhoIsOutOfTheWaterForAWhileWhileSendingOrTakingIsNotUnders
     test.run_for(5);
     EXPECT_EQ(phone(test, "b").transducer().counts().understood, 0) << who;
     EXPECT_EQ(phone(test, "b").transducer().counts().lost[static_cast<std::size_t>(SignalLoss::out_of_water)], 1);
+    // A receiver in the water is told that something came, one that was out itself is not.
+    EXPECT_EQ(phone(test, "b").all().size(), std::string(who) == "a" ? 1u : 0u);
   }
+}
+
+TEST(AcousticChannel, WhoHasLostItsPowerIsToldNothing) {
+  TestWorld test(sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]")));
+  Signal blip = message();
+  blip.duration = 50ms;
+  phone(test, "a").transducer().transmit(blip, 0ms);
+  phone(test, "b").transducer().transmit(blip, 60ms);  // it sends when the sound of a comes
+  test.run_for(0.12);
+  test.world.set_fault("b/phone", {.kind = sim::FaultKind::silent});
+  test.run_for(1);
+  EXPECT_EQ(lost(test, "b", SignalLoss::half_duplex), 1);
+  EXPECT_TRUE(phone(test, "b").all().empty());
 }
 
 TEST(AcousticChannel, ShortSignalsOneAfterTheOtherAllComeThrough) {

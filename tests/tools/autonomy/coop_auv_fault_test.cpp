@@ -82,11 +82,30 @@ TEST(CoopAuv, FixesAreThoseOfItsAntenna) {
 TEST(CoopAuv, SaysNothingOfItsPlaceWhileAllItsDevicesAreSilent) {
   Voyage voyage(auv_params());
   voyage.run(30);
-  EXPECT_TRUE(voyage.auv.step().estimate);  // the second since the last report: 1 s
+  for (int i = 0; i < 2; ++i) EXPECT_TRUE(voyage.auv.step().estimate);  // 1 s without a report
   const auto decision = voyage.auv.step();
   EXPECT_FALSE(decision.estimate || decision.dead_reckoning || decision.send);
   voyage.run(1);
   EXPECT_TRUE(voyage.decision.estimate);
+}
+
+TEST(CoopAuv, SpeaksHoweverSeldomItDecides) {
+  for (const int period_s : {2, 5}) {
+    CoopAuv::Params params = auv_params();
+    params.period_s = period_s;
+    CoopAuv auv(params, make_behaviour("route", {{1000, 0}}, 1.5, false));
+    std::int64_t t = epoch;
+    for (int step = 0; step < 20; ++step) {
+      for (int i = 0; i < 2 * period_s; ++i) {
+        t += second / 2;
+        auv.receive(compass_at(t, 0));
+        auv.receive(dvl_at(t, 0));
+        auv.receive(fix_at(t, {0, 0}));
+      }
+      EXPECT_TRUE(auv.step().estimate) << period_s;
+    }
+    EXPECT_FALSE(auv.step().estimate) << period_s << " s of silence";
+  }
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ TEST(CoopCraft, StopsAndSaysNothingWithoutAFix) {
 TEST(CoopCraft, StopsAndSaysNothingWhenItsGpsFallsSilent) {
   CoopCraft craft(craft_params(), make_behaviour("route", {{100, 0}}, 1.5, false));
   craft.receive(fix_at(epoch, {0, 0}));
-  for (int i = 1; i <= 6; ++i) EXPECT_EQ(craft.step().helm->speed_mps, 1.5) << i;  // 3 s
+  for (int i = 0; i <= 6; ++i) EXPECT_EQ(craft.step().helm->speed_mps, 1.5) << i;  // 3 s
   for (int i = 0; i < 3; ++i) {
     const auto decision = craft.step();
     EXPECT_EQ(decision.helm->speed_mps, 0);
@@ -71,6 +71,21 @@ TEST(CoopCraft, StopsAndSaysNothingWhenItsGpsFallsSilent) {
   }
   craft.receive(fix_at(epoch + 5 * second, {0, 0}));
   EXPECT_EQ(craft.step().helm->speed_mps, 1.5);
+}
+
+TEST(CoopCraft, SpeaksHoweverSeldomItDecides) {
+  for (const int period_s : {2, 5}) {
+    CoopCraft::Params params = craft_params();
+    params.period_s = period_s;
+    CoopCraft craft(params, make_behaviour("route", {{1000, 0}}, 1.5, false));
+    std::int64_t t = epoch;
+    for (int step = 0; step < 5; ++step) {
+      for (int i = 0; i < period_s; ++i) craft.receive(fix_at(t += second, {0, 0}));
+      EXPECT_TRUE(craft.step().estimate) << period_s;
+    }
+    while (t < epoch + 100 * second && craft.step().estimate) t += period_s * second;
+    EXPECT_FALSE(craft.step().estimate) << "its GPS is silent";
+  }
 }
 
 TEST(CoopCraft, FollowsWhatItHears) {

@@ -143,6 +143,19 @@ TEST(MarineEkfContradiction, WhatWrongRangesTaughtIsForgotten) {
   EXPECT_EQ(ekf.position(), reckoned.position());
   EXPECT_EQ(ekf.position_covariance(), reckoned.position_covariance());
   EXPECT_GT(ekf.covariance()(4, 4), 30 * 30);
+  // Nothing that ranges taught is left: it does not start anew again.
+  for (int i = 0; i < 30; ++i)
+    EXPECT_EQ(ekf.update_range(range_of(i % 2 + 1, i % 2 == 0 ? 3000 : -5000), &reckoned), Outcome::refused) << i;
+  EXPECT_EQ(ekf.inflated(), 1);
+}
+
+TEST(MarineEkfContradiction, ClockThatWasSetClearsTheBeaconsOfDoubt) {
+  MarineEkf ekf = with_a_clock();
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(ekf.update_range(range_of(1, 100 + 200)), Outcome::refused);
+  ekf.shift_clock(second, 1500, 30);
+  MarineEkf::Range range = range_of(1, 100 + 1500);
+  range.utime = second;
+  EXPECT_EQ(ekf.update_range(range), Outcome::accepted);
 }
 
 }  // namespace

@@ -25,6 +25,13 @@ TEST(Gnuplot, TextsAreQuoted) {
   EXPECT_EQ(tools::gnuplot_text("a\nb\x7f"), "'a b '");
 }
 
+TEST(Gnuplot, AxisOfErrorsIsLogarithmicWhereTheyAreVeryDifferent) {
+  EXPECT_EQ(tools::axis_of_errors({1, 5}), "set yrange [0:*]\n");
+  EXPECT_EQ(tools::axis_of_errors({6, 1}), "set logscale y\nset yrange [0.05:*]\n");
+  for (const std::vector<double>& errors_m : {std::vector<double>{}, {3}, {0, 3}})
+    EXPECT_EQ(tools::axis_of_errors(errors_m), "set yrange [0:*]\n");
+}
+
 TEST(Gnuplot, TellsWhetherTheScriptRan) {
   const ScratchFolder folder;
   EXPECT_TRUE(run(folder, "x = 1\n", 30s, never));

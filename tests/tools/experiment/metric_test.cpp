@@ -188,6 +188,41 @@ TEST(PositionError, SaysOnceWhatIsWrongAndThenHowOften) {
   EXPECT_NE(said.find("metric 'e': 300 messages in a row were ignored"), said.npos) << said;
 }
 
+TEST(PositionError, SaysOnceWhatIsWrongBetweenGoodOnesAndStopsAtAHundred) {
+  const test_support::LogCapture log;
+  const auto lines = [&] {
+    const std::string said = log.text();
+    return std::count(said.begin(), said.end(), '\n');
+  };
+  {
+    MetricWorld world("  - {name: e, vehicle: r1, channel: est}\n");
+    world.run_for(0.1);
+    for (int i = 0; i < 300; ++i) {
+      world.estimate({1, 0, 0}, some_covariance(), i % 2 == 0 ? -20 : 0);
+      world.run_for(0.001);
+    }
+    EXPECT_EQ(lines(), 1) << log.text();
+    for (int i = 0; i < 600; ++i) {
+      world.estimate({i % 3 == 0 ? std::nan("") : 0, 0, 0}, some_covariance(), i % 3 == 1 ? -20 : 0);
+      world.run_for(0.001);
+    }
+    EXPECT_EQ(lines(), 100);
+  }
+  EXPECT_EQ(lines(), 101);
+  EXPECT_NE(log.text().find("metric 'e': 550 messages were ignored in all"), std::string::npos) << log.text();
+}
+
+TEST(PositionError, SaysAtTheEndHowManyWereIgnored) {
+  const test_support::LogCapture log;
+  {
+    MetricWorld world("  - {name: e, vehicle: r1, channel: est}\n");
+    world.run_for(0.1);
+    for (int i = 0; i < 30; ++i) world.estimate({1, 0, 0}, some_covariance(), -20);
+    world.run_for(0.01);
+  }
+  EXPECT_NE(log.text().find("metric 'e': 30 messages in a row were ignored"), std::string::npos) << log.text();
+}
+
 TEST(PositionError, PerDistanceIsOfTheWayThatWasTravelled) {
   MetricWorld world("  - {name: e, vehicle: r1, channel: est}\n");
   world.drive(0.5);
@@ -476,6 +511,34 @@ TEST(Delivery, OfAVehicleWithBothIsAboutSoundUnlessItNamesTheRadio) {
   EXPECT_TRUE(std::isnan(figures.at("b.ratio")));
   EXPECT_EQ(figures.at("r.ratio"), 0);
   EXPECT_EQ(figures.at("r.lost_blocked"), 1);
+}
+
+TEST(Delivery, ATransponderIsNoModem) {
+  const std::string devices =
+      "{name: radio, type: modem, range_m: 500}, {name: noise, type: noise_source}, "
+      "{name: answers, type: transponder}";
+  test::TestWorld test(test::modem_sea({{"a", "[0, 0, 2]", devices}, {"b", "[300, 0, 2]", devices}},
+                                       "metrics:\n  - {name: all, type: delivery}\n"
+                                       "  - {name: b, type: delivery, vehicle: b}\n"));
+  tools::Scoring scoring(test.world);
+  test.send("a.radio.cmd", test::bytes_to("hello"));
+  test.run_for(1);
+  const auto figures = scoring.figures();
+  EXPECT_EQ(figures.at("all.sent"), 1);
+  EXPECT_EQ(figures.at("all.received"), 1);
+  EXPECT_EQ(figures.at("b.ratio"), 1);
+}
+
+TEST(Delivery, OfModemsThatHaveLeftIsStillAboutThem) {
+  const std::string modem = "{name: modem, type: acoustic_modem}";
+  test::TestWorld test(test::modem_sea({{"a", "[0, 0, -20]", modem}, {"b", "[300, 0, -20]", modem}},
+                                       "metrics:\n  - {name: all, type: delivery}\n"));
+  tools::Scoring scoring(test.world);
+  test.send("a.modem.cmd", test::bytes_to("hello"));
+  test.run_for(10);
+  for (const char* name : {"a", "b"}) test.world.remove_vehicle(name);
+  EXPECT_EQ(scoring.figures().at("all.sent"), 1);
+  EXPECT_EQ(scoring.figures().at("all.ratio"), 1);
 }
 
 /// A box that turns about its y axis at 1 rad/s, its nose going down, without gravity.
