@@ -210,14 +210,7 @@ std::optional<std::string> SimService::obey(Line& line, const shoal::sim_control
   const std::string& command = request.command;
   if (time_machine_ != nullptr)
     if (auto text = time_machine_->obey(command, request.text, request.value)) return text;
-  if (command == "pause" || command == "resume") {
-    control_.set_paused(command == "pause");
-  } else if (command == "step") {
-    if (!(request.value >= 1 && request.value <= 1e9)) throw std::runtime_error("'step' needs a value from 1 to 1e9");
-    control_.add_steps(static_cast<std::int64_t>(request.value));
-  } else if (command == "speed") {
-    set_speed(request.value);
-  } else if (command == "quit") {
+  if (command == "quit") {
     control_.quit = true;
   } else if (command == "join") {
     if (!lockstep_.join(static_cast<int>(&line - lines_.data()), request)) return std::nullopt;
@@ -262,12 +255,6 @@ void SimService::obey_again(const shoal::sim_control_request_t& request) {
 void SimService::client_gone(const std::string& client) {
   lockstep_.client_gone(client);
   visitors_.remove_those_of(client);
-}
-
-void SimService::set_speed(double speed) {
-  if (speed != 0 && !(speed >= 1e-3 && speed <= 1e6))
-    throw std::runtime_error("'speed' must be 0 (as fast as possible) or from 0.001 to 1e6");
-  control_.set_speed(speed);
 }
 
 }  // namespace bridges

@@ -37,7 +37,8 @@ class SimService {
   void serve_vehicles(sim::Bus& network);
   /// What changes the world is written down there.  It must outlive this.
   void use_journal(RunJournal& journal);
-  /// Serves snapshot, restore, rewind, until and where.  It must outlive this; null: nobody does.
+  /// Serves what is about time: pause, resume, step, speed, until, where, snapshot, restore and rewind.  It must
+  /// outlive this; null: nobody does.
   void set_time_machine(TimeMachine* machine) { time_machine_ = machine; }
   /// Whose vehicles there are.
   void visit_state(sim::StateArchive& archive) { visitors_.visit_state(archive); }
@@ -79,7 +80,6 @@ class SimService {
   /// refused.
   std::optional<std::string> obey(Line& line, const shoal::sim_control_request_t& request);
   bool leave(const shoal::sim_control_request_t& request);
-  void set_speed(double speed);
   void complain(const std::string& text);
   bool due(double rate_hz) const;
   template <typename Message>

@@ -5,7 +5,7 @@
 
 namespace bridges {
 
-/// Carries out requests that move the world in time.
+/// Carries out requests about the time of the world: how fast it goes on, and where it goes back to.
 class TimeMachine {
  public:
   virtual ~TimeMachine() = default;

@@ -356,7 +356,7 @@ TEST(LockstepService, AStepWhileALateClientPausesTheWorldDoesNotDropIt) {
   int waited = 0;
   s.synchronize([&] {
     if (!s.control.paused) return;
-    if (++waited == 1) s.send_request("step", 2);
+    if (++waited == 1) s.control.add_steps(2);
     if (waited == 3) s.acknowledge(0, "pilot", 5, 1);
   });
   EXPECT_EQ(waited, 3);
@@ -419,7 +419,7 @@ TEST(LockstepService, AReplyNamesTheSessionThatItIsFor) {
   EXPECT_FALSE(refused.ok);
   EXPECT_EQ(refused.session, 6);
   EXPECT_EQ(s.ask("leave", 0, "{session: 5}", "pilot").session, 5);
-  EXPECT_EQ(s.ask("pause", 0, "", "pilot").session, 0);
+  EXPECT_EQ(s.ask("alive", 0, "", "pilot").session, 0);
 }
 
 TEST(LockstepService, WhileTheWorldIsPausedASecondClientIsRefusedWhenTheFirstLives) {
