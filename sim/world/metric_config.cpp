@@ -143,6 +143,12 @@ void MetricConfig::check_keys(ParamReader& in) const {
     in.error("needs either 'when', or 'vehicle', 'position_m' and 'radius_m'");
 }
 
+std::vector<std::string> metric_type_words() {
+  std::vector<std::string> words;
+  for (const MetricKind& kind : metric_kinds()) words.emplace_back(kind.word);
+  return words;
+}
+
 std::vector<std::string> MetricConfig::figures() const {
   std::vector<std::string> names;
   for (const std::string& figure : kind_of(type).figures) names.push_back(name + "." + figure);
