@@ -102,6 +102,15 @@ TEST(Study, AProgramThatFailedFailsItsRunAndTheStudy) {
   EXPECT_THAT(ended.output, HasSubstr("FAILED: 2 of 2 runs had programs that failed"));
 }
 
+TEST(Study, ARunThatWasEndedByHandIsNoResult) {
+  const StudyFolder study(
+      "seeds: [1]\nlaunch: true\nduration_s: 1e9\npass: [{case: world, figure: way.travelled_m, below: 1e6}]\n",
+      "processes: [{name: hand, command: [" + built("shoal") + ", control, quit, --lcm-url, '{lcm_url}']}]\n");
+  const Ended ended = study.run();
+  EXPECT_EQ(ended.exit_code, 4) << ended.errors;
+  EXPECT_THAT(ended.errors, testing::ContainsRegex("failed: ended by quit at [0-9.]+ of 1e\\+09 s"));
+}
+
 TEST(Study, ExitCodeIs4WhenARunHasNoResult) {
   const StudyFolder study("seeds: [1]\nlaunch: true\n", "processes: [{name: ghost, command: [no-such-program]}]\n");
   const Ended ended = study.run();

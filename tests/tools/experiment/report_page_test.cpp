@@ -189,6 +189,18 @@ TEST(Report, SaysWhatTheWorldIsAndThatNothingWasJudged) {
               HasSubstr("<tr><td>verdict</td><td>not judged</td><td>passed</td></tr>"));
 }
 
+TEST(Report, ARunThatWasEndedByHandIsNotJudged) {
+  const ScratchFolder folder;
+  const std::string directory = folder.file("run");
+  tools::Summary summary = run_into(directory, "");
+  summary.ended = "quit";
+  tools::write_summary(directory, summary);
+  const std::string page = tools::report_page({directory});
+  EXPECT_THAT(page, HasSubstr("ot judged: ended by quit"));
+  EXPECT_THAT(page, Not(HasSubstr("passed</span>")));
+  EXPECT_THAT(page, Not(HasSubstr("FAILED</span>")));
+}
+
 TEST(Report, TellsOfProgramsThatFailedAndOfAnOutage) {
   const ScratchFolder folder;
   const std::string directory = folder.file("run");

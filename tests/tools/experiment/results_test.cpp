@@ -156,6 +156,26 @@ TEST(Summary, PassesOnlyWhenEveryRuleHoldsAndNothingBroke) {
   EXPECT_THAT(summary.to_text(), testing::HasSubstr("FAILED: b"));
 }
 
+TEST(Summary, WithoutRulesNothingHasPassed) {
+  tools::Summary summary;
+  const auto json = nlohmann::json::parse(summary.to_json());
+  EXPECT_TRUE(json.at("passed").is_null()) << json.at("passed");
+  EXPECT_EQ(json.at("judged"), false);
+  EXPECT_EQ(json.value("not_judged", ""), "the world has no rules");
+  EXPECT_THAT(summary.to_text(), testing::HasSubstr("  not judged: the world has no rules\n"));
+}
+
+TEST(RunWorld, WithoutItsProgramsIsNotJudged) {
+  const auto world = small_world(
+      "metrics: [{name: way, type: distance, vehicle: r1}]\npass: [{metric: way.travelled_m, above: 1000}]\n"
+      "processes: [{name: pilot, command: [sleep, '1000']}]\n");
+  const tools::Summary summary = tools::run_world(world, quiet_run());
+  EXPECT_EQ(summary.exit_code, 0);
+  const auto json = nlohmann::json::parse(summary.to_json());
+  EXPECT_TRUE(json.at("passed").is_null());
+  EXPECT_EQ(json.value("not_judged", ""), "its programs took no part: see --launch and --await");
+}
+
 TEST(Results, AreLeftByARun) {
   const ScratchFolder folder;
   const auto loaded = small_world("metrics:\n  - {name: position, vehicle: r1, channel: r1.estimate}\n");

@@ -8,6 +8,7 @@
 #include "tests/devices/world_fixture.hpp"
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
+#include "tools/experiment/results.hpp"
 #include "tools/experiment/study_curves.hpp"
 #include "tools/experiment/study_report.hpp"
 #include "tools/experiment/study_results.hpp"
@@ -230,11 +231,47 @@ TEST(StudyResults, ARuleFailsWhenARunLacksItsFigure) {
   std::vector<bool> passed;
   for (const auto& verdict : results.verdicts()) passed.push_back(verdict.passed);
   EXPECT_THAT(passed, ElementsAre(false, false, false, false, true));
-  EXPECT_EQ(results.verdicts()[0].rule, "quick: max of e.rms_m (nan) < 10");
+  EXPECT_EQ(results.verdicts()[0].rule, "quick: max of e.rms_m (none: 1 of 2 runs has no such figure) < 10");
   const auto json = nlohmann::json::parse(results.to_json(1));
   EXPECT_EQ(json["cases"][1]["figures"]["e.rms_m"]["count"], 1);
   EXPECT_TRUE(json["cases"][1]["figures"]["e.rms_m"]["std"].is_null());
   EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,0,0,duration,0,0.000,\n"));
+}
+
+TEST(StudyResults, WithoutRulesNothingHasPassed) {
+  const StudyFolder folder(two_cases);
+  const tools::LoadedStudy study = tools::load_study(folder.path());
+  const auto runs = made_up_runs(study, {{1, 3}, {6, 7}});
+  const tools::StudyResults results(study, runs);
+  EXPECT_THAT(results.to_text(), HasSubstr("not judged: the study has no rules\n"));
+  const auto json = nlohmann::json::parse(results.to_json(0));
+  EXPECT_TRUE(json["passed"].is_null()) << json["passed"];
+  EXPECT_EQ(json.value("judged", true), false);
+  const ScratchFolder out;
+  tools::write_study(out.file("study"), study, runs, results, 0);
+  const std::string page = tools::study_report(out.file("study"));
+  EXPECT_THAT(page, HasSubstr("ot judged: the study has no rules"));
+  EXPECT_THAT(page, testing::Not(HasSubstr("passed</span>")));
+}
+
+TEST(StudyResults, ARunThatNobodyJudgedHasNotPassed) {
+  const StudyFolder folder("launch: false\npass: [{case: world, figure: passed, equals: 1}]\n");
+  const tools::LoadedStudy study = tools::load_study(folder.path());
+  auto runs = tools::plan_study(study, "out");
+  const ScratchFolder results_of_runs;
+  for (tools::StudyRun& run : runs) {
+    tools::Summary summary;
+    summary.seed = run.seed;
+    if (run.seed == 1) summary.verdicts = {{"a", true}};
+    tools::write_summary(results_of_runs.file(std::to_string(run.seed)), summary);
+    run.record = tools::read_run(results_of_runs.file(std::to_string(run.seed)));
+  }
+  const tools::StudyResults results(study, runs);
+  EXPECT_EQ(results.of("world", "passed").count, 1);
+  EXPECT_EQ(results.verdicts().at(0).passed, false);
+  EXPECT_EQ(results.verdicts().at(0).rule, "world: mean of passed (none: 1 of 2 runs has no such figure) == 1");
+  EXPECT_THAT(results.to_csv(), HasSubstr("\nworld,1,0,1,"));
+  EXPECT_THAT(results.to_csv(), HasSubstr("\nworld,2,0,,"));
 }
 
 TEST(StudyResults, CountRunsWithoutAResult) {
