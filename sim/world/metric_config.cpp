@@ -8,6 +8,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/script/action.hpp"
+#include "sim/world/metric_types.hpp"
 #include "sim/world/world_config.hpp"
 
 namespace sim {

@@ -57,9 +57,6 @@ struct PassRule {
   void read(ParamReader& in);
 };
 
-/// The words of all types, as in `type: position_error`.
-std::vector<std::string> metric_type_words();
-
 /// Makes the position errors known that other metrics of the list may name.  Call before `metrics` is read.
 void declare_position_errors(ParamReader& in);
 /// Makes the figures known that pass rules may name.

@@ -3,7 +3,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "sim/world/metric_config.hpp"
+#include "sim/world/metric_types.hpp"
 #include "tests/system/shoal_program.hpp"
 
 // Every type of metric goes back with its world: by rewind, by restore, into a branch, and with --from.
