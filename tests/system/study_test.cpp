@@ -51,8 +51,8 @@ TEST(Study, RunsAWorldForEverySeedAndCase) {
   EXPECT_THAT(ended.output, HasSubstr("study tiny: 4 runs"));
   EXPECT_THAT(ended.output, HasSubstr("passed: a: mean of way.travelled_m"));
   EXPECT_THAT(ended.errors, HasSubstr("[4/4] "));
-  EXPECT_THAT(study.text("study.csv"), HasSubstr("\na,1,0,1,duration,1,"));
-  EXPECT_THAT(study.text("study.csv"), HasSubstr("\nb,2,0,1,duration,2,"));
+  EXPECT_THAT(study.text("study.csv"), HasSubstr("\na,1,0,,duration,1,"));
+  EXPECT_THAT(study.text("study.csv"), HasSubstr("\nb,2,0,,duration,2,"));
   EXPECT_THAT(study.text("study.json"), HasSubstr("\"passed\": true"));
   EXPECT_THAT(study.text("ways.png"), testing::StartsWith("\x89PNG"));
   EXPECT_FALSE(fs::exists(study.folder.file("out/runs/a/seed_1/tracks.png")));

@@ -52,16 +52,14 @@ std::string why_not_passed(const RunRecord& run) {
   return fmt::format("Exit code {}.", run.exit_code);
 }
 
-/// Nothing was wrong, and nothing was looked at.
-bool is_unjudged(const RunRecord& run) {
-  return run.passed && !run.judged;
-}
-
 std::string verdicts_html(const RunRecord& run) {
-  if (is_unjudged(run)) return paragraph("Not judged: the world has no rules, or its programs took no part.");
-  std::string html = paragraph(verdict_html(run.passed) + (run.passed ? "" : ": " + html_text(why_not_passed(run))));
+  if (run.judgement == Judgement::not_judged)
+    return paragraph(verdict_html(run.judgement) + ": " + html_text(run.not_judged));
+  const bool passed = run.judgement == Judgement::passed;
+  std::string html = paragraph(verdict_html(run.judgement) + (passed ? "" : ": " + html_text(why_not_passed(run))));
   if (run.event)
-    html += paragraph(verdict_html(run.event->passed) + ": ended by an event: " + html_text(run.event->rule));
+    html += paragraph(verdict_html(judgement_of(run.event->passed)) +
+                      ": ended by an event: " + html_text(run.event->rule));
   if (run.rules.empty()) return html + paragraph("No rules were judged.", "soft");
   return html + rules_html(run.rules);
 }
@@ -115,7 +113,7 @@ std::string warnings_html(const RunRecord& run) {
   warn(run.bad_messages, "messages were received and not usable.");
   warn(run.quick_steps, "steps used QuickStep, for an island of bodies was too large.");
   const auto failed = [](const RunRecord::Process& process) { return process.failed; };
-  if (is_unjudged(run) && std::any_of(run.processes.begin(), run.processes.end(), failed))
+  if (run.judgement == Judgement::not_judged && std::any_of(run.processes.begin(), run.processes.end(), failed))
     warnings.emplace_back("Programs of the world failed.");
   for (const auto& [name, value] : run.metrics)
     if (name.ends_with(".longest_gap_s") && value.value_or(0) > long_gap_s)
@@ -153,15 +151,16 @@ std::string figure_text(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? fmt::format("{:.6g}", *value) : "-";
 }
 
-std::string verdict_html(bool passed) {
-  return passed ? "<span class=\"good\">passed</span>" : "<span class=\"bad\">FAILED</span>";
+std::string verdict_html(Judgement judgement) {
+  const char* look = judgement == Judgement::passed ? "good" : judgement == Judgement::failed ? "bad" : "unjudged";
+  return fmt::format("<span class=\"{}\">{}</span>", look, judgement_word(judgement));
 }
 
 std::string rules_html(std::vector<RunRecord::Rule> rules) {
   std::stable_partition(rules.begin(), rules.end(), [](const RunRecord::Rule& rule) { return !rule.passed; });
   std::string html = "<ul class=\"rules\">\n";
   for (const RunRecord::Rule& rule : rules)
-    html += "<li>" + verdict_html(rule.passed) + " " + html_text(rule.rule) + "</li>\n";
+    html += "<li>" + verdict_html(judgement_of(rule.passed)) + " " + html_text(rule.rule) + "</li>\n";
   return html + "</ul>\n";
 }
 
@@ -203,9 +202,7 @@ std::string comparison_report(const std::vector<RunRecord>& runs) {
   for (const RunRecord& run : runs) {
     head.push_back(run.directory);
     const std::string cells[] = {run.world, fmt::format("{}", run.seed),
-                                 is_unjudged(run) ? "not judged"
-                                 : run.passed     ? "passed"
-                                                  : "FAILED",
+                                 judgement_word(run.judgement),
                                  fmt::format("{:.2f}", run.sim_time_s), run.state_hash};
     for (std::size_t i = 0; i < std::size(cells); ++i) rows[i].push_back(cells[i]);
   }

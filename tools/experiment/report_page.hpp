@@ -21,8 +21,8 @@ std::string comparison_report(const std::vector<RunRecord>& runs);
 std::string figure_text(const std::optional<double>& value);
 /// Pictures of a directory as HTML; those that are missing or no PNG are named.
 std::string pictures_html(const std::string& directory, const std::vector<std::string>& files);
-/// `passed` or `FAILED`, coloured.
-std::string verdict_html(bool passed);
+/// `passed`, `FAILED` or `not judged`, coloured.
+std::string verdict_html(Judgement judgement);
 /// Rules with their outcome, failed ones first.
 std::string rules_html(std::vector<RunRecord::Rule> rules);
 

@@ -35,8 +35,12 @@ std::string table_html(const JsonReader& in) {
       if (!figures.contains(figure)) continue;
       const JsonReader cells(figures.at(figure), in.where() + ": cases: figures");
       for (const char* key : {"count", "mean", "std", "min", "max", "median"}) row.push_back(number_at(cells, key));
+      if (cells.has("mean_low_95") && !cells.at("mean_low_95").is_null())  // not in files of older versions
+        row.push_back(number_at(cells, "mean_low_95") + " to " + number_at(cells, "mean_high_95"));
+      else
+        row.emplace_back("-");
     }
-  return "<h2>Figures</h2>\n" + html_table({"figure", "case", "runs", "mean", "std", "min", "max", "median"}, rows);
+  return "<h2>Figures</h2>\n" + html_table({"figure", "case", "runs", "mean", "std", "min", "max", "median", "mean, 95 % interval"}, rows);
 }
 
 std::string cases_html(const JsonReader& in) {
@@ -50,14 +54,22 @@ std::string cases_html(const JsonReader& in) {
   return html + "</ul>\n";
 }
 
+/// Older versions wrote that a study without rules had passed.
+Judgement judgement_in(const JsonReader& in, bool no_rules) {
+  if (in.at("passed").is_null() || (no_rules && in.boolean("passed"))) return Judgement::not_judged;
+  return judgement_of(in.boolean("passed"));
+}
+
 std::string verdicts_html(const JsonReader& in) {
   std::vector<RunRecord::Rule> rules;
   for (const auto& item : in.list("rules")) {
     const JsonReader rule(item, in.where() + ": rules");
     rules.push_back({rule.text("rule"), rule.boolean("passed")});
   }
-  std::string html = "<p>" + verdict_html(in.boolean("passed")) + "</p>\n";
-  html += rules.empty() ? "<p class=\"soft\">No rules were judged.</p>\n" : rules_html(rules);
+  const Judgement judgement = judgement_in(in, rules.empty());
+  const bool judged = judgement != Judgement::not_judged;
+  std::string html = "<p>" + verdict_html(judgement) + (judged ? "" : ": the study has no rules") + "</p>\n";
+  if (!rules.empty()) html += rules_html(rules);
   if (in.list("failed_runs").empty()) return html;
   html += "<h2>Runs without a result</h2>\n<ul>\n";
   for (const auto& item : in.list("failed_runs")) {

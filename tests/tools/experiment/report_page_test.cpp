@@ -180,7 +180,7 @@ TEST(Report, SaysWhatTheWorldIsAndThatNothingWasJudged) {
   run_into(folder.file("a"), "description: A rover & its <lidar>.\n");
   const std::string page = tools::report_page({folder.file("a")});
   EXPECT_THAT(page, HasSubstr("<p>A rover &amp; its &lt;lidar&gt;.</p>"));
-  EXPECT_THAT(page, HasSubstr("Not judged: the world has no rules"));
+  EXPECT_THAT(page, HasSubstr("not judged</span>: the world has no rules"));
   EXPECT_THAT(page, Not(HasSubstr("passed</span>")));
   run_into(folder.file("b"),
            "metrics: [{name: way, type: distance, vehicle: r1}]\n"
@@ -196,7 +196,7 @@ TEST(Report, ARunThatWasEndedByHandIsNotJudged) {
   summary.ended = "quit";
   tools::write_summary(directory, summary);
   const std::string page = tools::report_page({directory});
-  EXPECT_THAT(page, HasSubstr("ot judged: ended by quit"));
+  EXPECT_THAT(page, HasSubstr("not judged</span>: ended by quit"));
   EXPECT_THAT(page, Not(HasSubstr("passed</span>")));
   EXPECT_THAT(page, Not(HasSubstr("FAILED</span>")));
 }

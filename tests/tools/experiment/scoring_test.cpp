@@ -209,7 +209,7 @@ TEST(Scoring, FailsARuleWhenNoEstimateCame) {
   world.run_for(0.1);
   EXPECT_TRUE(std::isnan(world.scoring.figures().at("good.rms_m")));
   for (const auto& verdict : world.scoring.verdicts()) EXPECT_FALSE(verdict.passed) << verdict.rule;
-  EXPECT_EQ(world.scoring.verdicts()[0].rule, "good.rms_m (none: no message came on 'good') < 1000");
+  EXPECT_EQ(world.scoring.verdicts()[0].rule, "good.rms_m (none: no estimate came on 'good') < 1000");
 }
 
 TEST(Scoring, ARuleOnAFigureThatIsNotThereSaysWhy) {
@@ -248,8 +248,8 @@ TEST(Scoring, ARuleOnAFigureThatIsNotThereSaysWhy) {
                          "link.ratio (none: nothing was sent to these modems) > 0",
                          "home.time_s (none: it did not happen) < 100",
                          "first.first_s (none: no message came on 'nothing') < 100",
-                         "cost.bytes_per_metre (none: there is no error of 'good' or 'late' to compare) < 100",
-                         "late.samples (0.000) < 1 * late.rms_m (none: no message came on 'late')",
+                         "cost.bytes_per_metre (none: the error of 'good' is not known to be the smaller one) < 100",
+                         "late.samples (0.000) < 1 * late.rms_m (none: no estimate came on 'late' from 0.5 s on)",
                          "good.rms_m (none: none of 1 message on 'good' could be used) > 0"));
 }
 

@@ -56,7 +56,7 @@ std::vector<tools::StudyRun> made_up_runs(const tools::LoadedStudy& study,
     const double value = rms[run.in_case][static_cast<std::size_t>(run.seed - study.config.seeds[0])];
     run.record.emplace();
     run.record->metrics["e.rms_m"] = std::isnan(value) ? std::nullopt : std::optional<double>(value);
-    run.record->passed = value < 3;
+    run.record->judgement = tools::judgement_of(value < 3);
     run.record->ended = "duration";
   }
   return runs;
@@ -70,7 +70,9 @@ TEST(Statistics, AreThoseOfTheSample) {
   EXPECT_DOUBLE_EQ(s.min, 1);
   EXPECT_DOUBLE_EQ(s.max, 8);
   EXPECT_DOUBLE_EQ(s.median, 3.5);
+  EXPECT_NEAR(s.mean_95.low, 4 - 3.18245 * s.std / 2, 1e-3);  // Student's t for 3 degrees of freedom
   EXPECT_TRUE(std::isnan(tools::statistics_of({5}).std));
+  EXPECT_TRUE(std::isnan(tools::statistics_of({5}).mean_95.high));
   EXPECT_DOUBLE_EQ(tools::statistics_of({5}).mean, 5);
   EXPECT_TRUE(std::isnan(tools::statistics_of({}).mean));
 }
@@ -205,11 +207,13 @@ TEST(StudyResults, JudgeStatisticsOfCases) {
   std::vector<bool> passed;
   for (const auto& verdict : results.verdicts()) passed.push_back(verdict.passed);
   EXPECT_THAT(passed, ElementsAre(true, false, true, false, true, false, false));
-  EXPECT_FALSE(results.passed());
+  EXPECT_EQ(results.judgement(), tools::Judgement::failed);
   EXPECT_EQ(results.verdicts()[2].rule, "plain: mean of e.rms_m (2) < 0.5 * that of quick (3)");
   EXPECT_THAT(results.to_text(), HasSubstr("FAILED: plain: max of e.rms_m (3) < 2.5"));
   const auto json = nlohmann::json::parse(results.to_json(1));
   EXPECT_EQ(json["cases"][0]["figures"]["e.rms_m"]["mean"], 2);
+  EXPECT_NEAR(json["cases"][0]["figures"]["e.rms_m"]["mean_high_95"], 2 + 12.7062, 1e-3);  // std / sqrt(2) is 1
+  EXPECT_NEAR(json["cases"][1]["figures"]["passed"]["mean_high_95"], 0.657620, 1e-5);  // 0 of 2: z^2 / (2 + z^2)
   EXPECT_EQ(json["cases"][1]["figures"]["e.rms_m"]["std"], 0);
   EXPECT_EQ(json["passed"], false);
   EXPECT_THAT(results.to_csv(), HasSubstr("case,seed,exit_code,passed,ended,sim_time_s,wall_s,e.rms_m\n"
@@ -250,7 +254,7 @@ TEST(StudyResults, WithoutRulesNothingHasPassed) {
   const ScratchFolder out;
   tools::write_study(out.file("study"), study, runs, results, 0);
   const std::string page = tools::study_report(out.file("study"));
-  EXPECT_THAT(page, HasSubstr("ot judged: the study has no rules"));
+  EXPECT_THAT(page, HasSubstr("not judged</span>: the study has no rules"));
   EXPECT_THAT(page, testing::Not(HasSubstr("passed</span>")));
 }
 
@@ -282,7 +286,7 @@ TEST(StudyResults, CountRunsWithoutAResult) {
   runs[3].failure = "<b>exit code 4</b>";
   const tools::StudyResults results(study, runs);
   EXPECT_EQ(results.failed_runs(), 1u);
-  EXPECT_FALSE(results.passed());
+  EXPECT_EQ(results.judgement(), tools::Judgement::failed);
   EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,,,failed,,,\n"));
   const ScratchFolder out;
   tools::write_study(out.file("study"), study, runs, results, 4);
