@@ -191,7 +191,10 @@ std::string StudyResults::to_text() const {
   for (const std::string& figure : table_figures())
     for (const StudyCase& each : config.cases) {
       const Statistics s = of(each.name, figure);
-      text += line(figure, each.name, std::to_string(s.count), number(s.mean), number(s.std), number(s.min),
+      // A mean of those that arrived says nothing of those that did not.
+      const std::size_t runs = runs_of(each.name);
+      const bool all = static_cast<std::size_t>(s.count) == runs;
+      text += line(figure, each.name, all ? fmt::format("{}", runs) : fmt::format("{}/{}", s.count, runs), number(s.mean), number(s.std), number(s.min),
                    number(s.max), number(s.median), number(s.mean_95.low), number(s.mean_95.high));
     }
   for (const Scoring::Verdict& verdict : verdicts())

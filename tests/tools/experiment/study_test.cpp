@@ -236,6 +236,8 @@ TEST(StudyResults, ARuleFailsWhenARunLacksItsFigure) {
   for (const auto& verdict : results.verdicts()) passed.push_back(verdict.passed);
   EXPECT_THAT(passed, ElementsAre(false, false, false, false, true));
   EXPECT_EQ(results.verdicts()[0].rule, "quick: max of e.rms_m (none: 1 of 2 runs has no such figure) < 10");
+  EXPECT_THAT(results.to_text(), testing::ContainsRegex("e.rms_m +quick +1/2 "));
+  EXPECT_THAT(results.to_text(), testing::ContainsRegex("e.rms_m +plain +2 "));
   const auto json = nlohmann::json::parse(results.to_json(1));
   EXPECT_EQ(json["cases"][1]["figures"]["e.rms_m"]["count"], 1);
   EXPECT_TRUE(json["cases"][1]["figures"]["e.rms_m"]["std"].is_null());
