@@ -12,11 +12,14 @@
 #include <vector>
 
 #include "bridges/lcm/event_log.hpp"
+#include "bridges/lcm/run_journal.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_hash_t.hpp"
 #include "shoal/sim_mail_t.hpp"
 #include "shoal/sim_snapshot_t.hpp"
 #include "shoal/sim_state_t.hpp"
+#include "sim/config/message_text.hpp"
+#include "tools/experiment/runner.hpp"
 #include "tools/experiment/snapshot_pieces.hpp"
 
 namespace tools {
@@ -32,6 +35,31 @@ std::int64_t number_at(std::span<const std::byte> payload, std::size_t index) {
   return static_cast<std::int64_t>(value);
 }
 
+/// The program that wrote a sim.info of any version, such as `shoal 0.4.0 (a1b2c3d)`: the first members are the same in
+/// all of them.  Empty: it cannot be made out.
+std::string version_in(std::span<const std::byte> payload) {
+  std::size_t at = 8 + 8;  // fingerprint, utime
+  const auto text = [&]() -> std::string {
+    if (payload.size() < at + 4) return "";
+    std::uint32_t size = 0;
+    for (std::size_t i = 0; i < 4; ++i) size = size << 8 | std::to_integer<std::uint32_t>(payload[at + i]);
+    at += 4;
+    if (size == 0 || payload.size() - at < size) {
+      at = payload.size();
+      return "";
+    }
+    const std::string found(reinterpret_cast<const char*>(payload.data()) + at, size - 1);
+    at += size;
+    return found;
+  };
+  text();       // world
+  at += 8 + 8;  // seed, step
+  text();       // resolved_config
+  const std::string versions = text();
+  const std::string first = versions.substr(0, versions.find('\n'));
+  return first.starts_with("shoal ") ? sim::shortened(sim::printable(first)) : "";
+}
+
 class Reader {
  public:
   explicit Reader(const std::string& path) : file_(path) { log_.path = path; }
@@ -40,6 +68,8 @@ class Reader {
     bridges::LogEventView event;
     while (file_.next(event)) {
       count(event.channel);
+      last_stamp_ = event.utime;
+      if (!informed_ && event.channel == "sim.info") version_ = version_in(event.payload);
       if (!event.channel.starts_with("sim.")) continue;
       try {
         take(event);
@@ -51,6 +81,7 @@ class Reader {
     for (const std::string& text : file_.problems()) problem(text);
     if (!informed_) fail_without_info();
     note_missing_pieces();
+    leave_out_what_is_not_whole();
     for (const Hole& hole : holes_) tell(hole);
     return std::move(log_);
   }
@@ -61,6 +92,19 @@ class Reader {
     std::int64_t first, last;
     std::int64_t from_step, to_step;
   };
+
+  /// The last events are of a step whose letters come behind its messages: where the log breaks off between the two the
+  /// step cannot be run again.
+  void leave_out_what_is_not_whole() {
+    // In a record all of a step stands before anything of a later one.
+    const std::int64_t stamped = (last_stamp_ - log_.info.epoch_utime) / log_.info.step_us;
+    if (log_.own_stamps) whole_step_ = std::max(whole_step_, stamped - 1);
+    const std::int64_t known = std::max(log_.last_step, log_.own_stamps ? stamped : 0);
+    log_.last_step = std::max(whole_step_, log_.begin_step());
+    if (known > log_.last_step)
+      log_.cut =
+          fmt::format("the log breaks off in step {}: what stands behind step {} is left out", known, log_.last_step);
+  }
 
   void tell(const Hole& hole) {
     const auto& [first, last, from, to] = hole;
@@ -74,6 +118,8 @@ class Reader {
 
   [[noreturn]] void fail_without_info() const {
     if (log_.events.empty()) fail("holds no event that can be read");
+    if (!version_.empty())
+      fail(fmt::format("was written by {}, whose sim.info this one, shoal {}, cannot read", version_, short_version()));
     if (log_.events.contains("sim.info"))
       fail("its sim.info cannot be read: another version of Shoal wrote it, or it is damaged" +
            (log_.problems.empty() ? std::string() : " (" + log_.problems.front() + ")"));
@@ -142,6 +188,7 @@ class Reader {
         snapshot.epoch_us != info.epoch_utime || snapshot.resolved_world != info.resolved_config)
       throw SnapshotFileError("sim.snapshot: is of another world, seed, epoch or step than sim.info tells of");
     log_.goes_back = log_.goes_back || published_;
+    whole_step_ = message.step - 1;
     log_.snapshot = std::move(snapshot);
     log_.bad_snapshot.clear();
     log_.letters.clear();
@@ -190,6 +237,7 @@ class Reader {
       check_stamp(event, log_.info.utime, log_.info.step);
       check_sequence(log_.info.mail_sequence, log_.info.step);
       note_step(log_.info.step);
+      whole_step_ = log_.info.step - 1;  // its own letters come behind it
       return;
     }
     const shoal::sim_info_t& first = log_.info;
@@ -199,9 +247,12 @@ class Reader {
       fail(fmt::format("holds two runs: another begins at byte {} (world '{}', seed {}); cut it in two", event.offset,
                        info.world, info.seed));
     check_stamp(event, info.utime, info.step);
-    if (info.branch > branch_) begin_branch(info);
+    const bool goes_back = info.branch > branch_;
+    if (goes_back) begin_branch(info);
     check_sequence(info.mail_sequence, info.step);
+    mail_step_ = std::max(mail_step_, info.step - 1);
     note_step(info.step);
+    whole_step_ = goes_back ? info.step : std::max(whole_step_, info.step - 1);
   }
 
   /// The run went back: what came later on the branch before is not part of this one.
@@ -248,7 +299,7 @@ class Reader {
                               sim::Bytes(begin, begin + letter.data.size())});
     }
     mail_step_ = mail.step;
-    note_step(mail.step);
+    note_whole(mail.step);
   }
 
   void take_hash(const bridges::LogEventView& event) {
@@ -257,11 +308,28 @@ class Reader {
     check_sequence(message.mail_sequence, message.step);
     ReplayLog::Hashes& hashes = log_.hashes[message.step];
     hashes.whole = static_cast<std::uint64_t>(message.hash);
+    hashes.after_letters =
+        std::any_of(log_.letters.rbegin(), log_.letters.rend(), [&](const ReplayLog::Letter& letter) {
+          return letter.step == message.step && letter.bus != bridges::RunJournal::serial_bus;
+        });
     hashes.parts.clear();
-    for (std::size_t i = 0; i < message.part.size(); ++i)
-      hashes.parts.push_back({std::move(message.part[i]), static_cast<std::uint64_t>(message.part_hash[i])});
-    note_step(message.step);
+    hashes.run.reset();
+    for (std::size_t i = 0; i < message.part.size(); ++i) {
+      const auto hash = static_cast<std::uint64_t>(message.part_hash[i]);
+      if (message.part[i] == bridges::RunJournal::run_hash_part)
+        hashes.run = hash;
+      else
+        hashes.parts.push_back({std::move(message.part[i]), hash});
+    }
+    mail_step_ = std::max(mail_step_, message.step);  // all that came up to here was in those before
+    note_whole(message.step);
     published_ = true;
+  }
+
+  /// What is known of this step ends with this message.
+  void note_whole(std::int64_t step) {
+    note_step(step);
+    whole_step_ = std::max(whole_step_, step);
   }
 
   bridges::EventLogReader file_;
@@ -274,7 +342,10 @@ class Reader {
   bool informed_ = false, stepped_ = false, published_ = false;
   std::int32_t branch_ = 0;
   std::int64_t next_sequence_ = 0;
-  std::int64_t mail_step_ = 0;  // of the last sim.mail
+  std::int64_t mail_step_ = 0;    // up to which no sim.mail is missing behind the last one
+  std::int64_t whole_step_ = -1;  // up to which all letters and messages are there
+  std::int64_t last_stamp_ = 0;   // of the last event
+  std::string version_;           // that wrote a sim.info which cannot be read; empty: none did
 };
 
 }  // namespace

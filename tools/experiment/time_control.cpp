@@ -10,6 +10,7 @@
 
 #include "sim/config/message_text.hpp"
 #include "sim/state/state_archive.hpp"
+#include "sim/state_hash.hpp"
 
 namespace tools {
 
@@ -42,6 +43,12 @@ sim::Bytes joined(const sim::Bytes& state, const sim::Bytes& scores, const sim::
   const sim::Bytes sizes = trailer.take_bytes();
   all.insert(all.end(), sizes.begin(), sizes.end());
   return all;
+}
+
+std::uint64_t hash_of(const sim::Bytes& bytes) {
+  sim::StateHash hash;
+  hash.add_bytes(bytes.data(), bytes.size());
+  return hash.value();
 }
 
 /// The line where two texts part.
@@ -226,16 +233,25 @@ std::string TimeControl::rewind(double seconds, bool run_on) {
   if (world_.step_number() == first_step_) throw std::runtime_error("the run is at its begin: it cannot go back");
   // Who wants to go back further than it has come goes to the begin.
   const std::int64_t target = std::max<std::int64_t>(world_.step_number() - std::llround(steps), first_step_);
-  auto base = ring_.newest_until(mail_.needed_from(target, longest_lead_s * steps_per_second_));
-  if (!base) base = ring_.newest_until(target);  // some client will lack reports
+  const auto base = base_for(target);
   if (!base) {
     const double oldest_s = sim::to_seconds(sim::Time{ring_.oldest().value_or(0) * world_.step_time().count()});
     throw std::runtime_error(fmt::format("cannot go back {:.6g} s from {:.6g} s: what is kept begins at {:.6g} s",
                                          seconds, sim::to_seconds(world_.now()), oldest_s));
   }
+  go_back(*base, target, run_on);
+  return place();
+}
+
+std::optional<std::int64_t> TimeControl::base_for(std::int64_t step) const {
+  const auto base = ring_.newest_until(mail_.needed_from(step, longest_lead_s * steps_per_second_));
+  return base ? base : ring_.newest_until(step);  // some client will lack reports
+}
+
+void TimeControl::go_back(std::int64_t base, std::int64_t target, bool run_on) {
   travel(
       [&] {
-        const sim::Bytes all = ring_.get(*base);
+        const sim::Bytes all = ring_.get(base);
         std::uint64_t sizes[3];
         std::memcpy(sizes, all.data() + all.size() - trailer_bytes, trailer_bytes);
         const auto at = [&](std::uint64_t offset) { return all.begin() + static_cast<std::ptrdiff_t>(offset); };
@@ -246,9 +262,9 @@ std::string TimeControl::rewind(double seconds, bool run_on) {
         simulate_again(target);
         ring_.forget_after(target);
         mail_.forget_from(target);
+        written_.erase(written_.upper_bound(target), written_.end());
       },
       target, run_on, true);
-  return place();
 }
 
 void TimeControl::simulate_again(std::int64_t to_step) {
@@ -365,7 +381,9 @@ std::string TimeControl::write_file(const std::string& name) {
   std::filesystem::create_directories(options_.directory, error);
   if (!options_.overwrite && std::filesystem::exists(path, error))
     throw std::runtime_error(path + ": exists already; choose another name");
-  tools::write_snapshot(path, snapshot());
+  const Snapshot written = snapshot();
+  tools::write_snapshot(path, written);
+  written_[written.step] = hash_of(written.state);
   return place() + ": " + path;
 }
 
@@ -383,6 +401,10 @@ std::string TimeControl::restore(const std::string& name, bool run_on) {
   if (snapshot.files != options_.files)
     throw std::runtime_error(
         path + ": its world used other files than this run: " + first_difference(snapshot.files, options_.files));
+  if (!mail_.clients().empty()) {
+    restore_with_clients(snapshot, path, run_on);
+    return place();
+  }
   travel(
       [&] {
         load({snapshot.state, snapshot.scores, snapshot.owners}, History::whole);
@@ -390,9 +412,30 @@ std::string TimeControl::restore(const std::string& name, bool run_on) {
         forget_all();
         after_step();
         first_step_ = std::min(first_step_, snapshot.step);
+        written_ = {{snapshot.step, hash_of(snapshot.state)}};
       },
       snapshot.step, run_on, false);
   return place();
+}
+
+/// A file holds nothing of programs: they can only go where they have been in this run.
+void TimeControl::restore_with_clients(const Snapshot& snapshot, const std::string& path, bool run_on) {
+  const auto refuse = [&](const std::string& why) {
+    throw std::runtime_error(
+        fmt::format("{}: {}, and the lockstep clients ({}) cannot go where they have not been or "
+                    "what is forgotten: use 'rewind', or go on from the file in a new run, with "
+                    "'shoal run --from'",
+                    path, why, sim::shortened(mail_.clients())));
+  };
+  const auto written = written_.find(snapshot.step);
+  if (written == written_.end() || written->second != hash_of(snapshot.state))
+    refuse("was not written by this run on its way to " + place());
+  const auto base = base_for(snapshot.step);
+  if (!base)
+    refuse(ring_.oldest() ? fmt::format("its {:.6g} s are before what this run remembers, from {:.6g} s on",
+                                        snapshot.time_s(), sim::to_seconds(world_.step_time() * *ring_.oldest()))
+                          : "this run remembers nothing (see --rewind-s)");
+  go_back(*base, snapshot.step, run_on);
 }
 
 }  // namespace tools

@@ -289,4 +289,137 @@ TEST_F(ReplayTest, AMeshThatIsAnotherOneIsTold) {
   EXPECT_THAT(error(), HasSubstr("plate.obj: is missing"));
 }
 
+/// At the end of events, in the middle of them, and in a log of few states: what a step left in the log before its
+/// letters came is left out.
+TEST_F(ReplayTest, ARecordIsUsedAsFarAsItGoesWhereverItIsCut) {
+  int cuts = 0, used = 0;
+  for (const char* more : {"", "state_rate_hz: 2\n", "run: {seed: 3, hash_every_steps: 0}\n"}) {
+    log = folder.file("whole" + std::to_string(cuts) + ".lcm");
+    std::string world = driven_world(more);
+    if (std::string(more).starts_with("run:"))
+      world.erase(world.find("run:"), world.find("physics:") - world.find("run:"));
+    record(world, [](RecordedRun& run, std::int64_t step) {
+      if (step == 120) run.request("spawn", "{name: guest, file: rover_small.yaml, position_m: [0, 3, 0]}");
+      if (step == 200) run.request("remove", "guest");
+    });
+    const std::string whole = log;
+    EXPECT_EQ(again().exit_code(), 0) << again().to_text();
+    EXPECT_EQ(again().steps, steps) << more;
+    std::vector<std::uintmax_t> ends;
+    bridges::EventLogReader reader(whole);
+    while (const auto event = reader.next()) ends.push_back(event->offset);
+    // Prime to what comes round every 5, 10 or 50 steps.
+    for (std::size_t i = 3; i < ends.size(); i += 37) {
+      for (const std::uintmax_t bytes : {ends[i], ends[i] + 17}) {
+        cut(whole, bytes);
+        ++cuts;
+        try {
+          const ReplayOutcome outcome = again();
+          EXPECT_EQ(outcome.exit_code(), 0) << more << "cut at byte " << bytes << ": " << outcome.to_text();
+          EXPECT_LE(outcome.steps, steps);
+          ++used;
+        } catch (const std::runtime_error& error) {
+          EXPECT_THAT(error.what(), HasSubstr("ends before the first step")) << more << "cut at byte " << bytes;
+        }
+      }
+    }
+  }
+  EXPECT_GE(cuts, 180);
+  EXPECT_GE(used, cuts * 9 / 10);
+}
+
+TEST_F(ReplayTest, WhatIsCutOffIsTold) {
+  record(driven_world());
+  const std::string whole = log;
+  bridges::EventLogReader reader(whole);
+  std::uintmax_t end = 0;
+  // Step 123 has admitted a letter of step 120 long ago; 121 is the first that shows it.
+  while (const auto event = reader.next())
+    if (event->channel == "sim.mail" && event->utime == 121 * 10'000 + 1'767'225'600'000'000) end = event->offset;
+  ASSERT_GT(end, 0u);
+  cut(whole, end);
+  const ReplayOutcome outcome = again();
+  EXPECT_EQ(outcome.exit_code(), 0);
+  EXPECT_EQ(outcome.steps, 120);
+  EXPECT_THAT(outcome.to_text(),
+              HasSubstr("note: the log breaks off in step 121: what stands behind step 120 is left out"));
+}
+
+TEST_F(ReplayTest, OneLostMessageNamesItsStep) {
+  record(driven_world());
+  const std::string whole = log;
+  const std::int64_t epoch = 1'767'225'600'000'000;
+  std::map<std::string, std::vector<std::int64_t>> stamps;
+  bridges::EventLogReader reader(whole);
+  while (const auto event = reader.next()) stamps[event->channel].push_back((event->utime - epoch) / 10'000);
+  log = folder.file("lossy.lcm");
+  for (const auto& [channel, steps_of] : stamps) {
+    if (channel == "sim.info") continue;
+    for (const std::size_t number : {std::size_t{0}, steps_of.size() / 2, steps_of.size() - 1}) {
+      SCOPED_TRACE(channel + ", number " + std::to_string(number));
+      std::size_t count = 0;
+      test::copy_log(whole, log, [&](const auto& event) { return event.channel == channel && count++ == number; });
+      const ReplayOutcome outcome = again();
+      if (channel == "sim.mail") {
+        EXPECT_EQ(outcome.exit_code(), 4);
+        EXPECT_THAT(outcome.to_text(), HasSubstr("sim.mail " + std::to_string(number) + " (of "));
+        EXPECT_THAT(outcome.to_text(), HasSubstr("is missing"));
+      } else if (channel == "sim.hash" || channel == "r1.drive.cmd") {  // nothing is lost with it: letters have it
+        EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
+      } else {
+        EXPECT_EQ(outcome.exit_code(), 1) << outcome.to_text();
+        ASSERT_TRUE(outcome.first) << outcome.to_text();
+        EXPECT_EQ(outcome.first->step, steps_of[number]);
+        EXPECT_THAT(outcome.to_text(), HasSubstr(channel + "): was published here and is not in the log"));
+      }
+    }
+  }
+}
+
+/// The state does not tell on which channel a device spoke, and what a logger lost cannot be compared.
+TEST_F(ReplayTest, TheRunHashTellsOfMessagesThatTheLogLost) {
+  record(driven_world());
+  const std::string whole = log;
+  log = folder.file("lossy.lcm");
+  bool first = true;
+  test::change_log(whole, log, [&](bridges::LogEvent& event) {
+    if (std::exchange(first, false)) event.utime += 1;  // as lcm-logger stamps
+    return event.channel != "r1.odometry";
+  });
+  EXPECT_EQ(again().exit_code(), 0) << again().to_text();
+  const ReplayOutcome outcome = again({"vehicles.r1.devices.odometry.channel=r1.elsewhere"});
+  EXPECT_EQ(outcome.exit_code(), 1);
+  EXPECT_THAT(outcome.to_text(), HasSubstr("its run hash differs and its state hash does not"));
+}
+
+TEST_F(ReplayTest, WhatIsAskedForAfterTheLastStepIsDoneAgain) {
+  for (const int last : {steps, steps + 7}) {  // with a hash of its own before, and without
+    log = folder.file(std::to_string(last) + ".lcm");
+    RecordedRun run(driven_world(), log);
+    run.run(last, {}, [&] {
+      run.request("do", "{move: crate, position_m: [5, 5, 5]}");
+      run.request("do", "{publish: shore.hail, type: twist_command_t, value: {forward_mps: 1}}");
+    });
+    const ReplayOutcome outcome = again();
+    EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
+    EXPECT_EQ(outcome.steps, last);
+  }
+}
+
+TEST_F(ReplayTest, ALogOfAnotherVersionIsRefusedByItsName) {
+  record(driven_world());
+  const std::string whole = log;
+  log = folder.file("old.lcm");
+  test::change_log(whole, log, [](bridges::LogEvent& event) {
+    if (event.channel != "sim.info") return true;
+    auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
+    info.versions = "shoal 0.3.0 (abc)\nODE: old\n";
+    event.payload = shoal::encode(info);
+    event.payload[0] ^= std::byte{1};  // another fingerprint: another type
+    event.payload.resize(event.payload.size() - 20);
+    return true;
+  });
+  EXPECT_THAT(error(), HasSubstr("was written by shoal 0.3.0 (abc), whose sim.info this one, shoal "));
+}
+
 }  // namespace
