@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <deque>
+#include <map>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string_view>
@@ -27,6 +29,8 @@ namespace tools {
 namespace {
 
 constexpr std::size_t most_problems = 20;
+/// Where nothing comes for so long, nobody looks for what was lost.
+constexpr std::size_t most_since_mail = 1'000'000;
 
 /// The big-endian number behind the fingerprint and `index` others.
 std::int64_t number_at(std::span<const std::byte> payload, std::size_t index) {
@@ -70,7 +74,11 @@ class Reader {
       count(event.channel);
       last_stamp_ = event.utime;
       if (!informed_ && event.channel == "sim.info") version_ = version_in(event.payload);
-      if (!event.channel.starts_with("sim.")) continue;
+      if (!event.channel.starts_with("sim.")) {
+        if (informed_ && log_.own_stamps && since_mail_.size() < most_since_mail)
+          since_mail_.push_back({last_, step_of(event.utime)});
+        continue;
+      }
       try {
         take(event);
       } catch (const shoal::MessageError& error) {
@@ -82,22 +90,57 @@ class Reader {
     if (!informed_) fail_without_info();
     note_missing_pieces();
     leave_out_what_is_not_whole();
+    narrow_holes();
     for (const Hole& hole : holes_) tell(hole);
     return std::move(log_);
   }
 
  private:
+  /// A message, by the place of its channel in counts_.
+  struct Came {
+    std::size_t channel;
+    std::int64_t step;
+  };
   /// Numbers of sim.mail that are missing, and the steps between which they were published.
   struct Hole {
     std::int64_t first, last;
     std::int64_t from_step, to_step;
+    std::vector<Came> came = {};  ///< of a record: all messages in it since the sim.mail before
   };
+
+  std::int64_t step_of(std::int64_t utime) const { return (utime - log_.info.epoch_utime) / log_.info.step_us; }
+
+  /// A record holds what came from outside beside sim.mail: where a channel has just as many messages more than letters
+  /// as came in the holes, those tell of the steps that the holes are about.
+  void narrow_holes() {
+    if (!log_.own_stamps) return;
+    std::map<std::string, std::int64_t, std::less<>> unknown;  // of the channels that letters came on
+    std::set<std::pair<std::string, std::int64_t>> letters;
+    for (const ReplayLog::Letter& letter : log_.letters) {
+      if (!log_.events.contains(letter.channel)) continue;
+      unknown.try_emplace(letter.channel, log_.events.at(letter.channel)).first->second -= 1;
+      letters.emplace(letter.channel, letter.step);
+    }
+    for (Hole& hole : holes_)
+      std::erase_if(hole.came, [&](const Came& came) {
+        const std::string& channel = counts_[came.channel].channel;
+        return !unknown.contains(channel) || letters.contains({channel, came.step});
+      });
+    for (const Hole& hole : holes_)
+      for (const Came& came : hole.came) unknown.at(counts_[came.channel].channel) -= 1;
+    for (Hole& hole : holes_) {
+      std::erase_if(hole.came, [&](const Came& came) { return unknown.at(counts_[came.channel].channel) != 0; });
+      if (hole.came.empty() || hole.last - hole.first + 1 > static_cast<std::int64_t>(hole.came.size())) continue;
+      hole.from_step = hole.came.front().step;
+      hole.to_step = hole.came.back().step;
+    }
+  }
 
   /// The last events are of a step whose letters come behind its messages: where the log breaks off between the two the
   /// step cannot be run again.
   void leave_out_what_is_not_whole() {
     // In a record all of a step stands before anything of a later one.
-    const std::int64_t stamped = (last_stamp_ - log_.info.epoch_utime) / log_.info.step_us;
+    const std::int64_t stamped = step_of(last_stamp_);
     if (log_.own_stamps) whole_step_ = std::max(whole_step_, stamped - 1);
     const std::int64_t known = std::max(log_.last_step, log_.own_stamps ? stamped : 0);
     log_.last_step = std::max(whole_step_, log_.begin_step());
@@ -107,10 +150,11 @@ class Reader {
   }
 
   void tell(const Hole& hole) {
-    const auto& [first, last, from, to] = hole;
+    const auto& [first, last, from, to, came] = hole;
     log_.holes.push_back(
-        first == last ? fmt::format("sim.mail {} (of a step from {} to {}) is missing", first, from, to)
-                      : fmt::format("sim.mail {} to {} (of steps from {} to {}) are missing", first, last, from, to));
+        first == last && from == to ? fmt::format("sim.mail {} (of step {}) is missing", first, from)
+        : first == last             ? fmt::format("sim.mail {} (of a step from {} to {}) is missing", first, from, to)
+                        : fmt::format("sim.mail {} to {} (of steps from {} to {}) are missing", first, last, from, to));
     log_.proven_step = std::min({log_.proven_step.value_or(from), from, log_.last_step});
   }
 
@@ -277,9 +321,10 @@ class Reader {
 
   /// `next`: the number of the first sim.mail that may still come.
   void check_sequence(std::int64_t next, std::int64_t step) {
-    if (next <= next_sequence_) return;
-    holes_.push_back({next_sequence_, next - 1, mail_step_, step});
-    next_sequence_ = next;
+    if (next > next_sequence_) {
+      holes_.push_back({next_sequence_, next - 1, mail_step_, step, since_mail_});
+      next_sequence_ = next;
+    }
   }
 
   void take_mail(const bridges::LogEventView& event) {
@@ -291,6 +336,7 @@ class Reader {
       throw shoal::MessageError(fmt::format("number {} comes a second time", mail.sequence));
     check_sequence(mail.sequence, mail.step);
     next_sequence_ = mail.sequence + 1;
+    since_mail_.clear();
     for (shoal::sim_letter_t& letter : mail.letter) {
       if (letter.step > mail.step || (!log_.letters.empty() && letter.step < log_.letters.back().step))
         throw shoal::MessageError(fmt::format("a letter of step {} is out of order", letter.step));
@@ -306,6 +352,7 @@ class Reader {
     auto message = shoal::decode<shoal::sim_hash_t>(event.payload, shoal::Finite::any);
     check_stamp(event, message.utime, message.step);
     check_sequence(message.mail_sequence, message.step);
+    since_mail_.clear();
     ReplayLog::Hashes& hashes = log_.hashes[message.step];
     hashes.whole = static_cast<std::uint64_t>(message.hash);
     hashes.after_letters =
@@ -339,6 +386,7 @@ class Reader {
   std::unordered_map<std::string_view, std::size_t> by_name_;
   std::size_t last_ = 0;  // in counts_
   std::vector<Hole> holes_;
+  std::vector<Came> since_mail_;
   bool informed_ = false, stepped_ = false, published_ = false;
   std::int32_t branch_ = 0;
   std::int64_t next_sequence_ = 0;
