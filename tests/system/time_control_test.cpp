@@ -488,7 +488,7 @@ TEST(Restore, WithLockstepClientsGoesOnlyWhereTheRunHasBeenAndRemembers) {
   EXPECT_EQ(Live::where(), "step 300, 3 s, branch 1, paused");
   EXPECT_EQ(control({"restore", "early"}).output, "step 200, 2 s, branch 2, paused\n");
   live.run_until("12");
-  EXPECT_THAT(refusal("early"), HasSubstr("its 2 s are before what this run remembers, from "));
+  EXPECT_THAT(refusal("early"), HasSubstr("its 2 s are too early for what this run remembers, from "));
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
   EXPECT_EQ(pilot.wait(), 0) << pilot.output() << pilot.errors();
 }

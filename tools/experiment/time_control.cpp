@@ -233,7 +233,8 @@ std::string TimeControl::rewind(double seconds, bool run_on) {
   if (world_.step_number() == first_step_) throw std::runtime_error("the run is at its begin: it cannot go back");
   // Who wants to go back further than it has come goes to the begin.
   const std::int64_t target = std::max<std::int64_t>(world_.step_number() - std::llround(steps), first_step_);
-  const auto base = base_for(target);
+  auto base = ring_.newest_until(mail_.needed_from(target, longest_lead_s * steps_per_second_));
+  if (!base) base = ring_.newest_until(target);  // some client will lack reports
   if (!base) {
     const double oldest_s = sim::to_seconds(sim::Time{ring_.oldest().value_or(0) * world_.step_time().count()});
     throw std::runtime_error(fmt::format("cannot go back {:.6g} s from {:.6g} s: what is kept begins at {:.6g} s",
@@ -241,11 +242,6 @@ std::string TimeControl::rewind(double seconds, bool run_on) {
   }
   go_back(*base, target, run_on);
   return place();
-}
-
-std::optional<std::int64_t> TimeControl::base_for(std::int64_t step) const {
-  const auto base = ring_.newest_until(mail_.needed_from(step, longest_lead_s * steps_per_second_));
-  return base ? base : ring_.newest_until(step);  // some client will lack reports
 }
 
 void TimeControl::go_back(std::int64_t base, std::int64_t target, bool run_on) {
@@ -430,9 +426,11 @@ void TimeControl::restore_with_clients(const Snapshot& snapshot, const std::stri
   const auto written = written_.find(snapshot.step);
   if (written == written_.end() || written->second != hash_of(snapshot.state))
     refuse("was not written by this run on its way to " + place());
-  const auto base = base_for(snapshot.step);
+  // Unlike rewind(): from later on some client would lack reports.  At the start of the run nobody had any.
+  const std::int64_t needed = mail_.needed_from(snapshot.step, longest_lead_s * steps_per_second_);
+  const auto base = ring_.newest_until(std::max(needed, first_step_));
   if (!base)
-    refuse(ring_.oldest() ? fmt::format("its {:.6g} s are before what this run remembers, from {:.6g} s on",
+    refuse(ring_.oldest() ? fmt::format("its {:.6g} s are too early for what this run remembers, from {:.6g} s on",
                                         snapshot.time_s(), sim::to_seconds(world_.step_time() * *ring_.oldest()))
                           : "this run remembers nothing (see --rewind-s)");
   go_back(*base, snapshot.step, run_on);

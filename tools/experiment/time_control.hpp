@@ -103,8 +103,7 @@ class TimeControl final : public bridges::TimeMachine {
   /// Carries out `work`, which moves the world; puts the world back when that fails.
   void travel(const std::function<void()>& work, std::int64_t to_step, bool run_on, bool ours);
   void put_back(const Saved& before);
-  /// The last snapshot in memory that going back to a step can begin with; nothing: none reaches so far.
-  std::optional<std::int64_t> base_for(std::int64_t step) const;
+  /// To a step of this branch, from the snapshot in memory of an earlier one on.
   void go_back(std::int64_t base, std::int64_t target, bool run_on);
   void restore_with_clients(const Snapshot& snapshot, const std::string& path, bool run_on);
   std::string what_is_kept() const;
