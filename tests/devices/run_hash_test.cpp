@@ -81,7 +81,8 @@ TEST(RunHash, HasWhatEventsPublishAndNotWhatIsPublishedBesideTheWorld) {
     return of(test.world);
   };
   const auto event = [](int mps) {
-    return "events: [{name: hail, at: 0.1, do: [{publish: shore.hail, type: twist_command_t, value: {forward_mps: " +
+    return "events: [{name: hail, at: 0.1, do: [{publish: shore.hail, type: shoal.twist_command_t, value: "
+           "{forward_mps: " +
            std::to_string(mps) + "}}]}]\n";
   };
   EXPECT_EQ(run(event(1), false), run(event(1), true));

@@ -404,7 +404,7 @@ TEST_F(ReplayTest, WhatIsAskedForAfterTheLastStepIsDoneAgain) {
     RecordedRun run(driven_world(), log);
     run.run(last, {}, [&] {
       run.request("do", "{move: crate, position_m: [5, 5, 5]}");
-      run.request("do", "{publish: shore.hail, type: twist_command_t, value: {forward_mps: 1}}");
+      run.request("do", "{publish: shore.hail, type: shoal.twist_command_t, value: {forward_mps: 1}}");
     });
     const ReplayOutcome outcome = again();
     EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
