@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "shoal/acoustic_received_t.hpp"
+#include "shoal/imu_t.hpp"
 #include "shoal/utime_t.hpp"
 #include "tests/devices/modem_fixture.hpp"
 
@@ -113,6 +114,18 @@ TEST(RunHash, IsTheSameWhoeverObserves) {
   EXPECT_EQ(run_of(sensed_world("true")), plain) << "with truth channels";
   EXPECT_EQ(run_of(sensed_world("false", "state_rate_hz: 100\n")), plain);
   EXPECT_EQ(run_of(sensed_world("false", "run: {hash_every_steps: 1, track_rate_hz: 50}\n")), plain);
+}
+
+TEST(RunHash, IsTheSameWhenSomebodyBeginsToObserve) {
+  const Hashes plain = run_of(sensed_world("false"));
+  test::TestWorld test(sensed_world("false"));
+  test::Listener<shoal::imu_t> truth(test, "r1.imu.truth");
+  test.run_for(0.333);
+  for (const char* device : {"r1/imu", "r1/lidar", "r1/odometry"})
+    EXPECT_EQ(test.change(device, "{truth: true}"), "") << device;
+  test.run_for(1 - 0.333);
+  EXPECT_GT(truth.take_all().size(), 10u);
+  EXPECT_EQ(of(test.world), plain);
 }
 
 TEST(RunHash, IsTheSameWithAnyThreads) {
