@@ -73,6 +73,7 @@ class Reader {
     while (file_.next(event)) {
       count(event.channel);
       last_stamp_ = event.utime;
+      ends_whole_ = false;
       if (!informed_ && event.channel == "sim.info") version_ = version_in(event.payload);
       if (!event.channel.starts_with("sim.")) {
         if (informed_ && log_.own_stamps && since_mail_.size() < most_since_mail)
@@ -144,9 +145,10 @@ class Reader {
     if (log_.own_stamps) whole_step_ = std::max(whole_step_, stamped - 1);
     const std::int64_t known = std::max(log_.last_step, log_.own_stamps ? stamped : 0);
     log_.last_step = std::max(whole_step_, log_.begin_step());
-    if (known > log_.last_step)
-      log_.cut =
-          fmt::format("the log breaks off in step {}: what stands behind step {} is left out", known, log_.last_step);
+    // Behind the end of a step may stand what came for the next.
+    if (known > log_.last_step || (log_.own_stamps && !ends_whole_))
+      log_.cut = fmt::format("the log breaks off in step {}: what stands behind step {} is left out",
+                             std::max(known, log_.last_step + 1), log_.last_step);
   }
 
   void tell(const Hole& hole) {
@@ -377,6 +379,7 @@ class Reader {
   void note_whole(std::int64_t step) {
     note_step(step);
     whole_step_ = std::max(whole_step_, step);
+    ends_whole_ = true;
   }
 
   bridges::EventLogReader file_;
@@ -393,6 +396,7 @@ class Reader {
   std::int64_t mail_step_ = 0;    // up to which no sim.mail is missing behind the last one
   std::int64_t whole_step_ = -1;  // up to which all letters and messages are there
   std::int64_t last_stamp_ = 0;   // of the last event
+  bool ends_whole_ = false;       // that event ended a step
   std::string version_;           // that wrote a sim.info which cannot be read; empty: none did
 };
 

@@ -313,19 +313,18 @@ TEST_F(ReplayTest, ARecordIsUsedAsFarAsItGoesWhereverItIsCut) {
     std::vector<std::uintmax_t> ends;
     bridges::EventLogReader reader(whole);
     while (const auto event = reader.next()) ends.push_back(event->offset);
-    // Prime to what comes round every 5, 10 or 50 steps.
-    for (std::size_t i = 3; i < ends.size(); i += 37) {
-      for (const std::uintmax_t bytes : {ends[i], ends[i] + 17}) {
-        cut(whole, bytes);
-        ++cuts;
-        try {
-          const ReplayOutcome outcome = again();
-          EXPECT_EQ(outcome.exit_code(), 0) << more << "cut at byte " << bytes << ": " << outcome.to_text();
-          EXPECT_LE(outcome.steps, steps);
-          ++used;
-        } catch (const std::runtime_error& error) {
-          EXPECT_THAT(error.what(), HasSubstr("ends before the first step")) << more << "cut at byte " << bytes;
-        }
+    // Every other one in the middle of an event.
+    for (std::size_t i = 3; i < ends.size(); i += 7) {
+      const std::uintmax_t bytes = ends[i] + (i % 2 == 0 ? 17 : 0);
+      cut(whole, bytes);
+      ++cuts;
+      try {
+        const ReplayOutcome outcome = again();
+        EXPECT_EQ(outcome.exit_code(), 0) << more << "cut at byte " << bytes << ": " << outcome.to_text();
+        EXPECT_LE(outcome.steps, steps);
+        ++used;
+      } catch (const std::runtime_error& error) {
+        EXPECT_THAT(error.what(), HasSubstr("ends before the first step")) << more << "cut at byte " << bytes;
       }
     }
   }
@@ -338,16 +337,16 @@ TEST_F(ReplayTest, WhatIsCutOffIsTold) {
   const std::string whole = log;
   bridges::EventLogReader reader(whole);
   std::uintmax_t end = 0;
-  // Step 123 has admitted a letter of step 120 long ago; 121 is the first that shows it.
+  // The messages of step 121 tell of a letter that is not there any more; the last stamp is that of the letter itself.
   while (const auto event = reader.next())
     if (event->channel == "sim.mail" && event->utime == 121 * 10'000 + 1'767'225'600'000'000) end = event->offset;
   ASSERT_GT(end, 0u);
   cut(whole, end);
   const ReplayOutcome outcome = again();
   EXPECT_EQ(outcome.exit_code(), 0);
-  EXPECT_EQ(outcome.steps, 120);
+  EXPECT_EQ(outcome.steps, 119);
   EXPECT_THAT(outcome.to_text(),
-              HasSubstr("note: the log breaks off in step 121: what stands behind step 120 is left out"));
+              HasSubstr("note: the log breaks off in step 120: what stands behind step 119 is left out"));
 }
 
 TEST_F(ReplayTest, OneLostMessageNamesItsStep) {
@@ -364,6 +363,10 @@ TEST_F(ReplayTest, OneLostMessageNamesItsStep) {
       SCOPED_TRACE(channel + ", number " + std::to_string(number));
       std::size_t count = 0;
       test::copy_log(whole, log, [&](const auto& event) { return event.channel == channel && count++ == number; });
+      if (channel == "sim.mail" && number == 0) {
+        EXPECT_THAT(error(), HasSubstr("cannot be run again from the start: sim.mail 0 (of step 0) is missing"));
+        continue;
+      }
       const ReplayOutcome outcome = again();
       if (channel == "sim.mail") {
         EXPECT_EQ(outcome.exit_code(), 4);
@@ -376,7 +379,8 @@ TEST_F(ReplayTest, OneLostMessageNamesItsStep) {
         EXPECT_EQ(outcome.exit_code(), 1) << outcome.to_text();
         ASSERT_TRUE(outcome.first) << outcome.to_text();
         EXPECT_EQ(outcome.first->step, steps_of[number]);
-        EXPECT_THAT(outcome.to_text(), HasSubstr(channel + "): was published here and is not in the log"));
+        EXPECT_THAT(outcome.to_text(),
+                    AllOf(HasSubstr(channel), HasSubstr(": was published here and is not in the log")));
       }
     }
   }
