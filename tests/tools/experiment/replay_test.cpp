@@ -314,7 +314,7 @@ TEST_F(ReplayTest, ARecordIsUsedAsFarAsItGoesWhereverItIsCut) {
     bridges::EventLogReader reader(whole);
     while (const auto event = reader.next()) ends.push_back(event->offset);
     // Every other one in the middle of an event.
-    for (std::size_t i = 3; i < ends.size(); i += 7) {
+    for (std::size_t i = 3; i < ends.size(); i += 3) {
       const std::uintmax_t bytes = ends[i] + (i % 2 == 0 ? 17 : 0);
       cut(whole, bytes);
       ++cuts;
