@@ -98,6 +98,7 @@ std::string Summary::to_json() const {
   json["duration_s"] = duration_s;
   json["wall_s"] = wall_s;
   json["real_time_factor"] = real_time_factor();
+  json["run_hash"] = fmt::format("{:016x}", run_hash);
   json["state_hash"] = fmt::format("{:016x}", state_hash);
   json["messages"] = messages;
   json["dropped_messages"] = dropped_messages;
@@ -187,7 +188,7 @@ std::string Summary::to_text() const {
   if (!judged())
     text += ended_by_hand() ? fmt::format("  {}: not judged\n", why_not_judged())
                             : fmt::format("  not judged: {}\n", why_not_judged());
-  text += fmt::format("  state hash {:016x}\n", state_hash);
+  text += fmt::format("  run hash {:016x}, state hash {:016x}\n", run_hash, state_hash);
   return text;
 }
 
