@@ -56,6 +56,8 @@ class Metric {
   /// Null when it compares no estimates.
   virtual const std::vector<ErrorSample>* samples() const { return nullptr; }
   virtual std::int64_t bad_messages() const { return 0; }
+  /// Why there was nothing to make figures of; empty: there was.
+  virtual std::string silence() const { return {}; }
   /// Mail that it has not read yet is thrown away when restoring.
   virtual void visit_state(sim::StateArchive&, History) {}
   const sim::MetricConfig& config() const { return config_; }

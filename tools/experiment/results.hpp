@@ -41,6 +41,7 @@ struct Summary {
   std::map<std::string, double> metrics;
   std::vector<Scoring::Verdict> verdicts;
   std::vector<Process> processes;
+  std::vector<FirstContacts::Contact> contacts;   ///< of vehicles with each other and with objects
   std::vector<bridges::LockstepSummary> clients;  ///< that took part in the lockstep, by name
   std::map<std::string, sim::ZoneRecord> zones;   ///< by vehicle, when the world has zones with rules
   std::optional<LinkCounts> acoustics;            ///< of all modems under water, when there are any

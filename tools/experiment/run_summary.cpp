@@ -67,6 +67,9 @@ void Run::add_figures(Summary& summary) {
   // Without the programs that a world names there is nothing to judge.
   const bool judged = loaded_.config.processes.empty() || options_.launch || !options_.await.empty();
   if (!judged) summary.verdicts.clear();
+  summary.contacts = scoring_.contacts().all();
+  sim::Warnings warnings;
+  if (judged && summary.steps > 0) scoring_.warn_of_silence(warnings);
   summary.judge_processes();
 }
 

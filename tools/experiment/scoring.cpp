@@ -25,7 +25,7 @@ Scoring::Verdict judge(const sim::PassRule& rule, const Figures& figures) {
 
 }  // namespace
 
-Scoring::Scoring(sim::World& world) : world_(world) {
+Scoring::Scoring(sim::World& world) : world_(world), contacts_(world) {
   for (const sim::MetricConfig& config : world.config().metrics) metrics_.push_back(make(config));
 }
 
@@ -61,6 +61,7 @@ std::unique_ptr<Metric> Scoring::make(const sim::MetricConfig& config) {
 void Scoring::after_step() {
   for (const auto& [vehicle, truth] : truths_) truth->after_step();
   for (const auto& metric : metrics_) metric->after_step();
+  contacts_.after_step();
 }
 
 Figures Scoring::figures() const {
@@ -80,6 +81,8 @@ void Scoring::visit_state(sim::StateArchive& archive, History history) {
     archive.section("metric " + metric->config().name);
     metric->visit_state(archive, history);
   }
+  archive.section("contacts");
+  archive(contacts_);
 }
 
 std::vector<Scoring::Verdict> Scoring::verdicts() const {
@@ -102,6 +105,13 @@ std::int64_t Scoring::bad_messages() const {
   std::int64_t sum = 0;
   for (const auto& metric : metrics_) sum += metric->bad_messages();
   return sum;
+}
+
+void Scoring::warn_of_silence(sim::Warnings& warnings) const {
+  for (const auto& metric : metrics_)
+    if (const std::string silence = metric->silence(); !silence.empty())
+      warnings.warn(metric->config().place, "metric '" + metric->config().name + "'",
+                    silence + ": its figures are not numbers");
 }
 
 }  // namespace tools
