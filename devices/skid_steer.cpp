@@ -11,7 +11,7 @@ void SkidSteer::Params::read(sim::ParamReader& in) {
     if (in.has(key) && joints->empty()) in.error(key, std::string("'") + key + "' must name a joint");
   drive.read(in,
              "effective track: (right - left ground speed) / turn rate as measured, wider than the wheels' own; unset: "
-             "the wheels' own, with which it turns slower than asked");
+             "2 (b + a^2 / b) of wheels at (+-a, +-b), which is so under Coulomb friction");
 }
 
 SHOAL_ACTUATOR("skid_steer", SkidSteer, DifferentialDriveController);

@@ -30,13 +30,13 @@ void TwoSidedDrive::Params::read(sim::ParamReader& in, const char* meaning_of_tr
 TwoSidedDrive::TwoSidedDrive(const Params& params, const sim::DeviceContext& context,
                              const std::vector<std::string>& left_joints, const std::vector<std::string>& right_joints,
                              bool scrubs)
-    : params_(params),
-      joint_track_m_(track_m_of(context.vehicle.config(), left_joints, right_joints)),
-      left_(context, left_joints),
-      right_(context, right_joints) {
+    : params_(params), left_(context, left_joints), right_(context, right_joints) {
+  const sim::VehicleConfig& vehicle = context.vehicle.config();
+  joint_track_m_ = track_m_of(vehicle, left_joints, right_joints);
+  usual_track_m_ = scrubs ? scrubbing_track_m_of(vehicle, left_joints, right_joints) : joint_track_m_;
   std::vector<std::string> joints = left_joints;
   joints.insert(joints.end(), right_joints.begin(), right_joints.end());
-  joint_radius_m_ = wheel_radius_m_of(context.vehicle.config(), joints);
+  joint_radius_m_ = wheel_radius_m_of(vehicle, joints);
   if (!params.track_m && !(joint_track_m_ > 0)) refuse(context, "'track_m' is needed: its wheels are in one place");
   take_lengths();
   check_lengths(context, scrubs);
@@ -45,7 +45,7 @@ TwoSidedDrive::TwoSidedDrive(const Params& params, const sim::DeviceContext& con
 
 /// What was given counts, then what the joints and wheels have.
 void TwoSidedDrive::take_lengths() {
-  track_m_ = params_.track_m.value_or(joint_track_m_);
+  track_m_ = params_.track_m.value_or(usual_track_m_);
   wheel_radius_m_ = params_.wheel_radius_m.value_or(joint_radius_m_.value_or(usual_wheel_radius_m));
 }
 
@@ -53,7 +53,7 @@ void TwoSidedDrive::check_lengths(const sim::DeviceContext& context, bool scrubs
   const AllowedRatio usual;
   const AllowedRatio at_least{usual.low, std::numeric_limits<double>::infinity()};
   check_length(context, {"track_m", params_.track_m, joint_track_m_}, scrubs ? at_least : usual,
-               "it turns {} times as fast as asked", as_it_is);
+               scrubs ? "it turns slower than asked" : "it turns {} times as fast as asked", as_it_is);
   check_length(context, {"wheel_radius_m", params_.wheel_radius_m, joint_radius_m_}, usual,
                "it drives {} times as fast as asked", inverse);
 }

@@ -51,7 +51,8 @@ class TwoSidedDrive : public sim::Actuator {
   void check_lengths(const sim::DeviceContext& context, bool scrubs) const;
 
   Params params_;
-  double joint_track_m_;                  ///< as the joints have it
+  double joint_track_m_ = 0;              ///< as the joints have it
+  double usual_track_m_ = 0;              ///< where none is given
   std::optional<double> joint_radius_m_;  ///< of their wheels
   double wheel_radius_m_ = 0, track_m_ = 0;
   WheelMotors left_;

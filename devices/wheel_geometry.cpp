@@ -73,6 +73,18 @@ double track_m_of(const sim::VehicleConfig& vehicle, const std::vector<std::stri
   return std::abs(across_m.dot(wheel_geometry(vehicle, left_joints.front()).axis_V));
 }
 
+double scrubbing_track_m_of(const sim::VehicleConfig& vehicle, const std::vector<std::string>& left_joints,
+                            const std::vector<std::string>& right_joints) {
+  const double track_m = track_m_of(vehicle, left_joints, right_joints);
+  const double middle_m = (mean_place(vehicle, left_joints) + mean_place(vehicle, right_joints)).x() / 2;
+  double squares_m2 = 0;
+  for (const std::vector<std::string>* side : {&left_joints, &right_joints})
+    for (const std::string& joint : *side)
+      squares_m2 += std::pow(wheel_geometry(vehicle, joint).center_V_m.x() - middle_m, 2);
+  const double a2_m2 = squares_m2 / static_cast<double>(left_joints.size() + right_joints.size());
+  return track_m > 0 ? track_m + 4 * a2_m2 / track_m : 0;
+}
+
 std::optional<double> wheel_radius_m_of(const sim::VehicleConfig& vehicle, const std::vector<std::string>& joints) {
   double sum_m = 0;
   for (const std::string& joint : joints) {
@@ -90,7 +102,7 @@ std::optional<double> wheelbase_m_of(const sim::VehicleConfig& vehicle,
     const bool steered = std::find(steered_joints.begin(), steered_joints.end(), joint.name) != steered_joints.end();
     if (steered || (joint.type != "hinge" && joint.type != "hinge2")) continue;
     const WheelGeometry wheel = wheel_geometry(vehicle, joint.name);
-    if (wheel.body != nullptr) rear_m = std::min(rear_m, wheel.center_V_m.x());
+    if (wheel.rolls()) rear_m = std::min(rear_m, wheel.center_V_m.x());
   }
   const double front_m = mean_place(vehicle, steered_joints).x();
   if (rear_m < front_m) return front_m - rear_m;

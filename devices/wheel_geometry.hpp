@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,8 @@ struct WheelGeometry {
   sim::Vector3d center_V_m = sim::Vector3d::Zero();  ///< of its largest round part, else the anchor of the joint
   sim::Vector3d axis_V = sim::Vector3d::UnitY();     ///< that it turns about, of unit length
   std::optional<double> radius_m;                    ///< of that part
+  /// It rolls on the ground: something round turns about a level axis.
+  bool rolls() const { return body != nullptr && std::abs(axis_V.z()) < 0.7; }
 };
 
 /// Of a joint that is a hinge or hinge2.
@@ -28,6 +31,11 @@ WheelGeometry wheel_geometry(const sim::VehicleConfig& vehicle, const std::strin
 /// The distance along the axle between the mean places of the wheels of both sides.
 double track_m_of(const sim::VehicleConfig& vehicle, const std::vector<std::string>& left_joints,
                   const std::vector<std::string>& right_joints);
+
+/// The track of a vehicle that turns by slip, when its wheels carry alike under Coulomb friction: 2 (b + a^2 / b) with
+/// wheels at (+-a, +-b) from their middle.  There the friction of the slips (b w - v, a w) has no moment.
+double scrubbing_track_m_of(const sim::VehicleConfig& vehicle, const std::vector<std::string>& left_joints,
+                            const std::vector<std::string>& right_joints);
 
 /// The mean radius; nothing when a wheel is not round.
 std::optional<double> wheel_radius_m_of(const sim::VehicleConfig& vehicle, const std::vector<std::string>& joints);

@@ -1,0 +1,91 @@
+#include "devices/weight_on_wheels.hpp"
+
+#include <gmock/gmock.h>
+
+#include "shoal/twist_command_t.hpp"
+#include "sim/world/vehicle.hpp"
+#include "tests/devices/world_fixture.hpp"
+#include "tests/sim/medium/log_capture.hpp"
+
+namespace {
+
+using testing::HasSubstr;
+
+/// A rover whose two wheels are in the middle, with one caster before and one behind the axle, so far above the ground.
+/// `more`: contacts.
+std::string rover(double front_m, double rear_m, const std::string& contacts = "") {
+  const auto caster = [](const std::string& name, const std::string& x, double up_m) {
+    return "            - {name: " + name + ", shape: sphere, radius_m: 0.05, position_m: [" + x + ", 0, " +
+           std::to_string(-0.05 + up_m) + "], mass_kg: 0.1, material: slick}\n";
+  };
+  return R"(
+shoal: 1
+physics: {step_s: 0.01}
+materials: [{name: slick}]
+contacts: [{between: [slick, any], friction: 0})" +
+         contacts + R"(]
+objects: [{name: ground, fixed: true, parts: [{shape: plane}]}]
+vehicles:
+  - name: r1
+    model:
+      shoal: 1
+      vehicle: test_rover
+      bodies:
+        - name: chassis
+          position_m: [0, 0, 0.1]
+          parts:
+            - {name: hull, shape: box, size_m: [0.4, 0.3, 0.1], position_m: [-0.01, 0, 0.03], mass_kg: 17}
+)" + caster("front", "0.2", front_m) +
+         caster("rear", "-0.2", rear_m) + R"(
+        - {name: left_wheel, position_m: [0, 0.2, 0.1], parts: [{shape: sphere, radius_m: 0.1, mass_kg: 1.5}]}
+        - {name: right_wheel, position_m: [0, -0.2, 0.1], parts: [{shape: sphere, radius_m: 0.1, mass_kg: 1.5}]}
+      joints:
+        - {name: left, type: hinge, bodies: [chassis, left_wheel], anchor_m: [0, 0.2, 0.1], axis: [0, 1, 0]}
+        - {name: right, type: hinge, bodies: [chassis, right_wheel], anchor_m: [0, -0.2, 0.1], axis: [0, 1, 0]}
+      devices:
+        - {name: drive, type: differential_drive, left_joint: left, right_joint: right}
+)";
+}
+
+std::string warnings_of(const std::string& yaml) {
+  const test_support::LogCapture log;
+  test::TestWorld built(yaml);
+  return log.text();
+}
+
+/// Of the turn rate that was asked for, on the spot.
+double share_of_turn(const std::string& yaml) {
+  const test_support::LogCapture log;
+  test::TestWorld test(yaml);
+  shoal::twist_command_t command{};
+  command.turn_radps = 1;
+  test.send("r1.drive.cmd", command);
+  test.run_for(1);
+  double turned_rad = 0;
+  sim::Pose before = test.world.find_vehicle("r1")->X_WV();
+  for (int i = 0; i < 40; ++i) {
+    test.run_for(0.1);
+    const sim::Pose now = test.world.find_vehicle("r1")->X_WV();
+    turned_rad += sim::yaw_of((before.inverse() * now).linear());
+    before = now;
+  }
+  return turned_rad / 4;
+}
+
+TEST(WeightOnWheels, IsUndeterminedWithCastersBeforeAndBehind) {
+  EXPECT_THAT(warnings_of(rover(0, 0)),
+              HasSubstr("vehicle 'r1': device 'drive': how much weight its driven wheels carry is undetermined: "
+                        "'chassis/front', 'chassis/rear' stand as low as they (4 points of one rigid vehicle)"));
+}
+
+TEST(WeightOnWheels, IsDeterminedWithOneCasterRaised) {
+  EXPECT_EQ(warnings_of(rover(0.001, 0)), "");
+  EXPECT_EQ(warnings_of(rover(0.0005, 0.0005)), "");
+}
+
+TEST(WeightOnWheels, DecidesHowFastItTurns) {
+  for (const double up_m : {-0.001, -0.0003, 0.0, 0.0001, 0.0002, 0.0003, 0.0004, 0.0005, 0.001})
+    std::printf("%g: both %g, front %g\n", up_m, share_of_turn(rover(up_m, up_m)), share_of_turn(rover(up_m, 0)));
+}
+
+}  // namespace
