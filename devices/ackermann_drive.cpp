@@ -8,6 +8,8 @@
 #include "devices/joint_of_device.hpp"
 #include "devices/weight_on_wheels.hpp"
 #include "devices/wheel_geometry.hpp"
+#include "sim/config/message_text.hpp"
+#include "sim/world/world_warnings.hpp"
 
 namespace devices {
 
@@ -79,6 +81,27 @@ void AckermannDrive::take_lengths(const sim::DeviceContext& context) {
   lengths_ = lengths_of(params_);
   if (turns_inside(lengths_.track_m, lengths_.wheelbase_m, params_.max_steering_rad))
     refuse(context, turns_inside_text);
+  check_stops(context);
+}
+
+/// The inner wheel is steered most: left when it turns left, right when it turns right.
+void AckermannDrive::check_stops(const sim::DeviceContext& context) const {
+  const double tangent = std::tan(params_.max_steering_rad);
+  const double L = lengths_.wheelbase_m;
+  const double inner_rad = std::atan(L * tangent / (L - lengths_.track_m / 2 * tangent));
+  const sim::JointAxisConfig& left = joint_config(vehicle_, params_.left_steer_joint).axis1;
+  const sim::JointAxisConfig& right = joint_config(vehicle_, params_.right_steer_joint).axis1;
+  for (const auto& [name, stop_rad] :
+       {std::pair{params_.left_steer_joint, left.high_stop}, std::pair{params_.right_steer_joint, right.low_stop}}) {
+    if (!stop_rad || inner_rad <= std::abs(*stop_rad) + 0.01) continue;
+    const sim::DeviceConfig& config = context.config;
+    sim::warnings_of(context.world)
+        .warn(config.source ? sim::place_of(*config.source, "max_steering_deg") : config.place,
+              "vehicle '" + vehicle_.name() + "': device '" + config.name + "'",
+              "at 'max_steering_deg' it steers the inner wheel by " +
+                  sim::number_text(std::round(inner_rad * 1000) / 1000) + " rad, and joint '" + name + "' stops at " +
+                  sim::number_text(*stop_rad));
+  }
 }
 
 AckermannDrive::Lengths AckermannDrive::lengths_of(const Params& params) const {

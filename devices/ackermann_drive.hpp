@@ -62,6 +62,7 @@ class AckermannDrive final : public sim::Actuator {
     double wheelbase_m = 0.3, track_m = 0.2, wheel_radius_m = 0.05;
   };
   void take_lengths(const sim::DeviceContext& context);
+  void check_stops(const sim::DeviceContext& context) const;
   Lengths lengths_of(const Params& params) const;
   void steer(sim::Joint& joint, double side, double torque_Nm, double step_s);
   /// Ground speed of a wheel that rolls without slip, over that of the middle of the rear axle.

@@ -124,6 +124,18 @@ TEST(WheelGeometry, IsThatOfACar) {
   EXPECT_THAT(warnings_of(car(ackermann + ", wheel_radius_m: 0.05")), HasSubstr("it drives 1.2 times as fast"));
 }
 
+/// Steered by 0.5 rad in the middle the inner wheel stands at atan(0.4 t / (0.4 - 0.15 t)) with t = tan 0.5: 0.602 rad.
+TEST(WheelGeometry, SaysThatAJointStopsBeforeTheLargestSteering) {
+  std::string yaml = car(ackermann + ", max_steering_deg: 28.648");
+  const std::string axis = "type: hinge2, axis: [0, 0, 1]";
+  for (std::size_t at = yaml.find(axis); at != std::string::npos; at = yaml.find(axis, at + 1))
+    yaml.insert(at + axis.size(), ", low_stop: -0.55, high_stop: 0.7");
+  EXPECT_THAT(warnings_of(yaml),
+              HasSubstr("at 'max_steering_deg' it steers the inner wheel by 0.602 rad, and joint 'fr' "
+                        "stops at -0.55"));
+  EXPECT_THAT(warnings_of(yaml), testing::Not(HasSubstr("'fl'")));
+}
+
 TEST(WheelGeometry, GivesTheTrackOfWheelsThatScrub) {
   const std::string skid = "type: skid_steer, left_joints: [fl, rl], right_joints: [fr, rr]";
   test::TestWorld test(car(skid));

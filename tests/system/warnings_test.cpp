@@ -2,34 +2,12 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "tests/system/shoal_program.hpp"
 
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
-using testing::Not;
-
-std::vector<std::string> worlds_below(const std::string& folder) {
-  std::vector<std::string> files;
-  for (const auto& file : fs::directory_iterator(system_test::source(folder)))
-    if (file.path().extension() == ".yaml") files.push_back(file.path().string());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-class ShippedWorld : public testing::TestWithParam<std::string> {};
-
-TEST_P(ShippedWorld, IsCheckedWithoutAWarning) {
-  const system_test::Ended check = system_test::run_shoal({"check", GetParam()});
-  EXPECT_EQ(check.exit_code, 0) << check.errors;
-  EXPECT_EQ(check.errors, "");
-}
-
-INSTANTIATE_TEST_SUITE_P(Warnings, ShippedWorld, testing::ValuesIn(worlds_below("worlds")),
-                         [](const auto& file) { return fs::path(file.param).stem().string(); });
 
 TEST(Warnings, AreTheSameInCheckAndRun) {
   const system_test::ScratchFolder scratch;
@@ -55,6 +33,19 @@ TEST(Warnings, AreTheSameInCheckAndRun) {
     EXPECT_THAT(ended->errors, HasSubstr("warning: " + start));
     EXPECT_EQ(std::count(ended->errors.begin(), ended->errors.end(), '\n'), 2) << ended->errors;
   }
+}
+
+TEST(Warnings, NameAProgramThatIsNotThere) {
+  const system_test::ScratchFolder scratch;
+  const std::string file = scratch.file("programs.yaml");
+  system_test::write_file(file,
+                          "shoal: 1\nprocesses: [{name: p, command: [shoal-coop-submarine]}, {name: q, command: "
+                          "[shoal-coop-rover, --name, q]}]\n");
+  const system_test::Ended check = system_test::run_shoal({"check", file});
+  EXPECT_EQ(check.exit_code, 0);
+  EXPECT_EQ(check.errors, "warning: " + file +
+                              ":2:35: process 'p': there is no program 'shoal-coop-submarine' beside "
+                              "shoal or in PATH\n");
 }
 
 TEST(Warnings, TellAtTheEndOfAMetricThatHeardNothing) {
