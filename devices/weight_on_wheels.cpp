@@ -17,6 +17,9 @@ namespace devices {
 
 namespace {
 
+/// What is higher by more does not carry: contacts are hard.
+constexpr double level_m = 5e-5;
+
 /// A point that may stand on the ground.
 struct Support {
   sim::Vector3d p_V_m = sim::Vector3d::Zero();
@@ -72,7 +75,7 @@ bool is_soft(const sim::WorldConfig& world) {
 
 /// The points as low as the driven wheels, or lower; nothing when the wheels are not round or not level.
 std::optional<std::vector<Support>> supports_of(const sim::VehicleConfig& vehicle,
-                                                const std::vector<std::string>& driven_joints, double level_m) {
+                                                const std::vector<std::string>& driven_joints) {
   std::vector<const sim::BodyConfig*> driven;
   double ground_m = std::numeric_limits<double>::infinity(), highest_m = -ground_m;
   for (const std::string& joint : driven_joints) {
@@ -114,7 +117,7 @@ void warn_of_shared_weight(const sim::DeviceContext& context, const std::vector<
   const sim::WorldConfig& world = context.world.config();
   const sim::VehicleConfig& vehicle = context.vehicle.config();
   if (world.physics.gravity_mps2 == 0 || is_soft(world) || gives(vehicle)) return;
-  const auto supports = supports_of(vehicle, driven_joints, world.physics.contact_surface_layer_m / 2);
+  const auto supports = supports_of(vehicle, driven_joints);
   if (!supports || weight_is_determined(*supports)) return;
   std::string others;
   for (const Support& support : *supports)

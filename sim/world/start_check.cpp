@@ -56,7 +56,16 @@ std::set<int> groups_of_terrain(const World& world) {
 /// Where a starter is wrong, after `it starts`; empty: it is not.
 class StartCheck {
  public:
-  explicit StartCheck(const World& world) : world_(world), terrains_(groups_of_terrain(world)) {}
+  explicit StartCheck(const World& world) : world_(world), terrains_(groups_of_terrain(world)) {
+    if (terrains_.empty()) return;
+    const auto parts = world.physics().parts();
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const auto box = parts[i].group < 0 ? std::nullopt : world.physics().bounds_W(static_cast<int>(i));
+      if (!box) continue;
+      const auto [top, fresh] = tops_m_.emplace(parts[i].group, box->max().z());
+      if (!fresh) top->second = std::max(top->second, box->max().z());
+    }
+  }
 
   std::string complaint(const Starter& starter) {
     if (const std::string ground = terrain_over(starter); !ground.empty()) return "below the terrain of " + ground;
@@ -72,7 +81,11 @@ class StartCheck {
     if (terrains_.empty()) return "";
     RayFilter others;
     others.exclude_group = starter.group;
-    const auto hit = world_.scene().cast(starter.p_W, Vector3d::UnitZ(), highest_m, others);
+    // All of it: what stands in the ground is another mistake.
+    const auto top = tops_m_.find(starter.group);
+    if (top == tops_m_.end()) return "";
+    const Vector3d from_W(starter.p_W.x(), starter.p_W.y(), top->second);
+    const auto hit = world_.scene().cast(from_W, Vector3d::UnitZ(), highest_m, others);
     if (!hit) return "";
     const int group = world_.physics().parts()[static_cast<std::size_t>(hit->part)].group;
     return terrains_.contains(group) ? "'" + world_.physics().group_name(group) + "'" : "";
@@ -80,6 +93,7 @@ class StartCheck {
 
   const World& world_;
   std::set<int> terrains_;
+  std::map<int, double> tops_m_;  // the highest point of each group, in worlds with terrain
   std::set<std::pair<std::string, std::string>> told_;
 };
 

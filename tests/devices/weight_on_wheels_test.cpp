@@ -83,9 +83,37 @@ TEST(WeightOnWheels, IsDeterminedWithOneCasterRaised) {
   EXPECT_EQ(warnings_of(rover(0.0005, 0.0005)), "");
 }
 
+/// A caster that is lower tips the rover on to it and one wheel, or on to both and no wheel.
+TEST(WeightOnWheels, IsUndeterminedWithCastersBelowTheWheels) {
+  EXPECT_THAT(warnings_of(rover(-0.001, -0.001)), HasSubstr("is undetermined"));
+}
+
+/// Casters with friction carry what they like, and hold the rover back; raised by 0.1 mm they do not touch.
 TEST(WeightOnWheels, DecidesHowFastItTurns) {
-  for (const double up_m : {-0.001, -0.0003, 0.0, 0.0001, 0.0002, 0.0003, 0.0004, 0.0005, 0.001})
-    std::printf("%g: both %g, front %g\n", up_m, share_of_turn(rover(up_m, up_m)), share_of_turn(rover(up_m, 0)));
+  const std::string friction = ", {between: [slick, any], friction: 0.8}";
+  EXPECT_LT(share_of_turn(rover(0, 0, friction)), 0.5);
+  EXPECT_NEAR(share_of_turn(rover(0.0001, 0.0001, friction)), 1, 0.01);
+  EXPECT_NEAR(share_of_turn(rover(0.001, 0, friction)), 1, 0.01);
+}
+
+TEST(WeightOnWheels, IsNotLookedAtWithASuspensionOrSoftContacts) {
+  EXPECT_EQ(warnings_of(rover(0, 0, ", {between: [any, any], soft_cfm: 0.001}")), "");
+  std::string yaml = rover(0, 0);
+  const std::string hinge = "type: hinge, bodies: [chassis, left_wheel], anchor_m: [0, 0.2, 0.1], axis: [0, 1, 0]";
+  yaml.replace(yaml.find(hinge), hinge.size(),
+               "type: hinge2, bodies: [chassis, left_wheel], anchor_m: [0, 0.2, 0.1], axis: [0, 0, 1], low_stop: 0, "
+               "high_stop: 0, suspension_erp: 0.4, suspension_cfm: 0.001, axis2: {axis: [0, 1, 0]}");
+  EXPECT_EQ(warnings_of(yaml), "");
+}
+
+/// The weight on the driven rear axle follows from the middle of mass, and so it does with casters on one side of it.
+TEST(WeightOnWheels, IsDeterminedWithTheOthersOnOneLineBesideTheAxle) {
+  std::string yaml = rover(0.01, 0.01);
+  const std::size_t wheel = yaml.find("        - {name: left_wheel");
+  yaml.insert(wheel,
+              "            - {name: left_foot, shape: sphere, radius_m: 0.05, position_m: [0.2, 0.1, -0.05]}\n"
+              "            - {name: right_foot, shape: sphere, radius_m: 0.05, position_m: [0.2, -0.1, -0.05]}\n");
+  EXPECT_EQ(warnings_of(yaml), "");
 }
 
 }  // namespace

@@ -15,6 +15,11 @@ void note_signal(Summary& summary) {
     summary.fail(128 + caught_signal(), "signal", "");
 }
 
+/// All that the world names, or somebody who was started by hand.
+bool programs_take_part(const sim::WorldConfig& world, const RunOptions& options) {
+  return world.processes.empty() || options.launch || !options.await.empty();
+}
+
 }  // namespace
 
 void Run::finish(Summary& summary) {
@@ -30,6 +35,8 @@ void Run::finish(Summary& summary) {
   buses_.close_record();
   if (const auto error = buses_.record_error(); error && summary.exit_code == 0) summary.fail(4, "bus", *error);
   add_figures(summary);
+  sim::Warnings warnings;
+  if (summary.steps > 0 && programs_take_part(loaded_.config, options_)) scoring_.warn_of_silence(warnings);
   if (summary.exit_code == 0 && !summary.passed()) summary.exit_code = 1;  // a rule, or the event that ended it
   note_signal(summary);
   if (results_) write_results(summary);
@@ -65,11 +72,8 @@ void Run::add_figures(Summary& summary) {
   summary.event = world_.ended();
   for (const auto& [vehicle, record] : world_.zone_records()) summary.zones[vehicle] = record;
   // Without the programs that a world names there is nothing to judge.
-  const bool judged = loaded_.config.processes.empty() || options_.launch || !options_.await.empty();
-  if (!judged) summary.verdicts.clear();
+  if (!programs_take_part(loaded_.config, options_)) summary.verdicts.clear();
   summary.contacts = scoring_.contacts().all();
-  sim::Warnings warnings;
-  if (judged && summary.steps > 0) scoring_.warn_of_silence(warnings);
   summary.judge_processes();
 }
 

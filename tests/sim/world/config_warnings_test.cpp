@@ -26,7 +26,7 @@ std::string world(const std::string& devices, const std::string& more = "") {
 
 TEST(ConfigWarnings, TellOfARateAboveThatOfTheSteps) {
   EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: 300}\n")),
-            "worlds/test.yaml:11:44: vehicle 'r1': device 'imu': 'rate_hz' of 300 Hz is above that of the steps: it "
+            "worlds/test.yaml:11:43: vehicle 'r1': device 'imu': 'rate_hz' of 300 Hz is above that of the steps: it "
             "becomes 100 Hz with 'step_s' 0.01\n");
 }
 
@@ -58,7 +58,7 @@ TEST(ConfigWarnings, TellOnceOfAKindOfVehicle) {
 
 TEST(ConfigWarnings, TellOfKeysOfReportsOfADeviceThatReportsNothing) {
   EXPECT_EQ(warnings_of_file(world("        - {name: push, type: body_wrench, rate_hz: 10}\n")),
-            "worlds/test.yaml:11:53: vehicle 'r1': device 'push': 'rate_hz' has no effect: a device of type "
+            "worlds/test.yaml:11:52: vehicle 'r1': device 'push': 'rate_hz' has no effect: a device of type "
             "'body_wrench' publishes no reports\n");
 }
 
@@ -74,7 +74,7 @@ TEST(ConfigWarnings, TellOfAMetricOfAChannelOnWhichNobodySpeaks) {
   EXPECT_EQ(metric("r1.gps"), "");
   EXPECT_EQ(metric("r1.estimate", "processes: [{name: p, command: [some_program]}]\n"), "");
   EXPECT_EQ(metric("r1.estimate",
-                   "events: [{name: e, at: 1, do: [{publish: r1.estimate, type: shoal.utime_t, message: {}}]}]\n"),
+                   "events: [{name: e, at: 1, do: [{publish: r1.estimate, type: shoal.utime_t, value: {}}]}]\n"),
             "");
 }
 

@@ -40,7 +40,7 @@ std::string craft(const std::string& name, const std::string& options) {
 
 TEST(ProcessCheck, TellsOfTwoInOneSlot) {
   EXPECT_EQ(warnings_of({{"boat1", craft("boat1", "--slot, 0/2")}, {"boat2", craft("boat2", "--slot, 0/2")}}),
-            "worlds/test.yaml:4:81: process 'boat2': its slot 0/2 is also that of process 'boat1': their packets "
+            "worlds/test.yaml:4:85: process 'boat2': its slot 0/2 is also that of process 'boat1': their packets "
             "collide\n");
   EXPECT_EQ(warnings_of({{"boat1", craft("boat1", "--slot, 0/2")}, {"boat2", craft("boat2", "--slot=1/2")}}), "");
 }
@@ -93,7 +93,7 @@ TEST(ProcessCheck, TellsOfAProgramThatIsNotThere) {
     return log.text();
   };
   EXPECT_EQ(missing("shoal-coop-auw, --name, auv"),
-            "worlds/test.yaml:3:41: process 'auv': there is no program 'shoal-coop-auw' beside shoal or in PATH\n");
+            "worlds/test.yaml:3:40: process 'auv': there is no program 'shoal-coop-auw' beside shoal or in PATH\n");
   EXPECT_THAT(missing("/nowhere/program"), HasSubstr("process 'auv': there is no program '/nowhere/program'"));
   EXPECT_EQ(missing("sh, -c, \"true\""), "");
   EXPECT_EQ(missing("/bin/sh"), "");
