@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,7 @@ class AckermannDrive final : public sim::Actuator {
     std::string left_steer_joint;
     std::string right_steer_joint;
     std::vector<std::string> drive_joints;
-    double wheelbase_m = 0.3;
-    double track_m = 0.2;
-    double wheel_radius_m = 0.05;
+    std::optional<double> wheelbase_m, track_m, wheel_radius_m;  ///< unset: as the joints and wheels have them
     bool differential = true;
     double max_speed_mps = 2;
     double max_acceleration_mps2 = 2;
@@ -58,11 +57,19 @@ class AckermannDrive final : public sim::Actuator {
     double x_m, y_m;  ///< from the middle of the front axle: forward, left
   };
   void clamp_targets();
+  /// Of the joints and wheels, where `params_` has none.
+  struct Lengths {
+    double wheelbase_m = 0.3, track_m = 0.2, wheel_radius_m = 0.05;
+  };
+  void take_lengths(const sim::DeviceContext& context);
+  void check_stops(const sim::DeviceContext& context) const;
+  Lengths lengths_of(const Params& params) const;
   void steer(sim::Joint& joint, double side, double torque_Nm, double step_s);
   /// Ground speed of a wheel that rolls without slip, over that of the middle of the rear axle.
   double speed_ratio(const DrivenWheel& wheel) const;
 
   Params params_;
+  Lengths of_joints_, lengths_;
   const sim::Vehicle& vehicle_;
   sim::Joint* steer_[2];  ///< left, right
   std::vector<DrivenWheel> wheels_;

@@ -9,7 +9,7 @@ void DifferentialDrive::Params::read(sim::ParamReader& in) {
   in.read_reference("left_joint", left_joint, "joint", "hinge of the left wheel, axis to the left");
   in.require("right_joint");
   in.read_reference("right_joint", right_joint, "joint", "hinge of the right wheel, axis to the left");
-  drive.read(in, "distance between the wheels");
+  drive.read(in, "distance between the wheels; unset: as the joints have them");
 }
 
 void DifferentialDriveController::receive(sim::Time, std::span<const std::byte> payload) {

@@ -1,10 +1,13 @@
 #include "devices/odometry.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "devices/joint_of_device.hpp"
+#include "devices/wheel_geometry.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/odometry_t.hpp"
+#include "sim/world/vehicle.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
@@ -14,8 +17,10 @@ void Odometry::Params::read(sim::ParamReader& in) {
   in.read_reference("left_joint", left_joint, "joint", "hinge of the left wheel");
   in.require("right_joint");
   in.read_reference("right_joint", right_joint, "joint", "hinge of the right wheel");
-  in.read("wheel_radius_m", wheel_radius_m, sim::above(0), "what it believes the wheels' radius to be");
-  in.read("track_m", track_m, sim::above(0), "what it believes the distance of the wheels to be");
+  in.read("wheel_radius_m", wheel_radius_m, sim::above(0),
+          "what it believes the wheels' radius to be; unset: as in the vehicle");
+  in.read("track_m", track_m, sim::above(0),
+          "what it believes the distance of the wheels to be; unset: as the joints have it");
   in.read("ticks_per_turn", ticks_per_turn, sim::at_least(1), "encoder ticks in one turn of a wheel");
   in.read("noise", noise, "error of the angle a wheel turned between two samples, rad");
 }
@@ -25,7 +30,22 @@ Odometry::Odometry(const Params& params, const sim::DeviceContext& context)
       left_(wheel_joint(context, params.left_joint)),
       right_(wheel_joint(context, params.right_joint)),
       noise_(context.noise(params.noise, 2, "noise")),
-      X_W0_(context.vehicle.X_WV()) {}
+      X_W0_(context.vehicle.X_WV()) {
+  const sim::VehicleConfig& vehicle = context.vehicle.config();
+  const LengthOfDevice radius{"wheel_radius_m", params.wheel_radius_m,
+                              wheel_radius_m_of(vehicle, {params.left_joint, params.right_joint}), 0.1};
+  const LengthOfDevice track{"track_m", params.track_m, track_m_of(vehicle, {params.left_joint}, {params.right_joint})};
+  wheel_radius_m_ = radius.value_m();
+  track_m_ = track.value_m();
+  if (!(track_m_ > 0)) refuse(context, "'track_m' is needed: its wheels are in one place");
+  // What it believes may be off, as on a rover whose tyres are worn; of a rover that turns by slip the track is wider.
+  const AllowedRatio miscalibrated{0.9, 1.1};
+  const bool scrubs = std::any_of(vehicle.devices.begin(), vehicle.devices.end(),
+                                  [](const sim::DeviceConfig& device) { return device.type == "skid_steer"; });
+  check_length(context, radius, miscalibrated, "it reckons {} times the distance", as_it_is);
+  if (!scrubs || *track.real_m > track_m_)
+    check_length(context, track, miscalibrated, "it reckons {} times the turn", inverse);
+}
 
 void Odometry::measure(const sim::SenseContext& context) {
   const sim::Pose X_0V = X_W0_.inverse() * context.vehicle.X_WV();
@@ -52,11 +72,11 @@ void Odometry::disturb(double dt_s, sim::Random& random) {
     believed_rad_[side] += turned[side];
     ticks[side] = static_cast<std::int64_t>(std::floor(believed_rad_[side] / rad_per_tick));
   }
-  const double m_per_tick = rad_per_tick * params_.wheel_radius_m;
+  const double m_per_tick = rad_per_tick * wheel_radius_m_;
   const double left_m = static_cast<double>(ticks[0] - reckoned_.left_ticks) * m_per_tick;
   const double right_m = static_cast<double>(ticks[1] - reckoned_.right_ticks) * m_per_tick;
   const double forward_m = 0.5 * (left_m + right_m);
-  const double turn_rad = (right_m - left_m) / params_.track_m;
+  const double turn_rad = (right_m - left_m) / track_m_;
   // The chord of an arc of constant curvature, at the mean heading.
   const double half = 0.5 * turn_rad;
   const double chord_m = std::abs(half) < 1e-9 ? forward_m : forward_m * std::sin(half) / half;

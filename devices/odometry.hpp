@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "sim/device/device_registry.hpp"
 #include "sim/physics/joint.hpp"
 #include "sim/random/noise.hpp"
@@ -16,8 +18,7 @@ class Odometry final : public sim::Sensor {
   struct Params {
     std::string left_joint;
     std::string right_joint;
-    double wheel_radius_m = 0.1;
-    double track_m = 0.4;
+    std::optional<double> wheel_radius_m, track_m;  ///< that it believes in; unset: as in the vehicle
     int ticks_per_turn = 1024;
     sim::NoiseParams noise;  ///< of the angle each wheel turned between two samples, rad
     void read(sim::ParamReader& in);
@@ -41,6 +42,7 @@ class Odometry final : public sim::Sensor {
 
  private:
   Params params_;
+  double wheel_radius_m_, track_m_;  ///< that it believes in
   const sim::Joint& left_;
   const sim::Joint& right_;
   sim::Noise noise_;

@@ -20,7 +20,7 @@ class SkidSteer final : public TwoSidedDrive {
   };
 
   SkidSteer(const Params& params, const sim::DeviceContext& context)
-      : TwoSidedDrive(params.drive, context, params.left_joints, params.right_joints) {}
+      : TwoSidedDrive(params.drive, context, params.left_joints, params.right_joints, true) {}
   void change(const Params& params) { change_drive(params.drive); }
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,8 @@ class TwoSidedDrive : public sim::Actuator {
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::coast};
   /// What both kinds of drive have; each reads its joints itself.
   struct Params {
-    double wheel_radius_m = 0.1;
-    double track_m = 0.4;
+    std::optional<double> wheel_radius_m;  ///< unset: that of the wheels
+    std::optional<double> track_m;         ///< unset: the distance of the wheels
     double max_speed_mps = 1.0;
     double max_turn_radps = 2.0;
     double max_acceleration_mps2 = 2.0;  ///< of a wheel's ground speed
@@ -35,15 +36,25 @@ class TwoSidedDrive : public sim::Actuator {
   void set_twist(double forward_mps, double turn_radps);
   /// As a vessel: thrust sets the forward speed, the rudder a turn rate in proportion to it.
   void set_thrust_rudder(double thrust, double rudder);
+  double track_m() const { return track_m_; }
+  double wheel_radius_m() const { return wheel_radius_m_; }
 
  protected:
+  /// `scrubs`: it turns by slip, with a track that is wider than its wheels are apart.
   TwoSidedDrive(const Params& params, const sim::DeviceContext& context, const std::vector<std::string>& left_joints,
-                const std::vector<std::string>& right_joints);
+                const std::vector<std::string>& right_joints, bool scrubs = false);
   /// A command that is too fast now is slowed, with its curvature.
   void change_drive(const Params& params);
 
  private:
+  void take_lengths();
+  void check_lengths(const sim::DeviceContext& context, bool scrubs) const;
+
   Params params_;
+  double joint_track_m_ = 0;              ///< as the joints have it
+  double usual_track_m_ = 0;              ///< where none is given
+  std::optional<double> joint_radius_m_;  ///< of their wheels
+  double wheel_radius_m_ = 0, track_m_ = 0;
   WheelMotors left_;
   WheelMotors right_;
   bool coasting_ = false;

@@ -156,9 +156,13 @@ Collider::Overlap Collider::deepest_overlap(int group) const {
   std::vector<std::pair<const CollisionPart*, AlignedBox>> own_parts, others;
   for (const CollisionPart& part : parts_)
     if (part.geom != nullptr && part.group == group) own_parts.emplace_back(&part, box_of(part.geom));
+  if (own_parts.empty()) return {};
+  AlignedBox around = own_parts.front().second;
+  for (const auto& [part, box] : own_parts) around = {around.low.cwiseMin(box.low), around.high.cwiseMax(box.high)};
   for (const CollisionPart& part : parts_) {
     if (part.geom == nullptr || part.group == group) continue;
     const AlignedBox box = box_of(part.geom);
+    if (!around.meets(box)) continue;
     if (std::any_of(own_parts.begin(), own_parts.end(), [&](const auto& own) { return own.second.meets(box); }))
       others.emplace_back(&part, box);
   }

@@ -1,7 +1,6 @@
 #include "sim/world/load_world.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include "sim/device/device_registry.hpp"
 #include "sim/device/plugin.hpp"
 #include "sim/script/check_script.hpp"
+#include "sim/world/config_warnings.hpp"
 #include "sim/world/vehicle_loader.hpp"
 
 namespace sim {
@@ -160,18 +160,18 @@ void make_paths_absolute(ConfigNode& node, const std::string& node_key) {
 namespace {
 
 /// Says once that coefficients do nothing here.
-void warn_of_missing_water(const WorldConfig& world) {
+void warn_of_missing_water(const WorldConfig& world, Warnings& warnings) {
   if (world.medium.water) return;
-  std::vector<std::string> dry;
+  std::vector<const VehicleInstance*> dry;
   for (const VehicleInstance& vehicle : world.vehicles)
     if (std::any_of(vehicle.config->bodies.begin(), vehicle.config->bodies.end(), [](const BodyConfig& body) {
           return body.hydrodynamics && body.hydrodynamics->model == "coefficients";
         }))
-      dry.push_back(vehicle.name);
+      dry.push_back(&vehicle);
   if (dry.empty()) return;
   const std::string more = dry.size() == 1 ? "" : fmt::format(" (and {} more)", dry.size() - 1);
-  spdlog::warn("vehicle '{}'{} has hydrodynamics, but the world has no 'medium: water:', so it falls like a stone",
-               dry.front(), more);
+  warnings.warn(dry.front()->place, "vehicle '" + dry.front()->name + "'" + more,
+                "it has hydrodynamics, but the world has no 'medium: water:', so it falls like a stone");
 }
 
 /// In water that weighs less than nothing all of hydrostatics turns over.
@@ -235,7 +235,9 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   gather_from_vehicles(loaded.config);
   check_script(loaded.config, diagnostics);
   diagnostics.throw_if_any();
-  warn_of_missing_water(loaded.config);
+  Warnings warnings;
+  warn_of_missing_water(loaded.config, warnings);
+  warn_of_config(loaded.config, root, warnings);
   vehicles.resolve(root);
   make_paths_absolute(root);
   if (options.seed) {

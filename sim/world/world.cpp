@@ -11,7 +11,9 @@
 #include "sim/world/bottom_check.hpp"
 #include "sim/world/notice.hpp"
 #include "sim/world/run_hash.hpp"
+#include "sim/world/start_check.hpp"
 #include "sim/world/world_journal.hpp"
+#include "sim/world/world_warnings.hpp"
 
 namespace sim {
 
@@ -34,9 +36,10 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
   start(medium_);
   medium_at_start_ = start.take_bytes();
   build();
-  for (const std::string& warning : physics_->ground_warnings()) spdlog::warn("{}", warning);
-  for (const std::string& warning : hydrodynamics_->take_warnings()) spdlog::warn("{}", warning);
-  for (const std::string& warning : bottom_warnings(*this)) spdlog::warn("{}", warning);
+  warn_of_starts(*this);
+  for (const std::vector<std::string>& found :
+       {physics_->ground_warnings(), hydrodynamics_->take_warnings(), bottom_warnings(*this)})
+    for (const std::string& warning : found) warnings_of(*this).warn({}, "", warning);
 }
 
 /// All that is in the world file; physics and medium are as they begin.

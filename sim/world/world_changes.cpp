@@ -1,5 +1,3 @@
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +7,7 @@
 #include "sim/world/bottom_check.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_journal.hpp"
+#include "sim/world/world_warnings.hpp"
 
 // What changes a world while it runs.
 
@@ -134,8 +133,8 @@ const Vehicle& World::add_vehicle(const VehicleInstance& instance) {
   }
   journal_->vehicle_came(instance, number, new_surfaces);
   const Vehicle& vehicle = *vehicles_.back();
-  for (const std::string& warning : hydrodynamics_->take_warnings()) spdlog::warn("{}", warning);
-  for (const std::string& warning : bottom_warnings(*this, vehicle)) spdlog::warn("{}", warning);
+  for (const std::vector<std::string>& found : {hydrodynamics_->take_warnings(), bottom_warnings(*this, vehicle)})
+    for (const std::string& warning : found) warnings_of(*this).warn({}, "", warning);
   sort_devices();
   return vehicle;
 }

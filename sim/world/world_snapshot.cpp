@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "sim/acoustics/channel.hpp"
+#include "sim/config/warnings.hpp"
 #include "sim/script/script.hpp"
 #include "sim/world/run_hash.hpp"
 #include "sim/world/world.hpp"
@@ -203,7 +204,8 @@ void World::take_all_apart() {
   acoustics_.reset();
   hydrodynamics_.reset();
   free_numbers_.clear();
-  shared_.clear();
+  // What was warned of is known: it stays said.
+  std::erase_if(shared_, [](const auto& each) { return each.first != std::type_index(typeid(Warnings)); });
   events_ = {};
   ended_.reset();
   next_vehicle_number_ = 0;

@@ -53,6 +53,7 @@ CoopCraft::Decision CoopCraft::step() {
   const bool is_recent = steps_since_fix_++ * params_.period_s <= params_.oldest_fix_s;
   const bool has_fix = is_recent && motion_ && std::abs(seconds(utime_ - motion_->utime)) <= params_.oldest_fix_s;
   if (!motion_) return decision;
+  decision.remark = remark();
   if (has_fix) {
     const Course course = behaviour_->steer(*motion_);
     helm.speed_mps = course.speed_mps;
@@ -62,6 +63,16 @@ CoopCraft::Decision CoopCraft::step() {
   }
   decision.helm = helm;  // blind, it stops
   return decision;
+}
+
+/// Once, when it has waited for long.
+std::string CoopCraft::remark() {
+  if (!patient_since_ || utime_ < *patient_since_) patient_since_ = utime_;
+  const double waited_s = seconds(utime_ - *patient_since_);
+  const std::string text = behaviour_->remark();
+  if (remarked_ || text.empty() || waited_s < params_.patience_s) return {};
+  remarked_ = true;
+  return "after " + std::to_string(std::llround(waited_s)) + " s: " + text;
 }
 
 shoal::estimate_t CoopCraft::estimate() const {

@@ -27,12 +27,14 @@ class CoopCraft {
     double transducer_depth_m = 0.5;  ///< of the modem, below the surface
     double oldest_fix_s = 3;          ///< an older one says nothing of where it is
     double period_s = 0.5;            ///< between two calls of step()
+    double patience_s = 60;           ///< after which it remarks what its behaviour waits for
     ChannelAccess::Params access;
   };
   struct Decision {
     std::optional<shoal::helm_command_t> helm;  ///< for NAME.autopilot.cmd
     std::optional<shoal::estimate_t> estimate;  ///< for NAME.estimate
     std::optional<shoal::modem_send_t> send;    ///< for NAME.modem.cmd
+    std::string remark;                         ///< for people; empty: nothing
   };
   struct Counts {
     int sent = 0;
@@ -55,12 +57,15 @@ class CoopCraft {
  private:
   shoal::estimate_t estimate() const;
   std::optional<shoal::modem_send_t> state_frame();
+  std::string remark();
 
   Params params_;
   Cloned<HelmBehaviour> behaviour_;
   ChannelAccess access_;
   DirectStates direct_;
   std::int64_t utime_ = 0;  ///< newest stamp
+  std::optional<std::int64_t> patient_since_;
+  bool remarked_ = false;
   std::optional<Motion> motion_;
   int steps_since_fix_ = 0;
   double position_std_m_ = 0;

@@ -19,6 +19,7 @@ int drive(const autonomy::CoopCraft::Params& params, const autonomy::MarineOptio
     const autonomy::CoopCraft::Decision decision = craft.step();
     if (decision.helm) client.publish(params.name + ".autopilot.cmd", *decision.helm);
     if (decision.estimate) client.publish(params.name + ".estimate", *decision.estimate);
+    if (!decision.remark.empty()) std::cerr << params.name << ": " << decision.remark << '\n';
     if (decision.send) client.publish(params.name + ".modem.cmd", *decision.send);
   });
   const autonomy::CoopCraft::Counts& counts = craft.counts();

@@ -51,4 +51,7 @@ class ProcessGroup {
   std::vector<pid_t> left_behind_;  ///< process groups that outlive their programs
 };
 
+/// Whether there is such a program where ProcessGroup::start looks for it.
+bool can_be_started(const std::string& program);
+
 }  // namespace tools

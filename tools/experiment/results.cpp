@@ -88,6 +88,22 @@ void Summary::fail(int code, const std::string& how_ended, const std::string& wh
   error = why;
 }
 
+namespace {
+
+/// Of the first hundred pairs: a swarm in a heap has thousands.
+nlohmann::ordered_json contacts_json(const std::vector<FirstContacts::Contact>& contacts) {
+  constexpr std::size_t most = 100;
+  auto json = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < std::min(most, contacts.size()); ++i)
+    json.push_back({{"vehicle", contacts[i].first},
+                    {"with", contacts[i].second},
+                    {"first_s", contacts[i].first_s},
+                    {"count", contacts[i].count}});
+  return json;
+}
+
+}  // namespace
+
 std::string Summary::to_json() const {
   nlohmann::ordered_json json;
   json["world"] = world;
@@ -109,6 +125,8 @@ std::string Summary::to_json() const {
   json["rules"] = nlohmann::ordered_json::array();
   for (const Scoring::Verdict& verdict : verdicts)
     json["rules"].push_back({{"rule", verdict.rule}, {"passed", verdict.passed}});
+  json["contacts"] = contacts_json(contacts);
+  json["contact_pairs"] = contacts.size();
   json["processes"] = nlohmann::ordered_json::array();
   for (const Process& process : processes)
     json["processes"].push_back(
@@ -172,6 +190,7 @@ std::string Summary::to_text() const {
   if (modem_dropped_messages > 0)
     text += fmt::format("  {} messages were dropped from full queues of modems\n", modem_dropped_messages);
   if (serial_dropped_bytes > 0) text += fmt::format("  {} bytes were fetched from no port\n", serial_dropped_bytes);
+  text += contacts_text(contacts);
   for (const auto& [name, value] : metrics)
     text += fmt::format("  {:<28} {}\n", name, std::isnan(value) ? "none" : fmt::format("{:.4g}", value));
   for (const Scoring::Verdict& verdict : verdicts)

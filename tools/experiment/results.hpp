@@ -45,6 +45,7 @@ struct Summary {
   std::vector<Scoring::Verdict> verdicts;
   std::string no_verdicts = "the world has no rules";  ///< why there are none, if so
   std::vector<Process> processes;
+  std::vector<FirstContacts::Contact> contacts;   ///< of vehicles with each other and with objects
   std::vector<bridges::LockstepSummary> clients;  ///< that took part in the lockstep, by name
   std::map<std::string, sim::ZoneRecord> zones;   ///< by vehicle, when the world has zones with rules
   std::optional<LinkCounts> acoustics;            ///< of all modems under water, when there are any

@@ -68,6 +68,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
     journal_.begin_branch(control_.branch, 1);
   }
   if (!options.results.empty()) results_ = std::make_unique<Results>(options.results, world_, options.pictures);
+  if (!options.quiet) scoring_.contacts().set_say([this](const std::string& line) { progress_.say(line); });
   progress_.restart(world_.now());
   plan_snapshots();
   if (options.keys && !options.quiet && TerminalKeys::possible()) {

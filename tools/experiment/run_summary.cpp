@@ -15,6 +15,11 @@ void note_signal(Summary& summary) {
     summary.fail(128 + caught_signal(), "signal", "");
 }
 
+/// All that the world names, or somebody who was started by hand.
+bool programs_take_part(const sim::WorldConfig& world, const RunOptions& options) {
+  return world.processes.empty() || options.launch || !options.await.empty();
+}
+
 }  // namespace
 
 void Run::finish(Summary& summary) {
@@ -30,6 +35,8 @@ void Run::finish(Summary& summary) {
   buses_.close_record();
   if (const auto error = buses_.record_error(); error && summary.exit_code == 0) summary.fail(4, "bus", *error);
   add_figures(summary);
+  sim::Warnings warnings;
+  if (summary.steps > 0 && programs_take_part(loaded_.config, options_)) scoring_.warn_of_silence(warnings);
   // A rule, a program, or the event that ended it.
   if (summary.exit_code == 0 && summary.judgement() == Judgement::failed) summary.exit_code = 1;
   note_signal(summary);
@@ -68,10 +75,11 @@ void Run::add_figures(Summary& summary) {
   summary.event = world_.ended();
   for (const auto& [vehicle, record] : world_.zone_records()) summary.zones[vehicle] = record;
   // Without the programs that a world names there is nothing to judge.
-  const bool took_part = loaded_.config.processes.empty() || options_.launch || !options_.await.empty();
+  const bool took_part = programs_take_part(loaded_.config, options_);
   if (!took_part && !summary.verdicts.empty())
     summary.no_verdicts = "its programs took no part: see --launch and --await";
   if (!took_part || summary.ended_by_hand()) summary.verdicts.clear();
+  summary.contacts = scoring_.contacts().all();
   summary.judge_processes();
 }
 

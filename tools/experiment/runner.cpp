@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "sim/config/diagnostics.hpp"
+#include "tools/experiment/process_check.hpp"
 #include "tools/experiment/run.hpp"
 #include "tools/experiment/run_error.hpp"
 
@@ -23,6 +24,10 @@ Summary run_world(const sim::LoadedWorld& loaded, const RunOptions& options) {
   try {
     if (options.launch && options.bus == "none")
       throw RunError(2, "configuration", "--launch needs the LCM bus: processes cannot attach to --bus none");
+    if (options.launch || !options.await.empty()) {
+      sim::Warnings warnings;
+      warn_of_processes(loaded, warnings);
+    }
     return Run(loaded, options).go();
   } catch (const sim::ConfigError& error) {
     fail(2, "configuration", error.what());

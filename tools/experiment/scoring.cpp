@@ -6,7 +6,7 @@
 
 namespace tools {
 
-Scoring::Scoring(sim::World& world) : world_(world) {
+Scoring::Scoring(sim::World& world) : world_(world), contacts_(world) {
   for (const sim::MetricConfig& config : world.config().metrics) metrics_.push_back(make(config));
 }
 
@@ -42,6 +42,7 @@ std::unique_ptr<Metric> Scoring::make(const sim::MetricConfig& config) {
 void Scoring::after_step() {
   for (const auto& [vehicle, truth] : truths_) truth->after_step();
   for (const auto& metric : metrics_) metric->after_step();
+  contacts_.after_step();
 }
 
 bool Scoring::is_early(const Metric& metric) const {
@@ -70,6 +71,8 @@ void Scoring::visit_state(sim::StateArchive& archive, History history) {
     archive.section("metric " + metric->config().name);
     metric->visit_state(archive, history);
   }
+  archive.section("contacts");
+  archive(contacts_);
 }
 
 std::string Scoring::why_none(const std::string& name) const {
@@ -122,6 +125,13 @@ std::int64_t Scoring::bad_messages() const {
   std::int64_t sum = 0;
   for (const auto& metric : metrics_) sum += metric->bad_messages();
   return sum;
+}
+
+void Scoring::warn_of_silence(sim::Warnings& warnings) const {
+  for (const auto& metric : metrics_)
+    if (const std::string silence = metric->silence(); !silence.empty())
+      warnings.warn(metric->config().place, "metric '" + metric->config().name + "'",
+                    silence + ": its figures are not numbers");
 }
 
 }  // namespace tools

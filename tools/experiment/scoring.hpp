@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "sim/config/warnings.hpp"
 #include "sim/world/world.hpp"
+#include "tools/experiment/first_contacts.hpp"
 #include "tools/experiment/metric.hpp"
 #include "tools/experiment/truth_history.hpp"
 
@@ -41,6 +43,10 @@ class Scoring {
   /// Of the metrics that compare estimates with the truth.
   std::vector<Track> tracks() const;
   std::int64_t bad_messages() const;
+  /// Who hit whom.
+  FirstContacts& contacts() { return contacts_; }
+  /// Warns of metrics that had nothing to make figures of.  At the end of a run.
+  void warn_of_silence(sim::Warnings& warnings) const;
   /// In sections of their own.
   void visit_state(sim::StateArchive& archive, History history);
 
@@ -56,6 +62,7 @@ class Scoring {
   sim::World& world_;
   std::map<std::string, std::unique_ptr<TruthHistory>> truths_;  ///< by vehicle
   std::vector<std::unique_ptr<Metric>> metrics_;
+  FirstContacts contacts_;
 };
 
 }  // namespace tools

@@ -7,6 +7,7 @@
 #include "sim/world/load_world.hpp"
 #include "sim/world/vehicle_loader.hpp"
 #include "sim/world/world.hpp"
+#include "tools/experiment/process_check.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {
@@ -44,6 +45,9 @@ void check(const std::string& path, const sim::LoadOptions& options) {
   sim::InProcessBus bus;
   const sim::World world(loaded.config, bus);
   check_textures(loaded.config);
+  sim::Warnings warnings;
+  warn_of_processes(loaded, warnings);
+  warn_of_missing_programs(loaded, warnings);
   std::cout << path << ": world '" << loaded.config.name << "': " << world.vehicles().size() << " vehicles, "
             << loaded.config.objects.size() << " objects, " << world.devices().size() << " devices, "
             << world.physics().bodies().size() << " bodies\n";

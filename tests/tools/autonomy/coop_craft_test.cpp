@@ -47,6 +47,19 @@ TEST(CoopCraft, TellsItsPlaceInItsSlotsByItsOwnClock) {
   EXPECT_EQ(craft.counts().sent, 3);
 }
 
+TEST(CoopCraft, RemarksOnceThatItNeverHeardOfWhomItFollows) {
+  CoopCraft craft(craft_params(), make_behaviour("follow:auv,0,30", {}, 1.5, false));
+  std::vector<std::pair<std::int64_t, std::string>> remarks;
+  for (std::int64_t t = epoch; t < epoch + 200 * second; t += second) {
+    craft.receive(fix_at(t, {3, -4}));
+    const auto decision = craft.step();
+    if (!decision.remark.empty()) remarks.emplace_back((t - epoch) / second, decision.remark);
+  }
+  ASSERT_EQ(remarks.size(), 1u);
+  EXPECT_EQ(remarks.front().first, 60);
+  EXPECT_EQ(remarks.front().second, "after 60 s: it was to follow 'auv', and never heard of it");
+}
+
 TEST(CoopCraft, StopsAndSaysNothingWithoutAFix) {
   CoopCraft craft(craft_params(), make_behaviour("route", {{100, 0}}, 1.5, false));
   EXPECT_FALSE(craft.step().helm);

@@ -1,0 +1,29 @@
+#include "sim/config/warnings.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include "sim/config/message_text.hpp"
+
+namespace sim {
+
+void Warnings::warn(const SourcePlace& place, const std::string& who, const std::string& text) {
+  constexpr std::size_t max_lines = 100;  // nobody reads more
+  if (lines_.size() > max_lines) return;
+  std::string line = place.text();
+  for (const std::string& part : {who, text})
+    if (!part.empty()) line += (line.empty() ? "" : ": ") + part;
+  // Names come from files: a line feed or an escape sequence in one must not reach the terminal.
+  line = printable(line);
+  // What is wrong in a vehicle file is said once, however many vehicles use the file.
+  if (!seen_.insert(place.line > 0 ? printable(place.text() + ": " + text) : line).second) return;
+  if (lines_.size() == max_lines) line = "more warnings are not shown";
+  spdlog::warn("{}", line);
+  lines_.push_back(std::move(line));
+}
+
+SourcePlace place_of(const ConfigNode& map, std::string_view key) {
+  const ConfigNode* value = map.find(key);
+  return value != nullptr ? value->place : map.place;
+}
+
+}  // namespace sim

@@ -1,0 +1,11 @@
+#include "sim/world/world_warnings.hpp"
+
+#include "sim/world/world.hpp"
+
+namespace sim {
+
+Warnings& warnings_of(World& world) {
+  return world.shared<Warnings>();
+}
+
+}  // namespace sim
