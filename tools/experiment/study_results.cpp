@@ -9,6 +9,7 @@
 #include <set>
 
 #include "tools/experiment/runner.hpp"
+#include "tools/experiment/study_equal_cases.hpp"
 
 namespace tools {
 
@@ -171,6 +172,7 @@ std::string StudyResults::to_text() const {
   if (study_.config.pass.empty() && runs_with_failed_programs() > 0)
     text += fmt::format("{} runs had programs that failed; as the study has no rules, nothing was judged\n",
                         runs_with_failed_programs());
+  for (const EqualCases& group : equal_cases(study_, runs_)) text += "note: " + equal_cases_text(group) + "\n";
   if (failed_runs() > 0) text += fmt::format("{} runs have no result\n", failed_runs());
   return text;
 }
@@ -214,6 +216,8 @@ std::string StudyResults::to_json(int exit_code) const {
     for (const std::string& figure : figures_) entry["figures"][figure] = json_of(of(each.name, figure));
     json["cases"].push_back(std::move(entry));
   }
+  json["notes"] = nlohmann::ordered_json::array();
+  for (const EqualCases& group : equal_cases(study_, runs_)) json["notes"].push_back(equal_cases_text(group));
   json["failed_runs"] = nlohmann::ordered_json::array();
   for (const StudyRun& run : runs_)
     if (!run.record)

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "bridges/lcm/lcm_listener.hpp"
+#include "bridges/lcm/wait_notice.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_control_reply_t.hpp"
 #include "shoal/sim_control_request_t.hpp"
@@ -63,7 +64,10 @@ class Session {
     const Clock::time_point deadline =
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(arguments_.timeout_s));
     lcm_.publish("sim.control", shoal::encode(request));
+    bridges::WaitNotice notice("shoal control: waiting for a simulator to answer on 'sim.control.reply', at " +
+                               lcm_.url());
     while (Clock::now() < deadline && caught_signal() == 0) {
+      notice.look();
       const auto message = lcm_.next(50ms);
       if (!message || message->channel != "sim.control.reply") continue;
       try {
@@ -75,6 +79,8 @@ class Session {
     }
     return std::nullopt;
   }
+
+  const std::string& url() const { return lcm_.url(); }
 
  private:
   const ControlArguments& arguments_;
@@ -88,8 +94,8 @@ int control(const ControlArguments& arguments) {
   Session session(arguments);
   const auto reply = session.ask(arguments.command, text, arguments.value);
   if (!reply) {
-    std::cerr << "shoal control: no simulator answered within " << arguments.timeout_s
-              << " s; is one running on this LCM URL? see shoal doctor\n";
+    std::cerr << "shoal control: no simulator answered within " << arguments.timeout_s << " s at " << session.url()
+              << "; is one running there? see shoal doctor\n";
     return exit_timeout;
   }
   (reply->ok ? std::cout : std::cerr) << reply->text << (reply->text.empty() ? "ok\n" : "\n") << std::flush;
