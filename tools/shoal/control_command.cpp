@@ -46,6 +46,12 @@ std::string text_of(const std::string& argument) {
   return text.str();
 }
 
+/// Whether a run stands still because of this request, so that somebody has to let it go on.
+bool leaves_paused(const std::string& command, const std::string& reply) {
+  return (command == "pause" || command == "rewind" || command == "restore") &&
+         reply.find(", paused") != std::string::npos;
+}
+
 /// Requests and their answers.  A request is sent once: sent again it might be obeyed twice.
 class Session {
  public:
@@ -100,6 +106,9 @@ int control(const ControlArguments& arguments) {
   }
   (reply->ok ? std::cout : std::cerr) << reply->text << (reply->text.empty() ? "ok\n" : "\n") << std::flush;
   if (!reply->ok) return exit_failed;
+  if (leaves_paused(arguments.command, reply->text))
+    std::cerr << "paused; go on with `shoal control resume"
+              << (arguments.lcm_url.empty() ? "" : " --lcm-url '" + arguments.lcm_url + "'") << "`\n";
   // A vehicle that goes with its client stays as long as we say that we live.
   while (arguments.stay && caught_signal() == 0) {
     if (!session.ask("alive", "", 0) && caught_signal() == 0) return exit_timeout;
@@ -133,7 +142,8 @@ void add_control_command(CLI::App& app, int& exit_code) {
       "  shoal control step --value 10\n"
       "  shoal control until --value 90\n"
       "  shoal control until storm            (an event of the world)\n"
-      "  shoal control rewind --value 30      (paused then; with the text run it goes on)\n"
+      "  shoal control rewind --value 30      (paused then, until `shoal control resume`)\n"
+      "  shoal control rewind run --value 30  (goes on at once)\n"
       "  shoal control snapshot before_dive\n"
       "  shoal control restore before_dive\n"
       "  shoal control spawn '{name: rover7, file: rover.yaml, position_m: [2, 0, 0]}'\n"
