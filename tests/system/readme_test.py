@@ -179,6 +179,7 @@ class Readme(unittest.TestCase):
         name = os.path.splitext(os.path.basename(next(word for word in words if word.endswith(".yaml"))))[0]
         folder = os.path.join(self.clone, "results", name)
         if "study" in words:
+            folder += "_" + words[words.index("--duration") + 1] + "s"
             with open(os.path.join(folder, "study.json"), encoding="utf-8") as file:
                 self.assertEqual(json.load(file)["failed_runs"], [], said)
             return

@@ -36,7 +36,6 @@ void add_check_command(CLI::App& app, int& exit_code);
 void add_snap_command(CLI::App& app, int& exit_code);
 void add_describe_command(CLI::App& app, int& exit_code);
 void add_list_command(CLI::App& app, int& exit_code);
-void add_new_command(CLI::App& app, int& exit_code);
 void add_snapshot_command(CLI::App& app, int& exit_code);
 void add_spy_command(CLI::App& app, int& exit_code);
 void add_control_command(CLI::App& app, int& exit_code);

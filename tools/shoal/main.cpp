@@ -15,6 +15,7 @@
 #include "sim/device/device_registry.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/shoal/commands.hpp"
+#include "tools/shoal/new_command.hpp"
 
 namespace {
 

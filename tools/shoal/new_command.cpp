@@ -8,6 +8,7 @@
 
 #include "sim/config/shipped_files.hpp"
 #include "tools/shoal/commands.hpp"
+#include "tools/shoal/new_command.hpp"
 #include "tools/shoal/output_file.hpp"
 #include "tools/shoal/start_files.hpp"
 

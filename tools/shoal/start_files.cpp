@@ -164,7 +164,7 @@ devices:
     noise: {gaussian_std: 0.01}
   - {name: odometry, type: odometry, left_joint: left, right_joint: right, wheel_radius_m: 0.1, track_m: 0.4,
      rate_hz: 20}
-  # - {name: gps, type: gps, position_m: [0, 0, 0.3], rate_hz: 1}     # needs `origin:` in the world
+  # - {name: gps, type: gps, position_m: [0, 0, 0.3], rate_hz: 1}
 )";
 
 std::string filled(std::string text, const std::string& word, const std::string& with) {

@@ -32,7 +32,9 @@ void choose_jobs(const LoadedStudy& study, StudyOptions& options) {
 
 int study(const std::string& path, const StudyChanges& changes, StudyOptions options) {
   const LoadedStudy loaded = load_study(file_by_name({ShippedKind::study}, path), changes);
-  if (options.output.empty()) options.output = "results/" + loaded.config.name;
+  // A first look does not overwrite the runs of the whole study.
+  const std::string look = changes.duration_s ? fmt::format("_{:g}s", *changes.duration_s) : "";
+  if (options.output.empty()) options.output = "results/" + loaded.config.name + look;
   choose_jobs(loaded, options);
   catch_signals(true);
   try {
@@ -72,7 +74,8 @@ void add_study_command(CLI::App& app, int& exit_code) {
       ->check(number_from(1e-6, 1e9));
   command->add_option("--jobs", arguments->options.jobs, "runs at the same time; 0: one for every two processors")
       ->check(CLI::Range(0, 64));
-  command->add_option("--output", arguments->options.output, "folder; unset: results/NAME-OF-STUDY");
+  command->add_option("--output", arguments->options.output,
+                      "folder; unset: results/NAME-OF-STUDY, with --duration 10 results/NAME-OF-STUDY_10s");
   command->add_flag("--fresh", arguments->options.fresh, "do runs again that are done already");
   command->add_flag("--quiet", arguments->options.quiet, "no progress");
   add_plugin_option(*command);
