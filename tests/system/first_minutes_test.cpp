@@ -117,7 +117,8 @@ TEST(New, TouchesNoFileThatIsThere) {
 
 TEST(Waiting, ProgramsAndCommandsSayAfterThreeSecondsForWhat) {
   const std::string url = own_url();
-  Program rover({built("shoal-coop-rover"), "--name", "rover1", "--lcm-url", url, "--join-timeout", "5"});
+  Program rover(
+      {built("shoal-coop-rover"), "--name", "rover1", "--waypoints", "1,1", "--lcm-url", url, "--join-timeout", "5"});
   Program spy({built("shoal"), "spy", "rover1.odometry", "--lcm-url", url, "--duration", "5"});
   Program control({built("shoal"), "control", "where", "--lcm-url", url, "--timeout", "5"});
   rover.wait();
