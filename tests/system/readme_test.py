@@ -25,11 +25,12 @@ LIMIT_S = 100
 
 # What is appended to a command that begins like this.  The last that fits counts.
 SHORTER = [
-    (("tools/run",), ["--duration", "4"]),
-    (("build/release/bin/shoal", "run"), ["--duration", "4"]),
+    (("tools/run",), ["--duration", "3"]),
+    (("build/release/bin/shoal", "run"), ["--duration", "3"]),
+    (("build/release/bin/shoal", "snap"), ["--at", "5"]),
     (("build/release/bin/shoal", "spy"), ["--duration", "1"]),
     (("build/release/bin/shoal", "bench"), ["--warm-up", "0.2", "--measure", "0.5"]),
-    (("build/release/bin/shoal", "study"), ["--seeds", "1", "--duration", "4"]),
+    (("build/release/bin/shoal", "study"), ["--seeds", "1", "--duration", "3"]),
 ]
 # Worlds of which a later command looks at a certain time.
 WHOLE = {"worlds/sonar_tank.yaml"}

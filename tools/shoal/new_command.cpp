@@ -1,3 +1,5 @@
+#include "tools/shoal/new_command.hpp"
+
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -8,7 +10,6 @@
 
 #include "sim/config/shipped_files.hpp"
 #include "tools/shoal/commands.hpp"
-#include "tools/shoal/new_command.hpp"
 #include "tools/shoal/output_file.hpp"
 #include "tools/shoal/start_files.hpp"
 
@@ -64,7 +65,9 @@ CLI::App* add_kind(CLI::App& command, const char* kind, const char* meaning, New
   of_kind->add_option("NAME", arguments.name, "name, and name of the file: NAME.yaml")
       ->required()
       ->check(CLI::Validator(check_name, ""));
-  of_kind->add_option("--folder", arguments.folder, "where the file is written")->capture_default_str();
+  of_kind->add_option("--folder", arguments.folder, "where the file is written")
+      ->type_name("DIR")
+      ->capture_default_str();
   return of_kind;
 }
 
@@ -75,8 +78,10 @@ void add_new_command(CLI::App& app, int& exit_code) {
   command->require_subcommand(1);
   const auto arguments = std::make_shared<NewArguments>();
   CLI::App* world = add_kind(*command, "world", "A world of one vehicle", *arguments);
-  world->add_option("--vehicle", arguments->vehicle,
-                    "vehicle file, from where the world is; unset: a shipped rover or AUV");
+  world
+      ->add_option("--vehicle", arguments->vehicle,
+                   "vehicle file, from where the world is; unset: a shipped rover or AUV")
+      ->type_name("FILE");
   world->add_flag("--under-water", arguments->under_water, "an AUV in the sea instead of a rover on land");
   world->footer(
       "Examples:\n  shoal new world yard\n  shoal new world bay --under-water\n"

@@ -69,8 +69,10 @@ void add_study_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   arguments->options.jobs = 0;
   command->add_option("STUDY", arguments->path, "study file, see docs/scores.md")->required();
-  command->add_option("--seeds", arguments->seeds, "instead of those of the study: 7, 1-10 or 1-3,8");
+  command->add_option("--seeds", arguments->seeds, "instead of those of the study: 7, 1-10 or 1-3,8")
+      ->type_name("SEEDS");
   command->add_option("--duration", arguments->changes.duration_s, "simulated seconds of each run, for a first look")
+      ->type_name("SECONDS")
       ->check(number_from(1e-6, 1e9));
   command->add_option("--jobs", arguments->options.jobs, "runs at the same time; 0: one for every two processors")
       ->check(CLI::Range(0, 64));
