@@ -115,7 +115,8 @@ class Readme(unittest.TestCase):
         listed = subprocess.run(["git", "-C", SOURCE, "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
                                 capture_output=True, text=True)
         if listed.returncode != 0:  # not a checkout: an unpacked archive
-            shutil.copytree(SOURCE, cls.clone, ignore=shutil.ignore_patterns("build", "results", ".git"))
+            made = {"build", "results", ".git"}
+            shutil.copytree(SOURCE, cls.clone, ignore=lambda at, names: made & set(names) if at == SOURCE else set())
             return
         for name in filter(None, listed.stdout.split("\0")):
             if os.path.isfile(os.path.join(SOURCE, name)):
