@@ -59,6 +59,7 @@ Autopilot::Autopilot(const Params& params, const sim::DeviceContext& context)
       actuators_(params.helm.empty() ? std::make_optional<AutopilotActuators>(params, context) : std::nullopt),
       law_(params.gains, abilities_of(actuators_)),
       route_(params.guidance),
+      circle_(params.circle_radius_m),
       mode_(params.first_mode()) {
   check_helm(context, params.helm);
   const HoldParams& hold = params.hold;
@@ -69,6 +70,7 @@ Autopilot::Autopilot(const Params& params, const sim::DeviceContext& context)
   take_height(hold.depth_m, hold.altitude_m);
   if (mode_ == Mode::waypoints) begin_route(params.route(), params.loop);
   if (mode_ == Mode::station) wanted_.station_m = params.station.place_m.value_or(place());
+  if (mode_ == Mode::circle) begin_circle(params.station.place_m.value_or(place()));
 }
 
 double Autopilot::depth_m() const {
@@ -92,6 +94,12 @@ void Autopilot::begin_route(std::vector<Waypoint> points, bool loop) {
   take_waypoint();
 }
 
+void Autopilot::begin_circle(const Eigen::Vector2d& center_W) {
+  circle_.start(center_W, place(), sim::yaw_of(body_.X_WB().linear()));
+  mode_ = Mode::circle;
+  wanted_.station_m.reset();
+}
+
 void Autopilot::take_waypoint() {
   take_height(route_.to().depth_m, route_.to().altitude_m);
   if (route_.to().speed_mps) wanted_.speed_mps = *route_.to().speed_mps;
@@ -112,6 +120,7 @@ void Autopilot::set_mode(Mode mode) {
   }
   wanted_.heading_rad = sim::yaw_of(body_.X_WB().linear());
   mode_ = mode;
+  if (mode == Mode::circle) begin_circle(place());
 }
 
 void Autopilot::set_helm(const shoal::helm_command_t& command) {
@@ -183,9 +192,28 @@ void Autopilot::follow_route(double dt_s) {
     wanted_.heading_rad = aim.heading_rad;
     return;
   }
+  if (params_.at_end == AtEnd::circle) {
+    begin_circle(route_.to().p_W);
+    return follow_circle();
+  }
   mode_ = params_.at_end == AtEnd::station ? Mode::station : Mode::hold;
   if (params_.at_end == AtEnd::station) wanted_.station_m = route_.to().p_W;
   if (params_.at_end == AtEnd::stop) wanted_.speed_mps = 0;
+}
+
+/// The craft heads so that it goes along the course, whatever the current and its own sideslip do: what it makes of its
+/// heading now, it will make of the next one.
+void Autopilot::follow_circle() {
+  const Aim aim = circle_.aim(place());
+  reading_.cross_track_m = aim.cross_track_m;
+  reading_.distance_m = aim.distance_m;
+  const Eigen::Vector2d v_WS_W = body_.v_WB_W().head<2>();
+  constexpr double slow_mps = 0.1, max_drift_rad = 1;
+  const double drift_rad =
+      v_WS_W.norm() < slow_mps
+          ? 0
+          : sim::wrap_angle(std::atan2(v_WS_W.y(), v_WS_W.x()) - sim::yaw_of(body_.X_WB().linear()));
+  wanted_.heading_rad = sim::wrap_angle(aim.heading_rad - std::clamp(drift_rad, -max_drift_rad, max_drift_rad));
 }
 
 void Autopilot::measure(const sim::SenseContext& context) {
@@ -196,7 +224,10 @@ void Autopilot::measure(const sim::SenseContext& context) {
     limited_ = {};
     return;
   }
-  if (mode_ == Mode::waypoints) follow_route(context.dt_s);
+  if (mode_ == Mode::waypoints)
+    follow_route(context.dt_s);
+  else if (mode_ == Mode::circle)
+    follow_circle();
   wanted_.height_m = height_wanted(context);
   drive(context, law_.step(motion_of(context.world), wanted_, context.dt_s, limited_));
 }
@@ -240,9 +271,9 @@ void Autopilot::Reading::visit_state(sim::StateArchive& archive) {
 }
 
 void Autopilot::visit_state(sim::StateArchive& archive) {
-  archive(law_, route_, mode_, wanted_, depth_wanted_m_, altitude_wanted_m_, limited_, reading_);
+  archive(law_, route_, circle_, mode_, wanted_, depth_wanted_m_, altitude_wanted_m_, limited_, reading_);
   if (!archive.restoring()) return;
-  if (mode_ < Mode::off || mode_ > Mode::station) archive.fail("an autopilot has no such mode");
+  if (mode_ < Mode::off || mode_ > Mode::circle) archive.fail("an autopilot has no such mode");
   if (mode_ == Mode::waypoints && route_.size() == 0) archive.fail("an autopilot follows a route without waypoints");
   if (!depth_wanted_m_ && !altitude_wanted_m_) archive.fail("an autopilot holds neither depth nor altitude");
 }
@@ -323,8 +354,8 @@ void AutopilotController::receive(sim::Time, std::span<const std::byte> payload)
   if (type == shoal::fingerprint_of<shoal::station_command_t>()) return take_station(autopilot_, payload);
   if (type == shoal::fingerprint_of<shoal::helm_command_t>()) return take_helm(autopilot_, payload);
   const auto command = shoal::decode<shoal::autopilot_command_t>(payload, shoal::Finite::required);
-  if (command.mode < 0 || command.mode > 3)
-    throw std::runtime_error("field 'mode' must be 0, 1, 2 or 3, got " + std::to_string(command.mode));
+  if (command.mode < 0 || command.mode > 4)
+    throw std::runtime_error("field 'mode' must be 0 to 4, got " + std::to_string(command.mode));
   autopilot_.set_mode(static_cast<Autopilot::Mode>(command.mode));
 }
 

@@ -61,6 +61,8 @@ class Autopilot final : public sim::Sensor {
   void take_height(const std::optional<double>& depth_m, const std::optional<double>& altitude_m);
   void begin_route(std::vector<Waypoint> points, bool loop);
   void follow_route(double dt_s);
+  void follow_circle();
+  void begin_circle(const Eigen::Vector2d& center_W);
   void take_waypoint();
   double height_wanted(const sim::SenseContext& context);
   void drive(const sim::SenseContext& context, const Demand& demand);
@@ -75,6 +77,7 @@ class Autopilot final : public sim::Sensor {
   std::optional<AutopilotActuators> actuators_;
   HelmLaw law_;
   Route route_;
+  Circle circle_;
   Mode mode_;
   Setpoint wanted_;
   // One of them.

@@ -22,7 +22,7 @@ void StationParams::read(sim::ParamReader& in) {
 
 void AutopilotParams::read(sim::ParamReader& in) {
   std::string first = "auto";
-  in.read_choice("mode", first, {"auto", "off", "hold", "waypoints", "station"},
+  in.read_choice("mode", first, {"auto", "off", "hold", "waypoints", "station", "circle"},
                  "at the start; auto: waypoints where there are some, else hold; off: others drive the actuators");
   in.read("thrusters", thrusters, "names of thrusters of the vehicle");
   in.read("fins", fins, "names of fins of the vehicle; with fins it turns and climbs by them");
@@ -37,13 +37,16 @@ void AutopilotParams::read(sim::ParamReader& in) {
   in.read_list("waypoints", waypoints, "waypoint", "the route");
   in.read("lawnmower", lawnmower, "a route of parallel tracks, in place of waypoints");
   in.read("loop", loop, "after the last waypoint to the first");
-  in.read_choice("at_end", at_end, {{"station", AtEnd::station}, {"stop", AtEnd::stop}, {"hold", AtEnd::hold}},
-                 "after the last waypoint: stay there, speed 0, or go on with the last heading");
+  in.read_choice("at_end", at_end,
+                 {{"station", AtEnd::station}, {"stop", AtEnd::stop}, {"hold", AtEnd::hold}, {"circle", AtEnd::circle}},
+                 "after the last waypoint: stay there, speed 0, go on with the last heading, or circle around it");
+  in.read("circle_radius_m", circle_radius_m, sim::above_to(0, 1e6),
+          "of the circle; no less than the craft can turn at its speed");
   in.read("guidance", guidance, "how the route is followed");
   in.read("gains", gains, "of the controllers");
   in.read("altitude_range_m", altitude_range_m, sim::above(0), "the bottom is looked for so far below");
   if (in.describing()) return;
-  const std::vector<std::string> words{"off", "hold", "waypoints", "station"};
+  const std::vector<std::string> words{"off", "hold", "waypoints", "station", "circle"};
   if (first != "auto") mode = static_cast<AutopilotMode>(std::find(words.begin(), words.end(), first) - words.begin());
   check(in);
 }

@@ -10,10 +10,10 @@
 namespace devices {
 
 /// What an autopilot does.
-enum class AutopilotMode { off = 0, hold = 1, waypoints = 2, station = 3 };
+enum class AutopilotMode { off = 0, hold = 1, waypoints = 2, station = 3, circle = 4 };
 
 /// What to do after the last waypoint.
-enum class AtEnd { station, stop, hold };
+enum class AtEnd { station, stop, hold, circle };
 
 /// `hold:` what is held at the start; unset: as it is then.
 struct HoldParams {
@@ -44,6 +44,7 @@ struct AutopilotParams {
   std::optional<Lawnmower> lawnmower;
   bool loop = false;
   AtEnd at_end = AtEnd::station;
+  double circle_radius_m = 15;
   GuidanceParams guidance;
   HelmGains gains;
   double altitude_range_m = 200;

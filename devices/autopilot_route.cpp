@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "sim/math.hpp"
@@ -112,6 +113,29 @@ Aim Route::aim(const Eigen::Vector2d& p_W, double dt_s) {
   if (std::abs(aim.cross_track_m) < lookahead / 2)
     sum_m_ += dt_s * lookahead * aim.cross_track_m / (lookahead * lookahead + biased * biased);
   return aim;
+}
+
+void Circle::start(const Eigen::Vector2d& center_W, const Eigen::Vector2d& p_W, double heading_rad) {
+  center_W_ = center_W;
+  const Eigen::Vector2d out = p_W - center_W;
+  turn_ = out.x() * std::sin(heading_rad) - out.y() * std::cos(heading_rad) < 0 ? -1 : 1;
+}
+
+Aim Circle::aim(const Eigen::Vector2d& p_W) const {
+  constexpr double gain = 2;
+  const Eigen::Vector2d out = p_W - center_W_;
+  Aim aim;
+  aim.distance_m = out.norm();
+  const double beyond_m = aim.distance_m - radius_m_;
+  aim.cross_track_m = -turn_ * beyond_m;
+  aim.heading_rad = sim::wrap_angle(std::atan2(out.y(), out.x()) +
+                                    turn_ * (std::numbers::pi / 2 + std::atan(gain * beyond_m / radius_m_)));
+  return aim;
+}
+
+void Circle::visit_state(sim::StateArchive& archive) {
+  archive(center_W_, turn_);
+  if (archive.restoring() && turn_ != 1 && turn_ != -1) archive.fail("a circle turns to the left or to the right");
 }
 
 void Route::visit_state(sim::StateArchive& archive) {

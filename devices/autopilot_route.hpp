@@ -82,4 +82,25 @@ class Route {
   double sum_m_ = 0;
 };
 
+/// Circles around a place by a vector field (Nelson, Barber, McLain, Beard, Vector field path following for miniature
+/// air vehicles, 2007, eq. 11), here with angles counter-clockwise from east and a gain of 2:
+///   course = phi + turn (pi/2 + atan(2 (d - R) / R)),
+/// with phi the direction from the place to the craft, d their distance, R the radius, turn 1 counter-clockwise or -1.
+class Circle {
+ public:
+  explicit Circle(double radius_m) : radius_m_(radius_m) {}
+
+  /// From `p_W` with this heading; the side is the one to which the craft turns less.
+  void start(const Eigen::Vector2d& center_W, const Eigen::Vector2d& p_W, double heading_rad);
+  /// `heading_rad` of the aim is the course over ground that leads to the circle and along it; `distance_m` is to its
+  /// center.
+  Aim aim(const Eigen::Vector2d& p_W) const;
+  void visit_state(sim::StateArchive& archive);
+
+ private:
+  double radius_m_;
+  Eigen::Vector2d center_W_ = Eigen::Vector2d::Zero();
+  int turn_ = 1;
+};
+
 }  // namespace devices

@@ -155,12 +155,14 @@ std::optional<std::int64_t> Client::Connection::next_joined_tick() {
 
 std::optional<std::int64_t> Client::Connection::next_free_tick() {
   const std::optional<std::int64_t> before = clock_utime;
+  if (!clock_utime) lcm.wait_for("the time on 'sim.clock', which a simulator publishes while its run goes on");
   while (!run_is_over) {
     if (!lcm.handle_message()) {
       end = end_of(lcm.end());
       return std::nullopt;
     }
     if (!clock_utime) continue;
+    lcm.got_it();
     // A clock that went back is that of a new run.
     if (!due_utime || (before && *clock_utime < *before)) due_utime = *clock_utime;
     if (*clock_utime < *due_utime) continue;
@@ -187,6 +189,10 @@ Client::End Client::end() const {
 
 void Client::set_silence_limit(std::chrono::milliseconds limit) {
   connection_->lcm.set_silence_limit(limit);
+}
+
+void Client::set_wait_notice(std::chrono::milliseconds after) {
+  connection_->lcm.set_notice_after(after);
 }
 
 const std::string& Client::reason() const {

@@ -111,6 +111,10 @@ void LockstepClient::request(const std::string& command, double value, const std
   throw BusError("no simulator answered '" + name_ + "' in time" + where + "; is it running, with the same LCM URL?");
 }
 
+void LockstepClient::wait_for(const std::string& what) {
+  notice_.emplace("'" + name_ + "' waits for " + what + ", at " + lcm_.url(), notice_after_);
+}
+
 void LockstepClient::ask_to_join(Clock::time_point deadline) {
   const std::size_t told = inbox_.channels().size();
   const sim::LockstepTerms terms{session_, inbox_.channels(), options_.on_timeout, options_.timeout_s};
@@ -130,7 +134,9 @@ void LockstepClient::join(double period_s, milliseconds timeout, const JoinOptio
   period_s_ = period_s;
   options_ = options;
   end_ = End::none;
+  wait_for("a simulator to answer its join on 'sim.control.reply'");
   ask_to_join(Clock::now() + timeout);
+  got_it();
   // What came before was not for a member of the lockstep.
   if (!joined_) inbox_.drop_held();
   joined_ = true;
@@ -138,6 +144,7 @@ void LockstepClient::join(double period_s, milliseconds timeout, const JoinOptio
 
 std::optional<Received> LockstepClient::wait(Clock::time_point deadline, bool heed_stop) {
   while (!(stop_ && heed_stop)) {
+    if (notice_) notice_->look();
     const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now());
     if (auto message = lcm_.next(std::clamp(left, milliseconds(0), slice))) return message;
     if (Clock::now() >= deadline) break;
@@ -284,8 +291,12 @@ void LockstepClient::handle_tick() {
 
 bool LockstepClient::next_tick(shoal::sim_tick_t& tick) {
   auto heard = Clock::now();
+  if (sequence_ == 0 && !notice_)
+    wait_for(
+        "its first tick on 'sim.tick' (it has joined; a paused run, or other clients that are missing, hold it up)");
   while (!stop_ && end_ != End::dropped) {
     if (incomplete_ && inbox_.complete()) {
+      got_it();
       handle_tick();
       if (end_ == End::rewound) return false;
       tick = tick_;

@@ -14,6 +14,7 @@
 #include "bridges/lcm/client_inbox.hpp"
 #include "bridges/lcm/client_outbox.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
+#include "bridges/lcm/wait_notice.hpp"
 #include "shoal/sim_tick_t.hpp"
 
 namespace bridges {
@@ -86,6 +87,12 @@ class LockstepClient {
   const Counts& counts() const { return inbox_.counts(); }
   /// Zero: wait for ever.
   void set_silence_limit(std::chrono::milliseconds limit) { silence_limit_ = limit; }
+  /// After so much wall time without an answer to join(), a first tick, or what wait_for() names, it is said once on
+  /// standard error what is missing.  3 s unless set; zero: never.
+  void set_notice_after(std::chrono::milliseconds after) { notice_after_ = after; }
+  /// `what`, a channel with its reason, is waited for from now on, until got_it().
+  void wait_for(const std::string& what);
+  void got_it() { notice_.reset(); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -143,6 +150,8 @@ class LockstepClient {
   End end_ = End::none;
   std::string reason_;
   std::chrono::milliseconds silence_limit_{30'000};
+  std::chrono::milliseconds notice_after_ = WaitNotice::usual_patience;
+  std::optional<WaitNotice> notice_;
   static_assert(std::atomic<bool>::is_always_lock_free, "stop() is called from signal handlers");
 };
 

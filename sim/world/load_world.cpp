@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <set>
 
@@ -63,29 +64,71 @@ void check_channels(const WorldConfig& world, Diagnostics& diagnostics) {
     }
 }
 
-/// `vehicles.NAME.devices.lidar.rate_hz` changes what is in the vehicle's file: it becomes one of its overrides.
-bool set_override(ConfigNode& root, const std::string& path, const ConfigNode& value, const SourcePlace& place) {
+/// Keys of an entry of `vehicles:`; every other key of a path is in the vehicle's file.
+bool is_key_of_entry(const std::string& key) {
   static const std::set<std::string> own_keys = {"name",  "file",      "model",      "position_m", "rpy_deg",
                                                  "count", "placement", "parameters", "overrides",  "bus"};
+  return own_keys.contains(key);
+}
+
+const std::string& text_at(const ConfigNode& map, const char* key) {
+  static const std::string nothing;
+  const ConfigNode* value = map.find(key);
+  return value != nullptr ? value->scalar : nothing;
+}
+
+/// Whether `name` is NAME7 of an entry NAME with a `count` of 7 or more.
+bool is_one_of_count(const ConfigNode& entry, const std::string& name) {
+  const std::string& stem = text_at(entry, "name");
+  const std::string& count = text_at(entry, "count");
+  if (stem.empty() || !name.starts_with(stem) || name.size() == stem.size() || name[stem.size()] == '0') return false;
+  int index = 0, most = 0;
+  const auto whole = [](std::string_view text, int& value) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc{} && end == text.data() + text.size();
+  };
+  return whole(std::string_view(name).substr(stem.size()), index) && whole(count, most) && most > 1 && index >= 1 &&
+         index <= most;
+}
+
+void add_override(ConfigNode& vehicle, const std::string& key, const ConfigNode& value, const SourcePlace& place) {
+  if (vehicle.find("overrides") == nullptr) {
+    ConfigNode overrides;
+    overrides.kind = ConfigNode::Kind::map;
+    overrides.place = place;
+    vehicle.entries.push_back({"overrides", place, overrides});
+  }
+  ConfigNode& overrides = *vehicle.find("overrides");
+  std::erase_if(overrides.entries, [&](const ConfigNode::Entry& entry) { return entry.key == key; });
+  overrides.entries.push_back({key, place, value});
+}
+
+/// `vehicles.NAME.devices.lidar.rate_hz` changes what is in the vehicle's file: it becomes one of its overrides, also
+/// where NAME is one vehicle of a `count`.
+bool set_override(ConfigNode& root, const std::string& path, const ConfigNode& value, const SourcePlace& place,
+                  Diagnostics& diagnostics) {
   const std::size_t first = path.find('.');
   const std::size_t second = path.find('.', first + 1);
   if (path.rfind("vehicles.", 0) != 0 || second == std::string::npos) return false;
   const std::string name = path.substr(first + 1, second - first - 1);
   const std::string rest = path.substr(second + 1);
+  const std::string key = rest.substr(0, rest.find('.'));
   ConfigNode* vehicles = root.find("vehicles");
-  if (vehicles == nullptr || own_keys.contains(rest.substr(0, rest.find('.')))) return false;
+  if (vehicles == nullptr) return false;
   for (ConfigNode& vehicle : vehicles->items) {
-    const ConfigNode* known = vehicle.find("name");
-    if (known == nullptr || known->scalar != name || vehicle.kind != ConfigNode::Kind::map) continue;
-    if (vehicle.find("overrides") == nullptr) {
-      ConfigNode overrides;
-      overrides.kind = ConfigNode::Kind::map;
-      overrides.place = place;
-      vehicle.entries.push_back({"overrides", place, overrides});
-    }
-    ConfigNode& overrides = *vehicle.find("overrides");
-    std::erase_if(overrides.entries, [&](const ConfigNode::Entry& entry) { return entry.key == rest; });
-    overrides.entries.push_back({rest, place, value});
+    if (text_at(vehicle, "name") != name || vehicle.kind != ConfigNode::Kind::map) continue;
+    if (is_key_of_entry(key)) return false;
+    add_override(vehicle, rest, value, place);
+    return true;
+  }
+  for (ConfigNode& vehicle : vehicles->items) {
+    if (!is_one_of_count(vehicle, name)) continue;
+    if (is_key_of_entry(key))
+      diagnostics.error(place, "vehicle '" + name + "'",
+                        "'" + key + "' belongs to all vehicles of the 'count' of '" + text_at(vehicle, "name") +
+                            "'; for one of them only keys of the vehicle file can be set");
+    else
+      add_override(vehicle, name + "/" + rest, value, place);
     return true;
   }
   return false;
@@ -102,7 +145,7 @@ void apply_sets(ConfigNode& root, const LoadOptions& options, Diagnostics& diagn
     ConfigNode value = parse_config_text(set.substr(equals + 1), *place.file, diagnostics);
     // Relative file names in the value still start at the world file.
     const std::string path = set.substr(0, equals);
-    if (!set_override(root, path, value, place)) set_config_path(root, path, value, place, diagnostics);
+    if (!set_override(root, path, value, place, diagnostics)) set_config_path(root, path, value, place, diagnostics);
   }
 }
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "sim/config/message_text.hpp"
+#include "sim/config/shipped_files.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/world/load_world.hpp"
 
@@ -15,12 +17,13 @@ namespace fs = std::filesystem;
 
 using Parameters = std::vector<std::pair<std::string, ConfigNode>>;
 
-/// Where a file named in a world is found: beside it, then in ../vehicles.
+/// Where a file named in a world is found: beside it, then in ../vehicles, then among the shipped ones.
 std::string find_file(const std::string& file, const SourcePlace& named_in) {
   const fs::path directory = named_in.file ? fs::path(*named_in.file).parent_path() : fs::path();
-  for (const fs::path& candidate : {directory / file, directory / ".." / "vehicles" / file}) {
+  const fs::path shipped = fs::path(shipped_folder()) / "vehicles" / file;
+  for (const fs::path& candidate : {directory / file, directory / ".." / "vehicles" / file, shipped}) {
     std::error_code ignored;
-    if (fs::is_regular_file(candidate, ignored)) return candidate.lexically_normal().string();
+    if (!file.empty() && fs::is_regular_file(candidate, ignored)) return candidate.lexically_normal().string();
   }
   return {};
 }
@@ -31,6 +34,33 @@ bool mentions(const ConfigNode& node, std::string_view text) {
                      [&](const ConfigNode& item) { return mentions(item, text); }) ||
          std::any_of(node.entries.begin(), node.entries.end(),
                      [&](const ConfigNode::Entry& entry) { return mentions(entry.value, text); });
+}
+
+/// Of the override `rover7/devices.lidar.rate_hz` the vehicle of a `count`; empty: the override is for all of them.
+std::string_view single_vehicle(const std::string& key) {
+  return std::string_view(key).substr(0, key.find('/') == std::string::npos ? 0 : key.find('/'));
+}
+
+std::string instance_name(const VehicleEntry& entry, int index) {
+  return entry.count == 1 ? entry.name : entry.name + std::to_string(index);
+}
+
+/// The vehicles of an entry that have overrides of their own.
+std::set<std::string, std::less<>> single_vehicles(const VehicleEntry& entry, const std::string& who,
+                                                   Diagnostics& diagnostics) {
+  std::set<std::string, std::less<>> names, wrong;
+  for (const ConfigNode::Entry& change : entry.overrides.entries)
+    if (change.key.find('/') != std::string::npos) names.emplace(single_vehicle(change.key));
+  wrong = names;
+  for (int i = 1; i <= entry.count && !wrong.empty() && entry.count > 1; ++i) wrong.erase(instance_name(entry, i));
+  const std::string known = entry.count == 1 ? "a '/' is for the vehicles of a 'count'"
+                                             : "the vehicles of this 'count' are " + instance_name(entry, 1) + " to " +
+                                                   instance_name(entry, entry.count);
+  for (const ConfigNode::Entry& change : entry.overrides.entries)
+    if (const auto name = std::string(single_vehicle(change.key));
+        change.key.find('/') != std::string::npos && wrong.contains(name))
+      diagnostics.error(change.place, who, "'overrides' names no vehicle '" + shortened(name) + "': " + known);
+  return names;
 }
 
 }  // namespace
@@ -44,14 +74,20 @@ std::vector<VehicleInstance> VehicleLoader::load(const VehicleEntry& entry) {
                                       ? std::vector<Pose>{X_WE}
                                       : place_instances(entry.placement, entry.count, X_WE,
                                                         static_cast<std::uint64_t>(world_.run.seed), entry.name);
+  const auto singles = single_vehicles(entry, who, diagnostics_);
   const bool alike = !mentions(*model, "${index}") && !mentions(entry.parameters, "${index}") &&
                      !mentions(entry.overrides, "${index}");
   std::vector<VehicleInstance> instances;
   std::shared_ptr<const VehicleConfig> shared;
   for (int i = 0; i < entry.count; ++i) {
-    const std::string name = entry.count == 1 ? entry.name : entry.name + std::to_string(i + 1);
+    const std::string name = instance_name(entry, i + 1);
+    const Pose& X_WV = poses[static_cast<std::size_t>(i)];
+    if (singles.contains(name)) {
+      instances.push_back({entry.place, name, X_WV, instance(entry, *model, name, i + 1), entry.bus});
+      continue;
+    }
     if (!shared || !alike) shared = instance(entry, *model, name, i + 1);
-    instances.push_back({entry.place, name, poses[static_cast<std::size_t>(i)], shared, entry.bus});
+    instances.push_back({entry.place, name, X_WV, shared, entry.bus});
   }
   return instances;
 }
@@ -74,7 +110,8 @@ const ConfigNode* VehicleLoader::model_of(const VehicleEntry& entry, const std::
   const std::string path = find_file(entry.file, entry.beside.file != nullptr ? entry.beside : entry.place);
   if (path.empty()) {
     diagnostics_.error(entry.place, who,
-                       "there is no vehicle file '" + entry.file + "' beside the world file or in ../vehicles");
+                       "there is no vehicle file '" + entry.file +
+                           "' beside the world file, in ../vehicles or among the shipped ones");
     return nullptr;
   }
   auto [at, fresh] = files_.try_emplace(path);
@@ -93,8 +130,13 @@ std::shared_ptr<const VehicleConfig> VehicleLoader::instance(const VehicleEntry&
                                                              const std::string& name, int index) {
   const std::string who = "vehicle '" + name + "'";
   ConfigNode tree = model;
-  for (const ConfigNode::Entry& change : entry.overrides.entries)
-    set_config_path(tree, change.key, change.value, change.place, diagnostics_);
+  const auto& changes = entry.overrides.entries;
+  for (const ConfigNode::Entry& change : changes)
+    if (change.key.find('/') == std::string::npos)
+      set_config_path(tree, change.key, change.value, change.place, diagnostics_);
+  for (const ConfigNode::Entry& change : changes)
+    if (change.key.starts_with(name + "/"))
+      set_config_path(tree, change.key.substr(name.size() + 1), change.value, change.place, diagnostics_);
   substitute_parameters(tree, parameters_of(entry, model, who, index), who, diagnostics_);
   return read(std::move(tree), who);
 }
@@ -201,7 +243,7 @@ void check_spawn(const SpawnEntry& entry, Origin origin, Diagnostics& diagnostic
 void check_untrusted(const ConfigNode& node, const std::string& who, Diagnostics& diagnostics) {
   for (const ConfigNode& item : node.items) check_untrusted(item, who, diagnostics);
   for (const ConfigNode::Entry& entry : node.entries) {
-    const std::string key = entry.key.substr(entry.key.rfind('.') + 1);
+    const std::string key = entry.key.substr(entry.key.find_last_of("./") + 1);
     if (key == "mesh" || key == "serial" || key == "include" || entry.key.find("serial.") != std::string::npos)
       diagnostics.error(entry.place, who, "'" + key + "' cannot be used in what comes over the bus");
     check_untrusted(entry.value, who, diagnostics);

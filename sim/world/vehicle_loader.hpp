@@ -46,8 +46,8 @@ struct SpawnRequest {
 };
 
 /// Reads a spawn request.  The text comes over the network and is not trusted: it can use vehicle files that lie
-/// beside the world file or in ../vehicles by their bare names, but no other file, and no serial port.  Throws
-/// ConfigError, with places such as `spawn:3:7`.
+/// beside the world file, in ../vehicles or among the shipped ones by their bare names, but no other file, and no
+/// serial port.  Throws ConfigError, with places such as `spawn:3:7`.
 SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& text);
 /// The same for what self_contained_spawn() made of a request that was checked then.
 SpawnRequest read_journalled_spawn(const WorldConfig& world, const std::string& text);

@@ -67,7 +67,7 @@ void VehicleEntry::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "name of the vehicle, unique in the world; part of its channels");
   refuse_reserved(in, name);
-  in.read("file", file, "vehicle file, beside the world file or in ../vehicles");
+  in.read("file", file, "vehicle file, beside the world file, in ../vehicles or shipped (shoal list)");
   in.read_raw("model", model, "the vehicle itself, as in a vehicle file, instead of a file");
   in.read("position_m", position_m, any_place(), "place of the vehicle frame in the world");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
@@ -75,7 +75,8 @@ void VehicleEntry::read(ParamReader& in) {
   in.read("placement", placement, "where the instances stand when there is a count");
   in.read_raw("parameters", parameters, "values of the vehicle file's ${names}; ${index} counts from 1");
   in.read_reference("bus", bus, "bus", "bus of its own, named in `buses`; unset: the world's");
-  in.read_raw("overrides", overrides, "dotted path: value, such as devices.lidar.rate_hz: 5");
+  in.read_raw("overrides", overrides,
+              "dotted path: value, such as devices.lidar.rate_hz: 5; NAME3/devices.lidar.rate_hz: one of a count");
   for (const char* key : {"parameters", "overrides"})
     if (in.has(key) && in.child(key)->kind != ConfigNode::Kind::map && in.child(key)->kind != ConfigNode::Kind::null)
       in.error(key, std::string("'") + key + "' must be a map, got " + shown(*in.child(key)));

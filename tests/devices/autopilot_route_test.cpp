@@ -110,4 +110,20 @@ TEST(Lawnmower, TurnsWithItsDirectionAndCoversTheRightForANegativeWidth) {
   EXPECT_NEAR((points[5].p_W - Vector2d(20, 50)).norm(), 0, 1e-12);
 }
 
+TEST(Circle, LeadsOutToTheCircleAndAlongIt) {
+  devices::Circle left(10);
+  left.start({0, 0}, {10, 0}, sim::degrees_to_radians(90));  // east of the center, going north: counter-clockwise
+  EXPECT_NEAR(left.aim({10, 0}).heading_rad, sim::degrees_to_radians(90), 1e-12);
+  EXPECT_NEAR(left.aim({0, 10}).heading_rad, sim::degrees_to_radians(180), 1e-12);
+  // 5 m outside: atan(2 * 5 / 10) = 45 degrees inwards; at the center atan(-2) outwards of the tangent.
+  EXPECT_NEAR(left.aim({15, 0}).heading_rad, sim::degrees_to_radians(135), 1e-12);
+  EXPECT_NEAR(left.aim({0, 0}).heading_rad, sim::degrees_to_radians(90) - std::atan(2.0), 1e-12);
+  EXPECT_NEAR(left.aim({15, 0}).cross_track_m, -5, 1e-12) << "outside is to the right of the track";
+  devices::Circle right(10);
+  right.start({0, 0}, {10, 0}, sim::degrees_to_radians(-90));
+  EXPECT_NEAR(right.aim({10, 0}).heading_rad, sim::degrees_to_radians(-90), 1e-12);
+  EXPECT_NEAR(right.aim({15, 0}).heading_rad, sim::degrees_to_radians(-135), 1e-12);
+  EXPECT_NEAR(right.aim({15, 0}).cross_track_m, 5, 1e-12);
+}
+
 }  // namespace

@@ -89,6 +89,45 @@ TEST(Autopilot, ARovStaysAtItsStationInACurrent) {
   EXPECT_EQ(state.saturated, 0);
 }
 
+TEST(Autopilot, AnAuvHoldsACircleAroundItsLastWaypointInACurrent) {
+  AutopilotWorld test(world_with("remus100_survey.yaml",
+                                 "      devices.autopilot.waypoints: [{at_m: [60, 0], speed_mps: 1.5}]\n"
+                                 "      devices.autopilot.at_end: circle\n"
+                                 "      devices.autopilot.circle_radius_m: 25\n",
+                                 across));
+  // 60 m and the way out to the circle take a minute and a half, a turn of 2 pi 25 m some 105 s.
+  auto state = test.state_after(150);
+  EXPECT_EQ(state.mode, 4);
+  EXPECT_EQ(state.finished, 1);
+  bool east = false, north = false, west = false, south = false;
+  for (int i = 0; i < 130; ++i) {
+    state = test.state_after(1);
+    const Eigen::Vector2d out = test.place().head<2>() - Eigen::Vector2d(60, 0);
+    EXPECT_NEAR(out.norm(), 25, 2.5) << i;  // one and a half lengths of the craft
+    EXPECT_NEAR(state.distance_m, out.norm(), 0.2);
+    EXPECT_NEAR(test.place().z(), -10, 0.5);
+    east |= out.x() > 15;
+    west |= out.x() < -15;
+    north |= out.y() > 15;
+    south |= out.y() < -15;
+  }
+  EXPECT_TRUE(east && north && west && south) << "it went all the way around";
+}
+
+TEST(Autopilot, ABoatCirclesWhereItIsToldTo) {
+  AutopilotWorld test(world_with("otter_autopilot.yaml",
+                                 "      devices.autopilot.hold: {speed_mps: 1.2, heading_deg: 0}\n", across, 0));
+  test.run_for(20);
+  const sim::Vector3d center = test.place();
+  test.mode(4);
+  const auto state = test.state_after(120);
+  EXPECT_EQ(state.mode, 4);
+  EXPECT_NEAR((test.place() - center).head<2>().norm(), 15, 2);
+  EXPECT_NEAR(state.cross_track_m, 0, 2);
+  test.helm(nothing, 1, nothing);
+  EXPECT_EQ(test.state_after(1).mode, 1) << "a heading ends the circle";
+}
+
 TEST(Autopilot, ABoatWithTwoPropellersGoesRoundItsWaypoints) {
   AutopilotWorld test(
       world_with("otter_autopilot.yaml",
@@ -305,7 +344,7 @@ TEST(Autopilot, RefusesBadCommandsAndGoesOn) {
   AutopilotWorld test(world_with("remus100_survey.yaml", "      devices.autopilot.hold: {speed_mps: 1}\n"));
   test.run_for(1);
   test.helm(std::numeric_limits<double>::infinity(), nothing, nothing);
-  test.mode(7);
+  test.mode(5);
   test.mode(2);  // there is no route
   shoal::waypoints_command_t empty{};
   test.send("v.autopilot.cmd", empty);

@@ -237,6 +237,9 @@ TEST_F(Plugin, InstallationRunsItsOwnWorlds) {
   const Ended ended = shoal({"check", path("prefix/share/shoal/worlds/coop_land.yaml")});
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_TRUE(fs::exists(path("prefix/share/shoal/docs/schema/world.schema.json")));
+  const Ended by_name = shoal({"run", "minimal", "--bus", "none", "--duration", "1", "--speed", "max"});
+  EXPECT_EQ(by_name.exit_code, 0) << by_name.errors;
+  EXPECT_THAT(shoal({"list"}).output, HasSubstr("\nThe files are in " + path("prefix/share/shoal") + "\n"));
 }
 
 }  // namespace

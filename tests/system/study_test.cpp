@@ -63,6 +63,28 @@ TEST(Study, RunsAWorldForEverySeedAndCase) {
   EXPECT_THAT(study.text("report.html"), HasSubstr("data:image/png;base64,"));
 }
 
+TEST(Study, TakesSeedsAndDurationOfTheCommandLine) {
+  const StudyFolder study("seeds: 1-100\n");
+  const Ended ended = study.run({"--seeds", "3,7-8", "--duration", "0.5"});
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr("study tiny: 3 runs"));
+  EXPECT_THAT(study.text("study.csv"), HasSubstr("\nworld,7,0,"));
+  EXPECT_THAT(study.text("study.csv"), HasSubstr(",duration,0.5,"));
+  const Ended wrong = study.run({"--seeds", "8-7"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.errors, HasSubstr("must be ranges from the lower to the higher seed, got '8-7'"));
+}
+
+TEST(Study, SaysThatACaseWhoseSettingDoesNothingDoesNotDiffer) {
+  const StudyFolder study("seeds: [1, 2]\ncases: [{name: a}, {name: b, set: {description: other}}]\n");
+  const Ended ended = study.run();
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr("note: cases 'a', 'b' do not differ: every run came out the same, though their "
+                                      "settings differ"));
+  EXPECT_EQ(run_shoal({"report", study.folder.file("out")}).exit_code, 0);
+  EXPECT_THAT(study.text("report.html"), HasSubstr("do not differ"));
+}
+
 TEST(Study, KeepsRunsThatAreDoneUntilSomethingChanges) {
   const StudyFolder study(two_cases);
   ASSERT_EQ(study.run().exit_code, 0);

@@ -236,8 +236,11 @@ TEST(Rewind, RunAgainIsEqualToARunThatNeverWentBack) {
   const Ended back = control({"rewind", "--value", "4.2"});
   EXPECT_EQ(back.exit_code, 0) << back.errors;
   EXPECT_EQ(back.output, "step 517, 5.17 s, branch 1, paused\n");
+  EXPECT_EQ(back.errors, "paused; go on with `shoal control resume --lcm-url '" + own_url() + "'`\n");
   live.run_until("12");
-  EXPECT_EQ(control({"rewind", "run", "--value", "11"}).exit_code, 0);
+  const Ended goes_on = control({"rewind", "run", "--value", "11"});
+  EXPECT_EQ(goes_on.exit_code, 0);
+  EXPECT_EQ(goes_on.errors, "");
   ASSERT_EQ(live.program.wait(), 0) << live.program.errors();
   Ended ended;
   ended.output = live.program.output();

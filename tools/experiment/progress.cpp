@@ -20,10 +20,14 @@ void Progress::update(sim::Time now, std::uint64_t messages, const sim::RunContr
   if (since_s < (terminal_ ? 0.25 : 10.0)) return;
   std::string line = fmt::format("{:8.2f} s", sim::to_seconds(now));
   if (duration_s_ > 0) line += fmt::format(" / {:.0f} s", duration_s_);
-  line += fmt::format("  {:7.2f} x real time  {:8.0f} messages/s", sim::to_seconds(now - last_now_) / since_s,
-                      static_cast<double>(messages - last_messages_) / since_s);
+  if (!control.paused)
+    line += fmt::format("  {:7.2f} x real time  {:8.0f} messages/s", sim::to_seconds(now - last_now_) / since_s,
+                        static_cast<double>(messages - last_messages_) / since_s);
   if (control.branch > 0) line += fmt::format("  branch {}", control.branch);
-  if (waits || control.paused) line += "  paused";
+  if (control.paused)
+    line += "  paused; space, or `shoal control resume`, goes on";
+  else if (waits)
+    line += "  paused";
   show(line);
   last_ = wall;
   last_now_ = now;

@@ -1,9 +1,11 @@
 #include "tools/experiment/study_config.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <stdexcept>
 
 #include "shoal/message_writer.hpp"
 #include "sim/config/message_text.hpp"
@@ -18,7 +20,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t most_seeds = 100000;
 constexpr double largest_seed = 9007199254740992.0;  // 2^53
 
-/// A list of seeds, or the first and how many.
+/// The first seed and how many.
 struct SeedRange {
   std::int64_t first = 1;
   std::int64_t count = 0;
@@ -29,6 +31,66 @@ struct SeedRange {
   }
 };
 
+std::optional<std::int64_t> whole_seed(std::string_view text) {
+  std::int64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  const bool good = error == std::errc{} && end == text.data() + text.size() && !text.empty() && text[0] != '-' &&
+                    static_cast<double>(seed) <= largest_seed;
+  return good ? std::optional(seed) : std::nullopt;
+}
+
+/// `1-10`.  Nothing: it is not of this form.
+std::optional<std::pair<std::int64_t, std::int64_t>> first_and_last(std::string_view text) {
+  const std::size_t dash = text.find('-', 1);
+  if (dash == std::string_view::npos) return std::nullopt;
+  const auto trimmed = [](std::string_view part) {
+    while (part.starts_with(' ')) part.remove_prefix(1);
+    while (part.ends_with(' ')) part.remove_suffix(1);
+    return part;
+  };
+  const auto first = whole_seed(trimmed(text.substr(0, dash))), last = whole_seed(trimmed(text.substr(dash + 1)));
+  return first && last ? std::optional(std::pair(*first, *last)) : std::nullopt;
+}
+
+/// Adds `7` or `1-10`.  What is wrong with the text; empty: nothing.
+std::string add_seeds(std::string_view text, std::vector<std::int64_t>& seeds) {
+  const std::string got = ", got '" + sim::shortened(sim::printable(text)) + "'";
+  if (const auto one = whole_seed(text)) {
+    seeds.push_back(*one);
+    return {};
+  }
+  const auto range = first_and_last(text);
+  if (!range) return "must be whole numbers from 0 to 2^53 or ranges such as 1-10" + got;
+  if (range->second < range->first) return "must be ranges from the lower to the higher seed" + got;
+  if (range->second - range->first >= static_cast<std::int64_t>(most_seeds))
+    return "must be at most " + std::to_string(most_seeds) + got;
+  for (std::int64_t seed = range->first; seed <= range->second; ++seed) seeds.push_back(seed);
+  return {};
+}
+
+bool differ_from_each_other(const std::vector<std::int64_t>& seeds) {
+  return std::set<std::int64_t>(seeds.begin(), seeds.end()).size() == seeds.size();
+}
+
+/// Whether a text such as `1-10` is among the seeds, so that they are no list of numbers.
+bool has_range(const sim::ConfigNode& node) {
+  if (node.kind == sim::ConfigNode::Kind::scalar) return first_and_last(node.scalar).has_value();
+  return std::any_of(node.items.begin(), node.items.end(), has_range);
+}
+
+std::vector<std::int64_t> read_seed_ranges(sim::ParamReader& in, const sim::ConfigNode& node) {
+  std::vector<std::int64_t> seeds;
+  const auto add = [&](const sim::ConfigNode& item) {
+    const std::string problem = item.kind == sim::ConfigNode::Kind::scalar
+                                    ? add_seeds(item.scalar, seeds)
+                                    : "must be whole numbers or ranges such as 1-10, got " + sim::shown(item);
+    if (!problem.empty()) in.error("seeds", "'seeds' " + problem);
+  };
+  if (node.kind == sim::ConfigNode::Kind::scalar) add(node);
+  for (const sim::ConfigNode& item : node.items) add(item);
+  return seeds;
+}
+
 std::vector<std::int64_t> read_seeds(sim::ParamReader& in) {
   in.require("seeds");
   const sim::ConfigNode* node = in.child("seeds");
@@ -37,6 +99,11 @@ std::vector<std::int64_t> read_seeds(sim::ParamReader& in) {
     SeedRange range;
     in.read("seeds", range, "seeds of the runs");
     for (std::int64_t i = 0; i < range.count; ++i) seeds.push_back(range.first + i);
+    return seeds;
+  }
+  if (node != nullptr && has_range(*node)) {
+    seeds = read_seed_ranges(in, *node);
+    if (!differ_from_each_other(seeds)) in.error("seeds", "'seeds' must differ from each other");
     return seeds;
   }
   std::vector<double> numbers;
@@ -49,8 +116,7 @@ std::vector<std::int64_t> read_seeds(sim::ParamReader& in) {
   const bool nothing = node != nullptr && (node->kind == sim::ConfigNode::Kind::null ||
                                            (node->kind == sim::ConfigNode::Kind::list && node->items.empty()));
   if (nothing) in.error("seeds", "'seeds' must have at least one seed");
-  if (std::set<std::int64_t>(seeds.begin(), seeds.end()).size() != seeds.size())
-    in.error("seeds", "'seeds' must differ from each other");
+  if (!differ_from_each_other(seeds)) in.error("seeds", "'seeds' must differ from each other");
   return seeds;
 }
 
@@ -206,7 +272,20 @@ void StudyConfig::read(sim::ParamReader& in) {
   in.read_list("pass", pass, "rule", "the study passes when every rule holds; else exit code 1");
 }
 
-LoadedStudy load_study(const std::string& path) {
+std::vector<std::int64_t> parse_seeds(const std::string& text) {
+  std::vector<std::int64_t> seeds;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    if (const std::string problem = add_seeds(std::string_view(text).substr(begin, end - begin), seeds);
+        !problem.empty())
+      throw std::invalid_argument(problem);
+    begin = end + 1;
+  }
+  if (!differ_from_each_other(seeds)) throw std::invalid_argument("must differ from each other, got '" + text + "'");
+  return seeds;
+}
+
+LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
   LoadedStudy study;
   sim::Diagnostics diagnostics;
   const sim::ConfigNode root = sim::load_config_file(path, diagnostics);
@@ -216,6 +295,8 @@ LoadedStudy load_study(const std::string& path) {
   in.finish();
   diagnostics.throw_if_any();
   study.config.file = path;
+  if (!changes.seeds.empty()) study.config.seeds = changes.seeds;
+  if (changes.duration_s) study.config.duration_s = changes.duration_s;
   const fs::path world_file = fs::path(path).parent_path() / study.config.world;
   study.config.world = world_file.lexically_normal().string();
   for (const StudyCase& each : study.config.cases) {

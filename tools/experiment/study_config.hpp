@@ -67,8 +67,17 @@ struct LoadedStudy {
   std::vector<sim::LoadedWorld> worlds;  ///< by case
 };
 
+/// What a command line says instead of the file.
+struct StudyChanges {
+  std::vector<std::int64_t> seeds;  ///< empty: those of the file
+  std::optional<double> duration_s;
+};
+
+/// Seeds as a command line gives them: `7`, `1-10` or `1-3,8`.  Throws std::invalid_argument with the rule.
+std::vector<std::int64_t> parse_seeds(const std::string& text);
+
 /// Reads and checks a study and its world in every case.  Throws sim::ConfigError.
-LoadedStudy load_study(const std::string& path);
+LoadedStudy load_study(const std::string& path, const StudyChanges& changes = {});
 
 /// A serial port that two runs at the same time would have.
 struct SharedPort {

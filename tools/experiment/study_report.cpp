@@ -101,6 +101,9 @@ std::string study_report(const std::string& directory) {
           html_text(fmt::format("{} runs of the world {}. {}. Shoal {}.", in.whole("runs"), in.text("world"),
                                 seeds_text(in), in.text("shoal"))) +
           "</p>\n";
+  // A study of an older version has none.
+  if (json.contains("notes"))
+    for (const std::string& note : texts_of(in, "notes")) body += "<p>Note: " + html_text(note) + ".</p>\n";
   return html_page(in.text("study"),
                    body + table_html(in) + pictures_html(directory, texts_of(in, "pictures")) + cases_html(in));
 }

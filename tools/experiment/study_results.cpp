@@ -9,6 +9,7 @@
 #include <set>
 
 #include "tools/experiment/runner.hpp"
+#include "tools/experiment/study_equal_cases.hpp"
 
 namespace tools {
 
@@ -201,6 +202,7 @@ std::string StudyResults::to_text() const {
     text += fmt::format("{}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.rule);
   if (config.pass.empty() && runs_with_failed_programs() > 0)
     text += fmt::format("{} of {} runs had programs that failed\n", runs_with_failed_programs(), runs_.size());
+  for (const EqualCases& group : equal_cases(study_, runs_)) text += "note: " + equal_cases_text(group) + "\n";
   if (failed_runs() > 0) text += fmt::format("{} runs have no result\n", failed_runs());
   if (config.pass.empty()) text += "not judged: the study has no rules\n";
   return text;
@@ -246,6 +248,8 @@ std::string StudyResults::to_json(int exit_code) const {
     for (const std::string& figure : figures_) entry["figures"][figure] = json_of(of(each.name, figure));
     json["cases"].push_back(std::move(entry));
   }
+  json["notes"] = nlohmann::ordered_json::array();
+  for (const EqualCases& group : equal_cases(study_, runs_)) json["notes"].push_back(equal_cases_text(group));
   json["failed_runs"] = nlohmann::ordered_json::array();
   for (const StudyRun& run : runs_)
     if (!run.record)

@@ -14,6 +14,7 @@
 #include "sim/world/world.hpp"
 #include "tools/experiment/acoustic_closed_forms.hpp"
 #include "tools/experiment/acoustic_link.hpp"
+#include "tools/experiment/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
 
@@ -240,7 +241,7 @@ int show(AcousticsArguments& arguments) {
   arguments.load.encode_message = shoal::encode_own_message;
   const sim::WorldConfig config =
       (arguments.world.empty() ? sim::load_world_text(plain_world, "plain sea", arguments.load)
-                               : sim::load_world(arguments.world, arguments.load))
+                               : sim::load_world(world_file(arguments.world), arguments.load))
           .config;
   sim::InProcessBus bus;
   const sim::World world(config, bus);

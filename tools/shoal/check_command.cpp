@@ -8,6 +8,7 @@
 #include "sim/world/vehicle_loader.hpp"
 #include "sim/world/world.hpp"
 #include "tools/experiment/process_check.hpp"
+#include "tools/experiment/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {
@@ -59,7 +60,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("check", "Check a world or vehicle file without running it");
   const auto path = std::make_shared<std::string>();
   const auto options = std::make_shared<sim::LoadOptions>();
-  command->add_option("FILE", *path, "world or vehicle file")->required();
+  command->add_option("FILE", *path, "world or vehicle file, or the name of a shipped one")->required();
   command->add_option("--set", options->sets, "path=value: change a value of the world file")
       ->type_size(1)
       ->allow_extra_args(false);
@@ -68,7 +69,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
       "Example:\n  shoal check worlds/coop_land.yaml --set run.seed=3\nEvery error is printed as "
       "file:line:column: who: rule, value.");
   command->callback([path, options, &exit_code] {
-    check(*path, *options);
+    check(file_by_name({ShippedKind::world, ShippedKind::vehicle}, *path), *options);
     exit_code = exit_ok;
   });
 }

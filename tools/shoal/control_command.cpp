@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "bridges/lcm/lcm_listener.hpp"
+#include "bridges/lcm/wait_notice.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_control_reply_t.hpp"
 #include "shoal/sim_control_request_t.hpp"
@@ -45,6 +46,12 @@ std::string text_of(const std::string& argument) {
   return text.str();
 }
 
+/// Whether a run stands still because of this request, so that somebody has to let it go on.
+bool leaves_paused(const std::string& command, const std::string& reply) {
+  return (command == "pause" || command == "rewind" || command == "restore") &&
+         reply.find(", paused") != std::string::npos;
+}
+
 /// Requests and their answers.  A request is sent once: sent again it might be obeyed twice.
 class Session {
  public:
@@ -63,7 +70,10 @@ class Session {
     const Clock::time_point deadline =
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(arguments_.timeout_s));
     lcm_.publish("sim.control", shoal::encode(request));
+    bridges::WaitNotice notice("shoal control: waiting for a simulator to answer on 'sim.control.reply', at " +
+                               lcm_.url());
     while (Clock::now() < deadline && caught_signal() == 0) {
+      notice.look();
       const auto message = lcm_.next(50ms);
       if (!message || message->channel != "sim.control.reply") continue;
       try {
@@ -75,6 +85,8 @@ class Session {
     }
     return std::nullopt;
   }
+
+  const std::string& url() const { return lcm_.url(); }
 
  private:
   const ControlArguments& arguments_;
@@ -88,12 +100,15 @@ int control(const ControlArguments& arguments) {
   Session session(arguments);
   const auto reply = session.ask(arguments.command, text, arguments.value);
   if (!reply) {
-    std::cerr << "shoal control: no simulator answered within " << arguments.timeout_s
-              << " s; is one running on this LCM URL? see shoal doctor\n";
+    std::cerr << "shoal control: no simulator answered within " << arguments.timeout_s << " s at " << session.url()
+              << "; is one running there? see shoal doctor\n";
     return exit_timeout;
   }
   (reply->ok ? std::cout : std::cerr) << reply->text << (reply->text.empty() ? "ok\n" : "\n") << std::flush;
   if (!reply->ok) return exit_failed;
+  if (leaves_paused(arguments.command, reply->text))
+    std::cerr << "paused; go on with `shoal control resume"
+              << (arguments.lcm_url.empty() ? "" : " --lcm-url '" + arguments.lcm_url + "'") << "`\n";
   // A vehicle that goes with its client stays as long as we say that we live.
   while (arguments.stay && caught_signal() == 0) {
     if (!session.ask("alive", "", 0) && caught_signal() == 0) return exit_timeout;
@@ -127,7 +142,8 @@ void add_control_command(CLI::App& app, int& exit_code) {
       "  shoal control step --value 10\n"
       "  shoal control until --value 90\n"
       "  shoal control until storm            (an event of the world)\n"
-      "  shoal control rewind --value 30      (paused then; with the text run it goes on)\n"
+      "  shoal control rewind --value 30      (paused then, until `shoal control resume`)\n"
+      "  shoal control rewind run --value 30  (goes on at once)\n"
       "  shoal control snapshot before_dive\n"
       "  shoal control restore before_dive\n"
       "  shoal control spawn '{name: rover7, file: rover.yaml, position_m: [2, 0, 0]}'\n"

@@ -1,8 +1,6 @@
 #include <iostream>
 #include <memory>
 
-#include "shoal/message_schema.hpp"
-#include "sim/device/device_registry.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/json_schema.hpp"
 #include "tools/shoal/reference_pages.hpp"
@@ -39,35 +37,6 @@ void add_describe_command(CLI::App& app, int& exit_code) {
       exit_code = exit_usage;
     }
     std::cout << text;
-  });
-}
-
-namespace {
-
-void list(const std::string& what) {
-  if (what == "devices")
-    for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all())
-      std::cout << type->name << std::string(20 - std::min<std::size_t>(19, type->name.size()), ' ') << type->meaning
-                << '\n';
-  if (what == "messages")
-    for (const auto& [name, schema] : shoal::embedded_types().all()) {
-      char fingerprint[20];
-      std::snprintf(fingerprint, sizeof fingerprint, "%016llx", static_cast<unsigned long long>(schema.fingerprint));
-      std::cout << fingerprint << "  " << name << '\n';
-    }
-}
-
-}  // namespace
-
-void add_list_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("list", "List device types or message types");
-  const auto what = std::make_shared<std::string>();
-  command->add_option("WHAT", *what, "devices or messages")->required()->check(CLI::IsMember({"devices", "messages"}));
-  add_plugin_option(*command);
-  command->footer("Example:\n  shoal list devices");
-  command->callback([what, &exit_code] {
-    list(*what);
-    exit_code = exit_ok;
   });
 }
 

@@ -15,6 +15,7 @@
 #include "sim/device/device_registry.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/shoal/commands.hpp"
+#include "tools/shoal/new_command.hpp"
 
 namespace {
 
@@ -60,6 +61,7 @@ int run(int argc, char** argv) {
   tools::add_snapshot_command(app, exit_code);
   tools::add_describe_command(app, exit_code);
   tools::add_list_command(app, exit_code);
+  tools::add_new_command(app, exit_code);
   tools::add_spy_command(app, exit_code);
   tools::add_control_command(app, exit_code);
   tools::add_doctor_command(app, exit_code);

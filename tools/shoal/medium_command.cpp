@@ -7,6 +7,7 @@
 #include "shoal/message_writer.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/world/load_world.hpp"
+#include "tools/experiment/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {
@@ -119,7 +120,7 @@ void print_waves(const sim::Medium& medium, const sim::Vector3d& p_W, double fro
 int look(MediumArguments& arguments) {
   const sim::Vector3d p_W = parse_point(arguments.at);
   arguments.load.encode_message = shoal::encode_own_message;
-  const sim::WorldConfig config = sim::load_world(arguments.world, arguments.load).config;
+  const sim::WorldConfig config = sim::load_world(world_file(arguments.world), arguments.load).config;
   sim::Medium medium(config.medium, config.physics.gravity_mps2, static_cast<std::uint64_t>(config.run.seed));
   medium.advance_to(sim::from_seconds(arguments.time_s));
   if (arguments.waves_s)
@@ -136,7 +137,7 @@ int look(MediumArguments& arguments) {
 void add_medium_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("medium", "Show the water and the air of a world at a place and a time");
   const auto arguments = std::make_shared<MediumArguments>();
-  command->add_option("WORLD", arguments->world, "world file")->required();
+  command->add_option("WORLD", arguments->world, "world file, or the name of a shipped world")->required();
   command->add_option("--at", arguments->at, "x,y,z: the place, m; 0,0,-1");
   command->add_option("--time", arguments->time_s, "simulated time, s")->check(number_from(0, 1e6));
   CLI::Option* profile = command->add_flag("--profile", arguments->profile, "a table from the surface to the place");

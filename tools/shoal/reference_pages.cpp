@@ -68,8 +68,11 @@ std::string world_format_page() {
          "world's `parameters:` of that vehicle another value. `${index}` is the number of the instance (from 1), "
          "`${name}` its entry's name.\n"
          "* `overrides:` of a vehicle, and `--set` on the command line, change one value each by its dotted path; an "
-         "item of a list is named by its `name`: `vehicles.rover1.devices.lidar.rate_hz`.\n"
-         "* A vehicle file is looked up beside the world file, then in `../vehicles`.\n"
+         "item of a list is named by its `name`: `vehicles.rover1.devices.lidar.rate_hz`. One vehicle of a `count` is "
+         "addressed by its own name: "
+         "`vehicles.rover7.devices.lidar.rate_hz` with --set, `rover7/devices.lidar.rate_hz` in `overrides:`.\n"
+         "* A vehicle file is looked up beside the world file, then in `../vehicles`, then among the shipped ones "
+         "(`shoal list`).\n"
          "* Where two materials touch, the entry of `contacts` that names both wins over one that says `any`; among "
          "equals the last one wins.\n\n"
          "## World\n\n" +

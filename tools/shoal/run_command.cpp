@@ -7,6 +7,7 @@
 
 #include "shoal/message_writer.hpp"
 #include "tools/experiment/runner.hpp"
+#include "tools/experiment/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {
@@ -83,7 +84,7 @@ int run(RunArguments& arguments) {
   if (nowhere && (!arguments.snapshot_at.empty() || arguments.run.snapshot_every_s))
     throw CLI::ValidationError("--snapshot-at", "needs --snapshots DIR or --results DIR");
   const sim::LoadedWorld loaded =
-      arguments.from.empty() ? sim::load_world(arguments.world, arguments.load) : load_from(arguments);
+      arguments.from.empty() ? sim::load_world(world_file(arguments.world), arguments.load) : load_from(arguments);
   catch_signals(true);
   const Summary summary = run_world(loaded, arguments.run);
   if (!summary.error.empty()) std::cerr << "shoal: " << summary.error << '\n';
@@ -98,7 +99,7 @@ int run(RunArguments& arguments) {
 void add_run_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", "Run a world");
   const auto arguments = std::make_shared<RunArguments>();
-  command->add_option("WORLD", arguments->world, "world file");
+  command->add_option("WORLD", arguments->world, "world file, or the name of a shipped world (shoal list)");
   command->add_option("--duration", arguments->duration_s, "simulated seconds; 0: until told to quit")
       ->check(number_from(0, 1e9));
   command->add_option("--from", arguments->from, "go on from a snapshot file instead of the start of a WORLD");

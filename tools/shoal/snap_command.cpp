@@ -13,6 +13,7 @@
 #include "sim/camera/renderer.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/world.hpp"
+#include "tools/experiment/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
 
@@ -221,7 +222,7 @@ int snap(SnapArguments& arguments) {
   if (arguments.every_s && arguments.until_s < arguments.at_s)
     throw CLI::ValidationError("--until", "must not be before --at");
   arguments.load.encode_message = shoal::encode_own_message;
-  const sim::LoadedWorld loaded = sim::load_world(arguments.world, arguments.load);
+  const sim::LoadedWorld loaded = sim::load_world(world_file(arguments.world), arguments.load);
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus);
   world.use_threads(0);
@@ -256,7 +257,7 @@ std::string check_seed(const std::string& text) {
 void add_snap_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("snap", "Run a world without bus or clock and take a picture");
   const auto arguments = std::make_shared<SnapArguments>();
-  command->add_option("WORLD", arguments->world, "world file")->required();
+  command->add_option("WORLD", arguments->world, "world file, or the name of a shipped world")->required();
   command->add_option("--out", arguments->out, "the picture: .png, .jpg or .jpeg")->required();
   command->add_option("--at", arguments->at_s, "simulated time, s")->check(number_from(0, 1e9));
   CLI::Option* every =

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "bridges/lcm/lcm_listener.hpp"
+#include "bridges/lcm/wait_notice.hpp"
 #include "shoal/message_schema.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/shoal/commands.hpp"
@@ -100,7 +101,11 @@ int spy(const SpyArguments& arguments) {
     return caught_signal() != 0 || output_closed() ||
            (arguments.duration_s > 0 && Clock::now() - begin > std::chrono::duration<double>(arguments.duration_s));
   };
+  bridges::WaitNotice notice("shoal spy: waiting for messages on " +
+                             (arguments.channel.empty() ? "any channel" : "'" + arguments.channel + "'") + ", at " +
+                             listener.url());
   while (!over()) {
+    if (channels.empty()) notice.look();
     if (const auto message = listener.next(std::chrono::milliseconds(100))) {
       Seen& seen = channels[message->channel];
       ++seen.messages;

@@ -8,6 +8,7 @@
 
 #include "tools/experiment/runner.hpp"
 #include "tools/experiment/study_results.hpp"
+#include "tools/experiment/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {
@@ -29,9 +30,11 @@ void choose_jobs(const LoadedStudy& study, StudyOptions& options) {
               << "'; with {run} in its path each has its own\n";
 }
 
-int study(const std::string& path, StudyOptions options) {
-  const LoadedStudy loaded = load_study(path);
-  if (options.output.empty()) options.output = "results/" + loaded.config.name;
+int study(const std::string& path, const StudyChanges& changes, StudyOptions options) {
+  const LoadedStudy loaded = load_study(file_by_name({ShippedKind::study}, path), changes);
+  // A first look does not overwrite the runs of the whole study.
+  const std::string look = changes.duration_s ? fmt::format("_{:g}s", *changes.duration_s) : "";
+  if (options.output.empty()) options.output = "results/" + loaded.config.name + look;
   choose_jobs(loaded, options);
   catch_signals(true);
   try {
@@ -59,26 +62,39 @@ int study(const std::string& path, StudyOptions options) {
 void add_study_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("study", "Run a world with many seeds and settings, and compare");
   struct Arguments {
-    std::string path;
+    std::string path, seeds;
+    StudyChanges changes;
     StudyOptions options;
   };
   const auto arguments = std::make_shared<Arguments>();
   arguments->options.jobs = 0;
   command->add_option("STUDY", arguments->path, "study file, see docs/scores.md")->required();
+  command->add_option("--seeds", arguments->seeds, "instead of those of the study: 7, 1-10 or 1-3,8")
+      ->type_name("SEEDS");
+  command->add_option("--duration", arguments->changes.duration_s, "simulated seconds of each run, for a first look")
+      ->type_name("SECONDS")
+      ->check(number_from(1e-6, 1e9));
   command->add_option("--jobs", arguments->options.jobs, "runs at the same time; 0: one for every two processors")
       ->check(CLI::Range(0, 64));
-  command->add_option("--output", arguments->options.output, "folder; unset: results/NAME-OF-STUDY");
+  command->add_option("--output", arguments->options.output,
+                      "folder; unset: results/NAME-OF-STUDY, with --duration 10 results/NAME-OF-STUDY_10s");
   command->add_flag("--fresh", arguments->options.fresh, "do runs again that are done already");
   command->add_flag("--quiet", arguments->options.quiet, "no progress");
   add_plugin_option(*command);
   command->footer(
       "Examples:\n  shoal study worlds/studies/coop_land.yaml --jobs 2\n"
+      "  shoal study worlds/studies/coop_underwater.yaml --seeds 1-2 --duration 60\n"
       "  shoal report results/coop_land\n"
       "The exit code is 1 when a rule of the study fails, and 4 when a run has no result.  After Ctrl-C the same\n"
       "command goes on with the runs that are missing.");
   command->callback([arguments, &exit_code] {
     spdlog::set_level(spdlog::level::warn);
-    exit_code = study(arguments->path, arguments->options);
+    try {
+      if (!arguments->seeds.empty()) arguments->changes.seeds = parse_seeds(arguments->seeds);
+    } catch (const std::invalid_argument& error) {
+      throw CLI::ValidationError("--seeds", error.what());
+    }
+    exit_code = study(arguments->path, arguments->changes, arguments->options);
   });
 }
 

@@ -118,6 +118,10 @@ class Client {
   /// How much wall time may pass without any message; zero: for ever.  10 minutes unless set: somebody may look at the
   /// world while it is paused.
   void set_silence_limit(std::chrono::milliseconds limit);
+  /// While join() waits for an answer, and next_tick() for the first tick or for sim.clock, longer than `after` of wall
+  /// time, one line on standard error says what is waited for, on which channel and LCM URL.  3 s unless set; zero:
+  /// nothing is said.
+  void set_wait_notice(std::chrono::milliseconds after);
   Counts counts() const;
 
  private:

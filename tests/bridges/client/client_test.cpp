@@ -1,8 +1,9 @@
 #include "shoal/client.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <thread>
 
@@ -109,6 +110,50 @@ TEST(Client, GivesNothingAtOnceWhenAskedAgainAfterTheEnd) {
   EXPECT_FALSE(client.wait_until(1'000'000));
   EXPECT_LT(std::chrono::steady_clock::now() - before, 30s);
   EXPECT_EQ(client.end(), shoal::Client::End::last_tick);
+}
+
+/// What a client that waits longer than its patience says on standard error.
+std::string said_by(const std::function<void(shoal::Client&)>& work) {
+  shoal::Client client("pilot", own_url(1));
+  client.set_wait_notice(1ms);
+  client.set_silence_limit(200ms);
+  testing::internal::CaptureStderr();
+  work(client);
+  return testing::internal::GetCapturedStderr();
+}
+
+TEST(Client, SaysWhatItWaitsForWhenThatTakesLong) {
+  using testing::StartsWith;
+  const std::string at = ", at " + own_url(1);
+  EXPECT_THAT(said_by([](shoal::Client& client) { EXPECT_THROW(client.join(0.1, 300ms), shoal::ClientError); }),
+              StartsWith("'pilot' waits for a simulator to answer its join on 'sim.control.reply'" + at));
+  EXPECT_THAT(said_by([](shoal::Client& client) {
+                client.follow(0.1);
+                EXPECT_FALSE(client.next_tick());
+              }),
+              StartsWith("'pilot' waits for the time on 'sim.clock', which a simulator publishes while its run goes "
+                         "on" +
+                         at));
+  EXPECT_EQ(said_by([](shoal::Client& client) {
+              client.set_wait_notice(0ms);
+              client.follow(0.1);
+              EXPECT_FALSE(client.next_tick());
+            }),
+            "");
+}
+
+TEST(Client, SaysThatItWaitsForItsFirstTick) {
+  FakeSimulator simulator;
+  std::thread thread([&] { simulator.reply(simulator.await_request(), true, ""); });
+  const std::string said = said_by([](shoal::Client& client) {
+    client.set_wait_notice(10s);
+    client.join(0.1, 10s);
+    client.set_wait_notice(1ms);
+    EXPECT_FALSE(client.next_tick());
+    EXPECT_EQ(client.end(), shoal::Client::End::silence);
+  });
+  thread.join();
+  EXPECT_NE(said.find("'pilot' waits for its first tick on 'sim.tick'"), std::string::npos) << said;
 }
 
 TEST(Client, WaitsForATime) {

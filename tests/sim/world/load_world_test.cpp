@@ -47,6 +47,37 @@ TEST(LoadWorld, SetReachesIntoAVehiclesFile) {
               HasSubstr("--set vehicles.r1.devices.lidar.rate=7: vehicle 'r1': device 'lidar': unknown key 'rate'"));
 }
 
+TEST(LoadWorld, SetReachesOneVehicleOfACount) {
+  const std::string path = "vehicles.r112.devices.lidar.rate_hz=7";
+  const auto loaded = sim::load_world_text(lidar_world("    count: 12\n"), "test.yaml", {{path}, {}});
+  const auto rate_hz = [](const sim::LoadedWorld& world, std::size_t index) {
+    return world.config.vehicles[index].config->devices[0].rate_hz;
+  };
+  ASSERT_EQ(loaded.config.vehicles.size(), 12u);
+  EXPECT_EQ(rate_hz(loaded, 11), 7);
+  EXPECT_NE(rate_hz(loaded, 10), 7);
+  EXPECT_NE(rate_hz(loaded, 0), 7);
+  EXPECT_EQ(loaded.config.vehicles[0].config, loaded.config.vehicles[10].config) << "the others still share one";
+  const auto again = sim::load_world_text(sim::to_yaml(loaded.resolved), "again.yaml");
+  EXPECT_EQ(rate_hz(again, 11), 7);
+  EXPECT_NE(rate_hz(again, 10), 7);
+}
+
+TEST(LoadWorld, WhatASingleVehicleOfACountCannotHaveIsSaid) {
+  const std::string three = lidar_world("    count: 3\n");
+  EXPECT_THAT(errors_of(three, {{"vehicles.r14.devices.lidar.rate_hz=7"}, {}}),
+              HasSubstr("'vehicles' has no item 'r14'"));
+  EXPECT_EQ(
+      errors_of(three, {{"vehicles.r12.position_m=[1, 2, 3]"}, {}}),
+      "--set vehicles.r12.position_m=[1, 2, 3]: vehicle 'r12': 'position_m' belongs to all vehicles of the 'count' "
+      "of 'r1'; for one of them only keys of the vehicle file can be set");
+  EXPECT_THAT(
+      errors_of(lidar_world("    count: 3\n    overrides: {r15/devices.lidar.rate_hz: 5}\n")),
+      HasSubstr("vehicle 'r1': 'overrides' names no vehicle 'r15': the vehicles of this 'count' are r11 to r13"));
+  EXPECT_THAT(errors_of(lidar_world("    overrides: {r11/devices.lidar.rate_hz: 5}\n")),
+              HasSubstr("'overrides' names no vehicle 'r11': a '/' is for the vehicles of a 'count'"));
+}
+
 TEST(LoadWorld, TheResolvedWorldKeepsTheSeedOfTheCommandLine) {
   const auto loaded = sim::load_world_text(lidar_world(""), "test.yaml", {{}, 42});
   EXPECT_EQ(sim::load_world_text(sim::to_yaml(loaded.resolved), "again.yaml").config.run.seed, 42);

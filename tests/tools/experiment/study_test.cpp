@@ -122,6 +122,48 @@ TEST(Curves, BandsLieWhereHalfOfTheRunsAre) {
   EXPECT_TRUE(tools::bands_of({}).empty());
 }
 
+TEST(StudyConfig, ReadsRangesOfSeeds) {
+  const auto seeds = [](const std::string& text) {
+    return tools::load_study(StudyFolder("", text).path()).config.seeds;
+  };
+  EXPECT_THAT(seeds("3-6"), ElementsAre(3, 4, 5, 6));
+  EXPECT_THAT(seeds("7 - 7"), ElementsAre(7));
+  EXPECT_THAT(seeds("[1-3, 8]"), ElementsAre(1, 2, 3, 8));
+  const auto error = [](const std::string& text) { return StudyFolder("", text).error(); };
+  EXPECT_THAT(error("10-1"), HasSubstr("study.yaml:4:8: 'seeds' must be ranges from the lower to the higher seed, got "
+                                       "'10-1'"));
+  EXPECT_THAT(error("[1-3, 2]"), HasSubstr("'seeds' must differ from each other"));
+  EXPECT_THAT(error("[1-3, x]"), HasSubstr("'seeds' must be whole numbers from 0 to 2^53 or ranges such as 1-10, got "
+                                           "'x'"));
+  EXPECT_THAT(error("1-200000"), HasSubstr("'seeds' must be at most 100000"));
+}
+
+TEST(StudyConfig, TakesSeedsAndDurationOfTheCommandLineInstead) {
+  EXPECT_THAT(tools::parse_seeds("1-3,8"), ElementsAre(1, 2, 3, 8));
+  EXPECT_THROW(tools::parse_seeds("1,"), std::invalid_argument);
+  EXPECT_THROW(tools::parse_seeds("1,1"), std::invalid_argument);
+  EXPECT_THROW(tools::parse_seeds("-1"), std::invalid_argument);
+  const tools::LoadedStudy study = tools::load_study(StudyFolder("").path(), {{5}, 0.5});
+  EXPECT_THAT(study.config.seeds, ElementsAre(5));
+  EXPECT_EQ(study.config.duration_s, 0.5);
+}
+
+TEST(StudyResults, SayWhenCasesDoNotDifferThoughTheirSettingsDo) {
+  const StudyFolder folder(two_cases);
+  const tools::LoadedStudy study = tools::load_study(folder.path());
+  auto runs = made_up_runs(study, {{1, 2}, {1, 2}});
+  const std::string note =
+      "cases 'plain', 'quick' do not differ: every run came out the same, though their settings differ: check that "
+      "what they set has an effect";
+  EXPECT_THAT(tools::StudyResults(study, runs).to_text(), HasSubstr("note: " + note + "\n"));
+  const auto json = nlohmann::json::parse(tools::StudyResults(study, runs).to_json(0));
+  EXPECT_EQ(json["notes"], nlohmann::json::array({note}));
+  runs[3].record->state_hash = "another";
+  EXPECT_THAT(tools::StudyResults(study, runs).to_text(), HasSubstr("every figure is the same for every seed"));
+  runs[3].record->metrics["e.rms_m"] = 2.5;
+  EXPECT_THAT(tools::StudyResults(study, runs).to_text(), testing::Not(HasSubstr("do not differ")));
+}
+
 TEST(StudyConfig, ReadsSeedsAsAListOrARange) {
   EXPECT_THAT(tools::load_study(StudyFolder("").path()).config.seeds, ElementsAre(1, 2));
   EXPECT_THAT(tools::load_study(StudyFolder("", "{first: 5, count: 3}").path()).config.seeds, ElementsAre(5, 6, 7));

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+namespace sim {
+
+/// The folder with the `worlds/` and `vehicles/` that came with this program: `share/shoal` of its installation, or the
+/// checkout that its build folder belongs to.  Empty: there is none.
+std::string shipped_folder();
+
+/// The same for a program in `program_folder`, such as `/usr/local/bin` or `checkout/build/release/bin`.
+std::string shipped_folder_of(const std::string& program_folder);
+
+}  // namespace sim

@@ -1,0 +1,132 @@
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "tests/system/shoal_program.hpp"
+
+// What somebody meets who has just installed or built the program: names instead of paths, a start for files of one's
+// own, and clients that say what they wait for.
+
+namespace {
+
+namespace fs = std::filesystem;
+
+using namespace system_test;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Runs `shoal` in another folder.
+Ended shoal_in(const std::string& folder, const std::string& arguments, const std::string& shoal = built("shoal")) {
+  Program program({"sh", "-c", "cd '" + folder + "' && exec '" + shoal + "' " + arguments});
+  const int exit_code = program.wait();
+  return {exit_code, program.output(), program.errors()};
+}
+
+TEST(ShippedFiles, AWorldIsRunByItsNameFromAnyFolder) {
+  const ScratchFolder folder;
+  const Ended by_name = shoal_in(folder.file(""), "run minimal --bus none --duration 1 --speed max");
+  EXPECT_EQ(by_name.exit_code, 0) << by_name.errors;
+  const Ended by_path =
+      run_shoal({"run", source("worlds/minimal.yaml"), "--bus", "none", "--duration", "1", "--speed", "max"});
+  EXPECT_EQ(state_hash_in(by_name), state_hash_in(by_path));
+  EXPECT_EQ(shoal_in(folder.file(""), "check minimal").exit_code, 0);
+  EXPECT_EQ(shoal_in(folder.file(""), "check rover").exit_code, 0);
+  EXPECT_EQ(shoal_in(folder.file(""), "medium otter_sea").exit_code, 0);
+}
+
+TEST(ShippedFiles, AFileOfOnesOwnComesBeforeAShippedOne) {
+  const ScratchFolder folder;
+  write_file(folder.file("minimal.yaml"), "shoal: 1\nname: mine\n");
+  EXPECT_THAT(shoal_in(folder.file(""), "check minimal").output, HasSubstr("world 'mine'"));
+}
+
+TEST(ShippedFiles, ANameThatMeansNothingSaysWhichOneIsMeant) {
+  const ScratchFolder folder;
+  const Ended ended = shoal_in(folder.file(""), "run minmal --bus none");
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_EQ(ended.errors,
+            "'minmal': there is no such file here, nor 'minmal.yaml', nor a shipped world of this name; did you mean "
+            "'minimal'?\n");
+  EXPECT_THAT(shoal_in(folder.file(""), "study zzzzzz").errors, HasSubstr("see `shoal list studies`"));
+}
+
+TEST(ShippedFiles, ListSaysWhatEachIs) {
+  const Ended ended = run_shoal({"list"});
+  EXPECT_EQ(ended.exit_code, 0);
+  for (const char* folder : {"worlds", "vehicles", "worlds/studies"})
+    for (const fs::directory_entry& entry : fs::directory_iterator(source(folder))) {
+      if (entry.path().extension() != ".yaml") continue;
+      const std::string name = entry.path().stem().string();
+      EXPECT_THAT("\n" + ended.output, ContainsRegex("\n" + name + " +[A-Z0-9]")) << "a name and its description";
+    }
+  EXPECT_THAT(run_shoal({"list", "worlds"}).output, Not(HasSubstr("rover_small")));
+}
+
+TEST(ShippedFiles, AProgramInstalledElsewhereFindsThoseBesideIt) {
+  const ScratchFolder folder;
+  fs::create_directories(folder.file("prefix/bin"));
+  fs::create_directories(folder.file("prefix/share/shoal/vehicles"));
+  fs::create_directories(folder.file("prefix/share/shoal/worlds"));
+  fs::copy_file(built("shoal"), folder.file("prefix/bin/shoal"));
+  write_file(folder.file("prefix/share/shoal/worlds/pond.yaml"), "shoal: 1\ndescription: A pond.\n");
+  const Ended ended = shoal_in("/", "list worlds", folder.file("prefix/bin/shoal"));
+  EXPECT_EQ(ended.output, "pond                A pond.\n") << ended.errors;
+  fs::remove_all(folder.file("prefix/share"));
+  const Ended none = shoal_in("/", "list", folder.file("prefix/bin/shoal"));
+  EXPECT_EQ(none.exit_code, 4);
+  EXPECT_THAT(none.errors, HasSubstr("finds no shipped worlds"));
+}
+
+TEST(New, WritesWorldsAndVehiclesThatCheckAcceptsAndThatRun) {
+  const ScratchFolder folder;
+  const std::string here = folder.file("");
+  for (const char* command :
+       {"new world yard", "new world bay --under-water", "new vehicle digger", "new world pit --vehicle digger.yaml"}) {
+    const Ended ended = shoal_in(here, command);
+    EXPECT_EQ(ended.exit_code, 0) << command << ": " << ended.errors;
+  }
+  const Ended checked = shoal_in(here, "check digger.yaml");
+  EXPECT_EQ(checked.exit_code, 0) << checked.errors;
+  for (const std::string name : {"yard", "bay", "pit"}) {
+    const Ended check = shoal_in(here, "check " + name + ".yaml");
+    EXPECT_EQ(check.exit_code, 0) << name << check.errors;
+    EXPECT_EQ(check.errors, "") << name;
+    const Ended run = shoal_in(here, "run " + name + " --bus none --speed max --duration 8 --results out_" + name);
+    EXPECT_EQ(run.exit_code, 0) << name << run.errors;
+    EXPECT_THAT(summary_value(folder.file("out_" + name), "metrics"), HasSubstr("{"));
+    const std::string text = text_of_file(folder.file(name + ".yaml"));
+    EXPECT_THAT(text, HasSubstr("$schema=")) << name;
+    EXPECT_THAT(text, Not(HasSubstr("NAME"))) << name;
+  }
+  // The first command moves the rover: 5 s at 0.5 m/s.
+  EXPECT_THAT(text_of_file(folder.file("out_yard/metrics.csv")), ContainsRegex("way.travelled_m,2\\.[2-6]"));
+  EXPECT_THAT(text_of_file(folder.file("out_pit/metrics.csv")), ContainsRegex("way.travelled_m,2\\.[2-6]"));
+}
+
+TEST(New, TouchesNoFileThatIsThere) {
+  const ScratchFolder folder;
+  write_file(folder.file("yard.yaml"), "mine\n");
+  const Ended ended = shoal_in(folder.file(""), "new vehicle yard");
+  EXPECT_EQ(ended.exit_code, 4);
+  EXPECT_THAT(ended.errors, HasSubstr("yard.yaml: is there already"));
+  EXPECT_EQ(text_of_file(folder.file("yard.yaml")), "mine\n");
+  EXPECT_EQ(shoal_in(folder.file(""), "new world 'a b'").exit_code, 2);
+  EXPECT_EQ(shoal_in(folder.file(""), "new").exit_code, 2);
+}
+
+TEST(Waiting, ProgramsAndCommandsSayAfterThreeSecondsForWhat) {
+  const std::string url = own_url();
+  Program rover(
+      {built("shoal-coop-rover"), "--name", "rover1", "--waypoints", "1,1", "--lcm-url", url, "--join-timeout", "5"});
+  Program spy({built("shoal"), "spy", "rover1.odometry", "--lcm-url", url, "--duration", "5"});
+  Program control({built("shoal"), "control", "where", "--lcm-url", url, "--timeout", "5"});
+  rover.wait();
+  spy.wait();
+  control.wait();
+  EXPECT_THAT(rover.errors(), HasSubstr("waits for a simulator to answer its join on 'sim.control.reply', at " + url));
+  EXPECT_THAT(spy.errors(), HasSubstr("waiting for messages on 'rover1.odometry', at " + url));
+  EXPECT_THAT(control.errors(), HasSubstr("waiting for a simulator to answer on 'sim.control.reply', at " + url));
+}
+
+}  // namespace

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace tools {
+
+/// Adds `shoal new`, which writes files to begin with.  When chosen, it sets `exit_code`.
+void add_new_command(CLI::App& app, int& exit_code);
+
+}  // namespace tools

@@ -1,0 +1,196 @@
+#include "tools/shoal/start_files.hpp"
+
+namespace tools {
+
+namespace {
+
+constexpr const char* world_text = R"(# NAME: a world to begin with.
+#   shoal check NAME.yaml                 every mistake, with line and column
+#   shoal run NAME.yaml                   runs it; in a second terminal: shoal spy
+#   shoal snap NAME.yaml --out NAME.png   an image of it
+# Every key, with its default: shoal describe world.  Lengths in m, angles in degrees; x east, y north, z up.
+shoal: 1
+name: NAME
+description: One vehicle on flat ground with a wall and a box.
+run:
+  duration_s: 60  # simulated time; 0: until `shoal control quit`
+  speed: 1        # times real time; 0: as fast as possible
+  seed: 1         # of all noise: the same seed gives the same run
+# physics: {step_s: 0.005}
+
+objects:
+  - {name: ground, fixed: true, parts: [{shape: plane}]}
+  - name: wall
+    fixed: true
+    position_m: [5, 0, 0.5]
+    parts: [{shape: box, size_m: [0.2, 6, 1], color: "#a0a0a0"}]
+  # Without `fixed: true` it has a mass and can be pushed.
+  - name: box
+    position_m: [3, 2, 0.2]
+    parts: [{shape: box, size_m: [0.4, 0.4, 0.4], mass_kg: 5, color: "#c08040"}]
+
+vehicles:
+  # Files are looked for beside this one, in ../vehicles and among the shipped ones (shoal list vehicles).
+  - name: rover1
+    file: VEHICLE
+    position_m: [0, 0, 0]
+    rpy_deg: [0, 0, 0]  # roll, pitch, yaw; yaw 0 looks east, 90 north
+    # One value of the vehicle's file, here or by --set vehicles.rover1.devices.lidar.rate_hz=5:
+    # overrides: {devices.lidar.rate_hz: 5}
+
+# A first command without a program of your own: it drives off at 2 s, for 5 s.
+events:
+  - {name: go, at: 2, do: [{publish: rover1.drive.cmd, type: shoal.twist_command_t, value: {forward_mps: 0.5}}]}
+  - {name: halt, at: 7, do: [{publish: rover1.drive.cmd, type: shoal.twist_command_t, value: {forward_mps: 0}}]}
+
+# What is measured, and what is good enough (docs/scores.md).
+metrics:
+  - {name: way, type: distance, vehicle: rover1}
+  - {name: bumps, type: collisions, vehicle: rover1}
+# pass:
+#   - {metric: way.travelled_m, above: 2}
+
+# Programs that --launch starts; one with a `client` name takes part in lockstep (docs/howto_attach_autonomy.md).
+# processes:
+#   - {name: pilot, command: [./pilot], client: pilot}
+)";
+
+constexpr const char* sea_text = R"(# NAME: a world under water to begin with.
+#   shoal check NAME.yaml                 every mistake, with line and column
+#   shoal run NAME.yaml                   runs it; in a second terminal: shoal spy
+#   shoal medium NAME.yaml --profile      the water that it has
+# Every key, with its default: shoal describe world.  Lengths in m, angles in degrees; x east, y north, z up.
+shoal: 1
+name: NAME
+description: One AUV over a flat bottom in a current.
+run:
+  duration_s: 300  # simulated time; 0: until `shoal control quit`
+  speed: 10        # times real time; 0: as fast as possible
+  seed: 1          # of all noise: the same seed gives the same run
+physics: {step_s: 0.01}
+
+# Water, current, waves and wind (docs/medium.md).
+medium:
+  water:
+    profile:
+      - {depth_m: 0, temperature_C: 16, salinity_psu: 34}
+      - {depth_m: 30, temperature_C: 10, salinity_psu: 35}
+  current: [{type: constant, velocity_mps: [0, 0.2, 0]}]
+
+objects:
+  - {name: bottom, fixed: true, position_m: [0, 0, -30], parts: [{shape: plane}]}
+
+vehicles:
+  # Files are looked for beside this one, in ../vehicles and among the shipped ones (shoal list vehicles).
+  - name: auv1
+    file: VEHICLE
+    position_m: [0, 0, -5]
+    rpy_deg: [0, 0, 0]  # roll, pitch, yaw; yaw 0 looks east, 90 north
+    # Keys of the vehicle's file; what the autopilot can do is in docs/autopilots.md.
+    overrides:
+      devices.autopilot.waypoints:
+        - {at_m: [100, 0], depth_m: 10, speed_mps: 1.5}
+        - {at_m: [100, 60], depth_m: 10}
+      devices.autopilot.at_end: circle
+
+# What is measured, and what is good enough (docs/scores.md).
+metrics:
+  - {name: way, type: distance, vehicle: auv1}
+# pass:
+#   - {metric: way.travelled_m, above: 100}
+
+# Programs that --launch starts; one with a `client` name takes part in lockstep (docs/howto_attach_autonomy.md).
+# processes:
+#   - {name: pilot, command: [./pilot], client: pilot}
+)";
+
+constexpr const char* vehicle_text = R"(# NAME: a vehicle to begin with, a rover of two driven wheels with a lidar.
+#   shoal check NAME.yaml                              every mistake, with line and column
+#   shoal new world yard --vehicle NAME.yaml           a world with it
+# Every key, with its default: shoal describe vehicle, shoal list devices, shoal describe lidar.
+# The vehicle frame lies on the ground between the wheels: x forward, y left, z up.
+shoal: 1
+vehicle: NAME
+description: Rover with two driven wheels and a lidar.
+
+# `slick` is for the casters: they slide and need no wheels of their own.
+materials:
+  - {name: slick}
+contacts:
+  - {between: [slick, any], friction: 0}
+
+# Bodies are made of parts; mass and inertia follow from the parts.
+bodies:
+  - name: base
+    parts:
+      # 1 cm to the rear, so that it leans on the rear caster.
+      - {name: chassis, shape: box, size_m: [0.5, 0.4, 0.12], position_m: [-0.01, 0, 0.14], mass_kg: 17,
+         color: "#3070c0"}
+      # Half a millimetre above the ground, so that the wheels carry the weight.
+      - {name: front_caster, shape: sphere, radius_m: 0.04, position_m: [0.2, 0, 0.0405], material: slick}
+      - {name: rear_caster, shape: sphere, radius_m: 0.04, position_m: [-0.2, 0, 0.0405], material: slick}
+  # Spheres as wheels have one contact with the ground, at the exact place.
+  - name: left_wheel
+    position_m: [0, 0.2, 0.1]
+    parts: [{shape: sphere, radius_m: 0.1, mass_kg: 1.5, color: "#303030"}]
+  - name: right_wheel
+    position_m: [0, -0.2, 0.1]
+    parts: [{shape: sphere, radius_m: 0.1, mass_kg: 1.5, color: "#303030"}]
+
+# The axis points left: a wheel that turns positively about it rolls forward.
+joints:
+  - {name: left, type: hinge, bodies: [base, left_wheel], anchor_m: [0, 0.2, 0.1], axis: [0, 1, 0]}
+  - {name: right, type: hinge, bodies: [base, right_wheel], anchor_m: [0, -0.2, 0.1], axis: [0, 1, 0]}
+
+# Devices report on VEHICLE.DEVICE and take commands on VEHICLE.DEVICE.cmd.
+devices:
+  # Takes shoal.twist_command_t.
+  - name: drive
+    type: differential_drive
+    left_joint: left
+    right_joint: right
+    wheel_radius_m: 0.1
+    track_m: 0.4  # between the wheels
+    max_speed_mps: 1.2
+    watchdog_s: 10  # without a command for so long it stops
+  # `noise` is the error of each range; without the key the sensor is ideal.
+  - name: lidar
+    type: lidar
+    position_m: [0, 0, 0.3]
+    rate_hz: 10
+    beams: 180
+    fov_deg: 180
+    range_max_m: 20
+    noise: {gaussian_std: 0.01}
+  - {name: odometry, type: odometry, left_joint: left, right_joint: right, wheel_radius_m: 0.1, track_m: 0.4,
+     rate_hz: 20}
+  # - {name: gps, type: gps, position_m: [0, 0, 0.3], rate_hz: 1}
+)";
+
+std::string filled(std::string text, const std::string& word, const std::string& with) {
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + with.size()))
+    text.replace(at, word.size(), with);
+  return text;
+}
+
+/// An editor with a YAML language server knows every key by this line.
+std::string schema_line(const std::string& schema) {
+  return schema.empty() ? "" : "# yaml-language-server: $schema=" + schema + "\n";
+}
+
+}  // namespace
+
+std::string start_world(const std::string& name, const std::string& vehicle_file, const std::string& schema) {
+  return schema_line(schema) + filled(filled(world_text, "VEHICLE", vehicle_file), "NAME", name);
+}
+
+std::string start_sea(const std::string& name, const std::string& vehicle_file, const std::string& schema) {
+  return schema_line(schema) + filled(filled(sea_text, "VEHICLE", vehicle_file), "NAME", name);
+}
+
+std::string start_vehicle(const std::string& name, const std::string& schema) {
+  // The comment about channels says VEHICLE.DEVICE, which stays.
+  return schema_line(schema) + filled(vehicle_text, "NAME", name);
+}
+
+}  // namespace tools
