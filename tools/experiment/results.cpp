@@ -151,7 +151,9 @@ std::string Summary::to_text() const {
   if (modem_dropped_messages > 0)
     text += fmt::format("  {} messages were dropped from full queues of modems\n", modem_dropped_messages);
   if (serial_dropped_bytes > 0) text += fmt::format("  {} bytes were fetched from no port\n", serial_dropped_bytes);
-  for (const auto& [name, value] : metrics) text += fmt::format("  {:<28} {:.4g}\n", name, value);
+  std::size_t width = 28;
+  for (const auto& [name, value] : metrics) width = std::max(width, name.size());
+  for (const auto& [name, value] : metrics) text += fmt::format("  {:<{}} {:.4g}\n", name, width, value);
   for (const Scoring::Verdict& verdict : verdicts)
     text += fmt::format("  {}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.rule);
   for (const Process& process : processes)
