@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "sim/config/message_text.hpp"
 
@@ -39,11 +40,13 @@ CLI::Validator make_check(const std::string& description, const std::function<bo
 
 std::string bound_text(double bound) {
   if (std::abs(bound) < 1e6 && std::abs(bound) >= 1e-4) return fmt::format("{:g}", bound);
+  // The exponent without its plus sign and zeros: 1e9, not 1e+09.
   std::string text = fmt::format("{:g}", bound);
-  if (const std::size_t at = text.find("e+"); at != std::string::npos) text.erase(at + 1, 1);
-  const std::size_t digits =
-      text.find('e') == std::string::npos ? std::string::npos : text.find_first_of("123456789", text.find('e'));
-  if (digits != std::string::npos && text[digits - 1] == '0') text.erase(digits - 1, 1);
+  const std::size_t exponent = text.find('e');
+  if (exponent == std::string::npos) return text;
+  const std::size_t sign = exponent + 1, digits = text.find_first_not_of('0', sign + 1);
+  text.erase(sign + 1, std::min(digits, text.size() - 1) - (sign + 1));
+  if (text[sign] == '+') text.erase(sign, 1);
   return text;
 }
 
