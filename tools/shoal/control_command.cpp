@@ -1,6 +1,8 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -11,6 +13,7 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_control_reply_t.hpp"
 #include "shoal/sim_control_request_t.hpp"
+#include "sim/config/message_text.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/shoal/commands.hpp"
 
@@ -43,7 +46,10 @@ std::string text_of(const std::string& argument) {
     text << std::cin.rdbuf();
   } else {
     std::ifstream file(argument.substr(1));
-    if (!file) throw CLI::ValidationError("TEXT", "cannot read '" + argument.substr(1) + "'");
+    const bool folder = std::filesystem::is_directory(argument.substr(1));
+    if (!file || folder)
+      throw CLI::ValidationError("TEXT",
+                                 "cannot read '" + argument.substr(1) + "'" + (folder ? ": it is a folder" : ""));
     text << file.rdbuf();
   }
   return text.str();
@@ -87,6 +93,11 @@ class Session {
 };
 
 int control(const ControlArguments& arguments) {
+  const bool known = std::find(known_requests.begin(), known_requests.end(), arguments.command) != known_requests.end();
+  // Whatever else it is, the simulator decides.
+  if (const std::string meant = sim::closest_name(arguments.command, known_requests); !known && !meant.empty())
+    throw command_line::UsageError("unknown request '" + sim::shortened(sim::printable(arguments.command)) +
+                                   "'; did you mean '" + meant + "'?");
   const std::string text = text_of(arguments.text);
   catch_signals(false);
   Session session(arguments);
