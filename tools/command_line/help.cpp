@@ -70,11 +70,51 @@ std::string section(const std::string& title, const Rows& rows, std::size_t colu
   return rows.empty() ? "" : "\n" + title + ":\n" + two_columns(rows, columns);
 }
 
+/// A command in pieces that stay on one line: words, quoted texts, options with their values, the remark.
+std::vector<std::string> pieces_of(const std::string& example) {
+  std::vector<std::string> pieces;
+  std::string piece;
+  char quote = 0;
+  const auto finish = [&] {
+    const bool is_value =
+        !pieces.empty() && pieces.back().starts_with("--") && pieces.back().find(' ') == std::string::npos;
+    if (!piece.empty() && is_value && !piece.starts_with("-"))
+      pieces.back() += ' ' + piece;
+    else if (!piece.empty())
+      pieces.push_back(piece);
+    piece.clear();
+  };
+  for (std::size_t i = 0; i < example.size(); ++i) {
+    const char c = example[i];
+    if (quote == 0 && c == '#') {
+      finish();
+      pieces.push_back(' ' + example.substr(i));
+      return pieces;
+    }
+    if (c == '\'' || c == '"') quote = quote == 0 ? c : quote == c ? '\0' : quote;
+    if (c == ' ' && quote == 0)
+      finish();
+    else
+      piece += c;
+  }
+  finish();
+  return pieces;
+}
+
 /// A command that can be typed: where it is too long it goes on after a backslash.
 std::string example_text(const std::string& example, std::size_t columns) {
-  std::string text = wrapped("  " + example, columns - 2, 6, 2);
-  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 3) text.insert(at, " \\");
-  return "  " + text + "\n";
+  std::string text;
+  std::size_t used = 1;
+  for (const std::string& piece : pieces_of(example)) {
+    const std::size_t width = column_count(piece);
+    if (!text.empty() && used + 1 + width > columns - 2) {
+      text += " \\\n     ";
+      used = 5;
+    }
+    text += (text.empty() ? "  " : " ") + piece;
+    used += 1 + width;
+  }
+  return text + "\n";
 }
 
 /// The footer: paragraphs are filled, lines that begin with two spaces are examples or, with a number, exit codes.
@@ -119,7 +159,8 @@ std::string help_text(const CLI::App& command, std::size_t columns) {
     if (option->get_positional())
       arguments.emplace_back(option->get_name(true), meaning_of(*option));
     else
-      options.emplace_back(names_of(*option), meaning_of(*option));
+      options.emplace(option == command.get_help_ptr() ? options.begin() : options.end(), names_of(*option),
+                      meaning_of(*option));
   for (const CLI::App* each : commands_of(command)) commands.emplace_back(each->get_name(), each->get_description());
   text += section("Commands", commands, columns) + section("Arguments", arguments, columns) +
           section("Options", options, columns);

@@ -17,10 +17,11 @@ struct Subject {
   int group = -1;
   Eigen::AlignedBox3d box;
   std::vector<sim::Vector3d> points_W;  ///< middles of its parts
+  bool is_vehicle = true;
 };
 
 Subject subject_of(const sim::PhysicsWorld& physics, const std::string& name, int group) {
-  Subject subject{name, group, {}, {}};
+  Subject subject{name, group, {}, {}, true};
   for (std::size_t i = 0; i < physics.parts().size(); ++i) {
     if (physics.parts()[i].group != group) continue;
     const auto box = physics.bounds_W(static_cast<int>(i));
@@ -31,18 +32,21 @@ Subject subject_of(const sim::PhysicsWorld& physics, const std::string& name, in
   return subject;
 }
 
-std::vector<Subject> subjects_of(const sim::World& world) {
+std::vector<Subject> subjects_of(const sim::World& world, bool everything) {
   std::vector<Subject> subjects;
   for (const auto& vehicle : world.vehicles())
     subjects.push_back(subject_of(world.physics(), vehicle->name(), vehicle->group()));
-  if (subjects.empty())
+  if (subjects.empty() || everything)
     for (const auto& [name, object] : world.objects())
-      if (object.body != nullptr) subjects.push_back(subject_of(world.physics(), name, object.body->group()));
+      if (object.body != nullptr) {
+        subjects.push_back(subject_of(world.physics(), name, object.body->group()));
+        subjects.back().is_vehicle = false;
+      }
   std::erase_if(subjects, [](const Subject& each) { return each.box.isEmpty(); });
   return subjects;
 }
 
-/// The subjects, and around them as much again as the largest of them measures.
+/// The subjects, and around them half as much again as the largest of them measures.
 Eigen::AlignedBox3d framed(const std::vector<Subject>& subjects) {
   Eigen::AlignedBox3d all;
   double largest_m = 0;
@@ -51,7 +55,7 @@ Eigen::AlignedBox3d framed(const std::vector<Subject>& subjects) {
     largest_m = std::max(largest_m, subject.box.diagonal().norm());
   }
   if (all.isEmpty()) return {sim::Vector3d(-1, -1, 0), sim::Vector3d(1, 1, 1)};
-  const double around_m = std::max(0.2, 0.5 * largest_m);
+  const double around_m = std::max(0.2, 0.25 * largest_m);
   const sim::Vector3d margin(around_m, around_m, 0);
   return {all.min() - margin, all.max() + margin};
 }
@@ -98,9 +102,11 @@ sim::Pose look_at(const sim::Vector3d& eye_W, const sim::Vector3d& look_W) {
   return X_WS;
 }
 
-Overview overview_of(const sim::World& world, const sim::OpticsConfig& optics) {
-  const std::vector<Subject> subjects = subjects_of(world);
+Overview overview_of(const sim::World& world, const sim::OpticsConfig& optics, bool everything) {
+  std::vector<Subject> subjects = subjects_of(world, everything);
   const Eigen::AlignedBox3d box = framed(subjects);
+  // Of objects it is enough that they are framed.
+  std::erase_if(subjects, [](const Subject& each) { return !each.is_vehicle; });
   // Clockwise from the south-west, and higher when that does not help.
   const double south_west_rad = std::atan2(-0.75, -0.5);
   std::optional<Overview> best;
@@ -119,10 +125,6 @@ Overview overview_of(const sim::World& world, const sim::OpticsConfig& optics) {
   constexpr double tiny_px = 6;
   for (const Subject& subject : subjects)
     if (pixels_of(subject, best->X_WS.translation(), optics) < tiny_px) best->tiny.push_back(subject.name);
-  if (world.vehicles().empty()) {  // of objects only what was asked for counts
-    best->hidden.clear();
-    best->tiny.clear();
-  }
   return *best;
 }
 

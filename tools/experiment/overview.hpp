@@ -24,7 +24,7 @@ sim::Pose look_at(const sim::Vector3d& eye_W, const sim::Vector3d& look_W);
 
 /// All vehicles with all their parts inside the image, and some of what is around them.  From the south-west and above
 /// where they can be seen from there, else from the direction and height from which the most of them can.  In a world
-/// without vehicles: all objects, apart from planes.
-Overview overview_of(const sim::World& world, const sim::OpticsConfig& optics);
+/// without vehicles, and with `everything`: all objects too, apart from planes.
+Overview overview_of(const sim::World& world, const sim::OpticsConfig& optics, bool everything = false);
 
 }  // namespace tools

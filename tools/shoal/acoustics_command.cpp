@@ -326,7 +326,7 @@ void add_options(CLI::App& command, AcousticsArguments& arguments) {
   command.add_option("WORLD", arguments.world, "world file; without it open water with 5 m/s of wind");
   add_link_options(command, arguments);
   add_signal_options(command, arguments);
-  command.add_option("--ranges", arguments.ranges, "a table over range, m, as CSV")->type_name("FROM:TO:STEP");
+  command.add_option("--ranges", arguments.ranges, "a table over range, m, as CSV: from:to:step")->type_name("RANGES");
   command.add_option("--picture", arguments.picture, "PNG file: signal-to-noise ratio and delivery over range")
       ->type_name("FILE");
   add_set_option(command, arguments.load.sets);

@@ -138,20 +138,20 @@ void add_control_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_flag("--stay", arguments->stay, "keep a vehicle spawned with `with_client: true` until Ctrl-C");
   add_lcm_url_option(*command, arguments->lcm_url);
-  command_line::set_help_end(*command,
-                             {{"shoal control pause", "shoal control step --value 10", "shoal control until --value 90",
-                               "shoal control until storm        # an event of the world",
-                               "shoal control rewind --value 30  # paused then; `rewind run --value 30` goes on",
-                               "shoal control snapshot before_dive", "shoal control restore before_dive",
-                               "shoal control spawn '{name: rover7, file: rover.yaml, position_m: [2, 0, 0]}'",
-                               "shoal control spawn @my_robot.yaml", "shoal control remove rover7",
-                               "shoal control do '{fault: rover1/lidar, kind: stuck}'"},
-                              {{0, "obeyed"},
-                               {1, "refused; the reason is on stderr"},
-                               {2, "wrong usage"},
-                               {4, "bus or file trouble"},
-                               {5, "no simulator answered in time"}},
-                              {}});
+  command_line::set_help_end(
+      *command, {{"shoal control pause", "shoal control step --value 10", "shoal control until --value 90",
+                  "shoal control until storm  # an event of the world", "shoal control rewind --value 30  # and wait",
+                  "shoal control rewind run --value 30  # and go on", "shoal control snapshot before_dive",
+                  "shoal control restore before_dive",
+                  "shoal control spawn '{name: rover7, file: rover.yaml, position_m: [2, 0, 0]}'",
+                  "shoal control spawn @my_robot.yaml", "shoal control remove rover7",
+                  "shoal control do '{fault: rover1/lidar, kind: stuck}'"},
+                 {{0, "obeyed"},
+                  {1, "refused; the reason is on stderr"},
+                  {2, "wrong usage"},
+                  {4, "bus or file trouble"},
+                  {5, "no simulator answered in time"}},
+                 {}});
   command->callback([arguments, &exit_code] { exit_code = control(*arguments); });
 }
 

@@ -42,7 +42,9 @@ std::string message_text(const shoal::MessageSchema& schema, std::size_t columns
     const bool beside = begin.size() + 20 <= columns;
     const std::size_t indent = beside ? begin.size() : 6;
     const std::string meaning = command_line::wrapped(member.comment, columns, indent, indent);
-    if (beside)
+    if (meaning.empty() && columns < 1000)  // the page has its blanks
+      text += begin.substr(0, begin.find_last_not_of(' ') + 1) + "\n";
+    else if (beside)
       text += begin + meaning + "\n";
     else
       text += fmt::format("  {} {}\n", member.type_name, name) +

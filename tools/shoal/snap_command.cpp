@@ -31,6 +31,7 @@ struct SnapArguments {
   std::string from, out, size = "1280x720", image, eye, look;
   double fov_deg = 60;
   std::optional<int> antialias;
+  bool all = false;
   int quality = 90;
 };
 
@@ -119,7 +120,7 @@ View free_view(const SnapArguments& arguments, const sim::World& world) {
   view.optics.fov_rad = sim::degrees_to_radians(arguments.fov_deg);
   view.options.light = world.config().light;
   if (arguments.eye.empty()) {
-    view.overview = overview_of(world, view.optics);
+    view.overview = overview_of(world, view.optics, arguments.all);
     view.X_WS = view.overview->X_WS;
     return view;
   }
@@ -233,6 +234,7 @@ void add_view_options(CLI::App& command, SnapArguments& arguments) {
   CLI::Option* eye =
       command.add_option("--eye", arguments.eye, "where the camera stands, m; without it all vehicles are in view")
           ->type_name("X,Y,Z");
+  CLI::Option* all = command.add_flag("--all", arguments.all, "all objects are in view, too, apart from planes");
   CLI::Option* look = command.add_option("--look", arguments.look, "the point that it looks at, m")->type_name("X,Y,Z");
   CLI::Option* fov =
       command.add_option("--fov", arguments.fov_deg, "horizontal angle of view, degrees")->type_name("DEG");
@@ -241,7 +243,8 @@ void add_view_options(CLI::App& command, SnapArguments& arguments) {
   look->needs(eye);
   fov->check(number_from(1, 170))->capture_default_str();
   size->capture_default_str();
-  for (CLI::Option* option : {eye, fov, size}) option->excludes(from);
+  for (CLI::Option* option : {eye, fov, size, all}) option->excludes(from);
+  all->excludes(eye);
   command
       .add_option(
           "--image", arguments.image,
