@@ -27,7 +27,8 @@ struct State {
 int balance(const Options& options) {
   State state{autonomy::Balance(options.balance)};
   autonomy::Balance& balance = state.balance;
-  const std::vector<autonomy::SpeedPoint> speeds = autonomy::parse_speeds(options.speeds);
+  const std::vector<autonomy::SpeedPoint> speeds =
+      autonomy::read_option("--speeds", [&] { return autonomy::parse_speeds(options.speeds); });
   shoal::Client client(options.name, options.participation.lcm_url);
 
   const auto take = [&](const auto& message) { balance.receive(message); };

@@ -81,9 +81,10 @@ void add_filter_options(CLI::App& app, Options& options) {
              "drift of the clock, with 6 states");
 }
 
-Eigen::Vector3d place_on_vehicle(const std::string& text) {
+Eigen::Vector3d place_on_vehicle(const char* option, const std::string& text) {
   if (text.empty()) return Eigen::Vector3d::Zero();
-  return Eigen::Vector3d(autonomy::parse_numbers(text, 3, "x,y,z").data());
+  return Eigen::Vector3d(
+      autonomy::read_option(option, [&] { return autonomy::parse_numbers(text, 3, "x,y,z"); }).data());
 }
 
 void add_options(CLI::App& app, Options& options) {
@@ -129,11 +130,12 @@ int run(int argc, char** argv) {
   auv.filter.range_bias_std_m = auv.sound_speed_mps * 1e-3 * options.clock_std_ms;
   auv.filter.range_drift_std_mps = auv.sound_speed_mps * 1e-6 * options.clock_drift_std_ppm;
   if (!options.start.empty()) {
-    const auto start = autonomy::parse_numbers(options.start, 2, "x,y");
+    const auto start =
+        autonomy::read_option("--start", [&] { return autonomy::parse_numbers(options.start, 2, "x,y"); });
     auv.start_W = autonomy::Vector2d(start[0], start[1]);
   }
-  auv.modem_B = place_on_vehicle(options.modem_at);
-  auv.gps_B = place_on_vehicle(options.gps_at);
+  auv.modem_B = place_on_vehicle("--modem-at", options.modem_at);
+  auv.gps_B = place_on_vehicle("--gps-at", options.gps_at);
   auv.access = options.marine.access();
   return drive(options);
 }

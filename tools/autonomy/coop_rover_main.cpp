@@ -42,8 +42,8 @@ int run(int argc, char** argv) {
       "NAME.drive.cmd, .modem.cmd, .estimate and .odometry_only.  Start it beside `shoal run worlds/coop_land.yaml "
       "--await rover1,rover2,rover3`, or let that start it with --launch.");
   if (const auto exit_code = autonomy::parse(app, argc, argv)) return *exit_code;
-  rover.waypoints_W = autonomy::parse_waypoints(waypoints);
-  rover.start = autonomy::parse_start(start);
+  rover.waypoints_W = autonomy::read_option("--waypoints", [&] { return autonomy::parse_waypoints(waypoints); });
+  rover.start = autonomy::read_option("--start", [&] { return autonomy::parse_start(start); });
   return drive(rover, participation);
 }
 

@@ -53,7 +53,7 @@ int run(int argc, char** argv) {
   station.access = sending.access();
   if (!station.access.slot && station.access.random_mean_s <= 0)
     throw std::invalid_argument("a station that never sends is of no use; give --slot or --random-s");
-  station.orders = autonomy::parse_orders(orders, speed_mps);
+  station.orders = autonomy::read_option("--orders", [&] { return autonomy::parse_orders(orders, speed_mps); });
   return drive(station, participation);
 }
 

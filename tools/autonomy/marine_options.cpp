@@ -19,8 +19,9 @@ void MarineOptions::add_options(CLI::App& app) {
 
 std::unique_ptr<HelmBehaviour> MarineOptions::make(const std::string& name) const {
   if (behaviour.starts_with("follow:" + name + ",")) throw std::invalid_argument("'" + name + "' cannot follow itself");
-  const std::vector<Vector2d> waypoints = route.empty() ? std::vector<Vector2d>() : parse_waypoints(route);
-  return make_behaviour(behaviour, waypoints, speed_mps, loop);
+  const std::vector<Vector2d> waypoints =
+      route.empty() ? std::vector<Vector2d>() : read_option("--route", [&] { return parse_waypoints(route); });
+  return read_option("--behaviour", [&] { return make_behaviour(behaviour, waypoints, speed_mps, loop); });
 }
 
 void AccessOptions::add_options(CLI::App& app, const std::string& what) {
@@ -43,7 +44,7 @@ ChannelAccess::Params AccessOptions::access() const {
   access.seed = seed;
   if (slot.empty()) return access;
   if (random_s > 0) throw std::invalid_argument("--slot and --random-s are two ways of sending; give one");
-  access.slot = parse_slot(slot);
+  access.slot = read_option("--slot", [&] { return parse_slot(slot); });
   access.slot->slot_s = slot_s;
   access.slot->guard_s = guard_s.value_or(default_guard_s(slot_s));
   const Tdma checked(*access.slot);

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,16 @@ CLI::Option* add_id(CLI::App& app, const char* option, int& id, const std::strin
 
 /// Adds the required `--name`.
 CLI::Option* add_name(CLI::App& app, std::string& name, const std::string& meaning);
+
+/// Reads the text of an option: an std::invalid_argument names the option, too.
+template <class Read>
+auto read_option(const char* option, const Read& read) {
+  try {
+    return read();
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string(option) + ": " + error.what());
+  }
+}
 
 /// How a program takes part in a run.
 struct Participation {

@@ -133,6 +133,8 @@ class Reader {
           shown + " needs a value: " + shown + " " + value_name(*option) +
           (at_ < words_.size() && words_[at_].starts_with("-") ? "; " + quoted(words_[at_]) + " follows it" : ""));
     if (counts_[option]++ > 0 && !is_repeatable(*option)) throw UsageError(shown + " is given twice");
+    const std::string kind = value_name(*option);
+    if (value.empty() && (kind == "FILE" || kind == "DIR")) throw UsageError(shown + " must not be empty");
     if (value.empty()) {  // CLI11 would take the next argument for the value of `--name=`
       options_.push_back(shown);
       options_.push_back("");

@@ -118,7 +118,7 @@ int csv(const std::string& path, const std::string& channel, const shoal::Messag
     }
     if (!header) std::cout << names << '\n';
     header = true;
-    if (!(std::cout << row << '\n')) break;  // main() tells of it
+    if (!(std::cout << row << '\n')) return exit_ok;  // main() knows what it means
     ++rows;
   }
   if (bad > 1) std::cerr << bad << " events of " << channel << " could not be decoded\n";
@@ -142,6 +142,8 @@ int allan(const std::string& path, const std::string& channel, const std::string
       throw std::runtime_error("'" + out + "' cannot be written");
     if (!png.empty()) plot(table, png);
     if (out.empty() && png.empty()) std::cout << to_csv(table);
+  } catch (const bridges::BusError&) {
+    throw;  // names the file itself
   } catch (const std::runtime_error& error) {
     std::cerr << path << ": " << error.what() << '\n';
     return exit_bus;
@@ -164,6 +166,8 @@ int picture(const LogArguments& arguments) {
     std::cout << arguments.png << ": " << arguments.channel << ", " << made.drawn << '\n';
     for (const std::string& problem : made.problems) std::cerr << path << ": " << problem << '\n';
     if (!made.problems.empty()) return exit_bus;
+  } catch (const bridges::BusError&) {
+    throw;  // names the file itself
   } catch (const std::runtime_error& error) {
     std::cerr << path << ": " << error.what() << '\n';
     return exit_bus;

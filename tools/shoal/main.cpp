@@ -79,8 +79,10 @@ int run(int argc, char** argv) {
 int flush_output(int exit_code) {
   errno = 0;
   const bool flushed = std::cout.flush() && std::fflush(stdout) == 0;
-  const int error = errno;
+  int error = errno;
   if ((flushed && std::ferror(stdout) == 0) || error == EPIPE || output_was_closed) return exit_code;
+  // Where an earlier write failed nobody has kept the reason: another one fails for the same.
+  if (error == 0 && write(STDOUT_FILENO, "\n", 1) < 0) error = errno;
   std::cerr << "shoal: cannot write to stdout: " << std::strerror(error != 0 ? error : EIO) << '\n';
   return exit_code == tools::exit_ok ? tools::exit_bus : exit_code;
 }

@@ -68,6 +68,8 @@ int run(RunArguments& arguments) {
   arguments.load.encode_message = shoal::encode_own_message;
   if (arguments.world.empty() == arguments.from.empty())
     throw command_line::UsageError("needs either a WORLD or --from FILE");
+  if (!arguments.run.await.empty() && arguments.run.bus == "none")
+    throw CLI::ValidationError("--await", "needs the LCM bus: clients cannot join on --bus none");
   arguments.run.snapshot_at_s = parse_times(arguments.snapshot_at);
   const bool nowhere = arguments.run.snapshots.empty() && arguments.run.results.empty();
   if (nowhere && (!arguments.snapshot_at.empty() || arguments.run.snapshot_every_s))

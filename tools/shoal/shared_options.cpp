@@ -10,7 +10,7 @@ CLI::Option* add_log_level_option(CLI::App& command, const std::string& usual) {
   return command
       .add_option_function<std::string>(
           "--log-level", set,
-          "least of what goes to stderr: debug, info (with progress), warn, error, or off "
+          "least of what shoal says on stderr: debug, info (with progress), warn, error, or off "
           "for nothing but the error that ends the command")
       ->type_name("LEVEL")
       ->default_str(usual)

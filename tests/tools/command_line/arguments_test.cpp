@@ -14,7 +14,7 @@ using Words = std::vector<std::string>;
 struct App {
   CLI::App app{"A program.", "prog"};
   double number = 0;
-  std::string place, file, out;
+  std::string place, file, out, title = "none";
   std::vector<std::string> sets;
   bool quiet = false, pictures = true;
 
@@ -24,6 +24,7 @@ struct App {
     run->add_option("WORLD", place, "world file");
     run->add_option("--duration", number, "how long")->type_name("S")->check(number_from(-10, 1e9));
     run->add_option("--record", file, "log")->type_name("FILE");
+    run->add_option("--title", title, "of the run")->type_name("TITLE");
     run->add_option("--set", sets, "a value")->type_size(1)->allow_extra_args(false);
     run->add_flag("--quiet", quiet, "no words");
     run->add_flag_callback(
@@ -65,6 +66,7 @@ TEST(Arguments, MustBeThereAndOnlyOnce) {
   EXPECT_EQ(wrong({"run", "--duration", "1", "--duration=2"}), "--duration is given twice");
   EXPECT_EQ(wrong({"run", "--quiet=yes"}), "--quiet takes no value, got 'yes'");
   EXPECT_EQ(wrong({"run", ""}), "WORLD must not be empty");
+  EXPECT_EQ(wrong({"run", "--record", ""}), "--record must not be empty");
   EXPECT_EQ(wrong({"run", "--quiet", "--quiet", "--set", "a=1", "--set", "b=2"}), "");
 }
 
@@ -90,9 +92,9 @@ TEST(Arguments, ReachTheOptionsAsTheyWereGiven) {
     EXPECT_EQ(app.sets, Words{"x=-1,2"});
     EXPECT_EQ(app.file, "-");
   });
-  parsed({"run", "--record=", "w"}, [](const App& app) {
-    EXPECT_EQ(app.file, "");
-    EXPECT_EQ(app.place, "w");  // CLI11 alone would take it for the value of --record
+  parsed({"run", "--title=", "w"}, [](const App& app) {
+    EXPECT_EQ(app.title, "");
+    EXPECT_EQ(app.place, "w");  // CLI11 alone would take it for the value of --title
   });
   parsed({"run", "--record=--odd", "--", "--quiet"}, [](const App& app) {
     EXPECT_EQ(app.file, "--odd");
@@ -152,6 +154,7 @@ TEST(Help, HasNothingOfTheLibraryInside) {
             "  -h, --help     Print this help message and exit\n"
             "  --duration S   how long (from -10 to 1e9)\n"
             "  --record FILE  log\n"
+            "  --title TITLE  of the run\n"
             "  --set TEXT     a value (repeatable)\n"
             "  --quiet        no words\n"
             "  --no-pictures  no pictures\n"
