@@ -1,7 +1,6 @@
 #include "sim/config/param_table.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "sim/config/message_text.hpp"
 
@@ -22,14 +21,6 @@ void append_rows(const std::vector<ParamInfo>& params, const std::string& prefix
     const bool is_list = param.type.starts_with("list");
     append_rows(param.children, prefix + param.key + (is_list ? "[]." : "."), rows);
   }
-}
-
-std::vector<Row> rows_of(const std::vector<ParamInfo>& params) {
-  std::vector<Row> rows;
-  append_rows(params, "", rows);
-  for (Row& row : rows)
-    for (std::string& cell : row) cell = printable(cell);
-  return rows;
 }
 
 /// Text in which Markdown finds no cell border and no tag.
@@ -57,9 +48,17 @@ std::size_t characters(const std::string& text) {
 
 }  // namespace
 
+std::vector<std::array<std::string, 5>> param_rows(const std::vector<ParamInfo>& params) {
+  std::vector<Row> rows;
+  append_rows(params, "", rows);
+  for (Row& row : rows)
+    for (std::string& cell : row) cell = printable(cell);
+  return rows;
+}
+
 std::string markdown_table(const std::vector<ParamInfo>& params) {
   std::string text = "| key | type | rule | default | meaning |\n|---|---|---|---|---|\n";
-  for (const Row& row : rows_of(params)) {
+  for (const Row& row : param_rows(params)) {
     const bool is_value = row[3] != "required" && row[3] != "unset";
     text += "| " + code(row[0]) + " | " + escaped_for_markdown(row[1]) + " | " + escaped_for_markdown(row[2]) + " | " +
             (is_value ? code(row[3]) : row[3]) + " | " + escaped_for_markdown(row[4]) + " |\n";
@@ -68,7 +67,7 @@ std::string markdown_table(const std::vector<ParamInfo>& params) {
 }
 
 std::string text_table(const std::vector<ParamInfo>& params) {
-  std::vector<Row> rows = rows_of(params);
+  std::vector<Row> rows = param_rows(params);
   rows.insert(rows.begin(), Row{"key", "type", "rule", "default", "meaning"});
   std::array<std::size_t, 5> width{};
   for (const Row& row : rows)

@@ -44,10 +44,10 @@ TEST(SegwayRun, IsTheSameAtAnySpeed) {
 TEST(SegwayRun, ItsProgramSaysWhatIsWrongWithItsOptions) {
   const std::pair<std::vector<std::string>, const char*> mistakes[] = {
       {{}, "--name is required"},
-      {{"--name", "s", "--speeds", "1"}, "'1' must be TIME:SPEED or TIME:SPEED:TURN"},
+      {{"--name", "s", "--speeds", "1"}, "--speeds: '1' must be TIME:SPEED or TIME:SPEED:TURN"},
       {{"--name", "s", "--speeds", "1:x"}, "'x' in '1:x' is not a number"},
       {{"--name", "s", "--speeds", "2:1;1:0"}, "the times must grow"},
-      {{"--name", "s", "--kp", "nan"}, "--kp: value nan not in range"},
+      {{"--name", "s", "--kp", "nan"}, "--kp: must be from 0 to 10000, got 'nan'"},
       {{"--name", "s", "--period", "0"}, "--period"},
   };
   for (const auto& [options, says] : mistakes) {

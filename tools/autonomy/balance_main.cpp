@@ -27,7 +27,8 @@ struct State {
 int balance(const Options& options) {
   State state{autonomy::Balance(options.balance)};
   autonomy::Balance& balance = state.balance;
-  const std::vector<autonomy::SpeedPoint> speeds = autonomy::parse_speeds(options.speeds);
+  const std::vector<autonomy::SpeedPoint> speeds =
+      autonomy::read_option("--speeds", [&] { return autonomy::parse_speeds(options.speeds); });
   shoal::Client client(options.name, options.participation.lcm_url);
 
   const auto take = [&](const auto& message) { balance.receive(message); };
@@ -67,7 +68,7 @@ int balance(const Options& options) {
 void add_gains(CLI::App& app, Options& options) {
   autonomy::Balance::Params& gains = options.balance;
   const auto number = [&app](const char* option, double& value, double low, double high, const char* meaning) {
-    app.add_option(option, value, meaning)->capture_default_str()->check(autonomy::between(low, high));
+    autonomy::add_number(app, option, value, "NUMBER", low, high, meaning);
   };
   number("--balanced-lean", options.balanced_lean_deg, -45, 45,
          "deg forward where its centre of mass is over its axle");
@@ -89,22 +90,23 @@ void add_gains(CLI::App& app, Options& options) {
 int run(int argc, char** argv) {
   Options options;
   options.participation.period_s = 0.01;
-  CLI::App app{"Balances a vehicle on two wheels, such as the Segway RMP, in lockstep with `shoal run`."};
-  app.add_option("--name", options.name, "vehicle to balance; also the name in the lockstep");
+  CLI::App app{"Balances a vehicle on two wheels, such as the Segway RMP, in lockstep with `shoal run`.",
+               "shoal-balance"};
+  autonomy::add_name(app, options.name, "vehicle to balance");
   bool tell_margin = false;
   app.add_flag("--delay-margin", tell_margin,
-               "tell how late the torque of a Segway RMP may come with these gains, and end");
+               "print how late the torque of a Segway RMP may come with these gains, and end");
   app.add_option("--speeds", options.speeds,
-                 "\"10:0.5;20:-0.5;30:0:0.3\": from 10 s on 0.5 m/s, ..., from 30 s on turn at 0.3 rad/s");
+                 "such as \"10:0.5;20:-0.5;30:0:0.3\": from 10 s on 0.5 m/s, ..., from 30 s on turn at 0.3 rad/s")
+      ->type_name("SPEEDS");
   add_gains(app, options);
   options.participation.add_options(app);
-  app.footer(
-      std::string("It reads NAME.inclinometer and NAME.encoder, and drives as shoal.twist_command_t on\n"
-                  "NAME.balance.cmd says; it publishes NAME.left_motor.cmd and NAME.right_motor.cmd, and NAME.fallen\n"
-                  "when it fell.  docs/segway.md explains the gains.\n"
-                  "Example, beside `shoal run worlds/segway.yaml --await`:\n"
-                  "  shoal-balance --name segway1 --speeds \"5:0.5;15:-0.5;25:0\"\n") +
-      autonomy::exit_code_help);
+  autonomy::set_help_end(
+      app, {"shoal-balance --name segway1 --speeds \"5:0.5;15:-0.5;25:0\"", "shoal-balance --delay-margin"},
+      "It reads NAME.inclinometer and NAME.encoder, and drives as shoal.twist_command_t on "
+      "NAME.balance.cmd says; it publishes NAME.left_motor.cmd and NAME.right_motor.cmd, and "
+      "NAME.fallen when it fell.  Start it beside `shoal run worlds/segway.yaml --await segway1`.  "
+      "docs/segway.md explains the gains.");
   if (const auto exit_code = autonomy::parse(app, argc, argv)) return *exit_code;
   options.balance.period_s = options.participation.period_s;
   options.balance.balanced_lean_rad = sim::degrees_to_radians(options.balanced_lean_deg);

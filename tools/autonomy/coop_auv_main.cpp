@@ -4,6 +4,7 @@
 #include "tools/autonomy/coop_auv.hpp"
 #include "tools/autonomy/marine_options.hpp"
 #include "tools/autonomy/program.hpp"
+#include "tools/command_line/checks.hpp"
 
 namespace {
 
@@ -56,85 +57,69 @@ int drive(const Options& options) {
 
 void add_filter_options(CLI::App& app, Options& options) {
   autonomy::CoopAuv::Params& auv = options.auv;
-  app.add_flag("--no-cooperation", options.no_cooperation, "ranges are not used: the estimate is dead reckoning");
+  app.add_flag("--no-cooperation", options.no_cooperation, "use no ranges: the estimate is dead reckoning");
   app.add_option("--steer", options.steer, "by which estimate")
+      ->type_name("ESTIMATE")
       ->capture_default_str()
-      ->check(CLI::IsMember({"cooperative", "dead-reckoning"}));
+      ->check(command_line::one_of({"cooperative", "dead-reckoning"}));
   app.add_option("--states", auv.filter.states,
                  "2 position; 4 and heading bias, speed scale; 5 and clock; 6 and its drift")
+      ->type_name("N")
       ->capture_default_str()
-      ->check(CLI::IsMember({2, 4, 5, 6}));
-  app.add_option("--sound-speed", auv.sound_speed_mps, "that makes a range of a travel time, m/s")
-      ->capture_default_str()
-      ->check(autonomy::between(1000.0, 2000.0));
-  app.add_option("--range-std", auv.range_std_m, "error of a range, m")
-      ->capture_default_str()
-      ->check(autonomy::between(0.001, 1000.0));
-  app.add_option("--sound-speed-std", auv.sound_speed_std, "error of a range, of the range")
-      ->capture_default_str()
-      ->check(autonomy::between(0.0, 0.5));
-  app.add_option("--heading-bias-std", options.heading_bias_std_deg, "steady error of the heading, deg")
-      ->capture_default_str()
-      ->check(autonomy::between(0.0, 90.0));
-  app.add_option("--speed-scale-std", auv.filter.speed_scale_std, "scale error of the DVL")
-      ->capture_default_str()
-      ->check(autonomy::between(0.0, 0.5));
-  app.add_option("--heading-noise", auv.filter.heading_noise_radprtHz,
-                 "rad in 1 s; for a slow error s of time T: s sqrt(2 T)")
-      ->capture_default_str()
-      ->check(autonomy::between(0.0, 10.0));
-  app.add_option("--clock-std-ms", options.clock_std_ms, "error of the clock at the start, with 5 or 6 states")
-      ->capture_default_str()
-      ->check(autonomy::between(0.0, 1e6));
-  app.add_option("--clock-drift-std-ppm", options.clock_drift_std_ppm, "drift of the clock, with 6 states")
-      ->capture_default_str()
-      ->check(autonomy::between(0.0, 1e4));
+      ->check(command_line::one_of({"2", "4", "5", "6"}));
+  using autonomy::add_number;
+  add_number(app, "--sound-speed", auv.sound_speed_mps, "M/S", 1000, 2000, "converts travel times to ranges");
+  add_number(app, "--range-std", auv.range_std_m, "M", 0.001, 1000, "error of a range");
+  add_number(app, "--sound-speed-std", auv.sound_speed_std, "RATIO", 0, 0.5, "error of a range, of the range");
+  add_number(app, "--heading-bias-std", options.heading_bias_std_deg, "DEG", 0, 90, "steady error of the heading");
+  add_number(app, "--speed-scale-std", auv.filter.speed_scale_std, "RATIO", 0, 0.5, "scale error of the DVL");
+  add_number(app, "--heading-noise", auv.filter.heading_noise_radprtHz, "NOISE", 0, 10,
+             "rad in 1 s; for a slow error s of time T: s sqrt(2 T)");
+  add_number(app, "--clock-std-ms", options.clock_std_ms, "MS", 0, 1e6,
+             "error of the clock at the start, with 5 or 6 states");
+  add_number(app, "--clock-drift-std-ppm", options.clock_drift_std_ppm, "PPM", 0, 1e4,
+             "drift of the clock, with 6 states");
 }
 
-Eigen::Vector3d place_on_vehicle(const std::string& text) {
+Eigen::Vector3d place_on_vehicle(const char* option, const std::string& text) {
   if (text.empty()) return Eigen::Vector3d::Zero();
-  return Eigen::Vector3d(autonomy::parse_numbers(text, 3, "x,y,z").data());
+  return Eigen::Vector3d(
+      autonomy::read_option(option, [&] { return autonomy::parse_numbers(text, 3, "x,y,z"); }).data());
 }
 
 void add_options(CLI::App& app, Options& options) {
   autonomy::CoopAuv::Params& auv = options.auv;
-  app.add_option("--name", auv.name, "vehicle to steer; also the name in the lockstep")->required();
-  app.add_option("--id", auv.id, "in its frames")->capture_default_str()->check(CLI::Range(0, 255));
-  app.add_option("--depth", auv.depth_m, "m")->capture_default_str()->check(autonomy::between(0.0, 10'000.0));
-  app.add_option("--start", options.start, "\"x,y\": known place at the start; else it waits for GPS");
-  app.add_option("--start-std", auv.start_std_m, "error of --start, m")
-      ->capture_default_str()
-      ->check(autonomy::between(0.001, 1000.0));
-  app.add_option("--modem-at", options.modem_at, "\"x,y,z\": where the modem is on the vehicle, m; 0,0,0 unless set");
-  app.add_option("--gps-at", options.gps_at, "the same of the GPS antenna");
-  app.add_option("--surface-s", auv.surface_s, "s at the surface after the first fix")
-      ->capture_default_str()
-      ->check(autonomy::between(0.0, 3600.0));
-  app.add_flag("--obey", auv.obey, "orders for its --id: it goes to the place and circles there");
-  app.add_option("--order-depth-max", auv.order_depth_max_m, "deeper orders are refused, m")
-      ->capture_default_str()
-      ->check(autonomy::between(0.0, 10'000.0));
-  app.add_option("--order-speed-max", auv.order_speed_max_mps, "faster orders are refused, m/s")
-      ->capture_default_str()
-      ->check(autonomy::between(0.01, 10.0));
-  app.add_option("--hold-radius", auv.hold_radius_m, "of the circle at an ordered place, m")
-      ->capture_default_str()
-      ->check(autonomy::between(1.0, 10'000.0));
+  using autonomy::add_number;
+  autonomy::add_name(app, auv.name, "vehicle to steer")->required();
+  autonomy::add_id(app, "--id", auv.id, "of the vehicle in its frames")->capture_default_str();
+  add_number(app, "--depth", auv.depth_m, "M", 0, 10'000, "depth to dive to");
+  app.add_option("--start", options.start, "known position at the start, m; without it the vehicle waits for GPS")
+      ->type_name("X,Y");
+  add_number(app, "--start-std", auv.start_std_m, "M", 0.001, 1000, "error of --start");
+  app.add_option("--modem-at", options.modem_at, "position of the modem on the vehicle, m; without it 0,0,0")
+      ->type_name("X,Y,Z");
+  app.add_option("--gps-at", options.gps_at, "position of the GPS antenna, likewise")->type_name("X,Y,Z");
+  add_number(app, "--surface-s", auv.surface_s, "S", 0, 3600, "time at the surface after the first fix");
+  app.add_flag("--obey", auv.obey, "obey orders for its --id: go to the position and circle there");
+  add_number(app, "--order-depth-max", auv.order_depth_max_m, "M", 0, 10'000, "deeper orders are refused");
+  add_number(app, "--order-speed-max", auv.order_speed_max_mps, "M/S", 0.01, 10, "faster orders are refused");
+  add_number(app, "--hold-radius", auv.hold_radius_m, "M", 1, 10'000, "of the circle at an ordered position");
   options.marine.add_options(app);
   add_filter_options(app, options);
   options.participation.add_options(app);
-  app.footer(std::string("It reads NAME.dvl, .ahrs or .compass, .pressure, .gps and .modem; it publishes "
-                         "NAME.autopilot.cmd, .estimate,\n.dead_reckoning and, with --slot or --random-s, .modem.cmd.\n"
-                         "Examples:\n"
-                         "  shoal-coop-auv --name auv --route \"400,0;400,40;0,40;0,80\" --depth 15 --states 6\n"
-                         "  shoal-coop-auv --name auv --start 0,0 --route 2000,0 --no-cooperation\n") +
-             autonomy::exit_code_help);
+  autonomy::set_help_end(
+      app,
+      {"shoal-coop-auv --name auv --route \"400,0;400,40;0,40;0,80\" --depth 15 --states 6",
+       "shoal-coop-auv --name auv --start 0,0 --route 2000,0 --no-cooperation"},
+      "It reads NAME.dvl, .ahrs or .compass, .pressure, .gps and .modem; it publishes NAME.autopilot.cmd, .estimate, "
+      ".dead_reckoning and, with --slot or --random-s, .modem.cmd.");
 }
 
 int run(int argc, char** argv) {
   Options options;
   options.participation.period_s = 0.5;
-  CLI::App app{"Steers an AUV that finds its place by dead reckoning and by one-way acoustic ranges."};
+  CLI::App app{"Steers an AUV that localises itself by dead reckoning and by one-way acoustic ranges.",
+               "shoal-coop-auv"};
   add_options(app, options);
   if (const auto exit_code = autonomy::parse(app, argc, argv)) return *exit_code;
   autonomy::CoopAuv::Params& auv = options.auv;
@@ -145,11 +130,12 @@ int run(int argc, char** argv) {
   auv.filter.range_bias_std_m = auv.sound_speed_mps * 1e-3 * options.clock_std_ms;
   auv.filter.range_drift_std_mps = auv.sound_speed_mps * 1e-6 * options.clock_drift_std_ppm;
   if (!options.start.empty()) {
-    const auto start = autonomy::parse_numbers(options.start, 2, "x,y");
+    const auto start =
+        autonomy::read_option("--start", [&] { return autonomy::parse_numbers(options.start, 2, "x,y"); });
     auv.start_W = autonomy::Vector2d(start[0], start[1]);
   }
-  auv.modem_B = place_on_vehicle(options.modem_at);
-  auv.gps_B = place_on_vehicle(options.gps_at);
+  auv.modem_B = place_on_vehicle("--modem-at", options.modem_at);
+  auv.gps_B = place_on_vehicle("--gps-at", options.gps_at);
   auv.access = options.marine.access();
   return drive(options);
 }

@@ -36,20 +36,17 @@ int run(int argc, char** argv) {
   autonomy::MarineOptions marine;
   autonomy::Participation participation;
   participation.period_s = 0.5;
-  CLI::App app{"Steers a surface craft that tells by acoustic modem where GPS says it is."};
-  app.add_option("--name", craft.name, "vehicle to steer; also the name in the lockstep")->required();
-  app.add_option("--id", craft.id, "in its frames")->capture_default_str()->check(CLI::Range(0, 255));
-  app.add_option("--transducer-depth", craft.transducer_depth_m, "of its modem, m")
-      ->capture_default_str()
-      ->check(autonomy::between(0.0, 1000.0));
+  CLI::App app{"Steers a surface craft that sends its GPS position by acoustic modem.", "shoal-coop-craft"};
+  autonomy::add_name(app, craft.name, "vehicle to steer")->required();
+  autonomy::add_id(app, "--id", craft.id, "of the vehicle in its frames")->capture_default_str();
+  autonomy::add_number(app, "--transducer-depth", craft.transducer_depth_m, "M", 0, 1000, "of its modem");
   marine.add_options(app);
   participation.add_options(app);
-  app.footer(
-      std::string("It reads NAME.gps and NAME.modem; it publishes NAME.autopilot.cmd, .modem.cmd and .estimate.\n"
-                  "Examples:\n"
-                  "  shoal-coop-craft --name boat1 --behaviour circle:100,50,40 --slot 0/2\n"
-                  "  shoal-coop-craft --name boat2 --behaviour follow:auv,0,-60 --speed 2 --slot 1/3\n") +
-      autonomy::exit_code_help);
+  autonomy::set_help_end(
+      app,
+      {"shoal-coop-craft --name boat1 --behaviour circle:100,50,40 --slot 0/2",
+       "shoal-coop-craft --name boat2 --behaviour follow:auv,0,-60 --speed 2 --slot 1/3"},
+      "It reads NAME.gps and NAME.modem; it publishes NAME.autopilot.cmd, .modem.cmd and .estimate.");
   if (const auto exit_code = autonomy::parse(app, argc, argv)) return *exit_code;
   craft.period_s = participation.period_s;
   craft.access = marine.access();

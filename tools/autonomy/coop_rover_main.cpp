@@ -25,24 +25,25 @@ int run(int argc, char** argv) {
   autonomy::Participation participation;
   std::string waypoints;
   std::string start = "0,0,0";
-  CLI::App app{"Drives one rover of the cooperative experiment, in lockstep with `shoal run`."};
-  app.add_option("--name", rover.name, "vehicle to drive; also the name in the lockstep")->required();
-  app.add_option("--waypoints", waypoints, "\"x,y;x,y;...\", east and north in m, driven in a loop")->required();
-  app.add_option("--start", start, "\"x,y,yaw_deg\": where the rover stands at first")->capture_default_str();
-  app.add_option("--speed", rover.speed_mps, "m/s")->capture_default_str()->check(autonomy::between(0.05, 5.0));
-  app.add_option("--seen-std", rover.seen_std_m, "error of a swarm_position sighting, m")
-      ->capture_default_str()
-      ->check(autonomy::between(0.001, 100.0));
+  CLI::App app{"Drives one rover of the cooperative experiment, in lockstep with `shoal run`.", "shoal-coop-rover"};
+  autonomy::add_name(app, rover.name, "vehicle to drive")->required();
+  app.add_option("--waypoints", waypoints, "\"x,y;x,y;...\", east and north in m, driven in a loop")
+      ->type_name("ROUTE")
+      ->required();
+  app.add_option("--start", start, "pose of the rover at the start, m and degrees")
+      ->type_name("X,Y,YAW")
+      ->capture_default_str();
+  autonomy::add_number(app, "--speed", rover.speed_mps, "M/S", 0.05, 5, "of the rover");
+  autonomy::add_number(app, "--seen-std", rover.seen_std_m, "M", 0.001, 100, "error of a swarm_position sighting");
   participation.add_options(app);
-  app.footer(std::string("It reads NAME.odometry, .lidar, .modem and, where there are such, .gps and .swarm_position; "
-                         "it publishes\nNAME.drive.cmd, .modem.cmd, .estimate and .odometry_only.\n"
-                         "Example, beside `shoal run worlds/coop_land.yaml`, or started by it with --launch:\n"
-                         "  shoal-coop-rover --name rover1 --start=-20,-20,90 "
-                         "--waypoints=\"-20,20;-5,20;-5,-20;-20,-20\"\n") +
-             autonomy::exit_code_help);
+  autonomy::set_help_end(
+      app, {"shoal-coop-rover --name rover1 --start=-20,-20,90 --waypoints \"-20,20;-5,20;-5,-20;-20,-20\""},
+      "It reads NAME.odometry, .lidar, .modem and, where they exist, .gps and .swarm_position; it publishes "
+      "NAME.drive.cmd, .modem.cmd, .estimate and .odometry_only.  Start it beside `shoal run worlds/coop_land.yaml "
+      "--await rover1,rover2,rover3`, or let that start it with --launch.");
   if (const auto exit_code = autonomy::parse(app, argc, argv)) return *exit_code;
-  rover.waypoints_W = autonomy::parse_waypoints(waypoints);
-  rover.start = autonomy::parse_start(start);
+  rover.waypoints_W = autonomy::read_option("--waypoints", [&] { return autonomy::parse_waypoints(waypoints); });
+  rover.start = autonomy::read_option("--start", [&] { return autonomy::parse_start(start); });
   return drive(rover, participation);
 }
 

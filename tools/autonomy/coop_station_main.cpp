@@ -33,31 +33,27 @@ int run(int argc, char** argv) {
   participation.period_s = 0.5;
   std::string orders;
   double speed_mps = 1.5;
-  CLI::App app{"Sends a submerged vehicle to places, by radio and by whoever passes its messages on."};
-  app.add_option("--name", station.name, "vehicle that is the station; also the name in the lockstep")->required();
-  app.add_option("--id", station.id, "in its frames")->capture_default_str()->check(CLI::Range(0, 255));
-  app.add_option("--to", station.to_id, "id of the vehicle that gets the orders")
-      ->required()
-      ->check(CLI::Range(0, 255));
+  CLI::App app{"Sends orders to a submerged vehicle, by radio and by whoever relays its messages.",
+               "shoal-coop-station"};
+  autonomy::add_name(app, station.name, "vehicle that is the station")->required();
+  autonomy::add_id(app, "--id", station.id, "of the station in its frames")->capture_default_str();
+  autonomy::add_id(app, "--to", station.to_id, "id of the vehicle that gets the orders")->required();
   app.add_option("--orders", orders,
                  "\"TIME:X,Y,DEPTH;TIME:X,Y,DEPTH,SPEED;...\": s after the start, east, north and depth in m, m/s")
+      ->type_name("ORDERS")
       ->required();
-  app.add_option("--speed", speed_mps, "of orders without one, m/s through the water")
-      ->capture_default_str()
-      ->check(autonomy::between(0.05, 10.0));
+  autonomy::add_number(app, "--speed", speed_mps, "M/S", 0.05, 10, "of orders without one, through the water");
   sending.add_options(app, "its order");
   participation.add_options(app);
-  app.footer(std::string("It reads NAME.gps and NAME.radio; it publishes NAME.radio.cmd and NAME.knowledge, where the "
-                         "vehicle was by\nits newest state.\n"
-                         "Example:\n"
-                         "  shoal-coop-station --name station --to 0 --slot 1/3 --orders "
-                         "\"120:500,200,15;600:900,-100,20,1.2\"\n") +
-             autonomy::exit_code_help);
+  autonomy::set_help_end(
+      app, {"shoal-coop-station --name station --to 0 --slot 1/3 --orders \"120:500,200,15;600:900,-100,20,1.2\""},
+      "It reads NAME.gps and NAME.radio; it publishes NAME.radio.cmd and NAME.knowledge, where the vehicle was by its "
+      "newest state.");
   if (const auto exit_code = autonomy::parse(app, argc, argv)) return *exit_code;
   station.access = sending.access();
   if (!station.access.slot && station.access.random_mean_s <= 0)
     throw std::invalid_argument("a station that never sends is of no use; give --slot or --random-s");
-  station.orders = autonomy::parse_orders(orders, speed_mps);
+  station.orders = autonomy::read_option("--orders", [&] { return autonomy::parse_orders(orders, speed_mps); });
   return drive(station, participation);
 }
 

@@ -3,7 +3,10 @@
 #include <cmath>
 #include <csignal>
 #include <iostream>
-#include <sstream>
+
+#include "tools/command_line/checks.hpp"
+#include "tools/command_line/help.hpp"
+#include "tools/command_line/parse.hpp"
 
 namespace autonomy {
 
@@ -36,28 +39,41 @@ class StopBySignal {
 
 }  // namespace
 
-CLI::Validator between(double low, double high) {
-  std::ostringstream range;
-  range << '[' << low << " - " << high << ']';
-  const auto check = [low, high, text = range.str()](std::string& input) -> std::string {
-    double value = 0;
-    if (CLI::detail::lexical_cast(input, value) && value >= low && value <= high) return {};
-    return "value " + input + " not in range " + text;
-  };
-  return CLI::Validator(check, "FLOAT in " + range.str());
+void set_help_end(CLI::App& app, const std::vector<std::string>& examples, const std::string& channels) {
+  command_line::set_help_end(app, {examples,
+                                   {{0, "the run ended"},
+                                    {2, "wrong usage"},
+                                    {4, "bus trouble"},
+                                    {5, "the simulator fell silent or dropped the program"},
+                                    {6, "the world went further back than --rewind-s"},
+                                    {130, "ended by SIGINT; 143 by SIGTERM"}},
+                                   {channels}});
 }
 
 void Participation::add_options(CLI::App& app) {
-  app.add_option("--period", period_s, "s of simulated time between decisions")
+  add_number(app, "--period", period_s, "S", 0.001, 10, "simulated seconds between decisions");
+  add_number(app, "--rewind-s", rewind_s, "S", 0, 1e6,
+             "how far the program can go back with the world, in simulated seconds; 0: not at all");
+  add_number(app, "--join-timeout", join_timeout_s, "S", 0.1, 3600, "seconds to wait for the simulator");
+  app.add_option("--lcm-url", lcm_url, "instead of LCM_DEFAULT_URL and the default")->type_name("URL");
+}
+
+void add_number(CLI::App& app, const char* option, double& value, const char* unit, double low, double high,
+                const std::string& meaning) {
+  app.add_option(option, value, meaning)
+      ->type_name(unit)
       ->capture_default_str()
-      ->check(between(0.001, 10.0));
-  app.add_option("--rewind-s", rewind_s, "s of simulated time: how far it can go back with the world; 0: not at all")
-      ->capture_default_str()
-      ->check(between(0.0, 1e6));
-  app.add_option("--join-timeout", join_timeout_s, "s to wait for the simulator")
-      ->capture_default_str()
-      ->check(between(0.1, 3600.0));
-  app.add_option("--lcm-url", lcm_url, "unset: LCM_DEFAULT_URL, then LCM's default");
+      ->check(command_line::number_from(low, high));
+}
+
+CLI::Option* add_id(CLI::App& app, const char* option, int& id, const std::string& meaning) {
+  return app.add_option(option, id, meaning)->type_name("N")->check(command_line::whole_from(0, 255));
+}
+
+CLI::Option* add_name(CLI::App& app, std::string& name, const std::string& meaning) {
+  return app.add_option("--name", name, meaning + "; also the name in the lockstep")
+      ->type_name("NAME")
+      ->check(command_line::not_empty());
 }
 
 int take_part(shoal::Client& client, const Participation& participation, Memory memory,
@@ -96,8 +112,7 @@ int run_program(const char* name, const std::function<int()>& program) {
   try {
     return program();
   } catch (const std::invalid_argument& error) {
-    std::cerr << name << ": " << error.what() << '\n';
-    return exit_usage;
+    return command_line::wrong_usage(name, error.what());
   } catch (const std::exception& error) {
     std::cerr << name << ": " << error.what() << '\n';
     return signal_caught != 0 ? 128 + signal_caught : exit_bus;
@@ -105,13 +120,8 @@ int run_program(const char* name, const std::function<int()>& program) {
 }
 
 std::optional<int> parse(CLI::App& app, int argc, char** argv) {
-  try {
-    app.parse(argc, argv);
-    return std::nullopt;
-  } catch (const CLI::ParseError& error) {
-    // CLI11 has exit codes of its own; all that is not help is wrong usage.
-    return app.exit(error) == 0 ? exit_ok : exit_usage;
-  }
+  app.set_help_flag("-h,--help", "print this help");
+  return command_line::parse(app, argc, argv);
 }
 
 }  // namespace autonomy

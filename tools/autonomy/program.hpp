@@ -3,7 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "shoal/client.hpp"
 #include "tools/autonomy/memory.hpp"
@@ -12,13 +14,28 @@ namespace autonomy {
 
 enum ExitCode { exit_ok = 0, exit_usage = 2, exit_bus = 4, exit_timeout = 5, exit_rewound = 6 };
 
-/// What all programs say of their exit codes in --help.
-inline constexpr const char* exit_code_help =
-    "Exit codes: 0 the run ended, 2 usage, 4 bus trouble, 5 the simulator fell silent or dropped it, 6 the world "
-    "went further back than\n--rewind-s, 130 SIGINT, 143 SIGTERM.";
+/// Ends the help of a program: its examples, what it reads and publishes, and the exit codes that all have.
+void set_help_end(CLI::App& app, const std::vector<std::string>& examples, const std::string& channels);
 
-/// A number of a closed range.  CLI::Range would let NaN through.
-CLI::Validator between(double low, double high);
+/// Adds an option for a number of a closed range, with its present value as default.
+void add_number(CLI::App& app, const char* option, double& value, const char* unit, double low, double high,
+                const std::string& meaning);
+
+/// Adds an option for the number of a vehicle in acoustic frames, with its present value as default.
+CLI::Option* add_id(CLI::App& app, const char* option, int& id, const std::string& meaning);
+
+/// Adds the required `--name`.
+CLI::Option* add_name(CLI::App& app, std::string& name, const std::string& meaning);
+
+/// Reads the text of an option: an std::invalid_argument names the option, too.
+template <class Read>
+auto read_option(const char* option, const Read& read) {
+  try {
+    return read();
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string(option) + ": " + error.what());
+  }
+}
 
 /// How a program takes part in a run.
 struct Participation {

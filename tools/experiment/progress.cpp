@@ -3,9 +3,10 @@
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+
+#include "tools/command_line/text_layout.hpp"
 
 namespace tools {
 
@@ -36,9 +37,12 @@ void Progress::update(sim::Time now, std::uint64_t messages, const sim::RunContr
 
 void Progress::show(const std::string& line) {
   if (terminal_) {
-    std::fprintf(stderr, "\r%s%*s", line.c_str(), static_cast<int>(width_ > line.size() ? width_ - line.size() : 0),
-                 "");
-    width_ = line.size();
+    // A line that fills the last column or more would not be taken back by the next one.
+    const auto columns = static_cast<std::size_t>(command_line::text_columns(STDERR_FILENO)) - 1;
+    const std::string fitted = command_line::cut_to(line, columns);
+    const std::size_t width = command_line::column_count(fitted);
+    std::fprintf(stderr, "\r%s%*s", fitted.c_str(), static_cast<int>(width_ > width ? width_ - width : 0), "");
+    width_ = width;
     shown_ = true;
   } else {
     std::fprintf(stderr, "%s\n", line.c_str());
@@ -49,7 +53,7 @@ void Progress::show(const std::string& line) {
 void Progress::clear() {
   asking_ = false;
   if (!shown_) return;
-  std::fprintf(stderr, "\r%*s\r", static_cast<int>(std::max<std::size_t>(width_, 79)), "");
+  std::fprintf(stderr, "\r%*s\r", static_cast<int>(width_), "");
   std::fflush(stderr);
   shown_ = false;
   width_ = 0;

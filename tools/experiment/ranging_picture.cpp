@@ -10,7 +10,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "bridges/lcm/event_log.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/multibeam_t.hpp"
 #include "shoal/planar_lidar_t.hpp"
@@ -45,12 +44,8 @@ std::vector<Message> decode_all(const std::vector<sim::Bytes>& payloads) {
 }
 
 template <typename Message>
-Message pick(const std::vector<sim::Bytes>& payloads, std::optional<int> number) {
-  const auto count = static_cast<int>(payloads.size());
-  const int index = number.value_or(count - 1);
-  if (index < 0 || index >= count)
-    throw std::runtime_error(fmt::format("there is no message {}; there are {}, from 0", index, count));
-  return shoal::decode<Message>(payloads[static_cast<std::size_t>(index)], shoal::Finite::required);
+Message only(const std::vector<sim::Bytes>& payloads) {
+  return shoal::decode<Message>(payloads.front(), shoal::Finite::required);
 }
 
 /// Counts that a message gives must be those of its data: a log may come from anywhere.
@@ -163,40 +158,34 @@ Drawing draw(const shoal::planar_lidar_t& scan) {
   return drawing;
 }
 
-Drawing draw(const std::vector<sim::Bytes>& payloads, std::optional<int> number) {
+Drawing draw(const std::vector<sim::Bytes>& payloads) {
   const std::int64_t type = shoal::fingerprint(payloads.front());
-  for (const sim::Bytes& payload : payloads)
-    if (shoal::fingerprint(payload) != type) throw std::runtime_error("messages of several types");
-  if (type == shoal::sonar_image_t::getHash()) return draw(pick<shoal::sonar_image_t>(payloads, number));
+  if (type == shoal::sonar_image_t::getHash()) return draw(only<shoal::sonar_image_t>(payloads));
   if (type == shoal::side_scan_t::getHash()) return draw(decode_all<shoal::side_scan_t>(payloads));
   if (type == shoal::multibeam_t::getHash()) return draw(decode_all<shoal::multibeam_t>(payloads));
-  if (type == shoal::point_cloud_t::getHash()) return draw(pick<shoal::point_cloud_t>(payloads, number));
-  if (type == shoal::planar_lidar_t::getHash()) return draw(pick<shoal::planar_lidar_t>(payloads, number));
+  if (type == shoal::point_cloud_t::getHash()) return draw(only<shoal::point_cloud_t>(payloads));
+  if (type == shoal::planar_lidar_t::getHash()) return draw(only<shoal::planar_lidar_t>(payloads));
   throw std::runtime_error(
-      "its type cannot be drawn; sonar_image_t, side_scan_t, multibeam_t, point_cloud_t and planar_lidar_t can");
+      "its type cannot be drawn; image_t, sonar_image_t, side_scan_t, multibeam_t, point_cloud_t and planar_lidar_t "
+      "can");
 }
 
 }  // namespace
 
-std::vector<std::string> draw_ranging(const std::string& log, const std::string& channel, const std::string& png,
-                                      std::optional<int> number) {
-  bridges::EventLogReader reader(log);
-  std::vector<sim::Bytes> payloads;
-  while (const auto event = reader.next())
-    if (event->channel == channel) payloads.emplace_back(event->payload.begin(), event->payload.end());
-  if (payloads.empty())
-    throw std::runtime_error("no event on channel '" + channel + "'; " +
-                             (reader.problems().empty() ? "see shoal log info" : reader.problems().back()));
-  const Drawing drawing = draw(payloads, number);
-  if (drawing.data.empty()) throw std::runtime_error(channel + ": there is nothing to draw");
+bool are_all_drawn(std::int64_t type) {
+  return type == shoal::side_scan_t::getHash() || type == shoal::multibeam_t::getHash();
+}
+
+void draw_ranging(const std::vector<sim::Bytes>& payloads, const std::string& title, const std::string& png) {
+  const Drawing drawing = draw(payloads);
+  if (drawing.data.empty()) throw std::runtime_error(title + ": there is nothing to draw");
   const ScratchDirectory scratch;
   std::ofstream(scratch.path / "data", std::ios::binary) << drawing.data;
   std::ofstream(scratch.path / "plot.gp") << fmt::format(
       "set terminal pngcairo size 600,480\nset output {}\nset title {} noenhanced\n"
       "set tics out\nset autoscale fix\n{}",
-      gnuplot_text(std::filesystem::absolute(png).string()), gnuplot_text(channel), drawing.commands);
-  if (run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(60), [] { return false; }))
-    return reader.problems();
+      gnuplot_text(std::filesystem::absolute(png).string()), gnuplot_text(title), drawing.commands);
+  if (run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(60), [] { return false; })) return;
   std::ifstream said(scratch.path / "plot.log");
   throw std::runtime_error("gnuplot failed: " + std::string(std::istreambuf_iterator<char>(said), {}));
 }

@@ -191,8 +191,10 @@ std::string Summary::to_text() const {
     text += fmt::format("  {} messages were dropped from full queues of modems\n", modem_dropped_messages);
   if (serial_dropped_bytes > 0) text += fmt::format("  {} bytes were fetched from no port\n", serial_dropped_bytes);
   text += contacts_text(contacts);
+  std::size_t width = 28;
+  for (const auto& [name, value] : metrics) width = std::max(width, name.size());
   for (const auto& [name, value] : metrics)
-    text += fmt::format("  {:<28} {}\n", name, std::isnan(value) ? "none" : fmt::format("{:.4g}", value));
+    text += fmt::format("  {:<{}} {}\n", name, width, std::isnan(value) ? "none" : fmt::format("{:.4g}", value));
   for (const Scoring::Verdict& verdict : verdicts)
     text += fmt::format("  {}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.rule);
   for (const Process& process : processes)

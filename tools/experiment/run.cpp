@@ -45,7 +45,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
             {[this](std::int64_t to_step, bool ours) { leave_branch(to_step, ours); }, [this] { stay(); },
              [this](bool ours) { begin_branch(ours); }}),
       duration_s_(options.duration_s.value_or(loaded.config.run.duration_s)),
-      progress_(duration_s_, options.quiet),
+      progress_(duration_s_, options.quiet || !spdlog::should_log(spdlog::level::info)),
       programs_(loaded.config, options, buses_) {
   journal_.attach(world_);
   journal_.set_heard([this] { return heard() || buses_.gate().reads("sim.hash"); });

@@ -29,7 +29,9 @@ void catch_signals(bool ignore_pipe) {
     if (signal == SIGHUP && before.sa_handler == SIG_IGN) continue;  // nohup
     sigaction(signal, &action, nullptr);
   }
-  if (ignore_pipe) ::signal(SIGPIPE, SIG_IGN);
+  struct sigaction of_pipe {};
+  sigaction(SIGPIPE, nullptr, &of_pipe);
+  if (ignore_pipe && of_pipe.sa_handler == SIG_DFL) ::signal(SIGPIPE, SIG_IGN);
 }
 
 int caught_signal() {

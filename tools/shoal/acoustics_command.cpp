@@ -271,45 +271,70 @@ int show(AcousticsArguments& arguments) {
   return exit_ok;
 }
 
-void add_options(CLI::App& command, AcousticsArguments& arguments) {
-  command.add_option("WORLD", arguments.world, "world file; without: a sea of its own, with 5 m/s of wind");
-  command.add_option("--from", arguments.from, "sender: vehicle/device, a vehicle, or a place x,y,z in metres");
-  command.add_option("--to", arguments.to, "receiver: the same");
-  command.add_option("--range", arguments.range_m, "m, without --from and --to")->check(number_from(0, 1e7));
+void add_link_options(CLI::App& command, AcousticsArguments& arguments) {
+  command.add_option("--from", arguments.from, "sender: vehicle/device, a vehicle, or a place X,Y,Z in metres")
+      ->type_name("END");
+  command.add_option("--to", arguments.to, "receiver: the same")->type_name("END");
+  command.add_option("--range", arguments.range_m, "m, without --from and --to")
+      ->type_name("M")
+      ->check(number_from(0, 1e7))
+      ->capture_default_str();
   command.add_option("--depth", arguments.depth_m, "of both ends, m, without --from and --to")
-      ->check(number_from(0, 12000));
+      ->type_name("M")
+      ->check(number_from(0, 12000))
+      ->capture_default_str();
+  command
+      .add_option("--water-depth", arguments.water_depth_m,
+                  "of a flat bottom for echoes, m; without it that of the world below the middle of the link")
+      ->type_name("M")
+      ->check(number_from(0.1, 12000));
+}
+
+void add_signal_options(CLI::App& command, AcousticsArguments& arguments) {
   command
       .add_option("--level", arguments.level_dB,
-                  "source level, dB re 1 uPa at 1 m; absent: of the sending modem, else 185")
+                  "source level, dB re 1 uPa at 1 m; without it that of the sending modem, else 185")
+      ->type_name("DB")
       ->check(number_from(-100, 300));
   command
       .add_option("--frequency", arguments.frequency_Hz,
-                  "middle of the band, Hz; absent: of the sending modem, else 25000")
+                  "middle of the band, Hz; without it that of the sending modem, else 25000")
+      ->type_name("HZ")
       ->check(number_from(10, 1e6));
-  command.add_option("--bandwidth", arguments.bandwidth_Hz, "Hz; absent: of the sending modem, else 4000")
+  command
+      .add_option("--bandwidth", arguments.bandwidth_Hz,
+                  "of the signal, Hz; without it that of the sending modem, else 4000")
+      ->type_name("HZ")
       ->check(number_from(0.1, 1e6));
-  command.add_option("--packet", arguments.packets, "modulation:bit/s:bytes, such as fsk:80:32; may be repeated")
+  command.add_option("--packet", arguments.packets, "modulation:bit/s:bytes, such as fsk:80:32")
+      ->type_name("PACKET")
       ->type_size(1)
       ->allow_extra_args(false);
   command.add_flag("--micromodem", arguments.micromodem, "a frame of each rate of the WHOI Micro-Modem");
   command
       .add_option("--detection", arguments.detection_dB,
-                  "signal over noise that the receiver needs, dB; absent: that of the transducer, else 6")
+                  "signal-to-noise ratio that the receiver needs, dB; without it that of the transducer, else 6")
+      ->type_name("DB")
       ->check(number_from(-60, 100));
   command
-      .add_option("--coding-gain", arguments.coding_gain_dB, "dB, added to Eb/N0; absent: of the sending modem, else 0")
+      .add_option("--coding-gain", arguments.coding_gain_dB,
+                  "added to Eb/N0, dB; without it that of the sending modem, else 0")
+      ->type_name("DB")
       ->check(number_from(-60, 60));
+}
+
+void add_options(CLI::App& command, AcousticsArguments& arguments) {
+  command.add_option("WORLD", arguments.world, "world file; without it open water with 5 m/s of wind");
+  add_link_options(command, arguments);
+  add_signal_options(command, arguments);
+  command.add_option("--ranges", arguments.ranges, "a table over range, m, as CSV: from:to:step")->type_name("RANGES");
+  command.add_option("--picture", arguments.picture, "PNG file: signal-to-noise ratio and delivery over range")
+      ->type_name("FILE");
+  add_set_option(command, arguments.load.sets);
   command
-      .add_option("--water-depth", arguments.water_depth_m,
-                  "of a flat bottom for echoes, m; absent: that of the world below the middle of the link")
-      ->check(number_from(0.1, 12000));
-  command.add_option("--ranges", arguments.ranges, "from:to:step, m: a table over range, as CSV");
-  command.add_option("--picture", arguments.picture, "PNG file: signal over noise and delivery over range");
-  command.add_option("--set", arguments.load.sets, "path=value: change a value of the world file")
-      ->type_size(1)
-      ->allow_extra_args(false);
-  command.add_option("--closed-forms", arguments.closed_forms,
-                     "CSV file of closed forms: what they give here; exit code 1 when one is off");
+      .add_option("--closed-forms", arguments.closed_forms,
+                  "compare a CSV file of closed forms with what Shoal computes")
+      ->type_name("FILE");
   add_plugin_option(command);
 }
 
@@ -318,14 +343,18 @@ void add_options(CLI::App& command, AcousticsArguments& arguments) {
 void add_acoustics_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("acoustics", "Show what becomes of a sound between two places under water");
   const auto arguments = std::make_shared<AcousticsArguments>();
+  add_log_level_option(*command);
   add_options(*command, *arguments);
-  command->footer(
-      "Examples:\n"
-      "  shoal acoustics --range 1500 --set acoustics.absorption.model=thorp\n"
-      "  shoal acoustics --micromodem --set acoustics.fading.type=rayleigh --ranges 500:10000:500\n"
-      "  shoal acoustics worlds/proving_sea.yaml --from 0,0,-5 --to 900,0,-25 --packet psk:500:64\n"
-      "  shoal acoustics --closed-forms tests/fidelity/reference/closed_forms.csv\n"
-      "docs/acoustics.md has the equations.");
+  command_line::set_help_end(
+      *command, {{"shoal acoustics --range 1500 --set acoustics.absorption.model=thorp",
+                  "shoal acoustics --micromodem --set acoustics.fading.type=rayleigh --ranges 500:10000:500",
+                  "shoal acoustics worlds/proving_sea.yaml --from 0,0,-5 --to 900,0,-25 --packet psk:500:64",
+                  "shoal acoustics --closed-forms tests/fidelity/reference/closed_forms.csv"},
+                 {{0, "success"},
+                  {1, "a closed form is off"},
+                  {2, "wrong usage, or a mistake in the world"},
+                  {4, "file trouble"}},
+                 {"docs/acoustics.md has the equations."}});
   command->callback([arguments, &exit_code] { exit_code = show(*arguments); });
 }
 

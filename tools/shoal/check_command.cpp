@@ -60,14 +60,14 @@ void add_check_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("check", "Check a world or vehicle file without running it");
   const auto path = std::make_shared<std::string>();
   const auto options = std::make_shared<sim::LoadOptions>();
+  add_log_level_option(*command);
   command->add_option("FILE", *path, "world or vehicle file, or the name of a shipped one")->required();
-  command->add_option("--set", options->sets, "path=value: change a value of the world file")
-      ->type_size(1)
-      ->allow_extra_args(false);
+  add_set_option(*command, options->sets);
   add_plugin_option(*command);
-  command->footer(
-      "Example:\n  shoal check worlds/coop_land.yaml --set run.seed=3\nEvery error is printed as "
-      "file:line:column: who: rule, value.");
+  command_line::set_help_end(*command,
+                             {{"shoal check worlds/coop_land.yaml --set run.seed=3"},
+                              {{0, "no mistake was found"}, {2, "wrong usage, or mistakes, each on a line of its own"}},
+                              {"Every mistake is printed as file:line:column: who: rule, value."}});
   command->callback([path, options, &exit_code] {
     check(file_by_name({ShippedKind::world, ShippedKind::vehicle}, *path), *options);
     exit_code = exit_ok;

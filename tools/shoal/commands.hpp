@@ -4,7 +4,14 @@
 
 #include <CLI/CLI.hpp>
 
+#include "tools/command_line/checks.hpp"
+#include "tools/command_line/help.hpp"
+
 namespace tools {
+
+using command_line::number_from;
+using command_line::one_of;
+using command_line::whole_from;
 
 /// Exit codes of the shoal program.
 enum ExitCode {
@@ -16,18 +23,24 @@ enum ExitCode {
   exit_timeout = 5
 };
 
-/// Refuses what is no number, or none in this range: CLI::Range and its kin let nan and inf pass.
-inline CLI::Validator number_from(double low, double high) {
-  const auto check = [low, high](const std::string& text) -> std::string {
-    double number = 0;
-    if (CLI::detail::lexical_cast(text, number) && number >= low && number <= high) return "";
-    return fmt::format("must be from {:g} to {:g}, got '{}'", low, high, text);
-  };
-  return CLI::Validator(check, fmt::format("FLOAT in [{:g} - {:g}]", low, high));
-}
-
 /// Adds `--plugin FILE`, which is loaded before the command does anything.
 void add_plugin_option(CLI::App& command);
+
+/// Adds `--log-level LEVEL`: what goes to stderr, apart from the error that ends the command.  Call it first, so that
+/// it counts for whatever the other options do.
+CLI::Option* add_log_level_option(CLI::App& command, const std::string& usual = "info");
+
+/// Adds `--set PATH=VALUE`.
+void add_set_option(CLI::App& command, std::vector<std::string>& sets);
+
+/// Adds `--lcm-url URL`.
+void add_lcm_url_option(CLI::App& command, std::string& url);
+
+/// Adds `--threads N` of worker threads that cast rays.
+void add_threads_option(CLI::App& command, int& threads);
+
+/// Adds `--types FILE`: message types that are not Shoal's.
+void add_types_option(CLI::App& command, std::vector<std::string>& lcm_files);
 
 /// Each adds its sub-command.  When chosen, the command sets `exit_code`.
 void add_run_command(CLI::App& app, int& exit_code);

@@ -1,6 +1,8 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -12,6 +14,7 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_control_reply_t.hpp"
 #include "shoal/sim_control_request_t.hpp"
+#include "sim/config/message_text.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/shoal/commands.hpp"
 
@@ -32,6 +35,10 @@ struct ControlArguments {
   bool stay = false;
 };
 
+const std::vector<std::string> known_requests = {"pause", "resume", "step",     "speed",   "quit",
+                                                 "until", "rewind", "snapshot", "restore", "where",
+                                                 "spawn", "remove", "describe", "do"};
+
 /// `@FILE` stands for what is in the file, `-` for standard input.
 std::string text_of(const std::string& argument) {
   if (argument != "-" && !argument.starts_with("@")) return argument;
@@ -40,7 +47,10 @@ std::string text_of(const std::string& argument) {
     text << std::cin.rdbuf();
   } else {
     std::ifstream file(argument.substr(1));
-    if (!file) throw CLI::ValidationError("TEXT", "cannot read '" + argument.substr(1) + "'");
+    const bool folder = std::filesystem::is_directory(argument.substr(1));
+    if (!file || folder)
+      throw CLI::ValidationError("TEXT",
+                                 "cannot read '" + argument.substr(1) + "'" + (folder ? ": it is a folder" : ""));
     text << file.rdbuf();
   }
   return text.str();
@@ -95,6 +105,11 @@ class Session {
 };
 
 int control(const ControlArguments& arguments) {
+  const bool known = std::find(known_requests.begin(), known_requests.end(), arguments.command) != known_requests.end();
+  // Whatever else it is, the simulator decides.
+  if (const std::string meant = sim::closest_name(arguments.command, known_requests); !known && !meant.empty())
+    throw command_line::UsageError("unknown request '" + sim::shortened(sim::printable(arguments.command)) +
+                                   "'; did you mean '" + meant + "'?");
   const std::string text = text_of(arguments.text);
   catch_signals(false);
   Session session(arguments);
@@ -123,33 +138,36 @@ int control(const ControlArguments& arguments) {
 void add_control_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("control", "Send a request to a running simulator and print its answer");
   const auto arguments = std::make_shared<ControlArguments>();
-  command
-      ->add_option(
-          "COMMAND", arguments->command,
-          "pause, resume, step, speed, quit, until, rewind, snapshot, restore, where, spawn, remove, describe, do "
-          "(docs/messages.md)")
+  add_log_level_option(*command);
+  command->add_option("COMMAND", arguments->command, command_line::alternatives(known_requests) + " (docs/messages.md)")
       ->required();
   command->add_option("TEXT", arguments->text, "text of the request; @FILE: what is in the file; -: standard input");
-  command->add_option("--value", arguments->value, "number of the request: steps, speed, seconds");
-  command->add_option("--client", arguments->client, "name to ask by")->capture_default_str();
+  command->add_option("--value", arguments->value, "number of the request: steps, speed, seconds")
+      ->type_name("NUMBER")
+      ->check(number_from(-1e12, 1e12).description(""));
+  command->add_option("--client", arguments->client, "name of who requests; without it shoal-control-PID")
+      ->type_name("NAME");
   command->add_option("--timeout", arguments->timeout_s, "wall seconds to wait for the answer")
-      ->check(number_from(0.01, 1e6));
+      ->type_name("S")
+      ->check(number_from(0.01, 1e6))
+      ->capture_default_str();
   command->add_flag("--stay", arguments->stay, "keep a vehicle spawned with `with_client: true` until Ctrl-C");
-  command->add_option("--lcm-url", arguments->lcm_url, "instead of LCM_DEFAULT_URL and the default");
-  command->footer(
-      "Examples:\n"
-      "  shoal control pause\n"
-      "  shoal control step --value 10\n"
-      "  shoal control until --value 90\n"
-      "  shoal control until storm            (an event of the world)\n"
-      "  shoal control rewind --value 30      (paused then, until `shoal control resume`)\n"
-      "  shoal control rewind run --value 30  (goes on at once)\n"
-      "  shoal control snapshot before_dive\n"
-      "  shoal control restore before_dive\n"
-      "  shoal control spawn '{name: rover7, file: rover.yaml, position_m: [2, 0, 0]}'\n"
-      "  shoal control spawn @my_robot.yaml\n"
-      "  shoal control remove rover7\n"
-      "  shoal control do '{fault: rover1/lidar, kind: stuck}'");
+  add_lcm_url_option(*command, arguments->lcm_url);
+  command_line::set_help_end(
+      *command, {{"shoal control pause", "shoal control step --value 10", "shoal control until --value 90",
+                  "shoal control until storm  # an event of the world",
+                  "shoal control rewind --value 30  # paused then, until `shoal control resume`",
+                  "shoal control rewind run --value 30  # goes on at once", "shoal control snapshot before_dive",
+                  "shoal control restore before_dive",
+                  "shoal control spawn '{name: rover7, file: rover.yaml, position_m: [2, 0, 0]}'",
+                  "shoal control spawn @my_robot.yaml", "shoal control remove rover7",
+                  "shoal control do '{fault: rover1/lidar, kind: stuck}'"},
+                 {{0, "obeyed"},
+                  {1, "refused; the reason is on stderr"},
+                  {2, "wrong usage"},
+                  {4, "bus or file trouble"},
+                  {5, "no simulator answered in time"}},
+                 {}});
   command->callback([arguments, &exit_code] { exit_code = control(*arguments); });
 }
 

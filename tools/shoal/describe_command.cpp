@@ -1,40 +1,63 @@
+#include <unistd.h>
+
 #include <iostream>
 #include <memory>
 
+#include "shoal/message_schema.hpp"
+#include "sim/config/message_text.hpp"
+#include "sim/device/device_registry.hpp"
+#include "tools/command_line/text_layout.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/json_schema.hpp"
 #include "tools/shoal/reference_pages.hpp"
 
 namespace tools {
 
+namespace {
+
+std::string unknown_name(const std::string& name) {
+  std::vector<std::string> known = {"device", "noise", "world", "vehicle"};
+  for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all()) known.push_back(type->name);
+  for (const auto& [message, schema] : shoal::embedded_types().all())
+    known.push_back(message.substr(message.find('.') + 1));
+  const std::string meant = sim::closest_name(name, known);
+  return "nothing is called '" + sim::shortened(sim::printable(name)) + "'; " +
+         (meant.empty() ? "see `shoal list devices` and `shoal list messages`" : "did you mean '" + meant + "'?");
+}
+
+}  // namespace
+
 void add_describe_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("describe", "Say what a device, a message or a file's keys are");
+  add_log_level_option(*command);
   const auto name = std::make_shared<std::string>();
   const auto page = std::make_shared<std::string>();
   const auto schema = std::make_shared<std::string>();
   CLI::Option* name_option =
-      command->add_option("NAME", *name, "a device type, a message type, device, noise, world or vehicle");
+      command->add_option("NAME", *name, "a device type, a message type, or one of: device, noise, world, vehicle");
   CLI::Option* page_option = command->add_option("--page", *page, "print a whole page of docs/ in Markdown")
-                                 ->check(CLI::IsMember({"devices", "messages", "world_format"}));
+                                 ->type_name("PAGE")
+                                 ->check(one_of({"devices", "messages", "world_format"}));
   CLI::Option* schema_option = command->add_option("--schema", *schema, "print the JSON Schema of a file's keys")
-                                   ->check(CLI::IsMember({"world", "vehicle"}));
+                                   ->type_name("FILE")
+                                   ->check(one_of({"world", "vehicle"}));
   name_option->excludes(page_option)->excludes(schema_option);
   page_option->excludes(schema_option);
   add_plugin_option(*command);
-  command->footer(
-      "Examples:\n  shoal describe lidar\n  shoal describe world\n  shoal describe pose_t\n"
-      "  shoal describe --schema world > world.schema.json\n"
-      "  shoal describe thermometer --plugin build/thermometer.so");
+  command_line::set_help_end(*command, {{"shoal describe lidar", "shoal describe world", "shoal describe pose_t",
+                                         "shoal describe --schema world > world.schema.json",
+                                         "shoal describe thermometer --plugin build/thermometer.so"},
+                                        {{0, "success"}, {2, "wrong usage, or nothing has this name"}},
+                                        {}});
   command->callback([name, page, schema, &exit_code] {
     if (!page->empty() || !schema->empty()) {
       std::cout << (page->empty() ? json_schema(*schema) : reference_page(*page));
       return;
     }
-    const std::string text = describe_text(*name);
+    if (name->empty()) throw command_line::UsageError("needs a NAME, --page or --schema; see `shoal list devices`");
+    const std::string text = describe_text(*name, static_cast<std::size_t>(command_line::text_columns(STDOUT_FILENO)));
     if (text.empty()) {
-      std::cerr << "shoal describe: nothing is called '" << *name
-                << "'; see `shoal list devices` and `shoal list messages`\n";
-      exit_code = exit_usage;
+      throw command_line::UsageError(unknown_name(*name));
     }
     std::cout << text;
   });

@@ -38,10 +38,11 @@ int examine(const std::string& url) {
 }  // namespace
 
 void add_doctor_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("doctor", "Is LCM usable here, and what to type if not");
+  CLI::App* command = app.add_subcommand("doctor", "Check whether LCM works here, and what to type if not");
   const auto url = std::make_shared<std::string>();
-  command->add_option("--lcm-url", *url, "instead of LCM_DEFAULT_URL and the default");
-  command->footer("Example:\n  shoal doctor\nExit code 0: usable, 4: not.");
+  add_log_level_option(*command);
+  add_lcm_url_option(*command, *url);
+  command_line::set_help_end(*command, {{"shoal doctor"}, {{0, "usable"}, {2, "wrong usage"}, {4, "not usable"}}, {}});
   command->callback([url, &exit_code] { exit_code = examine(*url); });
 }
 

@@ -55,20 +55,31 @@ int fidelity(const FidelityArguments& arguments) {
 void add_fidelity_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("fidelity", "Compare vehicles with published trajectories");
   const auto arguments = std::make_shared<FidelityArguments>();
+  add_log_level_option(*command);
   command->add_option("CASES", arguments->cases, "file of cases")->required();
-  command->add_option("--case", arguments->names, "only this case, or the cases of this group; may be repeated")
+  command->add_option("--case", arguments->names, "only this case, or the cases of this group")
+      ->type_name("NAME")
       ->type_size(1)
       ->allow_extra_args(false);
-  command->add_option("--step", arguments->step_s, "time step instead of the file's, s")->check(number_from(1e-5, 1));
-  command->add_option("--override", arguments->overrides, "path=value: change a value of the vehicles")
+  command->add_option("--step", arguments->step_s, "time step instead of the file's, s")
+      ->type_name("S")
+      ->check(number_from(1e-5, 1));
+  command->add_option("--override", arguments->overrides, "change a value of the vehicles")
+      ->type_name("PATH=VALUE")
       ->type_size(1)
-      ->allow_extra_args(false);
-  command->add_option("--results", arguments->results, "folder for the report: fidelity.md and pictures");
-  command->add_flag("--csv", arguments->csv, "with the report, our states as CSV files");
+      ->allow_extra_args(false)
+      ->check(command_line::setting());
+  command->add_option("--results", arguments->results, "directory for the report: fidelity.md and plots")
+      ->type_name("DIR");
+  command->add_flag("--csv", arguments->csv, "with the report, the states of Shoal as CSV files");
   add_plugin_option(*command);
-  command->footer(
-      "Example:\n  shoal fidelity tests/fidelity/cases.yaml --case otter_turn --results results/otter\n"
-      "The exit code is 1 when a bar of a case is missed.  docs/fidelity.md tells how to add cases.");
+  command_line::set_help_end(*command,
+                             {{"shoal fidelity tests/fidelity/cases.yaml --case otter_turn --results results/otter"},
+                              {{0, "all cases are within their bounds"},
+                               {1, "a bound of a case was missed"},
+                               {2, "wrong usage, or a mistake in a file"},
+                               {4, "file trouble"}},
+                              {"docs/fidelity.md says how to add cases."}});
   command->callback([arguments, &exit_code] { exit_code = fidelity(*arguments); });
 }
 

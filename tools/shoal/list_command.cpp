@@ -2,12 +2,12 @@
 
 #include <iostream>
 #include <memory>
-#include <sstream>
 
 #include "shoal/message_schema.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/shipped_files.hpp"
 #include "sim/device/device_registry.hpp"
+#include "tools/command_line/text_layout.hpp"
 #include "tools/experiment/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 
@@ -15,32 +15,24 @@ namespace tools {
 
 namespace {
 
-constexpr std::size_t name_width = 20;
-constexpr std::size_t line_width = 80;
+using Rows = std::vector<std::pair<std::string, std::string>>;
 
-/// `name    what it means`; on a terminal wrapped under itself, else on one line for other programs.
-void print_entry(const std::string& name, const std::string& meaning) {
-  std::string line = name + std::string(name_width - std::min(name_width - 1, name.size()), ' ');
-  const bool wraps = isatty(STDOUT_FILENO) != 0;
-  bool first = true;
-  std::istringstream words(meaning);
-  for (std::string word; words >> word; first = false) {
-    if (wraps && !first && line.size() + 1 + word.size() > line_width) {
-      std::cout << line << '\n';
-      line = std::string(name_width, ' ');
-      first = true;
-    }
-    line += (first ? "" : " ") + word;
-  }
-  std::cout << line.substr(0, line.find_last_not_of(' ') + 1) << '\n';
+/// Names and what they mean, in the width of the terminal.
+void print_rows(const Rows& rows) {
+  std::cout << command_line::two_columns(rows, static_cast<std::size_t>(command_line::text_columns(STDOUT_FILENO)));
 }
 
 void print_shipped(ShippedKind kind) {
-  for (const ShippedFile& file : shipped_files(kind)) print_entry(file.name, sim::printable(file.description));
+  Rows rows;
+  for (const ShippedFile& file : shipped_files(kind)) rows.emplace_back(file.name, sim::printable(file.description));
+  print_rows(rows);
 }
 
 void print_devices() {
-  for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all()) print_entry(type->name, type->meaning);
+  Rows rows;
+  for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all())
+    rows.emplace_back(type->name, type->meaning);
+  print_rows(rows);
 }
 
 void print_messages() {
@@ -78,11 +70,14 @@ int list(const std::string& what) {
 
 void add_list_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("list", "List shipped worlds and vehicles, device types or message types");
+  add_log_level_option(*command);
   const auto what = std::make_shared<std::string>();
   command->add_option("WHAT", *what, "worlds, vehicles, studies, devices or messages; unset: worlds, studies, vehicles")
-      ->check(CLI::IsMember({"worlds", "vehicles", "studies", "devices", "messages"}));
+      ->check(one_of({"worlds", "vehicles", "studies", "devices", "messages"}).description(""));
   add_plugin_option(*command);
-  command->footer("Examples:\n  shoal list\n  shoal list devices");
+  command_line::set_help_end(*command, {{"shoal list", "shoal list devices"},
+                                        {{0, "success"}, {2, "wrong usage"}, {4, "no shipped files were found"}},
+                                        {}});
   command->callback([what, &exit_code] { exit_code = list(*what); });
 }
 

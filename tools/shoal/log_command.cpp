@@ -11,7 +11,7 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "tools/experiment/allan_table.hpp"
-#include "tools/experiment/ranging_picture.hpp"
+#include "tools/experiment/log_picture.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
 
@@ -118,7 +118,7 @@ int csv(const std::string& path, const std::string& channel, const shoal::Messag
     }
     if (!header) std::cout << names << '\n';
     header = true;
-    if (!(std::cout << row << '\n')) break;  // main() tells of it
+    if (!(std::cout << row << '\n')) return exit_ok;  // main() knows what it means
     ++rows;
   }
   if (bad > 1) std::cerr << bad << " events of " << channel << " could not be decoded\n";
@@ -142,6 +142,8 @@ int allan(const std::string& path, const std::string& channel, const std::string
       throw std::runtime_error("'" + out + "' cannot be written");
     if (!png.empty()) plot(table, png);
     if (out.empty() && png.empty()) std::cout << to_csv(table);
+  } catch (const bridges::BusError&) {
+    throw;  // names the file itself
   } catch (const std::runtime_error& error) {
     std::cerr << path << ": " << error.what() << '\n';
     return exit_bus;
@@ -149,18 +151,101 @@ int allan(const std::string& path, const std::string& channel, const std::string
   return exit_ok;
 }
 
-int picture(const std::string& path, const std::string& channel, const std::string& png, std::optional<int> number) {
-  check_png_name(png);
+struct LogArguments {
+  std::string path, channel, out, png;
+  std::vector<std::string> lcm_files;
+  PictureChoice choice;
+};
+
+int picture(const LogArguments& arguments) {
+  check_png_name(arguments.png);
+  const std::string& path = arguments.path;
   try {
-    check_writable(png);
-    const std::vector<std::string> problems = draw_ranging(path, channel, png, number);
-    for (const std::string& problem : problems) std::cerr << path << ": " << problem << '\n';
-    if (!problems.empty()) return exit_bus;
+    check_writable(arguments.png);
+    const LogPicture made = draw_log(path, arguments.channel, arguments.png, arguments.choice);
+    std::cout << arguments.png << ": " << arguments.channel << ", " << made.drawn << '\n';
+    for (const std::string& problem : made.problems) std::cerr << path << ": " << problem << '\n';
+    if (!made.problems.empty()) return exit_bus;
+  } catch (const bridges::BusError&) {
+    throw;  // names the file itself
   } catch (const std::runtime_error& error) {
     std::cerr << path << ": " << error.what() << '\n';
     return exit_bus;
   }
   return exit_ok;
+}
+
+const std::vector<std::pair<int, std::string>> log_codes = {
+    {0, "success"}, {2, "wrong usage"}, {4, "the log is damaged or has not what was asked for, or file trouble"}};
+
+void add_common(CLI::App& command, LogArguments& arguments) {
+  add_log_level_option(command);
+  command.add_option("LOG", arguments.path, "LCM event log")->required();
+}
+
+void add_info_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("info", "Channels, rates, types, and the run that made it");
+  const auto arguments = std::make_shared<LogArguments>();
+  add_common(*command, *arguments);
+  add_types_option(*command, arguments->lcm_files);
+  add_plugin_option(*command);
+  command_line::set_help_end(*command, {{"shoal log info run.lcm"}, log_codes, {}});
+  command->callback(
+      [arguments, &exit_code] { exit_code = info(arguments->path, shoal::types_with(arguments->lcm_files)); });
+}
+
+void add_csv_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("csv", "The messages of one channel as CSV on stdout");
+  const auto arguments = std::make_shared<LogArguments>();
+  add_common(*command, *arguments);
+  command->add_option("CHANNEL", arguments->channel, "such as rover1.odometry")->required();
+  add_types_option(*command, arguments->lcm_files);
+  add_plugin_option(*command);
+  command_line::set_help_end(*command, {{"shoal log csv run.lcm rover1.odometry > odometry.csv"}, log_codes, {}});
+  command->callback([arguments, &exit_code] {
+    exit_code = csv(arguments->path, arguments->channel, shoal::types_with(arguments->lcm_files));
+  });
+}
+
+void add_allan_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "allan", "Allan deviation of each double array of one channel, from an instrument at rest, or of a clock");
+  const auto arguments = std::make_shared<LogArguments>();
+  add_common(*command, *arguments);
+  command->add_option("CHANNEL", arguments->channel, "such as rover1.imu")->required();
+  command->add_option("--out", arguments->out, "CSV file; without --out and --png the CSV goes to stdout")
+      ->type_name("FILE");
+  command->add_option("--png", arguments->png, "plot, by gnuplot")->type_name("FILE");
+  add_types_option(*command, arguments->lcm_files);
+  add_plugin_option(*command);
+  command_line::set_help_end(*command, {{"shoal log allan run.lcm bench.imu --png allan.png"}, log_codes, {}});
+  command->callback([arguments, &exit_code] {
+    exit_code = allan(arguments->path, arguments->channel, arguments->out, arguments->png,
+                      shoal::types_with(arguments->lcm_files));
+  });
+}
+
+void add_picture_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("picture", "What a camera or a range sensor recorded on one channel");
+  const auto arguments = std::make_shared<LogArguments>();
+  add_common(*command, *arguments);
+  command->add_option("CHANNEL", arguments->channel, "such as auv1.side_scan or rover1.camera")->required();
+  command->add_option("--png", arguments->png, "file to write")->type_name("FILE")->required();
+  CLI::Option* at =
+      command->add_option("--at", arguments->choice.at_s, "draw the message nearest to this simulated time");
+  CLI::Option* number = command->add_option("--number", arguments->choice.number,
+                                            "draw this message, from 0; without --at and --number the last");
+  at->type_name("S")->check(number_from(0, 1e9).description(""));
+  number->type_name("N")->check(whole_from(0, std::numeric_limits<int>::max()).description(""))->excludes(at);
+  add_plugin_option(*command);
+  command_line::set_help_end(
+      *command,
+      {{"shoal log picture run.lcm auv1.side_scan --png side_scan.png",
+        "shoal log picture run.lcm rover1.camera --at 12.5 --png seen.png"},
+       log_codes,
+       {"Side scans and multibeam pings are drawn all in one; of other sensors one message is drawn.  All but "
+        "images of cameras need gnuplot."}});
+  command->callback([arguments, &exit_code] { exit_code = picture(*arguments); });
 }
 
 }  // namespace
@@ -168,47 +253,16 @@ int picture(const std::string& path, const std::string& channel, const std::stri
 void add_log_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("log", "Look into LCM event logs");
   command->require_subcommand(1);
-  struct Arguments {
-    std::string path, channel, out, png;
-    std::vector<std::string> lcm_files;
-    std::optional<int> number;
-  };
-  const auto arguments = std::make_shared<Arguments>();
-  CLI::App* info_command = command->add_subcommand("info", "Channels, rates, types, and the run that made it");
-  CLI::App* csv_command = command->add_subcommand("csv", "The messages of one channel as CSV on stdout");
-  CLI::App* allan_command = command->add_subcommand(
-      "allan", "Allan deviation of each double array of one channel, from an instrument at rest, or of a clock");
-  CLI::App* picture_command =
-      command->add_subcommand("picture", "What a range sensor recorded on one channel, as a picture");
-  for (CLI::App* each : {info_command, csv_command, allan_command, picture_command}) {
-    each->add_option("LOG", arguments->path, "LCM event log")->required();
-    each->add_option("--types", arguments->lcm_files, ".lcm files of types that are not Shoal's");
-    add_plugin_option(*each);
-  }
-  csv_command->add_option("CHANNEL", arguments->channel, "such as rover1.odometry")->required();
-  allan_command->add_option("CHANNEL", arguments->channel, "such as rover1.imu")->required();
-  allan_command->add_option("--out", arguments->out, "CSV file; without --out and --png the CSV goes to stdout");
-  allan_command->add_option("--png", arguments->png, "picture, drawn by gnuplot");
-  picture_command->add_option("CHANNEL", arguments->channel, "such as auv1.side_scan")->required();
-  picture_command->add_option("--png", arguments->png, "the picture's file, drawn by gnuplot")->required();
-  picture_command->add_option("--number", arguments->number,
-                              "which message, from 0, where one is drawn; without it the last");
-  command->footer(
-      "Examples:\n  shoal log info run.lcm\n  shoal log csv run.lcm rover1.odometry > odometry.csv\n"
-      "  shoal log allan run.lcm bench.imu --png allan.png\n"
-      "  shoal log picture run.lcm auv1.side_scan --png side_scan.png");
-  info_command->callback(
-      [arguments, &exit_code] { exit_code = info(arguments->path, shoal::types_with(arguments->lcm_files)); });
-  csv_command->callback([arguments, &exit_code] {
-    exit_code = csv(arguments->path, arguments->channel, shoal::types_with(arguments->lcm_files));
-  });
-  allan_command->callback([arguments, &exit_code] {
-    exit_code = allan(arguments->path, arguments->channel, arguments->out, arguments->png,
-                      shoal::types_with(arguments->lcm_files));
-  });
-  picture_command->callback([arguments, &exit_code] {
-    exit_code = picture(arguments->path, arguments->channel, arguments->png, arguments->number);
-  });
+  add_info_command(*command, exit_code);
+  add_csv_command(*command, exit_code);
+  add_allan_command(*command, exit_code);
+  add_picture_command(*command, exit_code);
+  command_line::set_help_end(*command,
+                             {{"shoal log info run.lcm", "shoal log csv run.lcm rover1.odometry > odometry.csv",
+                               "shoal log allan run.lcm bench.imu --png allan.png",
+                               "shoal log picture run.lcm auv1.side_scan --png side_scan.png"},
+                              log_codes,
+                              {}});
 }
 
 }  // namespace tools

@@ -1,8 +1,9 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <iostream>
@@ -13,44 +14,34 @@
 #include "bridges/lcm/bus_error.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "sim/device/device_registry.hpp"
+#include "tools/command_line/parse.hpp"
+#include "tools/command_line/text_layout.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/new_command.hpp"
 
 namespace {
 
-/// `--eye -4,2,1` as `--eye=-4,2,1`: CLI11 would take the value for an option.  In the order that CLI11 wants, the last
-/// argument first.
-std::vector<std::string> joined_negative_values(int argc, char** argv) {
-  std::vector<std::string> arguments;
-  for (int i = 1; i < argc; ++i) {
-    const std::string text = argv[i];
-    const bool negative = text.size() > 1 && text[0] == '-' && std::string("0123456789.").find(text[1]) != text.npos;
-    const bool after_option = !arguments.empty() && arguments.back().starts_with("--") && arguments.back() != "--" &&
-                              arguments.back().find('=') == std::string::npos;
-    if (negative && after_option)
-      arguments.back() += "=" + text;
-    else
-      arguments.push_back(text);
-  }
-  std::reverse(arguments.begin(), arguments.end());
-  return arguments;
-}
+volatile std::sig_atomic_t output_was_closed = 0;
 
 int run(int argc, char** argv) {
-  CLI::App app{"Shoal simulates many vehicles and their devices on LCM channels."};
-  app.set_version_flag("--version", tools::version_text);
+  CLI::App app{"Shoal simulates many vehicles and their devices on LCM channels.", "shoal"};
+  app.set_help_flag("-h,--help", "print this help");
+  app.set_version_flag("--version", tools::version_text, "print the versions of Shoal and its libraries");
   app.require_subcommand(1);
-  app.footer(
-      "Examples:\n"
-      "  shoal run worlds/minimal.yaml --duration 10\n"
-      "  shoal run worlds/coop_land.yaml --launch --results results/coop_land\n"
-      "  shoal check worlds/coop_land.yaml\n"
-      "  shoal snap worlds/coop_land.yaml --at 10 --out coop_land.png\n"
-      "  shoal describe lidar\n"
-      "`shoal COMMAND --help` tells more.\n"
-      "Exit codes: 0 ok, 1 a pass rule of the world failed, 2 usage or configuration, 3 physics fault,\n"
-      "4 bus or file trouble, 5 time-out, 129 SIGHUP, 130 SIGINT, 143 SIGTERM.");
+  command_line::set_help_end(
+      app,
+      {{"shoal run worlds/minimal.yaml --duration 10",
+        "shoal run worlds/coop_land.yaml --launch --results results/coop_land", "shoal check worlds/coop_land.yaml",
+        "shoal snap worlds/coop_land.yaml --at 10 --out coop_land.png", "shoal describe lidar"},
+       {{0, "success"},
+        {1, "a rule of the experiment failed, or a comparison found a difference"},
+        {2, "wrong usage, or a mistake in a file of the user"},
+        {3, "physics fault"},
+        {4, "bus or file trouble"},
+        {5, "time-out"},
+        {129, "ended by SIGHUP; 130 by SIGINT; 143 by SIGTERM"}},
+       {"`shoal COMMAND --help` has the options and exit codes of a command."}});
   for (const std::string& problem : sim::DeviceRegistry::instance().take_problems())
     throw std::logic_error("this program was built wrong: " + problem);
   int exit_code = tools::exit_ok;
@@ -74,10 +65,7 @@ int run(int argc, char** argv) {
   tools::add_report_command(app, exit_code);
   tools::add_study_command(app, exit_code);
   try {
-    app.parse(joined_negative_values(argc, argv));
-  } catch (const CLI::ParseError& error) {
-    // CLI11 has exit codes of its own; all that is not help or version is wrong usage.
-    return app.exit(error) == 0 ? tools::exit_ok : tools::exit_usage;
+    if (const auto ended = command_line::parse(app, argc, argv)) return *ended;
   } catch (const sim::ConfigError& error) {
     for (const std::string& line : error.lines()) std::cerr << line << '\n';
     return tools::exit_usage;
@@ -88,12 +76,16 @@ int run(int argc, char** argv) {
   return exit_code;
 }
 
-/// A full disk shows at the latest now.  What failed before is the more important code.
+/// A full disk shows at the latest now.  What failed before is the more important code.  A reader that has seen enough,
+/// as `head -1` does, is no failure.
 int flush_output(int exit_code) {
-  const bool flushed = std::fflush(stdout) == 0;
-  const int error = flushed ? EIO : errno;
-  if (flushed && std::cout && std::ferror(stdout) == 0) return exit_code;
-  std::cerr << "shoal: cannot write to stdout: " << std::strerror(error) << '\n';
+  errno = 0;
+  const bool flushed = std::cout.flush() && std::fflush(stdout) == 0;
+  int error = errno;
+  if ((flushed && std::ferror(stdout) == 0) || error == EPIPE || output_was_closed) return exit_code;
+  // Where an earlier write failed nobody has kept the reason: another one fails for the same.
+  if (error == 0 && write(STDOUT_FILENO, "\n", 1) < 0) error = errno;
+  std::cerr << "shoal: cannot write to stdout: " << std::strerror(error != 0 ? error : EIO) << '\n';
   return exit_code == tools::exit_ok ? tools::exit_bus : exit_code;
 }
 
@@ -101,8 +93,14 @@ int flush_output(int exit_code) {
 
 int main(int argc, char** argv) {
   // Data goes to stdout, words for people to stderr.
-  spdlog::set_default_logger(spdlog::stderr_color_mt("shoal"));
-  spdlog::set_pattern("%^%l%$: %v");
+  const bool colour = command_line::may_use_colour(STDERR_FILENO);
+  spdlog::set_default_logger(
+      spdlog::stderr_color_mt("shoal", colour ? spdlog::color_mode::automatic : spdlog::color_mode::never));
+  // On a terminal a line of words takes the place of the live line of progress.
+  const bool clears = command_line::can_move_cursor(STDERR_FILENO);
+  spdlog::set_pattern(clears ? "\r\x1b[K%^%l%$: %v" : "%^%l%$: %v");
+  // A closed pipe shows as a failed write.  A handler, as programs that are started would inherit that it is ignored.
+  std::signal(SIGPIPE, [](int) { output_was_closed = 1; });
   try {
     return flush_output(run(argc, argv));
   } catch (const std::exception& error) {

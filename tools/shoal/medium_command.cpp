@@ -137,22 +137,27 @@ int look(MediumArguments& arguments) {
 void add_medium_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("medium", "Show the water and the air of a world at a place and a time");
   const auto arguments = std::make_shared<MediumArguments>();
+  add_log_level_option(*command);
   command->add_option("WORLD", arguments->world, "world file, or the name of a shipped world")->required();
-  command->add_option("--at", arguments->at, "x,y,z: the place, m; 0,0,-1");
-  command->add_option("--time", arguments->time_s, "simulated time, s")->check(number_from(0, 1e6));
+  command->add_option("--at", arguments->at, "the place, m")->type_name("X,Y,Z")->capture_default_str();
+  command->add_option("--time", arguments->time_s, "simulated time, s")
+      ->type_name("S")
+      ->check(number_from(0, 1e6))
+      ->capture_default_str();
   CLI::Option* profile = command->add_flag("--profile", arguments->profile, "a table from the surface to the place");
   command->add_option("--waves", arguments->waves_s, "height and period of the waves there, over so many seconds")
+      ->type_name("S")
       ->check(number_from(1, 1e5))
       ->excludes(profile);
-  command->add_option("--set", arguments->load.sets, "path=value: change a value of the world file")
-      ->type_size(1)
-      ->allow_extra_args(false);
+  add_set_option(*command, arguments->load.sets);
   add_plugin_option(*command);
-  command->footer(
-      "Examples:\n"
-      "  shoal medium worlds/minimal.yaml --set 'medium={water: {}, waves: {sea_state: 3}}' --at 0,0,-5 --time 10\n"
-      "  shoal medium worlds/minimal.yaml --set 'medium={water: {density: eos80}}' --at 0,0,-200 --profile\n"
-      "  shoal medium worlds/minimal.yaml --set 'medium={water: {}, waves: {sea_state: 3}}' --waves 1000");
+  command_line::set_help_end(
+      *command,
+      {{"shoal medium worlds/minimal.yaml --set 'medium={water: {}, waves: {sea_state: 3}}' --at 0,0,-5 --time 10",
+        "shoal medium worlds/minimal.yaml --set 'medium={water: {density: eos80}}' --at 0,0,-200 --profile",
+        "shoal medium worlds/minimal.yaml --set 'medium={water: {}, waves: {sea_state: 3}}' --waves 1000"},
+       {{0, "success"}, {2, "wrong usage, or a mistake in the world"}},
+       {}});
   command->callback([arguments, &exit_code] { exit_code = look(*arguments); });
 }
 

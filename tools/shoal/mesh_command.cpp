@@ -59,27 +59,33 @@ int describe_and_convert(const MeshOptions& options) {
 }  // namespace
 
 void add_mesh_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("mesh", "Tell what a mesh file is, and convert it for worlds and vehicles");
+  CLI::App* command = app.add_subcommand("mesh", "Describe a mesh file, and convert it for worlds and vehicles");
   const auto options = std::make_shared<MeshOptions>();
+  add_log_level_option(*command);
   command->add_option("FILE", options->file, "mesh of any format that Assimp reads: DAE, FBX, GLB, OBJ, PLY, STL, ...")
       ->required();
-  command->add_option("--out", options->out, "write it as this file, .stl (binary) or .obj");
+  command->add_option("--out", options->out, "write it as this file, .stl (binary) or .obj")->type_name("FILE");
   command
       ->add_option("--scale", options->import.scale,
                    "numbers of the file times this are metres; Collada's own unit is applied")
-      ->check(number_from(1e-9, 1e9));
+      ->type_name("FACTOR")
+      ->check(number_from(1e-9, 1e9))
+      ->capture_default_str();
   command
       ->add_option("--up", options->up,
-                   "axis of the file that points up; without it y in glTF, what the file says in Collada, z in others")
-      ->check(CLI::IsMember({"y", "z"}));
-  command->add_option("--timeout", options->import.timeout_s, "give up on a file that takes longer, s; 60")
-      ->check(number_from(0.01, 86400));
-  command->footer(
-      "Examples:\n"
-      "  shoal mesh hull.stl\n"
-      "  shoal mesh hull.glb --out hull.stl\n"
-      "  shoal mesh rock_mm.fbx --scale 0.001 --out rock.obj\n"
-      "Worlds and vehicles read STL and OBJ.  A mesh with mass must be closed.");
+                   "axis of the file that points up, y or z; without it y in glTF, what the file says in Collada, z in "
+                   "others")
+      ->type_name("AXIS")
+      ->check(one_of({"y", "z"}).description(""));
+  command->add_option("--timeout", options->import.timeout_s, "give up on a file that takes longer, s")
+      ->type_name("S")
+      ->check(number_from(0.01, 86400))
+      ->capture_default_str();
+  command_line::set_help_end(*command,
+                             {{"shoal mesh hull.stl", "shoal mesh hull.glb --out hull.stl",
+                               "shoal mesh rock_mm.fbx --scale 0.001 --out rock.obj"},
+                              {{0, "success"}, {2, "wrong usage, or the mesh cannot be read, used or written"}},
+                              {"Worlds and vehicles read STL and OBJ.  A mesh with mass must be closed."}});
   command->callback([options, &exit_code] { exit_code = describe_and_convert(*options); });
 }
 

@@ -130,6 +130,7 @@ std::string obj_text(const sim::Mesh& mesh) {
 
 sim::Mesh import_mesh(const std::string& path, const MeshImportOptions& options) {
   std::error_code error;
+  if (std::filesystem::is_directory(path, error)) throw sim::MeshError("is a folder, not a file");
   if (!std::filesystem::is_regular_file(path, error)) throw sim::MeshError("does not exist");
   if (std::filesystem::file_size(path, error) > max_file_bytes) throw sim::MeshError("is larger than 1 GB");
   const auto work = [&]() -> std::string {

@@ -76,6 +76,7 @@ CLI::App* add_kind(CLI::App& command, const char* kind, const char* meaning, New
 void add_new_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("new", "Write a commented world or vehicle file to begin with");
   command->require_subcommand(1);
+  add_log_level_option(*command);
   const auto arguments = std::make_shared<NewArguments>();
   CLI::App* world = add_kind(*command, "world", "A world of one vehicle", *arguments);
   world
@@ -83,18 +84,21 @@ void add_new_command(CLI::App& app, int& exit_code) {
                    "vehicle file, from where the world is; unset: a shipped rover or AUV")
       ->type_name("FILE");
   world->add_flag("--under-water", arguments->under_water, "an AUV in the sea instead of a rover on land");
-  world->footer(
-      "Examples:\n  shoal new world yard\n  shoal new world bay --under-water\n"
-      "  shoal new vehicle digger && shoal new world pit --vehicle digger.yaml");
+  const std::vector<std::pair<int, std::string>> exit_codes = {
+      {0, "written"}, {2, "wrong usage"}, {4, "the file is there already, or cannot be written"}};
+  command_line::set_help_end(*world, {{"shoal new world yard", "shoal new world bay --under-water",
+                                       "shoal new vehicle digger && shoal new world pit --vehicle digger.yaml"},
+                                      exit_codes,
+                                      {}});
   world->callback([arguments, &exit_code] { exit_code = new_world(*arguments); });
   CLI::App* vehicle = add_kind(*command, "vehicle", "A rover of two driven wheels with a lidar", *arguments);
-  vehicle->footer("Example:\n  shoal new vehicle digger");
+  command_line::set_help_end(*vehicle, {{"shoal new vehicle digger"}, exit_codes, {}});
   vehicle->callback([arguments, &exit_code] {
     exit_code = write_start(*arguments, start_vehicle(arguments->name, schema_file("vehicle")));
   });
-  command->footer(
-      "Examples:\n  shoal new world yard\n  shoal new vehicle digger\n"
-      "A file that is there already is not touched.");
+  command_line::set_help_end(*command, {{"shoal new world yard", "shoal new vehicle digger"},
+                                        exit_codes,
+                                        {"A file that is there already is not touched."}});
 }
 
 }  // namespace tools

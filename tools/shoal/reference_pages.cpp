@@ -2,12 +2,14 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "shoal/message_schema.hpp"
 #include "sim/config/param_table.hpp"
 #include "sim/random/noise.hpp"
 #include "sim/world/world_config.hpp"
+#include "tools/command_line/text_layout.hpp"
 #include "tools/shoal/param_tables.hpp"
 
 namespace tools {
@@ -27,15 +29,49 @@ std::string traffic_of(const sim::DeviceType& type) {
   return text + "\n";
 }
 
-std::string message_text(const shoal::MessageSchema& schema) {
+/// For lines of any length unless `columns` are given.
+std::string message_text(const shoal::MessageSchema& schema, std::size_t columns = 100'000) {
   std::string text = fmt::format("{}  fingerprint {:016x}\n", schema.name, schema.fingerprint);
-  if (!schema.comment.empty()) text += schema.comment + "\n";
+  std::string comment = schema.comment;  // has lines of its own
+  if (columns < 1000) std::replace(comment.begin(), comment.end(), '\n', ' ');
+  if (!comment.empty()) text += (columns < 1000 ? command_line::wrapped(comment, columns) : comment) + "\n";
   for (const shoal::Member& member : schema.members) {
     std::string name = member.name;
     for (const shoal::Dimension& dimension : member.dimensions) name += "[" + dimension.text + "]";
-    text += fmt::format("  {:<8} {:<32} {}\n", member.type_name, name, member.comment);
+    const std::string begin = fmt::format("  {:<8} {:<32} ", member.type_name, name);
+    const bool beside = begin.size() + 20 <= columns;
+    const std::size_t indent = beside ? begin.size() : 6;
+    const std::string meaning = command_line::wrapped(member.comment, columns, indent, indent);
+    if (meaning.empty() && columns < 1000)  // the page has its blanks
+      text += begin.substr(0, begin.find_last_not_of(' ') + 1) + "\n";
+    else if (beside)
+      text += begin + meaning + "\n";
+    else
+      text += fmt::format("  {} {}\n", member.type_name, name) +
+              (meaning.empty() ? "" : std::string(indent, ' ') + meaning + "\n");
   }
   return text;
+}
+
+/// In columns where they fit, else each key with all about it beside it.
+std::string keys_text(const std::vector<sim::ParamInfo>& params, std::size_t columns) {
+  const std::string table = sim::text_table(params);
+  std::size_t longest = 0;
+  for (std::size_t at = 0; at < table.size();) {
+    const std::size_t end = std::min(table.find('\n', at), table.size());
+    longest = std::max(longest, command_line::column_count(std::string_view(table).substr(at, end - at)));
+    at = end + 1;
+  }
+  if (longest <= columns) return table;
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const auto& [key, type, rule, initial, meaning] : sim::param_rows(params)) {
+    std::string facts = type;
+    if (!rule.empty()) facts += " " + rule;
+    if (!initial.empty())
+      facts += initial == "required" || initial == "unset" ? ", " + initial : ", default " + initial;
+    rows.emplace_back(key, meaning.empty() ? facts : meaning + " (" + facts + ")");
+  }
+  return command_line::two_columns(rows, columns, 28);
 }
 
 const char* const generated = "<!-- Generated: `shoal describe --page {}`. Do not edit. -->\n\n";
@@ -116,17 +152,23 @@ std::string reference_page(const std::string& name) {
   throw std::out_of_range("no page '" + name + "'; pages: devices, messages, world_format");
 }
 
-std::string describe_text(const std::string& name) {
-  if (name == "device") return "Keys of every device.\n\n" + sim::text_table(common_params());
-  if (name == "noise") return "Error of a measured quantity.\n\n" + sim::text_table(params_of<sim::NoiseParams>());
-  if (name == "world") return "Keys of a world file.\n\n" + sim::text_table(params_of<sim::WorldConfig>());
-  if (name == "vehicle") return "Keys of a vehicle file.\n\n" + sim::text_table(params_of<sim::VehicleConfig>());
-  if (const sim::DeviceType* type = sim::DeviceRegistry::instance().find(name))
-    return type->name + ": " + type->meaning + "\n" + traffic_of(*type) + "\n" + sim::text_table(params_of(*type)) +
+std::string describe_text(const std::string& name, std::size_t columns) {
+  const auto keys = [columns](const std::string& title, const std::vector<sim::ParamInfo>& params) {
+    return command_line::wrapped(title, columns) + "\n\n" + keys_text(params, columns);
+  };
+  if (name == "device") return keys("Keys of every device.", common_params());
+  if (name == "noise") return keys("Error of a measured quantity.", params_of<sim::NoiseParams>());
+  if (name == "world") return keys("Keys of a world file.", params_of<sim::WorldConfig>());
+  if (name == "vehicle") return keys("Keys of a vehicle file.", params_of<sim::VehicleConfig>());
+  if (const sim::DeviceType* type = sim::DeviceRegistry::instance().find(name)) {
+    std::string traffic = traffic_of(*type);
+    traffic.pop_back();  // the newline
+    return command_line::wrapped(type->name + ": " + type->meaning, columns) + "\n" + keys(traffic, params_of(*type)) +
            "\nBeside these, the keys of every device: shoal describe device\n";
+  }
   const shoal::MessageTypes& types = shoal::embedded_types();
   for (const std::string& full : {name, "shoal." + name})
-    if (const shoal::MessageSchema* schema = types.find(std::string_view(full))) return message_text(*schema);
+    if (const shoal::MessageSchema* schema = types.find(std::string_view(full))) return message_text(*schema, columns);
   return {};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace tools {
@@ -8,8 +9,8 @@ namespace tools {
 /// Page names: devices, world_format, messages.  Throws std::out_of_range on any other.
 std::string reference_page(const std::string& name);
 
-/// What `shoal describe NAME` prints: a device type, `device` (keys of all devices), `world`, `vehicle`, `noise`, or
-/// a message type.  Empty when nothing is called so.
-std::string describe_text(const std::string& name);
+/// What `shoal describe NAME` prints, in lines of at most `columns` characters where its words allow: a device type,
+/// `device` (keys of all devices), `world`, `vehicle`, `noise`, or a message type.  Empty when nothing is called so.
+std::string describe_text(const std::string& name, std::size_t columns = 1000);
 
 }  // namespace tools

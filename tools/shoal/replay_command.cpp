@@ -15,13 +15,12 @@ namespace {
 
 struct ReplayArguments {
   ReplayOptions replay;
-  std::string report, log_level = "error";
+  std::string report;
 };
 
 constexpr std::size_t most_lines = 60;
 
 int run(ReplayArguments& arguments) {
-  spdlog::set_level(spdlog::level::from_str(arguments.log_level));
   if (!arguments.report.empty()) check_writable(arguments.report);
   catch_signals(true);
   const ReplayOutcome outcome = replay(arguments.replay);
@@ -47,26 +46,28 @@ int run(ReplayArguments& arguments) {
 void add_replay_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("replay", "Run the world of a log again, and compare");
   const auto arguments = std::make_shared<ReplayArguments>();
+  CLI::Option* log_level = add_log_level_option(*command, "error");
   command->add_option("LOG", arguments->replay.log, "of shoal run --record, or of lcm-logger")->required();
-  command->add_option("--world", arguments->replay.world, "a world file instead of the log's world");
-  command->add_option("--set", arguments->replay.sets, "path=value: change a value of the world")
-      ->type_size(1)
-      ->allow_extra_args(false);
+  command->add_option("--world", arguments->replay.world, "a world file instead of the log's world")->type_name("FILE");
+  add_set_option(*command, arguments->replay.sets);
   command->add_option("--until", arguments->replay.until_s, "simulated seconds; without it to the end of the log")
+      ->type_name("S")
       ->check(number_from(0, 1e9));
-  command->add_option("--report", arguments->report, "file for all differences");
-  command->add_option("--threads", arguments->replay.threads, "threads that follow rays; 0: one for each processor")
-      ->check(CLI::Range(0, 256));
+  command->add_option("--report", arguments->report, "file for all differences")->type_name("FILE");
+  add_threads_option(*command, arguments->replay.threads);
   add_plugin_option(*command);
   command->add_flag("--quiet", arguments->replay.quiet, "no progress");
-  command->add_option("--log-level", arguments->log_level, "what is said on stderr")
-      ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}));
-  command->footer(
-      "Exit codes: 0 equal, 1 different, 4 the log does not tell enough.\n"
-      "Examples:\n"
-      "  shoal replay run.lcm\n"
-      "  shoal replay run.lcm --set vehicles.rover3.devices.imu.rate_hz=50 --report differences.txt");
-  command->callback([arguments, &exit_code] {
+  command_line::set_help_end(
+      *command, {{"shoal replay run.lcm",
+                  "shoal replay run.lcm --set vehicles.rover3.devices.imu.rate_hz=50 --report differences.txt"},
+                 {{0, "equal"},
+                  {1, "different"},
+                  {2, "wrong usage, or a mistake in the world"},
+                  {4, "the log has not what a replay needs, or file trouble"},
+                  {130, "ended by Ctrl-C"}},
+                 {}});
+  command->callback([arguments, log_level, &exit_code] {
+    if (log_level->count() > 0 && !spdlog::should_log(spdlog::level::info)) arguments->replay.quiet = true;
     try {
       exit_code = run(*arguments);
     } catch (const sim::ConfigError&) {

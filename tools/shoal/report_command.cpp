@@ -38,13 +38,16 @@ void add_report_command(CLI::App& app, int& exit_code) {
     std::string output;
   };
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("DIR", arguments->directories, "results folders; several of runs are compared")->required();
-  command->add_option("--output", arguments->output,
-                      "the page; unset: DIR/report.html; of several folders comparison.html in the first");
-  command->footer(
-      "Examples:\n  shoal report results/coop_land\n"
-      "  shoal report results/seed1 results/seed2 --output comparison.html\n"
-      "The page holds its pictures and needs no network.  docs/scores.md tells more.");
+  add_log_level_option(*command);
+  command->add_option("DIR", arguments->directories, "results directories; several runs are compared")->required();
+  command
+      ->add_option("--output", arguments->output,
+                   "the page; without it DIR/report.html, or comparison.html in the first of several")
+      ->type_name("FILE");
+  command_line::set_help_end(*command, {{"shoal report results/coop_land",
+                                         "shoal report results/seed1 results/seed2 --output comparison.html"},
+                                        {{0, "success"}, {2, "wrong usage"}, {4, "a file cannot be read or written"}},
+                                        {"The page holds its plots and needs no network.  See docs/scores.md."}});
   command->callback([arguments, &exit_code] { exit_code = report(arguments->directories, arguments->output); });
 }
 

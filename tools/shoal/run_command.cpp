@@ -22,7 +22,6 @@ struct RunArguments {
   std::string from;
   std::string snapshot_at;
   std::optional<double> duration_s;
-  std::string log_level = "info";
 };
 
 /// `max` or a number.
@@ -37,14 +36,6 @@ std::optional<double> parse_speed(const std::string& text) {
   }
   throw CLI::ValidationError("--speed",
                              "must be 0 or 'max' (as fast as possible), or from 0.001 to 1e6, got '" + text + "'");
-}
-
-std::string check_seed(const std::string& text) {
-  std::int64_t seed = 0;
-  const char* end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, seed);
-  const bool good = error == std::errc{} && at == end && seed >= 0;
-  return good ? "" : "must be a whole number from 0 to 9223372036854775807, got '" + text + "'";
 }
 
 /// `10,20.5`: times in s.
@@ -72,13 +63,14 @@ sim::LoadedWorld load_from(RunArguments& arguments) {
 }
 
 int run(RunArguments& arguments) {
-  spdlog::set_level(spdlog::level::from_str(arguments.log_level));
   arguments.load.allow_plugins = arguments.run.launch;
   arguments.run.speed = parse_speed(arguments.speed);
   arguments.run.duration_s = arguments.duration_s;
   arguments.load.encode_message = shoal::encode_own_message;
   if (arguments.world.empty() == arguments.from.empty())
-    throw CLI::ValidationError("shoal run", "needs either a WORLD or --from SNAPSHOT");
+    throw command_line::UsageError("needs either a WORLD or --from FILE");
+  if (!arguments.run.await.empty() && arguments.run.bus == "none")
+    throw CLI::ValidationError("--await", "needs the LCM bus: clients cannot join on --bus none");
   arguments.run.snapshot_at_s = parse_times(arguments.snapshot_at);
   const bool nowhere = arguments.run.snapshots.empty() && arguments.run.results.empty();
   if (nowhere && (!arguments.snapshot_at.empty() || arguments.run.snapshot_every_s))
@@ -94,65 +86,99 @@ int run(RunArguments& arguments) {
   return summary.exit_code;
 }
 
+void add_snapshot_options(CLI::App& command, RunArguments& arguments) {
+  command.add_option("--from", arguments.from, "go on from a snapshot file instead of the start of a WORLD")
+      ->type_name("FILE");
+  command
+      .add_option("--snapshot-at", arguments.snapshot_at, "write snapshot files at these times in s, such as 10,20.5")
+      ->type_name("TIMES");
+  command.add_option("--snapshot-every", arguments.run.snapshot_every_s, "write one every so many simulated seconds")
+      ->type_name("S")
+      ->check(number_from(0.001, 1e9));
+  command
+      .add_option("--snapshots", arguments.run.snapshots, "directory of snapshot files; without it RESULTS/snapshots")
+      ->type_name("DIR");
+  command
+      .add_option("--rewind-s", arguments.run.rewind_s,
+                  "how far back the run can go, in simulated seconds; without it 60 on a bus or terminal")
+      ->type_name("S")
+      ->check(number_from(0, 1e6));
+  command.add_option("--rewind-mb", arguments.run.rewind_MB, "memory for that in MB")
+      ->type_name("MB")
+      ->check(number_from(1, 1e5))
+      ->capture_default_str();
+}
+
+void add_output_options(CLI::App& command, RunArguments& arguments) {
+  command.add_option("--record", arguments.run.record, "write an LCM event log, stamped with simulated time")
+      ->type_name("FILE");
+  command.add_flag("--overwrite", arguments.run.overwrite, "the record may replace a file");
+  command.add_option("--results", arguments.run.results, "directory for summary.json, CSV files and plots")
+      ->type_name("DIR");
+  command.add_flag_callback(
+      "--no-pictures", [&] { arguments.run.pictures = false; }, "results without plots");
+  command.add_flag("--quiet", arguments.run.quiet, "no progress and no summary");
+}
+
+void add_bus_options(CLI::App& command, RunArguments& arguments) {
+  command.add_option("--bus", arguments.run.bus, "lcm, or none for a run within the process only")
+      ->type_name("BUS")
+      ->check(one_of({"lcm", "none"}).description(""));
+  add_lcm_url_option(command, arguments.run.lcm_url);
+  command.add_flag("--launch", arguments.run.launch, "start the programs that the world names");
+  command.add_option("--await", arguments.run.await, "lockstep clients to wait for, started by hand: NAME,NAME,...")
+      ->type_name("NAMES")
+      ->delimiter(',')
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command.add_flag_callback(
+      "--no-serial-ports", [&] { arguments.run.serial_ports = false; },
+      "do not open the pseudo-terminals and FIFOs of devices");
+  command
+      .add_option("--run-name", arguments.run.name,
+                  "what {run} stands for in paths of serial ports and commands of processes")
+      ->type_name("NAME")
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void add_run_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", "Run a world");
   const auto arguments = std::make_shared<RunArguments>();
+  add_log_level_option(*command);
   command->add_option("WORLD", arguments->world, "world file, or the name of a shipped world (shoal list)");
-  command->add_option("--duration", arguments->duration_s, "simulated seconds; 0: until told to quit")
+  command->add_option("--duration", arguments->duration_s, "simulated seconds; 0: until a request to quit")
+      ->type_name("S")
       ->check(number_from(0, 1e9));
-  command->add_option("--from", arguments->from, "go on from a snapshot file instead of the start of a WORLD");
-  command->add_option("--snapshot-at", arguments->snapshot_at, "write snapshot files at these times in s: 10,20.5");
-  command->add_option("--snapshot-every", arguments->run.snapshot_every_s, "write one every so many simulated seconds")
-      ->check(number_from(0.001, 1e9));
-  command->add_option("--snapshots", arguments->run.snapshots,
-                      "directory of snapshot files; without it RESULTS/snapshots");
-  command
-      ->add_option("--rewind-s", arguments->run.rewind_s,
-                   "how far back the run can go, in simulated seconds; without it 60 on a bus or terminal")
-      ->check(number_from(0, 1e6));
-  command->add_option("--rewind-mb", arguments->run.rewind_MB, "memory for that in MB")
-      ->check(number_from(1, 1e5))
-      ->capture_default_str();
-  command->add_flag("!--no-keys", arguments->run.keys, "keys of the terminal do nothing");
-  command->add_option("--speed", arguments->speed, "times real time, from 0.001 to 1e6; 0 or max: as fast as possible");
-  command->add_option("--seed", arguments->load.seed, "of every random stream")->check(check_seed);
-  command->add_option("--set", arguments->load.sets, "path=value: change a value of the world file")
-      ->type_size(1)
-      ->allow_extra_args(false);
-  command->add_option("--bus", arguments->run.bus, "lcm, or none: within the process only")
-      ->check(CLI::IsMember({"lcm", "none"}));
-  command->add_option("--lcm-url", arguments->run.lcm_url, "instead of LCM_DEFAULT_URL and the default");
-  command->add_option("--record", arguments->run.record, "write an LCM event log, stamped with simulated time");
-  command->add_flag("--overwrite", arguments->run.overwrite, "the record may replace a file");
-  command->add_option("--results", arguments->run.results, "directory for summary.json, CSV files and plots");
-  command->add_flag("!--no-pictures", arguments->run.pictures, "results without plots");
+  command->add_option("--speed", arguments->speed, "times real time, from 0.001 to 1e6; 0 or max: as fast as possible")
+      ->type_name("FACTOR");
+  command->add_option("--seed", arguments->load.seed, "of every random stream")
+      ->type_name("N")
+      ->check(command_line::seed());
+  add_set_option(*command, arguments->load.sets);
   command->add_flag("--paused", arguments->run.paused, "wait for a resume on sim.control");
-  command->add_flag("--launch", arguments->run.launch, "start the programs that the world names");
-  command->add_option("--threads", arguments->run.threads, "threads that follow rays; 0: one for each processor")
-      ->check(CLI::Range(0, 256));
-  command->add_option("--await", arguments->run.await, "lockstep clients, started by hand, to wait for")
-      ->delimiter(',')
-      ->type_size(1)
-      ->allow_extra_args(false);
+  command->add_flag_callback(
+      "--no-keys", [arguments] { arguments->run.keys = false; }, "ignore the keys of the terminal");
+  add_bus_options(*command, *arguments);
+  add_output_options(*command, *arguments);
+  add_snapshot_options(*command, *arguments);
+  add_threads_option(*command, arguments->run.threads);
   add_plugin_option(*command);
-  command->add_flag("!--no-serial-ports", arguments->run.serial_ports,
-                    "do not open the pseudo-terminals and FIFOs of devices");
-  command
-      ->add_option("--run-name", arguments->run.name,
-                   "what {run} stands for in paths of serial ports and commands of processes")
-      ->capture_default_str();
-  command->add_flag("--quiet", arguments->run.quiet, "no progress and no summary");
-  command->add_option("--log-level", arguments->log_level, "what is said on stderr")
-      ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}));
-  command->footer(
-      "Examples:\n"
-      "  shoal run worlds/minimal.yaml --duration 10 --speed 1\n"
-      "  shoal run worlds/coop_land.yaml --launch --results results/coop_land --record coop.lcm\n"
-      "  shoal run worlds/coop_land.yaml --duration 20 --snapshot-at 10 --snapshots snaps\n"
-      "  shoal run --from snaps/branch0_step1000.snapshot --set vehicles.rover3.devices.lidar.rate_hz=5\n"
-      "  shoal run worlds/coop_land.yaml --seed 7 --set vehicles.rover3.devices.modem.loss_probability=0.2");
+  command_line::set_help_end(
+      *command, {{"shoal run worlds/minimal.yaml --duration 10 --speed 1",
+                  "shoal run worlds/coop_land.yaml --launch --results results/coop_land --record coop.lcm",
+                  "shoal run worlds/coop_land.yaml --duration 20 --snapshot-at 10 --snapshots snaps",
+                  "shoal run --from snaps/branch0_step1000.snapshot --set vehicles.rover3.devices.lidar.rate_hz=5",
+                  "shoal run worlds/coop_land.yaml --seed 7 --set vehicles.rover3.devices.modem.loss_probability=0.2"},
+                 {{0, "the run ended; no rule of the world failed"},
+                  {1, "a rule of the world failed"},
+                  {2, "wrong usage, or a mistake in the world"},
+                  {3, "physics fault"},
+                  {4, "bus or file trouble"},
+                  {5, "a lockstep client did not join or answer in time"},
+                  {129, "ended by SIGHUP; 130 by SIGINT; 143 by SIGTERM"}},
+                 {}});
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

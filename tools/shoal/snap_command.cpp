@@ -11,8 +11,10 @@
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/camera/image_file.hpp"
 #include "sim/camera/renderer.hpp"
+#include "sim/config/message_text.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/world.hpp"
+#include "tools/experiment/overview.hpp"
 #include "tools/experiment/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
@@ -30,6 +32,7 @@ struct SnapArguments {
   std::string from, out, size = "1280x720", image, eye, look;
   double fov_deg = 60;
   std::optional<int> antialias;
+  bool all = false;
   int quality = 90;
 };
 
@@ -41,6 +44,7 @@ struct View {
   bool grey = false;
   int antialias = 2;
   float gain = 1;
+  std::optional<Overview> overview;
 };
 
 using Numbers = std::vector<double>;
@@ -68,38 +72,6 @@ sim::Vector3d parse_point(const char* option, const std::string& text) {
   for (const double number : numbers)
     if (std::abs(number) > 1e7) throw CLI::ValidationError(option, "must be within 1e7 m, got '" + text + "'");
   return {numbers[0], numbers[1], numbers[2]};
-}
-
-/// Looks from one point to another, upright; straight up or down, north is up in the picture.
-sim::Pose look_at(const sim::Vector3d& eye_W, const sim::Vector3d& look_W) {
-  const sim::Vector3d x_W = (look_W - eye_W).normalized();
-  const bool upright = std::hypot(x_W.x(), x_W.y()) > 1e-6;
-  const sim::Vector3d up_W = upright ? sim::Vector3d::UnitZ() : sim::Vector3d::UnitY();
-  sim::Pose X_WS = sim::Pose::Identity();
-  const sim::Vector3d y_W = up_W.cross(x_W).normalized();
-  X_WS.linear() << x_W, y_W, x_W.cross(y_W);
-  X_WS.translation() = eye_W;
-  return X_WS;
-}
-
-/// From the south-west and above, so that everything but planes is in the picture.
-sim::Pose view_of_everything(const sim::PhysicsWorld& physics, const sim::OpticsConfig& optics) {
-  Eigen::AlignedBox3d all;
-  for (std::size_t i = 0; i < physics.parts().size(); ++i)
-    if (physics.parts()[i].group >= 0)
-      if (const auto box = physics.bounds_W(static_cast<int>(i))) all.extend(*box);
-  if (all.isEmpty()) all = Eigen::AlignedBox3d(sim::Vector3d(-1, -1, 0), sim::Vector3d(1, 1, 1));
-  const sim::Vector3d back_W = sim::Vector3d(-0.5, -0.75, 0.62).normalized();
-  const sim::Pose X_WS = look_at(all.center() + back_W, all.center());
-  // So far back that every corner of the box is inside the lens's angles, with a little air around.
-  const double wide = 0.93 * std::tan(0.5 * optics.fov_rad), high = wide * optics.height / optics.width;
-  double back_m = 0.5;
-  for (int corner = 0; corner < 8; ++corner) {
-    const sim::Vector3d p_W = all.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
-    const sim::Vector3d p_S = X_WS.linear().transpose() * (p_W - all.center());
-    back_m = std::max({back_m, std::abs(p_S.y()) / wide - p_S.x(), std::abs(p_S.z()) / high - p_S.x()});
-  }
-  return look_at(all.center() + back_m * back_W, all.center());
 }
 
 const devices::Camera& find_camera(const sim::World& world, const std::string& name, const sim::MountedDevice*& found) {
@@ -149,7 +121,8 @@ View free_view(const SnapArguments& arguments, const sim::World& world) {
   view.optics.fov_rad = sim::degrees_to_radians(arguments.fov_deg);
   view.options.light = world.config().light;
   if (arguments.eye.empty()) {
-    view.X_WS = view_of_everything(world.physics(), view.optics);
+    view.overview = overview_of(world, view.optics, arguments.all);
+    view.X_WS = view.overview->X_WS;
     return view;
   }
   const sim::Vector3d eye_W = parse_point("--eye", arguments.eye), look_W = parse_point("--look", arguments.look);
@@ -197,9 +170,21 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// Of a view that nobody chose, what cannot be seen in it.
+void warn(const View& view) {
+  if (!view.overview) return;
+  if (!view.overview->hidden.empty())
+    spdlog::warn("hidden behind something in this view: {}; see --eye and --look",
+                 sim::list_text(view.overview->hidden, 8));
+  if (!view.overview->tiny.empty())
+    spdlog::warn("only a few pixels wide in this view: {}; see --eye and --look",
+                 sim::list_text(view.overview->tiny, 8));
+}
+
 void take_one(const SnapArguments& arguments, const sim::World& world, const std::string& path,
               sim::TextureLibrary& textures) {
   const View view = make_view(arguments, world);
+  warn(view);
   const auto start = std::chrono::steady_clock::now();
   const sim::Image8 picture = take_picture(world, view, textures);
   const double render_s = seconds_since(start);
@@ -244,52 +229,73 @@ int snap(SnapArguments& arguments) {
   return exit_ok;
 }
 
-std::string check_seed(const std::string& text) {
-  std::int64_t seed = 0;
-  const char* end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, seed);
-  const bool good = error == std::errc{} && at == end && seed >= 0;
-  return good ? "" : "must be a whole number from 0 to 9223372036854775807, got '" + text + "'";
+void add_view_options(CLI::App& command, SnapArguments& arguments) {
+  CLI::Option* from =
+      command.add_option("--from", arguments.from, "a camera of the world")->type_name("VEHICLE.DEVICE");
+  CLI::Option* eye =
+      command.add_option("--eye", arguments.eye, "where the camera stands, m; without it all vehicles are in view")
+          ->type_name("X,Y,Z");
+  CLI::Option* all = command.add_flag("--all", arguments.all, "all objects are in view, too, apart from planes");
+  CLI::Option* look = command.add_option("--look", arguments.look, "the point that it looks at, m")->type_name("X,Y,Z");
+  CLI::Option* fov =
+      command.add_option("--fov", arguments.fov_deg, "horizontal angle of view, degrees")->type_name("DEG");
+  CLI::Option* size = command.add_option("--size", arguments.size, "of the image in pixels")->type_name("WIDTHxHEIGHT");
+  eye->needs(look);
+  look->needs(eye);
+  fov->check(number_from(1, 170))->capture_default_str();
+  size->capture_default_str();
+  for (CLI::Option* option : {eye, fov, size, all}) option->excludes(from);
+  all->excludes(eye);
+  command
+      .add_option(
+          "--image", arguments.image,
+          "rgb, grey, depth, segmentation_parts or segmentation_vehicles; without it rgb, or as --from takes it")
+      ->type_name("KIND")
+      ->check(one_of({"rgb", "grey", "depth", "segmentation_parts", "segmentation_vehicles"}).description(""));
+  command.add_option("--antialias", arguments.antialias, "rays along each side of a pixel; without it 2")
+      ->type_name("N")
+      ->check(whole_from(1, 4));
+  command.add_option("--quality", arguments.quality, "of a JPEG")
+      ->type_name("N")
+      ->check(whole_from(1, 100))
+      ->capture_default_str();
 }
 
 }  // namespace
 
 void add_snap_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("snap", "Run a world without bus or clock and take a picture");
+  CLI::App* command = app.add_subcommand("snap", "Run a world without bus or clock and take an image");
   const auto arguments = std::make_shared<SnapArguments>();
+  add_log_level_option(*command);
   command->add_option("WORLD", arguments->world, "world file, or the name of a shipped world")->required();
-  command->add_option("--out", arguments->out, "the picture: .png, .jpg or .jpeg")->required();
-  command->add_option("--at", arguments->at_s, "simulated time, s")->check(number_from(0, 1e9));
+  command->add_option("--out", arguments->out, "file of the image: .png, .jpg or .jpeg")->type_name("FILE")->required();
+  command->add_option("--at", arguments->at_s, "simulated time, s")
+      ->type_name("S")
+      ->check(number_from(0, 1e9))
+      ->capture_default_str();
   CLI::Option* every =
-      command->add_option("--every", arguments->every_s, "more pictures, so many seconds apart: NAME_0000.png and on");
-  CLI::Option* until = command->add_option("--until", arguments->until_s, "time of the last of them, s");
+      command->add_option("--every", arguments->every_s, "more images, so many seconds apart: NAME_0000.png and on")
+          ->type_name("S");
+  CLI::Option* until =
+      command->add_option("--until", arguments->until_s, "time of the last of them, s")->type_name("S");
   every->check(number_from(1e-6, 1e9))->needs(until);
   until->check(number_from(0, 1e9))->needs(every);
-  CLI::Option* from = command->add_option("--from", arguments->from, "a camera of the world: VEHICLE.DEVICE");
-  CLI::Option* eye = command->add_option("--eye", arguments->eye, "x,y,z: where a camera stands; else all is seen");
-  CLI::Option* look = command->add_option("--look", arguments->look, "x,y,z: where it looks");
-  CLI::Option* fov = command->add_option("--fov", arguments->fov_deg, "its horizontal angle, degrees");
-  CLI::Option* size = command->add_option("--size", arguments->size, "WIDTHxHEIGHT in pixels");
-  eye->needs(look);
-  look->needs(eye);
-  fov->check(number_from(1, 170));
-  for (CLI::Option* option : {eye, fov, size}) option->excludes(from);
-  command->add_option("--image", arguments->image, "what it takes, rgb unless --from is another camera")
-      ->check(CLI::IsMember({"rgb", "grey", "depth", "segmentation_parts", "segmentation_vehicles"}));
-  command->add_option("--antialias", arguments->antialias, "so many rays along each side of a pixel; 2")
-      ->check(CLI::Range(1, 4));
-  command->add_option("--quality", arguments->quality, "of a JPEG")->check(CLI::Range(1, 100));
-  command->add_option("--seed", arguments->load.seed, "of every random stream")->check(check_seed);
-  command->add_option("--set", arguments->load.sets, "path=value: change a value of the world file")
-      ->type_size(1)
-      ->allow_extra_args(false);
+  add_view_options(*command, *arguments);
+  command->add_option("--seed", arguments->load.seed, "of every random stream")
+      ->type_name("N")
+      ->check(command_line::seed());
+  add_set_option(*command, arguments->load.sets);
   add_plugin_option(*command);
-  command->footer(
-      "Examples:\n"
-      "  shoal snap worlds/coop_land.yaml --out coop_land.png\n"
-      "  shoal snap worlds/living_warehouse.yaml --at 12.5 --eye -6,-8,5 --look 4,2,0 --out hall.jpg\n"
-      "  shoal snap worlds/proving_ground.yaml --at 3 --from turntable.camera --out seen.png\n"
-      "  shoal snap worlds/arm_reach.yaml --every 0.5 --until 5 --size 640x480 --out reach.png");
+  command_line::set_help_end(
+      *command, {{"shoal snap worlds/coop_land.yaml --out coop_land.png",
+                  "shoal snap worlds/living_warehouse.yaml --at 12.5 --eye -6,-8,5 --look 4,2,0 --out hall.jpg",
+                  "shoal snap worlds/proving_ground.yaml --at 3 --from turntable.camera --out seen.png",
+                  "shoal snap worlds/arm_reach.yaml --every 0.5 --until 5 --size 640x480 --out reach.png"},
+                 {{0, "success"},
+                  {2, "wrong usage, or a mistake in the world"},
+                  {3, "physics fault"},
+                  {4, "the image cannot be written"}},
+                 {}});
   command->callback([arguments, &exit_code] { exit_code = snap(*arguments); });
 }
 

@@ -57,18 +57,23 @@ int show(const SnapshotArguments& arguments) {
 }  // namespace
 
 void add_snapshot_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("snapshot", "Tell what is in a snapshot file");
+  CLI::App* command = app.add_subcommand("snapshot", "Show what is in a snapshot file");
   const auto arguments = std::make_shared<SnapshotArguments>();
+  add_log_level_option(*command);
   command->add_option("FILE", arguments->file, "snapshot file")->required();
   command->add_flag("--check", arguments->check, "restore it, and compare the state hash");
   command->add_flag("--world", arguments->world, "print its world file instead");
-  command->footer(
-      "Examples:\n"
-      "  shoal run worlds/minimal.yaml --duration 20 --snapshot-at 10 --snapshots snaps\n"
-      "  shoal snapshot snaps/branch0_step1000.snapshot --check\n"
-      "  shoal run --from snaps/branch0_step1000.snapshot\n"
-      "Exit codes: 0 good, 1 restored with another hash, 4 no snapshot, damaged, of another build, or a\nfile of its "
-      "world (mesh, terrain, texture, current) is not as it was.");
+  command_line::set_help_end(
+      *command,
+      {{"shoal run worlds/minimal.yaml --duration 20 --snapshot-at 10 --snapshots snaps",
+        "shoal snapshot snaps/branch0_step1000.snapshot --check", "shoal run --from snaps/branch0_step1000.snapshot"},
+       {{0, "good"},
+        {1, "restored with another hash"},
+        {2, "wrong usage"},
+        {4,
+         "not a snapshot, damaged, of another build, or a file of its world (mesh, terrain, texture, current) has "
+         "changed"}},
+       {}});
   command->callback([arguments, &exit_code] { exit_code = show(*arguments); });
 }
 

@@ -1,15 +1,20 @@
 #include <poll.h>
 #include <spdlog/fmt/fmt.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "bridges/lcm/lcm_listener.hpp"
 #include "bridges/lcm/wait_notice.hpp"
 #include "shoal/message_schema.hpp"
+#include "tools/command_line/text_layout.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/shoal/commands.hpp"
 
@@ -28,7 +33,6 @@ struct SpyArguments {
 
 struct Seen {
   std::uint64_t messages = 0;
-  std::uint64_t bytes = 0;
   std::uint64_t messages_before = 0;
   sim::Bytes last;
 };
@@ -64,19 +68,53 @@ std::string decoded(const shoal::MessageTypes& types, const sim::Bytes& payload,
   return text;
 }
 
+/// The screen that the table must fit; nothing in a pipe or file, where lines are as long as they are.
+struct Screen {
+  std::size_t columns = 80, lines = 24;
+};
+
+std::optional<Screen> find_screen() {
+  if (isatty(STDOUT_FILENO) == 0) return std::nullopt;
+  Screen screen;
+  screen.columns = static_cast<std::size_t>(command_line::text_columns(STDOUT_FILENO));
+  winsize size{};
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 3) screen.lines = size.ws_row;
+  return screen;
+}
+
+/// The name of the channel gets what is left beside the figures, and at least a dozen columns stay for the message.
+std::size_t channel_columns(const std::map<std::string, Seen>& channels, const std::optional<Screen>& screen) {
+  constexpr std::size_t figures = 27, least_of_message = 12, usual = 32;
+  if (!screen) return usual;
+  std::size_t longest = 8;
+  for (const auto& [channel, seen] : channels) longest = std::max(longest, command_line::column_count(channel));
+  const std::size_t room = screen->columns - std::min(screen->columns, figures + 2 + least_of_message);
+  return std::max<std::size_t>(8, std::min(longest, room));
+}
+
 void print_table(std::map<std::string, Seen>& channels, const shoal::MessageTypes& types, double since_s,
-                 bool terminal) {
-  if (terminal) std::cout << "\033[H\033[2J";
-  std::cout << fmt::format("{:<32} {:>9} {:>9} {:>9}  last message\n", "channel", "messages", "Hz", "bytes");
+                 const std::optional<Screen>& screen) {
+  const std::size_t width = channel_columns(channels, screen);
+  const auto fitted = [&](const std::string& line) {
+    return screen ? command_line::cut_to(line, screen->columns) : line;
+  };
+  // A terminal that cannot be cleared gets one table below the other.
+  if (screen && command_line::can_move_cursor(STDOUT_FILENO)) std::cout << "\033[H\033[2J";
+  std::string text =
+      fitted(fmt::format("{:<{}} {:>8} {:>8} {:>8}  last message", "channel", width, "messages", "Hz", "bytes")) + '\n';
+  std::size_t lines = 1, left_out = 0;
   for (auto& [channel, seen] : channels) {
     const double rate_hz = static_cast<double>(seen.messages - seen.messages_before) / since_s;
     seen.messages_before = seen.messages;
-    std::string line = fmt::format("{:<32} {:>9} {:>9.1f} {:>9}  {}", one_line(channel), seen.messages, rate_hz,
-                                   seen.last.size(), decoded(types, seen.last, 6, " "));
-    if (terminal && line.size() > 150) line = line.substr(0, 147) + "...";
-    std::cout << line << '\n';
+    if (screen && lines + 2 > screen->lines && ++left_out > 0) continue;
+    const std::string name = one_line(channel);
+    text += fitted(fmt::format("{:<{}} {:>8} {:>8.1f} {:>8}  {}", screen ? command_line::cut_to(name, width) : name,
+                               width, seen.messages, rate_hz, seen.last.size(), decoded(types, seen.last, 6, " "))) +
+            '\n';
+    ++lines;
   }
-  std::cout << std::flush;
+  if (left_out > 0) text += fmt::format("and {} more channels\n", left_out);
+  std::cout << text << std::flush;
 }
 
 /// True once nobody can read what is printed: the next write would end us, but there may be none for long.
@@ -93,36 +131,42 @@ int spy(const SpyArguments& arguments) {
   else
     listener.listen(arguments.channel);
   catch_signals(false);
+  const bool table = arguments.channel.empty();
   const bool terminal = isatty(STDOUT_FILENO) != 0;
+  // In a pipe, rates over whole seconds; with a duration one table, of all of it.
+  const double every_s = terminal ? 0.5 : arguments.duration_s > 0 ? arguments.duration_s : 1;
   std::map<std::string, Seen> channels;
   const Clock::time_point begin = Clock::now();
   Clock::time_point shown = begin;
-  const auto over = [&] {
-    return caught_signal() != 0 || output_closed() ||
-           (arguments.duration_s > 0 && Clock::now() - begin > std::chrono::duration<double>(arguments.duration_s));
+  const auto seconds_since = [](Clock::time_point then) {
+    return std::chrono::duration<double>(Clock::now() - then).count();
   };
   bridges::WaitNotice notice("shoal spy: waiting for messages on " +
                              (arguments.channel.empty() ? "any channel" : "'" + arguments.channel + "'") + ", at " +
                              listener.url());
+  bool closed = false;
+  const auto over = [&] {
+    closed = output_closed();
+    return closed || caught_signal() != 0 || (arguments.duration_s > 0 && seconds_since(begin) > arguments.duration_s);
+  };
+  bool any_table = false;
   while (!over()) {
     if (channels.empty()) notice.look();
     if (const auto message = listener.next(std::chrono::milliseconds(100))) {
       Seen& seen = channels[message->channel];
       ++seen.messages;
-      seen.bytes += message->payload.size();
       seen.last = message->payload;
-      if (!arguments.channel.empty())
-        std::cout << decoded(types, message->payload, 10000, "\n  ") << '\n' << std::flush;
+      if (!table) std::cout << decoded(types, message->payload, 10000, "\n  ") << '\n' << std::flush;
     }
-    const double since_s = std::chrono::duration<double>(Clock::now() - shown).count();
-    if (arguments.channel.empty() && terminal && since_s > 0.5) {
-      print_table(channels, types, since_s, true);
-      shown = Clock::now();
-    }
+    if (!table || channels.empty() || seconds_since(shown) < every_s) continue;
+    if (any_table && !terminal) std::cout << '\n';
+    print_table(channels, types, seconds_since(shown), find_screen());
+    shown = Clock::now();
+    any_table = true;
   }
-  if (arguments.channel.empty() && !terminal)
-    print_table(channels, types, std::chrono::duration<double>(Clock::now() - shown).count(), false);
-  if (channels.empty()) std::cerr << "shoal spy: no message came; is something running? see shoal doctor\n";
+  if (table && !any_table && !channels.empty() && !closed)
+    print_table(channels, types, seconds_since(shown), find_screen());
+  if (channels.empty() && !closed) std::cerr << "shoal spy: no message came; is something running? see shoal doctor\n";
   return exit_ok;
 }
 
@@ -131,12 +175,20 @@ int spy(const SpyArguments& arguments) {
 void add_spy_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("spy", "Watch the live channels: rates and decoded fields");
   const auto arguments = std::make_shared<SpyArguments>();
+  add_log_level_option(*command);
   command->add_option("CHANNEL", arguments->channel, "show every message of this channel in full");
-  command->add_option("--duration", arguments->duration_s, "wall seconds; 0: until Ctrl-C")->check(number_from(0, 1e9));
-  command->add_option("--lcm-url", arguments->lcm_url, "instead of LCM_DEFAULT_URL and the default");
-  command->add_option("--types", arguments->lcm_files, ".lcm files of types that are not Shoal's");
+  command->add_option("--duration", arguments->duration_s, "wall seconds; 0: until Ctrl-C")
+      ->type_name("S")
+      ->check(number_from(0, 1e9));
+  add_lcm_url_option(*command, arguments->lcm_url);
+  add_types_option(*command, arguments->lcm_files);
   add_plugin_option(*command);
-  command->footer("Examples:\n  shoal spy\n  shoal spy rover1.odometry\n  shoal spy --duration 5 > channels.txt");
+  command_line::set_help_end(
+      *command,
+      {{"shoal spy", "shoal spy rover1.odometry", "shoal spy --duration 5 > channels.txt"},
+       {{0, "success, also when no message came"}, {2, "wrong usage"}, {4, "bus trouble"}},
+       {"On a terminal the table is drawn again twice a second.  In a pipe or file there is one table, at the "
+        "end, or one line for each message of CHANNEL."}});
   command->callback([arguments, &exit_code] { exit_code = spy(*arguments); });
 }
 

@@ -68,27 +68,34 @@ void add_study_command(CLI::App& app, int& exit_code) {
   };
   const auto arguments = std::make_shared<Arguments>();
   arguments->options.jobs = 0;
+  CLI::Option* log_level = add_log_level_option(*command, "warn");
   command->add_option("STUDY", arguments->path, "study file, see docs/scores.md")->required();
   command->add_option("--seeds", arguments->seeds, "instead of those of the study: 7, 1-10 or 1-3,8")
       ->type_name("SEEDS");
   command->add_option("--duration", arguments->changes.duration_s, "simulated seconds of each run, for a first look")
-      ->type_name("SECONDS")
+      ->type_name("S")
       ->check(number_from(1e-6, 1e9));
   command->add_option("--jobs", arguments->options.jobs, "runs at the same time; 0: one for every two processors")
-      ->check(CLI::Range(0, 64));
-  command->add_option("--output", arguments->options.output,
-                      "folder; unset: results/NAME-OF-STUDY, with --duration 10 results/NAME-OF-STUDY_10s");
-  command->add_flag("--fresh", arguments->options.fresh, "do runs again that are done already");
+      ->type_name("N")
+      ->check(whole_from(0, 64));
+  command
+      ->add_option("--output", arguments->options.output,
+                   "directory; without it results/NAME-OF-STUDY, with --duration 10 results/NAME-OF-STUDY_10s")
+      ->type_name("DIR");
+  command->add_flag("--fresh", arguments->options.fresh, "repeat runs that are complete");
   command->add_flag("--quiet", arguments->options.quiet, "no progress");
   add_plugin_option(*command);
-  command->footer(
-      "Examples:\n  shoal study worlds/studies/coop_land.yaml --jobs 2\n"
-      "  shoal study worlds/studies/coop_underwater.yaml --seeds 1-2 --duration 60\n"
-      "  shoal report results/coop_land\n"
-      "The exit code is 1 when a rule of the study fails, and 4 when a run has no result.  After Ctrl-C the same\n"
-      "command goes on with the runs that are missing.");
-  command->callback([arguments, &exit_code] {
-    spdlog::set_level(spdlog::level::warn);
+  command_line::set_help_end(*command, {{"shoal study worlds/studies/coop_land.yaml --jobs 2",
+                                         "shoal study worlds/studies/coop_underwater.yaml --seeds 1-2 --duration 60",
+                                         "shoal report results/coop_land"},
+                                        {{0, "no rule of the study failed"},
+                                         {1, "a rule of the study failed"},
+                                         {2, "wrong usage, or a mistake in the study or its world"},
+                                         {4, "a run has no result, or file trouble"},
+                                         {130, "ended by Ctrl-C"}},
+                                        {"After Ctrl-C the same command goes on with the runs that are missing."}});
+  command->callback([arguments, log_level, &exit_code] {
+    if (log_level->count() > 0 && !spdlog::should_log(spdlog::level::info)) arguments->options.quiet = true;
     try {
       if (!arguments->seeds.empty()) arguments->changes.seeds = parse_seeds(arguments->seeds);
     } catch (const std::invalid_argument& error) {

@@ -1,5 +1,3 @@
-#include "tools/experiment/ranging_picture.hpp"
-
 #include <gmock/gmock.h>
 #include <unistd.h>
 
@@ -13,6 +11,7 @@
 #include "shoal/side_scan_t.hpp"
 #include "shoal/sonar_image_t.hpp"
 #include "shoal/utime_t.hpp"
+#include "tools/experiment/log_picture.hpp"
 
 namespace {
 
@@ -42,7 +41,7 @@ class RangingPicture : public testing::Test {
   template <typename Message>
   std::string problem_of(const Message& message, const std::string& channel = "s", std::optional<int> number = {}) {
     try {
-      tools::draw_ranging(log_of(message), channel, png(), number);
+      tools::draw_log(log_of(message), channel, png(), {number, {}});
       return {};
     } catch (const std::runtime_error& error) {
       return error.what();
@@ -102,7 +101,7 @@ TEST_F(RangingPicture, CountsWhoseProductOverflowsAreNoSize) {
 TEST_F(RangingPicture, OfACutLogSaysSo) {
   const std::string log = log_of(side_scan());
   std::filesystem::resize_file(log, std::filesystem::file_size(log) - 3);
-  EXPECT_THAT(tools::draw_ranging(log, "s", png(), {}),
+  EXPECT_THAT(tools::draw_log(log, "s", png(), {}).problems,
               testing::ElementsAre(testing::HasSubstr("the last event is cut off")));
   EXPECT_TRUE(drawn());
 }

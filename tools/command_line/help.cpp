@@ -1,0 +1,183 @@
+#include "tools/command_line/help.hpp"
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+#include "tools/command_line/arguments.hpp"
+#include "tools/command_line/checks.hpp"
+#include "tools/command_line/text_layout.hpp"
+
+namespace command_line {
+
+namespace {
+
+/// The range of a value, by what its checks call themselves.  CLI11 puts them behind the name of the type.
+std::string rule_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t colon = type.find(':');
+  return colon == std::string::npos ? "" : type.substr(colon + 1);
+}
+
+std::string names_of(const CLI::Option& option) {
+  std::string text;
+  for (const std::string& name : option.get_snames()) text += (text.empty() ? "-" : ", -") + name;
+  for (const std::string& name : option.get_lnames()) text += (text.empty() ? "--" : ", --") + name;
+  if (option.get_items_expected_max() > 0) text += " " + value_name(option);
+  return text;
+}
+
+/// What an option means, its range, its default, and with which others it goes.
+std::string meaning_of(const CLI::Option& option) {
+  std::vector<std::string> facts;
+  const std::string rule = rule_of(option), meaning = option.get_description();
+  if (!rule.empty()) facts.push_back(rule);
+  if (!option.get_default_str().empty()) facts.push_back("default " + option.get_default_str());
+  if (option.get_items_expected_max() > 1 && !option.get_positional()) facts.push_back("repeatable");
+  if (option.get_required() && !option.get_positional()) facts.push_back("required");
+  const auto add_names = [&facts](const char* how, const std::set<CLI::Option*>& others) {
+    std::vector<std::string> names;  // the set is in the order of addresses
+    for (const CLI::Option* other : others) names.push_back(option_name(*other));
+    std::sort(names.begin(), names.end());
+    if (!names.empty()) facts.push_back(how + alternatives(names));
+  };
+  add_names("with ", option.get_needs());
+  add_names("not with ", option.get_excludes());
+  std::string text;
+  for (const std::string& fact : facts) text += (text.empty() ? "" : "; ") + fact;
+  if (text.empty()) return meaning;
+  return meaning.empty() ? text : meaning + " (" + text + ")";
+}
+
+std::string usage_of(const CLI::App& command, std::size_t columns) {
+  const std::string begin = "Usage: " + command_path(command);
+  std::string text = begin;
+  const auto all = command.get_options(nullptr);
+  if (std::any_of(all.begin(), all.end(), [](const CLI::Option* each) { return each->nonpositional(); }))
+    text += " [OPTIONS]";
+  for (const CLI::Option* option : all) {
+    if (!option->get_positional()) continue;
+    const std::string name = option->get_name(true) + (option->get_items_expected_max() > 1 ? "..." : "");
+    text += option->get_required() ? " " + name : " [" + name + "]";
+  }
+  if (!commands_of(command).empty()) text += " COMMAND";
+  return wrapped(text, columns, std::min<std::size_t>(begin.size() + 1, 20)) + "\n";
+}
+
+using Rows = std::vector<std::pair<std::string, std::string>>;
+
+std::string section(const std::string& title, const Rows& rows, std::size_t columns) {
+  return rows.empty() ? "" : "\n" + title + ":\n" + two_columns(rows, columns);
+}
+
+/// A command in pieces that stay on one line: words, quoted texts, options with their values, the remark.
+std::vector<std::string> pieces_of(const std::string& example) {
+  std::vector<std::string> pieces;
+  std::string piece;
+  char quote = 0;
+  const auto finish = [&] {
+    const bool is_value =
+        !pieces.empty() && pieces.back().starts_with("--") && pieces.back().find(' ') == std::string::npos;
+    if (!piece.empty() && is_value && !piece.starts_with("-"))
+      pieces.back() += ' ' + piece;
+    else if (!piece.empty())
+      pieces.push_back(piece);
+    piece.clear();
+  };
+  for (std::size_t i = 0; i < example.size(); ++i) {
+    const char c = example[i];
+    if (quote == 0 && c == '#') {
+      finish();
+      pieces.push_back(' ' + example.substr(i));
+      return pieces;
+    }
+    if (c == '\'' || c == '"') quote = quote == 0 ? c : quote == c ? '\0' : quote;
+    if (c == ' ' && quote == 0)
+      finish();
+    else
+      piece += c;
+  }
+  finish();
+  return pieces;
+}
+
+/// A command that can be typed: where it is too long it goes on after a backslash.
+std::string example_text(const std::string& example, std::size_t columns) {
+  std::string text;
+  std::size_t used = 1;
+  for (const std::string& piece : pieces_of(example)) {
+    const std::size_t width = column_count(piece);
+    if (!text.empty() && used + 1 + width > columns - 2) {
+      text += " \\\n     ";
+      used = 5;
+    }
+    text += (text.empty() ? "  " : " ") + piece;
+    used += 1 + width;
+  }
+  return text + "\n";
+}
+
+/// The footer: paragraphs are filled, lines that begin with two spaces are examples or, with a number, exit codes.
+std::string end_text(const std::string& footer, std::size_t columns) {
+  std::string text;
+  Rows codes;
+  std::istringstream in(footer);
+  const auto flush_codes = [&] {
+    text += codes.empty() ? "" : two_columns(codes, columns);
+    codes.clear();
+  };
+  for (std::string line; std::getline(in, line);) {
+    const bool code = line.size() > 2 && line.starts_with("  ") && std::isdigit(static_cast<unsigned char>(line[2]));
+    if (code) {
+      const std::size_t end = line.find(' ', 2);
+      codes.emplace_back(line.substr(2, end - 2), end == std::string::npos ? "" : line.substr(end + 1));
+      continue;
+    }
+    flush_codes();
+    text += line.starts_with("  ") ? example_text(line.substr(2), columns) : wrapped(line, columns) + "\n";
+  }
+  flush_codes();
+  return text;
+}
+
+}  // namespace
+
+void set_help_end(CLI::App& command, const HelpEnd& end) {
+  std::string text;
+  if (!end.examples.empty()) text += end.examples.size() > 1 ? "Examples:\n" : "Example:\n";
+  for (const std::string& example : end.examples) text += "  " + example + "\n";
+  if (!end.exit_codes.empty()) text += (text.empty() ? "" : "\n") + std::string("Exit codes:\n");
+  for (const auto& [code, meaning] : end.exit_codes) text += "  " + std::to_string(code) + " " + meaning + "\n";
+  for (const std::string& note : end.notes) text += (text.empty() ? "" : "\n") + note + "\n";
+  command.footer(text);
+}
+
+std::string help_text(const CLI::App& command, std::size_t columns) {
+  std::string text = usage_of(command, columns) + "\n" + wrapped(command.get_description(), columns) + "\n";
+  Rows arguments, options, commands;
+  for (const CLI::Option* option : command.get_options(nullptr))
+    if (option->get_positional())
+      arguments.emplace_back(option->get_name(true), meaning_of(*option));
+    else
+      options.emplace(option == command.get_help_ptr() ? options.begin() : options.end(), names_of(*option),
+                      meaning_of(*option));
+  for (const CLI::App* each : commands_of(command)) commands.emplace_back(each->get_name(), each->get_description());
+  text += section("Commands", commands, columns) + section("Arguments", arguments, columns) +
+          section("Options", options, columns);
+  const std::string footer = command.get_footer();
+  return footer.empty() ? text : text + "\n" + end_text(footer, columns);
+}
+
+std::string option_name(const CLI::Option& option) {
+  return option.get_name(option.get_positional());
+}
+
+std::string value_name(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::string name = type.substr(0, type.find(':'));
+  if (name == "FLOAT") return "NUMBER";
+  if (name == "INT" || name == "UINT") return "N";
+  return name.empty() ? "VALUE" : name;
+}
+
+}  // namespace command_line

@@ -1,0 +1,64 @@
+#include "tools/command_line/parse.hpp"
+
+#include <unistd.h>
+
+#include <iostream>
+
+#include "tools/command_line/arguments.hpp"
+#include "tools/command_line/checks.hpp"
+#include "tools/command_line/help.hpp"
+#include "tools/command_line/text_layout.hpp"
+
+namespace command_line {
+
+namespace {
+
+/// What CLI11 says, in our words.  read_arguments() leaves it little to say: values of options, and which go together.
+std::string in_our_words(const CLI::ParseError& error) {
+  const std::string text = error.what();
+  const auto replaced = [&text](const std::string& what, const std::string& by) {
+    const std::size_t at = text.find(what);
+    return at == std::string::npos ? text : text.substr(0, at) + by + text.substr(at + what.size());
+  };
+  if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr) return replaced(" excludes ", " does not go with ");
+  if (dynamic_cast<const CLI::RequiresError*>(&error) != nullptr) return replaced(" requires ", " needs ");
+  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
+    const std::string begin = "Could not convert: ";
+    const std::size_t equals = text.find(" = ");
+    if (text.starts_with(begin) && equals != std::string::npos)
+      return text.substr(begin.size(), equals - begin.size()) + ": must be a number, got '" + text.substr(equals + 3) +
+             "'";
+  }
+  return text;
+}
+
+}  // namespace
+
+int wrong_usage(const std::string& command, const std::string& what) {
+  std::cerr << command << ": " << what << "\nSee `" << command << " --help`.\n";
+  return exit_usage;
+}
+
+std::optional<int> parse(CLI::App& app, int argc, const char* const* argv) {
+  Arguments arguments = read_arguments(app, std::vector<std::string>(argv + std::min(argc, 1), argv + argc));
+  // The callback of a command may take it apart from the app's tree.
+  const std::string path = command_path(*arguments.command);
+  if (arguments.help) {
+    std::cout << help_text(*arguments.command, static_cast<std::size_t>(text_columns(STDOUT_FILENO)));
+    return 0;
+  }
+  if (!arguments.wrong.empty()) return wrong_usage(path, arguments.wrong);
+  try {
+    app.parse(std::move(arguments.for_cli11));
+    return std::nullopt;
+  } catch (const CLI::CallForVersion& version) {
+    std::cout << version.what() << '\n';
+    return 0;
+  } catch (const UsageError& error) {
+    return wrong_usage(path, error.what());
+  } catch (const CLI::ParseError& error) {
+    return wrong_usage(path, in_our_words(error));
+  }
+}
+
+}  // namespace command_line
