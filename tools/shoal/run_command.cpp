@@ -8,6 +8,7 @@
 #include "shoal/message_writer.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/shoal/commands.hpp"
+#include "tools/shoal/speed_option.hpp"
 
 namespace tools {
 
@@ -23,20 +24,6 @@ struct RunArguments {
   std::optional<double> duration_s;
   std::string log_level = "info";
 };
-
-/// `max` or a number.
-std::optional<double> parse_speed(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  if (text == "max") return 0.0;
-  try {
-    std::size_t used = 0;
-    const double speed = std::stod(text, &used);
-    if (used == text.size() && (speed == 0 || (speed >= 0.001 && speed <= 1e6))) return speed;
-  } catch (const std::exception&) {
-  }
-  throw CLI::ValidationError("--speed",
-                             "must be 0 or 'max' (as fast as possible), or from 0.001 to 1e6, got '" + text + "'");
-}
 
 std::string check_seed(const std::string& text) {
   std::int64_t seed = 0;
@@ -94,6 +81,19 @@ int run(RunArguments& arguments) {
 }
 
 }  // namespace
+
+std::optional<double> parse_speed(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  if (text == "max") return 0.0;
+  try {
+    std::size_t used = 0;
+    const double speed = std::stod(text, &used);
+    if (used == text.size() && (speed == 0 || (speed >= 0.001 && speed <= 1e6))) return speed;
+  } catch (const std::exception&) {
+  }
+  throw CLI::ValidationError("--speed",
+                             "must be 0 or 'max' (as fast as possible), or from 0.001 to 1e6, got '" + text + "'");
+}
 
 void add_run_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", "Run a world");
