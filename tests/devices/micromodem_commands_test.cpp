@@ -44,8 +44,8 @@ TEST(MicromodemCommands, ConfigurationOfAllGivesFactorySettings) {
   EXPECT_EQ(modem.protocol.address(), 0);
   auto all = modem.host("$CCCFQ,ALL");
   std::vector<std::string> factory;
-  for (const auto& [name, value] : devices::MicromodemSettings().all())
-    factory.push_back("CACFG," + name + "," + std::to_string(value));
+  const devices::MicromodemSettings settings;
+  for (const auto& [name, value] : settings.all()) factory.push_back("CACFG," + name + "," + std::to_string(value));
   EXPECT_EQ(all, factory);
   EXPECT_THAT(all, Contains("CACFG,SNV,0"));
   EXPECT_THAT(modem.host("$CCCFG,ALL,1"), ElementsAre(StartsWith("CAERR,050607,NMEA,3,")));

@@ -66,17 +66,17 @@ std::optional<std::string> PlayerRequests::obey(const std::string& command, cons
     check_channels(text);
   } else if (command == "pause" || command == "resume") {
     control_.set_paused(command == "pause");
-    return "";
+    return where_();
   } else if (command == "step") {
     if (!(value >= 1) || value > 1e9 || value != std::floor(value))
       throw std::runtime_error(fmt::format("'step' needs a whole number of steps from 1 on, got {:g}", value));
     control_.add_steps(static_cast<std::int64_t>(value));
-    return "";
+    return where_();
   } else if (command == "speed") {
     if (!(value >= 0) || value > 1e6)
       throw std::runtime_error(fmt::format("'speed' must be 0 (as fast as possible) to 1e6, got {:g}", value));
     control_.set_speed(value);
-    return "";
+    return where_();
   } else if (command == "where") {
     return where_();
   } else if (needs_a_world(command)) {
