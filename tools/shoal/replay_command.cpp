@@ -109,12 +109,14 @@ void add_replay_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}));
   command->footer(
       "Exit codes: 0 equal, 1 different, 4 the log does not tell enough.\n"
-      "With --play the messages of a record go to programs as in its run: in lockstep to those that join, and on\n"
-      "the bus to those that only listen. What they publish changes nothing; it is compared with the record.\n"
-      "Exit codes: 0 played, 1 something differs (--compare), 4 bus or record, 5 no program came or answered.\n"
+      "With --play the messages of a record go to programs as in its run: in lockstep\n"
+      "to those that join, and on the bus to those that only listen. What they publish\n"
+      "changes nothing; it is compared with the record. Exit codes: 0 played,\n"
+      "1 something differs (--compare), 4 bus or record, 5 no program came or answered.\n"
       "Examples:\n"
       "  shoal replay run.lcm\n"
-      "  shoal replay run.lcm --set vehicles.rover3.devices.imu.rate_hz=50 --report differences.txt\n"
+      "  shoal replay run.lcm --set vehicles.rover3.devices.imu.rate_hz=50 \\\n"
+      "    --report differences.txt\n"
       "  shoal replay run.lcm --play --await rover3 --compare\n"
       "  shoal replay run.lcm --play --join-timeout 0 --speed 1");
   command->callback([arguments, command, &exit_code] {
