@@ -52,13 +52,13 @@ void Micromodem::Params::read(sim::ParamReader& in) {
   in.read("synchronous", synchronous,
           "sends at whole seconds of the vehicle's clock from the start (setting SNV), for one-way travel times");
   in.read("network", network, "modems understand each other only in the same network; the others are noise");
-  in.read("revision", revision, "of its software, in $CAREV; before 2 a driver sets the clock by $CCCLK");
+  in.read("revision", revision, "of its software, in $CAREV; from 2 on it takes $CCTMS beside $CCCLK");
   in.read("source_level_dB", source_level_dB, sim::between(0, 300), "re 1 uPa at 1 m, on its axis");
   in.read("frequency_Hz", frequency_Hz, sim::between(2500, 1e6), "middle of its band");
   in.read("coding_gain_dB", coding_gain_dB, sim::between(0, 60), "what its codes add to Eb/N0");
   in.read("transmit_power_W", transmit_power_W, sim::at_least(0), "taken from the battery while it sends");
   in.read("receiver", receiver, "how it hears");
-  in.read("lbl", lbl, "transponders that $CCPDT and $CCPNT ask");
+  in.read("lbl", lbl, "transponders that $CCPDT, $CCPNT and $CCPGT ask");
   in.read("serial", serial, "a pseudo-terminal or FIFO that any program can open");
   const auto is_plain = [](char c) { return c > ' ' && c < 127 && c != ',' && c != '*' && c != '$'; };
   if (!in.describing() && (revision.empty() || !std::all_of(revision.begin(), revision.end(), is_plain)))

@@ -18,7 +18,7 @@ namespace devices {
 class Micromodem final : public sim::Sensor, private sim::AcousticListener, private MicromodemSide {
  public:
   static constexpr const char* meaning = "Acoustic modem of the WHOI Micro-Modem class, with its NMEA sentences.";
-  /// The transponders that $CCPDT and $CCPNT ask.
+  /// The transponders that $CCPDT, $CCPNT and $CCPGT ask.
   struct BeaconParams {
     std::string network = "usbl";
     std::vector<std::string> transponders;

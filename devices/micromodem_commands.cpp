@@ -1,6 +1,5 @@
-// What the host of a Micro-Modem may ask for.
-#include <chrono>
-#include <cmath>
+// What the host of a Micro-Modem may ask for.  About its clock: micromodem_clock.cpp.
+#include <algorithm>
 #include <map>
 
 #include "devices/micromodem_protocol.hpp"
@@ -12,24 +11,41 @@ namespace {
 // Numbers of $CAERR; the words are ours.
 constexpr int unknown_sentence = 1, bad_field = 3, is_busy = 4, too_long_data = 5, no_request = 6;
 
-std::string joined(const NmeaSentence& in, const std::string& name) {
-  std::string text = name;
-  for (std::size_t i = 1; i < in.fields.size(); ++i) text += "," + in.fields[i];
-  return text;
+/// A sequence of a generic transponder: up to 64 bits in hexadecimal digits; nothing when it is anything else.
+std::optional<bool> is_sequence_set(const std::string& text) {
+  constexpr std::size_t max_digits = 20;  // some drivers write 64 bits as a decimal number
+  const bool good = !text.empty() && text.size() <= max_digits &&
+                    text.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
+  if (!good) return {};
+  return text.find_first_not_of('0') != std::string::npos;
 }
 
 }  // namespace
 
-MicromodemProtocol::Command MicromodemProtocol::command_of(const std::string& name) {
+MicromodemProtocol::Command MicromodemProtocol::command_of(const std::string& name) const {
   static const std::map<std::string, Command> commands{
-      {"CCCFG", &MicromodemProtocol::configure},   {"CCCFQ", &MicromodemProtocol::query},
-      {"CCCLK", &MicromodemProtocol::set_clock},   {"CCMSC", &MicromodemProtocol::sleep_or_reset},
-      {"CCCYC", &MicromodemProtocol::begin_cycle}, {"CCTXD", &MicromodemProtocol::take_data},
-      {"CCMPC", &MicromodemProtocol::send_ping},   {"CCMUC", &MicromodemProtocol::send_mini},
-      {"CCPDT", &MicromodemProtocol::ask_beacons}, {"CCPNT", &MicromodemProtocol::ask_beacons},
+      {"CCCFG", &MicromodemProtocol::configure},           {"CCCFQ", &MicromodemProtocol::query},
+      {"CCCLK", &MicromodemProtocol::set_clock},           {"CCMSC", &MicromodemProtocol::reset},
+      {"CCCYC", &MicromodemProtocol::begin_cycle},         {"CCTXD", &MicromodemProtocol::take_data},
+      {"CCMPC", &MicromodemProtocol::send_ping},           {"CCMUC", &MicromodemProtocol::send_mini},
+      {"CCPDT", &MicromodemProtocol::ask_remus_beacons},   {"CCPNT", &MicromodemProtocol::ask_narrowband_beacons},
+      {"CCPGT", &MicromodemProtocol::ask_generic_beacons},
   };
-  const auto found = commands.find(name);
-  return found == commands.end() ? nullptr : found->second;
+  // A Micro-Modem-1 does not know them.
+  static const std::map<std::string, Command> of_second_generation{
+      {"CCTMS", &MicromodemProtocol::set_time},
+      {"CCTMQ", &MicromodemProtocol::query_time},
+  };
+  if (const auto found = commands.find(name); found != commands.end()) return found->second;
+  const auto found = of_second_generation.find(name);
+  const bool known = found != of_second_generation.end() && generation_ >= micromodem_2;
+  return known ? found->second : nullptr;
+}
+
+std::string MicromodemProtocol::echo(const NmeaSentence& in, const std::string& name) {
+  std::string text = name;
+  for (std::size_t i = 1; i < in.fields.size(); ++i) text += "," + in.fields[i];
+  return text;
 }
 
 void MicromodemProtocol::take_line(const NmeaLines::Line& line, sim::Time now) {
@@ -68,6 +84,11 @@ std::optional<std::pair<int, int>> MicromodemProtocol::addresses(const NmeaSente
 void MicromodemProtocol::configure(const NmeaSentence& in, sim::Time now) {
   const auto value = in.number(2, -1000000, 1000000);
   if (!value || in.count() != 2) return error("NMEA", bad_field, "CFG needs a name and a number", now);
+  if (in.at(1) == "ALL") {
+    if (*value != 0) return error("NMEA", bad_field, "CFG of ALL takes 0 only: factory settings", now);
+    settings_.reset();
+    return side_.say("CACFG,ALL,0");
+  }
   switch (settings_.set(in.at(1), *value)) {
     case MicromodemSettings::Outcome::unknown:
       return error("NMEA", bad_field, "unknown setting " + in.at(1).substr(0, 16), now);
@@ -88,28 +109,14 @@ void MicromodemProtocol::query(const NmeaSentence& in, sim::Time now) {
   side_.say("CACFG," + in.at(1) + "," + std::to_string(*value));
 }
 
-void MicromodemProtocol::set_clock(const NmeaSentence& in, sim::Time now) {
-  using namespace std::chrono;
-  const auto year_ = in.number(1, 1970, 2200), month_ = in.number(2, 1, 12), day_ = in.number(3, 1, 31);
-  const auto hour = in.number(4, 0, 23), minute = in.number(5, 0, 59), second = in.number(6, 0, 60);
-  if (!year_ || !month_ || !day_ || !hour || !minute || !second)
-    return error("NMEA", bad_field, "CLK needs yyyy mm dd hh mm ss", now);
-  const year_month_day date{year{*year_}, month{static_cast<unsigned>(*month_)}, day{static_cast<unsigned>(*day_)}};
-  if (!date.ok()) return error("NMEA", bad_field, "no such day", now);
-  const std::int64_t set_us = microseconds(sys_days(date).time_since_epoch()).count() +
-                              1'000'000LL * (3600LL * *hour + 60LL * *minute + *second);
-  clock_offset_us_ = set_us - side_.utc_us(now);
-  // With a pulse every second it only learns which second it is.
-  if (settings_.on("SNV")) clock_offset_us_ = std::llround(static_cast<double>(clock_offset_us_) * 1e-6) * 1'000'000LL;
-  clock_set_ = true;
-  side_.say(joined(in, "CACLK"));
-}
-
-void MicromodemProtocol::sleep_or_reset(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::reset(const NmeaSentence& in, sim::Time now) {
   const auto who = addresses(in, 1, now);
   if (!who) return;
-  side_.say(joined(in, "CAMSC"));
-  if (who->second != address()) return;
+  if (who->first != address() || who->second != address())
+    return error("MSC", bad_field, "only this modem can be started again", now);
+  if (in.number(3, -1000000, 1000000) != 0)
+    return error("MSC", bad_field, "the time to sleep must be 0: there is no sleep", now);
+  side_.say(echo(in, "CAMSC"));
   restart(now + sim::from_seconds(1));
 }
 
@@ -124,7 +131,7 @@ void MicromodemProtocol::begin_cycle(const NmeaSentence& in, sim::Time now) {
   if (!ack) return error("CYC", bad_field, "ack must be 0 or 1", now);
   if (!frames) return error("CYC", bad_field, "frames must be 1 to " + std::to_string(most), now);
   if (busy("CYC", now)) return;
-  side_.say(joined(in, "CACYC"));
+  side_.say(echo(in, "CACYC"));
   Cycle cycle{who->first, who->second, *rate, *frames, *ack != 0, false, {}, sim::Time{0}};
   if (cycle.source == address()) return gather(std::move(cycle), now);
   // It asks another to send.
@@ -141,6 +148,11 @@ void MicromodemProtocol::take_data(const NmeaSentence& in, sim::Time now) {
   const auto who = addresses(in, 1, now);
   if (!who) return;
   if (!cycle_ || who->first != address()) return error("TXD", no_request, "no data was asked for", now);
+  if (who->second != cycle_->destination)
+    return error(
+        "TXD", bad_field,
+        "the cycle is for " + std::to_string(cycle_->destination) + " and the data for " + std::to_string(who->second),
+        now);
   const auto data = from_hex(in.at(4));
   const auto ack = in.number(3, 0, 1);
   if (!data || !ack) return error("TXD", bad_field, "data must be bytes in hexadecimal", now);
@@ -163,11 +175,11 @@ void MicromodemProtocol::send_ping(const NmeaSentence& in, sim::Time now) {
   if (who->first != address() || who->second == address() || who->second == micromodem_broadcast)
     return error("MPC", bad_field, "a ping goes from this modem to another one", now);
   if (busy("MPC", now)) return;
-  side_.say(joined(in, "CAMPC"));
+  side_.say(echo(in, "CAMPC"));
   MicromodemPacket packet;
   packet.kind = MicromodemPacket::Kind::ping;
   packet.source = who->first, packet.destination = who->second;
-  const auto sound = send(packet, now, false);
+  const auto sound = send(packet, now, settings_.on("SNV"));
   ping_ = Ping{who->second, sound.begin, sound.begin + sim::from_seconds(micromodem_turnaround_s + 6)};
 }
 
@@ -181,30 +193,61 @@ void MicromodemProtocol::send_mini(const NmeaSentence& in, sim::Time now) {
   if (!good) return error("MUC", bad_field, "data must be 0000 to 1fff", now);
   if (who->first != address()) return error("MUC", bad_field, "the source is not this modem", now);
   if (busy("MUC", now)) return;
-  side_.say(joined(in, "CAMUC"));
+  side_.say(echo(in, "CAMUC"));
   MicromodemPacket packet;
   packet.kind = MicromodemPacket::Kind::mini;
   packet.source = who->first, packet.destination = who->second, packet.value = std::stoi(hex, nullptr, 16);
   send(packet, now, settings_.on("SNV"));
 }
 
-void MicromodemProtocol::ask_beacons(const NmeaSentence& in, sim::Time now) {
-  // PDT: group, channel, sync, sync timeout, timeout, four flags.  PNT: frequency, two lengths, timeout, four
-  // frequencies, sync.  The frequencies are those of the transponders here.
-  const bool remus = in.name() == "CCPDT";
-  const auto timeout_ms = in.number(remus ? 5 : 4, 1, 60000);
-  const auto on_the_second = in.number(remus ? 3 : 9, 0, 1);
+/// $CCPDT,group,channel,synchronous,sync timeout,timeout,A,B,C,D: flags.
+void MicromodemProtocol::ask_remus_beacons(const NmeaSentence& in, sim::Time now) {
+  const auto on_the_second = in.number(3, 0, 1);
   BeaconPing ping;
-  bool good = timeout_ms && on_the_second;
+  bool good = on_the_second.has_value();
   for (std::size_t i = 0; i < micromodem_beacons; ++i) {
-    const auto wanted = in.number((remus ? 6 : 5) + i, 0, 1000000);
+    const auto wanted = in.number(6 + i, 0, 1);
     good = good && wanted;
     ping.wanted[i] = wanted.value_or(0) != 0;
   }
-  if (!good) return error("NMEA", bad_field, in.name().substr(2) + " has a field out of range", now);
+  ask_beacons(in, good, in.number(5, 1, max_beacon_ms), ping, on_the_second.value_or(0) != 0, now);
+}
+
+/// $CCPNT,frequency,length,length of the answers,timeout,A,B,C,D: frequencies,flag: 1 at once, 0 by the pulse.
+void MicromodemProtocol::ask_narrowband_beacons(const NmeaSentence& in, sim::Time now) {
+  const auto at_once = in.number(9, 0, 1);
+  BeaconPing ping;
+  bool good = at_once.has_value();
+  for (std::size_t i = 0; i < micromodem_beacons; ++i) {
+    const auto frequency_Hz = in.number(5 + i, 0, 1000000);
+    good = good && frequency_Hz;
+    ping.wanted[i] = frequency_Hz.value_or(0) != 0;
+  }
+  ask_beacons(in, good, in.number(4, 1, max_beacon_ms), ping, at_once.value_or(1) == 0, now);
+}
+
+/// $CCPGT,frequency,bits,sequence,timeout,frequency of the answers,A,B,C,D: sequences,bandwidth,reserved.
+void MicromodemProtocol::ask_generic_beacons(const NmeaSentence& in, sim::Time now) {
+  BeaconPing ping;
+  bool good = is_sequence_set(in.at(3)).has_value();
+  for (const std::size_t frequency : {1, 5}) good = good && in.number(frequency, 1, 1000000);
+  good = good && in.number(2, 1, 64) && in.number(10, 0, 1000000);
+  for (std::size_t i = 0; i < micromodem_beacons; ++i) {
+    const auto wanted = is_sequence_set(in.at(6 + i));
+    good = good && wanted;
+    ping.wanted[i] = wanted.value_or(false);
+  }
+  ask_beacons(in, good, in.number(4, 1, max_beacon_ms), ping, false, now);
+}
+
+/// The frequencies and sequences are those of the transponders here: the host only says which of them it asks.
+void MicromodemProtocol::ask_beacons(const NmeaSentence& in, bool good, std::optional<int> timeout_ms, BeaconPing ping,
+                                     bool on_the_second, sim::Time now) {
+  const std::string name = in.name().substr(2);
+  if (!good || !timeout_ms) return error("NMEA", bad_field, name + " has a field out of range", now);
   if (busy("LBL", now)) return;
-  side_.say(joined(in, "CA" + in.name().substr(2)));
-  const auto sound = side_.ask_beacons(now, *on_the_second != 0);
+  side_.say(echo(in, "SN" + name));
+  const auto sound = side_.ask_beacons(now, on_the_second);
   sending_until_ = std::max(sending_until_, sound.end);
   ping.sent = sound.begin;
   ping.deadline = sound.begin + sim::from_seconds(*timeout_ms * 1e-3);

@@ -52,7 +52,8 @@ std::string nmea_date(std::int64_t utc_us) {
          padded(static_cast<int>(static_cast<unsigned>(date.day())), 2);
 }
 
-MicromodemProtocol::MicromodemProtocol(const Config& config, MicromodemSide& side) : config_(config), side_(side) {
+MicromodemProtocol::MicromodemProtocol(const Config& config, MicromodemSide& side)
+    : config_(config), generation_(micromodem_generation(config.revision)), side_(side) {
   settings_.set("SRC", config.address);
   settings_.set("SNV", config.synchronous ? 1 : 0);
   settings_.set("TAT", rounded(config.beacon_turnaround_s * 1e3, 0, 10000));
@@ -84,12 +85,14 @@ void MicromodemProtocol::restart(sim::Time up) {
   due_.clear();
   sending_until_ = side_.call_back();
   cycle_.reset(), expected_.reset(), ping_.reset(), beacon_ping_.reset();
-  if (!config_.synchronous) clock_offset_us_ = 0, clock_set_ = false;
+  clock_offset_us_ = 0, clock_set_ = config_.synchronous;
+  pulse_time_.reset();
   next_revision_ = up;
   starting_ = true;
 }
 
 void MicromodemProtocol::tick(sim::Time now) {
+  look_for_pulse(now);
   while (!due_.empty() && due_.front().at <= now) {
     const std::string body = std::move(due_.front().body);
     due_.erase(due_.begin());
@@ -102,7 +105,8 @@ void MicromodemProtocol::tick(sim::Time now) {
     starting_ = false;
   }
   if (cycle_ && now >= cycle_->deadline) {
-    error("DRQ", 7, "no data for frame " + std::to_string(cycle_->gathered.size() + 1), now);
+    ++errors_;
+    side_.say("CAERR," + time_of_day(now) + ",DATA_TIMEOUT," + std::to_string(cycle_->gathered.size() + 1));
     if (cycle_->gathered.empty())
       cycle_.reset();
     else
@@ -341,7 +345,7 @@ void MicromodemProtocol::say_statistics(const MicromodemPacket& packet, const Mi
 }
 
 void MicromodemProtocol::visit_state(sim::StateArchive& archive) {
-  archive(settings_, clock_offset_us_, clock_set_, due_, sending_until_, next_revision_, starting_);
+  archive(settings_, clock_offset_us_, clock_set_, pulse_time_, due_, sending_until_, next_revision_, starting_);
   archive(cycle_, expected_, ping_, beacon_ping_);
   archive.unhashed(errors_);
 }

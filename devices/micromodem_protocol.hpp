@@ -16,6 +16,9 @@ namespace devices {
 
 inline constexpr int micromodem_broadcast = 127;
 inline constexpr int micromodem_beacons = 4;
+inline constexpr int max_beacon_ms = 60000;
+/// The first firmware of a Micro-Modem-2, and the first whose clock mode is a bit field.
+inline constexpr std::array<int, 3> micromodem_2{2, 0, 0}, micromodem_clock_bits{2, 0, 26038};
 /// From the first sound of a ping to that of its answer, s; the one that asks takes it off.
 inline constexpr double micromodem_turnaround_s = 1;
 
@@ -107,6 +110,12 @@ class MicromodemProtocol {
     std::array<std::optional<sim::Time>, micromodem_beacons> answered{};
     void visit_state(sim::StateArchive& archive) { archive(sent, deadline, turnaround_s, wanted, answered); }
   };
+  /// A time that the clock is set to when the next second of the vehicle's clock begins.
+  struct PulseTime {
+    std::int64_t second = 0;  ///< of the vehicle's clock, when the host said so
+    std::int64_t set_us = 0;
+    void visit_state(sim::StateArchive& archive) { archive(second, set_us); }
+  };
   struct Due {
     sim::Time at;
     std::string body;
@@ -116,14 +125,32 @@ class MicromodemProtocol {
   // micromodem_commands.cpp
   void configure(const NmeaSentence& in, sim::Time now);
   void query(const NmeaSentence& in, sim::Time now);
-  void set_clock(const NmeaSentence& in, sim::Time now);
-  void sleep_or_reset(const NmeaSentence& in, sim::Time now);
+  void reset(const NmeaSentence& in, sim::Time now);
   void begin_cycle(const NmeaSentence& in, sim::Time now);
   void take_data(const NmeaSentence& in, sim::Time now);
   void send_ping(const NmeaSentence& in, sim::Time now);
   void send_mini(const NmeaSentence& in, sim::Time now);
-  void ask_beacons(const NmeaSentence& in, sim::Time now);
-  static Command command_of(const std::string& name);
+  void ask_remus_beacons(const NmeaSentence& in, sim::Time now);
+  void ask_narrowband_beacons(const NmeaSentence& in, sim::Time now);
+  void ask_generic_beacons(const NmeaSentence& in, sim::Time now);
+  void ask_beacons(const NmeaSentence& in, bool good, std::optional<int> timeout_ms, BeaconPing ping,
+                   bool on_the_second, sim::Time now);
+  /// Null: this modem does not know the sentence.
+  Command command_of(const std::string& name) const;
+  /// The fields of the sentence under another name.
+  static std::string echo(const NmeaSentence& in, const std::string& name);
+
+  // micromodem_clock.cpp
+  void set_clock(const NmeaSentence& in, sim::Time now);
+  void set_time(const NmeaSentence& in, sim::Time now);
+  void query_time(const NmeaSentence& in, sim::Time now);
+  /// The host set the time of its clock to this.
+  void set_utc(std::int64_t set_us, sim::Time now);
+  /// A whole second of the vehicle's clock may have begun since.
+  void look_for_pulse(sim::Time now);
+  /// $CACST and $CAXST: 0 to 3, bit 1: packets keep the second of the vehicle's clock; bit 0: the time was set.  From
+  /// firmware 2.0.26038 on: bits 0 and 1 say who set the time, bits 2 to 4 what gives the pulse.
+  int clock_mode() const;
 
   /// It has been told to start again, and has not yet.
   bool is_down(sim::Time now) const { return starting_ && now < next_revision_; }
@@ -150,14 +177,14 @@ class MicromodemProtocol {
   /// The modem's own clock, which the host may have set.
   std::int64_t utc_us(sim::Time at) const { return side_.utc_us(at) + clock_offset_us_; }
   std::string time_of_day(sim::Time at, int digits = 0) const;
-  /// 0 to 3: bit 1, it keeps the second of the vehicle's clock; bit 0, the time was set.
-  int clock_mode() const { return (settings_.on("SNV") ? 2 : 0) + (clock_set_ ? 1 : 0); }
 
   Config config_;
+  std::array<int, 3> generation_;  // of its software
   MicromodemSide& side_;
   MicromodemSettings settings_;
   std::int64_t clock_offset_us_ = 0;
   bool clock_set_ = false;
+  std::optional<PulseTime> pulse_time_;
   std::vector<Due> due_;
   sim::Time sending_until_{0};
   sim::Time next_revision_{0};
@@ -169,6 +196,8 @@ class MicromodemProtocol {
   std::int64_t errors_ = 0;
 };
 
+/// Major, minor, patch of `2.0.26038`; of `0.93.0.48` the first three; 0 for what cannot be read.
+std::array<int, 3> micromodem_generation(const std::string& revision);
 /// Time of day of UTC: hhmmss, and with digits of the second a point and those, cut off.
 std::string nmea_time_of_day(std::int64_t utc_us, int digits);
 /// yyyymmdd.

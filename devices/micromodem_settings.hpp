@@ -21,6 +21,8 @@ class MicromodemSettings {
   bool on(const char* name) const { return get(name) != 0; }
   enum class Outcome { done, unknown, out_of_range };
   Outcome set(const std::string& name, int value);
+  /// All values become those of a new modem.
+  void reset() { *this = MicromodemSettings(); }
   const std::map<std::string, int>& all() const { return values_; }
   void visit_state(sim::StateArchive& archive);
 

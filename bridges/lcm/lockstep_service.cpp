@@ -42,6 +42,7 @@ void LockstepService::add_line(sim::Bus& network, sim::MailGate& gate) {
   lines_.push_back(std::make_unique<Line>(network, gate));
   gate.set_order([this, index, line = lines_.back().get()](std::vector<sim::MailGate::Mail>& mail) {
     if (!suspended_) line->mail.order(mail);
+    if (!posts_mail_) return;
     for (const sim::MailGate::Mail& each : mail) lockstep_.post(index, each.channel, each.payload);
   });
 }

@@ -53,6 +53,12 @@ class LockstepService {
   /// A bus on which clients may be: the world's first.  `network` is under `gate`; the handshake goes there directly,
   /// so that records leave it out.  Both must outlive this.
   void add_line(sim::Bus& network, sim::MailGate& gate);
+  /// False: what comes from outside is put on nobody's list.  For who plays a record, which holds what came then.
+  void set_posts_mail(bool posts) { posts_mail_ = posts; }
+  /// Some client on the bus `line` must have every message of this channel.
+  bool somebody_receives(std::string_view channel, int line = 0) const {
+    return lockstep_.somebody_receives(line, channel);
+  }
   /// Called with the name of each client that answers.
   void set_on_heard(std::function<void(const std::string&)> heard) { heard_ = std::move(heard); }
 
@@ -171,6 +177,7 @@ class LockstepService {
   bool paused_here_ = false;
   std::int64_t pause_requests_ = 0;  // as they were then
   bool suspended_ = false;
+  bool posts_mail_ = true;
   std::int32_t branch_ = 0;
   std::int64_t bad_messages_ = 0;
 };

@@ -174,6 +174,24 @@ TEST(Micromodem, ASynchronousPacketTellsItsOneWayTravelTime) {
   EXPECT_EQ(field(sent[0], 2).substr(0, 6), arrival.substr(0, 6));
 }
 
+TEST(Micromodem, SynchronousPingsBeginAtAWholeSecondAndMeasureTheSame) {
+  Hosts hosts(three(", synchronous: true"));
+  hosts.run_for(0.35);
+  hosts.take("a");
+  hosts.say("a", "$CCMPC,1,2");
+  hosts.run_for(5);
+  const auto a = hosts.take("a");
+  EXPECT_THAT(a, Contains("CAMPR,2,1,0.5000"));  // 750 m at 1500 m/s
+  const auto sent = only(a, "CAXST"), b = hosts.take("b"), ping = only(b, "CACST");
+  ASSERT_EQ(sent.size(), 1u);
+  EXPECT_EQ(field(sent[0], 2), "000001.0000");
+  ASSERT_EQ(ping.size(), 1u);
+  EXPECT_EQ(field(ping[0], 2), "000001.5000");  // the one-way travel time
+  const auto reply = only(b, "CAXST");
+  ASSERT_EQ(reply.size(), 1u);
+  EXPECT_EQ(field(reply[0], 2), "000002.5000");  // its turnaround, not the second
+}
+
 TEST(Micromodem, TimesOfArrivalAreByItsOwnClock) {
   const std::string keys = ", synchronous: true";
   Hosts hosts(test::modem_sea({{"a", "[0, 0, -20]", modem_at(1, keys)},
@@ -204,10 +222,17 @@ TEST(Micromodem, AsksTransponders) {
   hosts.say("a", "$CCPDT,1,1,0,0,3000,1,1,1,0");
   hosts.run_for(4);
   // 750 m and 300 m at 1500 m/s; the third does not answer, the fourth was not asked for.
-  EXPECT_THAT(hosts.take("a"), testing::ElementsAre("CAPDT,1,1,0,0,3000,1,1,1,0", "SNTTA,0.5000,0.2000,,,000000.05"));
-  hosts.say("a", "$CCPNT,26000,5,5,3000,0,29000,0,0,1");  // at a whole second, and the second one only
+  EXPECT_THAT(hosts.take("a"), testing::ElementsAre("SNPDT,1,1,0,0,3000,1,1,1,0", "SNTTA,0.5000,0.2000,,,000000.05"));
+  hosts.say("a", "$CCPNT,26000,5,5,3000,0,29000,0,0,0");  // by the pulse, and the second one only
   hosts.run_for(5);
-  EXPECT_THAT(hosts.take("a"), Contains(StartsWith("SNTTA,,0.2000,,,0000")));
+  EXPECT_THAT(hosts.take("a"), Contains("SNTTA,,0.2000,,,000005.00"));
+  hosts.say("a", "$CCPNT,26000,5,5,3000,25000,29000,0,0,1");  // at once
+  hosts.run_for(4);
+  EXPECT_THAT(hosts.take("a"), Contains("SNTTA,0.5000,0.2000,,,000009.05"));
+  hosts.say("a", "$CCPGT,26000,28,3E5A,3000,27000,0,1f,0,0,2000,0");
+  hosts.run_for(4);
+  EXPECT_THAT(hosts.take("a"),
+              testing::ElementsAre("SNPGT,26000,28,3E5A,3000,27000,0,1f,0,0,2000,0", "SNTTA,,0.2000,,,000013.05"));
   hosts.say("a", "$CCPDT,1,1,0,0,0,1,1,1,0");
   hosts.run_for(0.1);
   EXPECT_THAT(hosts.take("a"), Contains(HasSubstr("NMEA,3,PDT has a field out of range")));

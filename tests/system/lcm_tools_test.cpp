@@ -127,4 +127,29 @@ TEST(LcmTools, DoctorSaysThatLcmIsUsableHere) {
   EXPECT_EQ(ended.exit_code, 0) << ended.output << ended.errors;
 }
 
+TEST(LcmTools, TheViewersScriptSaysWhatIsMissing) {
+  Program without_jars({"env", "SHOAL_JAVA_FOLDER=/nowhere", source("tools/lcm-spy")});
+  EXPECT_EQ(without_jars.wait(), 4);
+  EXPECT_NE(
+      without_jars.errors().find("/nowhere/lcm.jar is missing; install it with: sudo apt-get install liblcm-java"),
+      std::string::npos)
+      << without_jars.errors();
+  Program misspelt({source("tools/lcm-spy"), "--url"});
+  EXPECT_EQ(misspelt.wait(), 2);
+}
+
+TEST(LcmTools, TheViewersScriptMakesAClassOfEachType) {
+  if (!std::filesystem::exists("/usr/share/java/lcm.jar") || !std::filesystem::exists("/usr/share/java/jchart2d.jar") ||
+      !std::filesystem::exists("/usr/bin/javac"))
+    GTEST_SKIP() << "liblcm-java or javac is not installed";
+  Program script({source("tools/lcm-spy"), "--types-only"});
+  ASSERT_EQ(script.wait(), 0) << script.errors();
+  std::string folder = script.output();
+  folder.erase(folder.find_last_not_of('\n') + 1);
+  for (const auto& file : std::filesystem::directory_iterator(source("bridges/lcm/types"))) {
+    if (file.path().extension() != ".lcm") continue;
+    EXPECT_TRUE(std::filesystem::exists(folder + "/shoal/" + file.path().stem().string() + ".class")) << file.path();
+  }
+}
+
 }  // namespace

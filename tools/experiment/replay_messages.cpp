@@ -100,6 +100,11 @@ std::string difference_of(const shoal::MessageSchema* schema, std::span<const st
 
 }  // namespace
 
+std::string message_difference(std::span<const std::byte> logged, std::span<const std::byte> here) {
+  return difference_of(shoal::embedded_types().find(static_cast<std::uint64_t>(shoal::fingerprint(here))), logged,
+                       here);
+}
+
 ReplayMessages::ReplayMessages(const ReplayLog& log) : log_(log), file_(log.path) {
   for (const auto& [name, count] : log.events)
     if (!is_of_the_run(name)) add(name).left = count;

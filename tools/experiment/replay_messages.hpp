@@ -16,6 +16,9 @@
 
 namespace tools {
 
+/// How a message here differs from one of a log, such as `x_m is 1.25 in the log and 1.26 here`.
+std::string message_difference(std::span<const std::byte> logged, std::span<const std::byte> here);
+
 /// Compares what a world publishes when it runs again with what its log holds: byte by byte, in order per channel.
 /// Messages that the log lacks are counted; in a record, where nothing is lost, they are differences.
 class ReplayMessages {

@@ -34,7 +34,7 @@ CLI::Option* add_log_level_option(CLI::App& command, const std::string& usual = 
 void add_set_option(CLI::App& command, std::vector<std::string>& sets);
 
 /// Adds `--lcm-url URL`.
-void add_lcm_url_option(CLI::App& command, std::string& url);
+CLI::Option* add_lcm_url_option(CLI::App& command, std::string& url);
 
 /// Adds `--threads N` of worker threads that cast rays.
 void add_threads_option(CLI::App& command, int& threads);

@@ -4,10 +4,14 @@
 #include <iostream>
 #include <memory>
 
+#include "bridges/lcm/lockstep_service.hpp"
+#include "tools/experiment/play.hpp"
 #include "tools/experiment/replay.hpp"
+#include "tools/experiment/run_error.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
+#include "tools/shoal/speed_option.hpp"
 
 namespace tools {
 
@@ -16,6 +20,9 @@ namespace {
 struct ReplayArguments {
   ReplayOptions replay;
   std::string report;
+  bool play = false;
+  std::string speed = "max";
+  PlayOptions player;
 };
 
 constexpr std::size_t most_lines = 60;
@@ -41,6 +48,46 @@ int run(ReplayArguments& arguments) {
   return outcome.interrupted ? 128 + caught_signal() : outcome.exit_code();
 }
 
+int run_player(ReplayArguments& arguments) {
+  PlayOptions& player = arguments.player;
+  player.log = arguments.replay.log;
+  player.until_s = arguments.replay.until_s;
+  player.quiet = arguments.replay.quiet;
+  player.speed = parse_speed(arguments.speed).value_or(0);
+  catch_signals(true);
+  try {
+    const PlayOutcome outcome = play(player);
+    std::cout << outcome.text;
+    return outcome.exit_code;
+  } catch (const RunError& error) {
+    std::cerr << "shoal: " << error.what() << '\n';
+    return error.exit_code;
+  } catch (const bridges::LockstepTimeout& error) {
+    std::cerr << "shoal: " << error.what() << '\n';
+    return exit_timeout;
+  }
+}
+
+void add_player_options(CLI::App& command, ReplayArguments& arguments) {
+  CLI::Option* play = command.add_flag("--play", arguments.play, "play the record to programs, without a world");
+  PlayOptions& player = arguments.player;
+  const auto of_play = [&](CLI::Option* option) { return option->needs(play); };
+  of_play(command.add_option("--await", player.await, "lockstep client to wait for; may be repeated")
+              ->type_name("NAME")
+              ->type_size(1)
+              ->allow_extra_args(false));
+  of_play(
+      command.add_option("--join-timeout", player.join_timeout_s, "wall seconds to wait for clients; 0: start at once")
+          ->type_name("S")
+          ->check(number_from(0, 1e9)));
+  of_play(command.add_option("--speed", arguments.speed, "times real time, or max")
+              ->type_name("FACTOR")
+              ->capture_default_str());
+  of_play(add_lcm_url_option(command, player.lcm_url));
+  of_play(command.add_flag("--compare", player.compare, "exit code 1 when a program publishes something else"));
+  for (const char* other : {"--world", "--set", "--report", "--threads"}) play->excludes(command.get_option(other));
+}
+
 }  // namespace
 
 void add_replay_command(CLI::App& app, int& exit_code) {
@@ -56,20 +103,27 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   command->add_option("--report", arguments->report, "file for all differences")->type_name("FILE");
   add_threads_option(*command, arguments->replay.threads);
   add_plugin_option(*command);
+  add_player_options(*command, *arguments);
   command->add_flag("--quiet", arguments->replay.quiet, "no progress");
   command_line::set_help_end(
-      *command, {{"shoal replay run.lcm",
-                  "shoal replay run.lcm --set vehicles.rover3.devices.imu.rate_hz=50 --report differences.txt"},
-                 {{0, "equal"},
-                  {1, "different"},
-                  {2, "wrong usage, or a mistake in the world"},
-                  {4, "the log has not what a replay needs, or file trouble"},
-                  {130, "ended by Ctrl-C"}},
-                 {}});
+      *command,
+      {{"shoal replay run.lcm",
+        "shoal replay run.lcm --set vehicles.rover3.devices.imu.rate_hz=50 --report differences.txt",
+        "shoal replay run.lcm --play --await rover3 --compare",
+        "shoal replay run.lcm --play --join-timeout 0 --speed 1"},
+       {{0, "equal; with --play: played"},
+        {1, "different; with --play only when --compare was given"},
+        {2, "wrong usage, or a mistake in the world"},
+        {4, "the log has not what a replay needs, or file or bus trouble"},
+        {5, "with --play: no program came, or one did not answer in time"},
+        {130, "ended by Ctrl-C"}},
+       {"With --play the messages of a record go to programs as in its run: in lockstep to those that join, and on "
+        "the bus to those that only listen. What they publish changes nothing; it is compared with the record."}});
   command->callback([arguments, log_level, &exit_code] {
     if (log_level->count() > 0 && !spdlog::should_log(spdlog::level::info)) arguments->replay.quiet = true;
+    if (log_level->count() == 0 && arguments->play) spdlog::set_level(spdlog::level::warn);
     try {
-      exit_code = run(*arguments);
+      exit_code = arguments->play ? run_player(*arguments) : run(*arguments);
     } catch (const sim::ConfigError&) {
       throw;
     } catch (const std::runtime_error& error) {

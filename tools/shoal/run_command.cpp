@@ -9,6 +9,7 @@
 #include "tools/experiment/runner.hpp"
 #include "tools/experiment/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
+#include "tools/shoal/speed_option.hpp"
 
 namespace tools {
 
@@ -24,18 +25,6 @@ struct RunArguments {
   std::optional<double> duration_s;
 };
 
-/// `max` or a number.
-std::optional<double> parse_speed(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  if (text == "max") return 0.0;
-  try {
-    std::size_t used = 0;
-    const double speed = std::stod(text, &used);
-    if (used == text.size() && (speed == 0 || (speed >= 0.001 && speed <= 1e6))) return speed;
-  } catch (const std::exception&) {
-  }
-  throw CLI::ValidationError("--speed",
-                             "must be 0 or 'max' (as fast as possible), or from 0.001 to 1e6, got '" + text + "'");
 }
 
 /// `10,20.5`: times in s.
@@ -142,6 +131,19 @@ void add_bus_options(CLI::App& command, RunArguments& arguments) {
 }
 
 }  // namespace
+
+std::optional<double> parse_speed(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  if (text == "max") return 0.0;
+  try {
+    std::size_t used = 0;
+    const double speed = std::stod(text, &used);
+    if (used == text.size() && (speed == 0 || (speed >= 0.001 && speed <= 1e6))) return speed;
+  } catch (const std::exception&) {
+  }
+  throw CLI::ValidationError("--speed",
+                             "must be 0 or 'max' (as fast as possible), or from 0.001 to 1e6, got '" + text + "'");
+}
 
 void add_run_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", "Run a world");

@@ -25,8 +25,8 @@ void add_set_option(CLI::App& command, std::vector<std::string>& sets) {
       ->check(command_line::setting());
 }
 
-void add_lcm_url_option(CLI::App& command, std::string& url) {
-  command.add_option("--lcm-url", url, "instead of LCM_DEFAULT_URL and the default")->type_name("URL");
+CLI::Option* add_lcm_url_option(CLI::App& command, std::string& url) {
+  return command.add_option("--lcm-url", url, "instead of LCM_DEFAULT_URL and the default")->type_name("URL");
 }
 
 void add_threads_option(CLI::App& command, int& threads) {

@@ -6,6 +6,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
+#include <regex>
+#include <set>
 
 #include "bridges/serial/serial_port.hpp"
 #include "devices/nmea.hpp"
@@ -13,6 +16,7 @@
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/world.hpp"
+#include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace {
@@ -50,6 +54,7 @@ class Terminal {
 
 class MicromodemPty : public testing::Test {
  protected:
+  explicit MicromodemPty(const std::string& keys = "") : keys_(keys) {}
   std::string yaml() const {
     std::string text =
         "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nmedium: {water: {sound_speed_mps: 1500}}\nvehicles:\n";
@@ -58,13 +63,14 @@ class MicromodemPty : public testing::Test {
               ", 0, -20], model: {shoal: 1, vehicle: ball" + std::to_string(i) +
               ", bodies: [{name: hull, hydrodynamics: {model: none}, parts: [{shape: sphere, radius_m: 0.1, mass_kg: "
               "1}]}], devices: [{name: modem, type: micromodem, address: " +
-              std::to_string(i) + ", serial: {path: \"" + folder.file("{vehicle}.modem") + "\"}}]}}\n";
+              std::to_string(i) + keys_ + ", serial: {path: \"" + folder.file("{vehicle}.modem") + "\"}}]}}\n";
     return text;
   }
   void run_for(double time_s) {
     for (int i = 0; i < static_cast<int>(time_s * 100 + 0.5); ++i) world.step();
   }
 
+  std::string keys_;  // of both modems
   test_support::ScratchFolder folder;
   sim::LoadedWorld loaded = sim::load_world_text(yaml(), "worlds/test.yaml", {});
   sim::InProcessBus bus;
@@ -103,6 +109,99 @@ TEST_F(MicromodemPty, ASessionOfTwoHosts) {
   EXPECT_THAT(heard, Contains("CARXD,2,1,0,1,68656c6c6f"));
   EXPECT_EQ(std::count_if(heard.begin(), heard.end(), [](const auto& line) { return line.starts_with("CACST,0,"); }),
             2);
+}
+
+/// A command, what the modem says to it first, and how long it is busy then.
+struct Step {
+  std::string body, answer;
+  double busy_s = 0;
+};
+
+/// Every command of docs/modems.md, in an order that works.
+const std::vector<Step>& all_commands() {
+  static const std::vector<Step> steps{
+      {"CCCFG,SRC,1", "CACFG,SRC,1"},
+      {"CCCFG,ALL,0", "CACFG,ALL,0"},
+      {"CCCFG,SRC,1", "CACFG,SRC,1"},
+      {"CCCFG,REV,0", "CACFG,REV,0"},
+      {"CCCFQ,SRC", "CACFG,SRC,1"},
+      {"CCCFQ,ALL", "CACFG,AGC,0"},
+      {"CCCLK,2026,3,4,5,6,7", "CACLK,2026,3,4,5,6,7"},
+      {"CCTMS,2026-03-04T05:06:07Z,0", "CATMS,0,2026-03-04T05:06:07Z"},
+      {"CCTMQ,0", "CATMQ,2026-03-04T05:06:0"},
+      {"CCMPC,1,2", "CAMPC,1,2", 8},
+      {"CCMUC,1,2,1fab", "CAMUC,1,2,1fab", 2},
+      {"CCPDT,1,1,0,0,500,1,1,0,0", "SNPDT,1,1,0,0,500,1,1,0,0", 1},
+      {"CCPNT,26000,5,5,500,25000,0,0,0,1", "SNPNT,26000,5,5,500,25000,0,0,0,1", 1},
+      {"CCPGT,26000,28,3E5A,500,25000,1f,0,0,0,2000,0", "SNPGT,26000,28,3E5A,500,25000,1f,0,0,0,2000,0", 1},
+      {"CCCYC,0,1,2,0,0,1", "CACYC,0,1,2,0,0,1"},
+      {"CCTXD,1,2,0,aabb", "CATXD,1,2,0,2", 8},
+      {"CCMSC,1,1,0", "CAMSC,1,1,0", 2},
+  };
+  return steps;
+}
+
+/// Two modems whose software is of the second generation: they know all commands.
+class MicromodemCommandsOnAPty : public MicromodemPty {
+ protected:
+  MicromodemCommandsOnAPty() : MicromodemPty(", revision: 2.0.16421") {
+    run_for(0.02);
+    one.lines();
+  }
+  /// What the modem says to this within two steps.
+  std::vector<std::string> answers(const std::string& typed) {
+    one.type(typed + "\r\n");
+    run_for(0.02);
+    return one.lines();
+  }
+};
+
+TEST_F(MicromodemCommandsOnAPty, EveryCommandOfThePageIsAnsweredWithAndWithoutAChecksum) {
+  std::set<std::string> tried;
+  for (const bool with_checksum : {true, false})
+    for (const Step& step : all_commands()) {
+      tried.insert(step.body.substr(0, 5));
+      const auto said = answers(with_checksum ? devices::nmea_sentence(step.body) : "$" + step.body);
+      ASSERT_FALSE(said.empty()) << step.body;
+      EXPECT_THAT(said.front(), StartsWith(step.answer)) << step.body;
+      run_for(step.busy_s);
+      one.lines();
+    }
+  // The first column of the table of the page names no other one.
+  std::ifstream page(test_support::source_path("docs/modems.md"));
+  std::set<std::string> named;
+  const std::regex command(R"(\$(CC[A-Z]{3}))");
+  for (std::string line; std::getline(page, line);) {
+    if (!line.starts_with("| `$CC")) continue;
+    const std::string host = line.substr(0, line.find('|', 1));
+    for (std::sregex_iterator at(host.begin(), host.end(), command), end; at != end; ++at) named.insert((*at)[1]);
+  }
+  EXPECT_EQ(tried, named);
+}
+
+TEST_F(MicromodemCommandsOnAPty, WhatIsWrongWithALineIsSaidForEveryCommand) {
+  const std::string time = "CAERR,0000";  // of the first minute
+  for (const Step& step : all_commands()) {
+    const std::string good = devices::nmea_sentence(step.body), name = step.body.substr(0, 5);
+    EXPECT_THAT(answers(good.substr(0, good.size() - 2) + (good.ends_with("00") ? "01" : "00")),
+                testing::ElementsAre(testing::AllOf(StartsWith(time), testing::EndsWith(",NMEA,2,bad checksum"))));
+    EXPECT_THAT(answers("$" + step.body + std::string(700, '0')),
+                testing::ElementsAre(testing::EndsWith(",NMEA,1,line too long")));
+    // Cut off behind its name, or in it.
+    EXPECT_THAT(answers("$" + name), testing::ElementsAre(testing::ContainsRegex("^CAERR,[0-9]{6},[A-Z]+,3,"))) << name;
+    EXPECT_THAT(answers("$" + step.body.substr(0, 4)),
+                testing::ElementsAre(testing::EndsWith(",NMEA,1,unknown sentence " + step.body.substr(0, 4))));
+    // Characters that cannot be printed.
+    EXPECT_THAT(answers("$" + name + ",\x01\xff"), testing::ElementsAre());
+    EXPECT_THAT(answers("\x80\xff\x01noise"), testing::ElementsAre());
+  }
+  EXPECT_THAT(answers("\x80\xffnoise$CCCFQ,SRC"), testing::ElementsAre("CACFG,SRC,1"));  // before the $
+}
+
+TEST_F(MicromodemCommandsOnAPty, WhatThePageCallsUnknownIs) {
+  for (const char* name : {"CCTXA", "CCCLQ", "CCMEC", "CCEXL", "CCRSP", "CCSWP", "CCMSQ", "CCCFR", "CCTDP", "CCHIB"})
+    EXPECT_THAT(answers(std::string("$") + name + ",1,2"),
+                testing::ElementsAre(testing::EndsWith(std::string(",NMEA,1,unknown sentence ") + name)));
 }
 
 TEST_F(MicromodemPty, NoiseAndAReaderThatNeverReadsDoNoHarm) {

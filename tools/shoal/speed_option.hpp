@@ -1,0 +1,11 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace tools {
+
+/// The value of --speed: `max` (0) or times real time; nothing when it is empty.  Throws CLI::ValidationError.
+std::optional<double> parse_speed(const std::string& text);
+
+}  // namespace tools
