@@ -59,7 +59,7 @@ TEST(Study, RunsAWorldForEverySeedAndCase) {
 
   const Ended report = run_shoal({"report", study.folder.file("out")});
   EXPECT_EQ(report.exit_code, 0) << report.errors;
-  EXPECT_THAT(study.text("report.html"), HasSubstr("<td>way.travelled_m</td><td>b</td><td>2</td>"));
+  EXPECT_THAT(study.text("report.html"), HasSubstr("<th scope=\"row\">b</th><td>2</td>"));
   EXPECT_THAT(study.text("report.html"), HasSubstr("data:image/png;base64,"));
 }
 
