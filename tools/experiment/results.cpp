@@ -193,8 +193,11 @@ Results::Results(const std::string& directory, const sim::World& world, bool pic
   const std::string path = directory + "/tracks.csv";
   tracks_ = error ? nullptr : std::fopen(path.c_str(), "w");
   if (tracks_ == nullptr) throw cannot_write(path, error ? error.message() : std::strerror(errno));
-  // Pictures of an earlier run would be taken for this one's.
+  // What an earlier run left would be taken for this one's, which may be killed.
   for (const char* picture : run_pictures) std::filesystem::remove(directory + "/" + picture, error);
+  for (const char* file : {"summary.json", "metrics.csv", "errors.csv"})
+    if (!std::filesystem::is_directory(directory + "/" + file, error))
+      std::filesystem::remove(directory + "/" + file, error);
   std::fprintf(tracks_, "time_s,vehicle,x_m,y_m,z_m,yaw_rad\n");
   const double step_s = sim::to_seconds(world.step_time());
   every_steps_ = std::max<std::int64_t>(1, std::llround(1.0 / (world.config().run.track_rate_hz * step_s)));
@@ -221,6 +224,10 @@ void Results::after_step() {
 
 void Results::write(const std::string& file, const std::string& text) const {
   write_file(directory_ + "/" + file, text);
+}
+
+void Results::write_world(const sim::ConfigNode& resolved) const {
+  write("world.yaml", sim::to_yaml(resolved));
 }
 
 void Results::write_outlines() const {
@@ -310,7 +317,7 @@ void Results::finish(const Summary& summary, const Scoring& scoring, const sim::
   attempt([&] { close_tracks(); });
   attempt([&] { write_metrics(directory_, summary); });
   attempt([&] { write_errors(directory_, scoring); });
-  attempt([&] { write("world.yaml", sim::to_yaml(resolved)); });
+  attempt([&] { write_world(resolved); });
   attempt([&] { plot(summary, scoring, give_up); });
   if (first_error) throw std::runtime_error(*first_error);
 }

@@ -67,7 +67,10 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
     // What came before is not in this run's log, and a gap says so.
     journal_.begin_branch(control_.branch, 1);
   }
-  if (!options.results.empty()) results_ = std::make_unique<Results>(options.results, world_, options.pictures);
+  if (!options.results.empty()) {
+    results_ = std::make_unique<Results>(options.results, world_, options.pictures);
+    results_->write_world(loaded.resolved);
+  }
   progress_.restart(world_.now());
   plan_snapshots();
   if (options.keys && !options.quiet && TerminalKeys::possible()) {

@@ -15,16 +15,16 @@ void add_describe_command(CLI::App& app, int& exit_code) {
   const auto page = std::make_shared<std::string>();
   const auto schema = std::make_shared<std::string>();
   CLI::Option* name_option =
-      command->add_option("NAME", *name, "a device type, a message type, device, noise, world or vehicle");
+      command->add_option("NAME", *name, "a device type, a message type, device, noise, world, vehicle or metrics");
   CLI::Option* page_option = command->add_option("--page", *page, "print a whole page of docs/ in Markdown")
-                                 ->check(CLI::IsMember({"devices", "messages", "world_format"}));
+                                 ->check(CLI::IsMember({"devices", "messages", "metrics", "world_format"}));
   CLI::Option* schema_option = command->add_option("--schema", *schema, "print the JSON Schema of a file's keys")
                                    ->check(CLI::IsMember({"world", "vehicle"}));
   name_option->excludes(page_option)->excludes(schema_option);
   page_option->excludes(schema_option);
   add_plugin_option(*command);
   command->footer(
-      "Examples:\n  shoal describe lidar\n  shoal describe world\n  shoal describe pose_t\n"
+      "Examples:\n  shoal describe lidar\n  shoal describe world\n  shoal describe metrics\n  shoal describe pose_t\n"
       "  shoal describe --schema world > world.schema.json\n"
       "  shoal describe thermometer --plugin build/thermometer.so");
   command->callback([name, page, schema, &exit_code] {

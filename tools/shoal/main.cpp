@@ -70,6 +70,7 @@ int run(int argc, char** argv) {
   tools::add_fidelity_command(app, exit_code);
   tools::add_acoustics_command(app, exit_code);
   tools::add_report_command(app, exit_code);
+  tools::add_bug_command(app, exit_code);
   tools::add_study_command(app, exit_code);
   try {
     app.parse(joined_negative_values(argc, argv));

@@ -301,6 +301,23 @@ TEST(Results, ReplaceThoseOfAnEarlierRun) {
   EXPECT_EQ(json["steps"], 0);
 }
 
+TEST(Results, OfAnEarlierRunAreGoneWhenARunIsKilled) {
+  const ScratchFolder folder;
+  const auto loaded = small_world();
+  auto options = quiet_run();
+  options.results = folder.file("results");
+  EXPECT_EQ(tools::run_world(loaded, options).exit_code, 0);
+  sim::InProcessBus bus;
+  sim::World world(loaded.config, bus);
+  {
+    const tools::Results killed(options.results, world);  // as far as a run comes that is killed in its first step
+    killed.write_world(loaded.resolved);
+  }
+  for (const char* file : {"summary.json", "metrics.csv", "errors.csv", "tracks.png"})
+    EXPECT_FALSE(fs::exists(options.results + "/" + file)) << file;
+  EXPECT_TRUE(fs::exists(options.results + "/world.yaml"));
+}
+
 TEST(Results, AFullDiskEndsTheRunAndTheRestIsWritten) {
   const ScratchFolder folder;
   auto loaded = small_world();
