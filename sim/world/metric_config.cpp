@@ -9,6 +9,7 @@
 #include "sim/device/device_registry.hpp"
 #include "sim/script/action.hpp"
 #include "sim/world/metric_kind.hpp"
+#include "sim/world/metric_types.hpp"
 #include "sim/world/world_config.hpp"
 
 namespace sim {
@@ -96,6 +97,12 @@ void MetricConfig::check_keys(ParamReader& in) const {
   const bool any_of_place = in.has("vehicle") || in.has("position_m") || in.has("radius_m");
   if (in.has("when") ? any_of_place : !all_of_place)
     in.error("needs either 'when', or 'vehicle', 'position_m' and 'radius_m'");
+}
+
+std::vector<std::string> metric_type_words() {
+  std::vector<std::string> words;
+  for (const MetricKind& kind : metric_kinds()) words.emplace_back(kind.word);
+  return words;
 }
 
 std::vector<std::string> MetricConfig::figures() const {

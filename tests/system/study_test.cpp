@@ -51,8 +51,8 @@ TEST(Study, RunsAWorldForEverySeedAndCase) {
   EXPECT_THAT(ended.output, HasSubstr("study tiny: 4 runs"));
   EXPECT_THAT(ended.output, HasSubstr("passed: a: mean of way.travelled_m"));
   EXPECT_THAT(ended.errors, HasSubstr("[4/4] "));
-  EXPECT_THAT(study.text("study.csv"), HasSubstr("\na,1,0,1,duration,1,"));
-  EXPECT_THAT(study.text("study.csv"), HasSubstr("\nb,2,0,1,duration,2,"));
+  EXPECT_THAT(study.text("study.csv"), HasSubstr("\na,1,0,,duration,1,"));
+  EXPECT_THAT(study.text("study.csv"), HasSubstr("\nb,2,0,,duration,2,"));
   EXPECT_THAT(study.text("study.json"), HasSubstr("\"passed\": true"));
   EXPECT_THAT(study.text("ways.png"), testing::StartsWith("\x89PNG"));
   EXPECT_FALSE(fs::exists(study.folder.file("out/runs/a/seed_1/tracks.png")));
@@ -100,6 +100,15 @@ TEST(Study, AProgramThatFailedFailsItsRunAndTheStudy) {
   EXPECT_EQ(ended.exit_code, 1) << ended.errors;
   EXPECT_THAT(ended.errors, HasSubstr("done, its rules failed"));
   EXPECT_THAT(ended.output, HasSubstr("FAILED: 2 of 2 runs had programs that failed"));
+}
+
+TEST(Study, ARunThatWasEndedByHandIsNoResult) {
+  const StudyFolder study(
+      "seeds: [1]\nlaunch: true\nduration_s: 1e9\npass: [{case: world, figure: way.travelled_m, below: 1e6}]\n",
+      "processes: [{name: hand, command: [" + built("shoal") + ", control, quit, --lcm-url, '{lcm_url}']}]\n");
+  const Ended ended = study.run();
+  EXPECT_EQ(ended.exit_code, 4) << ended.errors;
+  EXPECT_THAT(ended.errors, testing::ContainsRegex("failed: ended by quit at [0-9.]+ of 1e\\+09 s"));
 }
 
 TEST(Study, ExitCodeIs4WhenARunHasNoResult) {

@@ -32,6 +32,8 @@ class CollisionMetric final : public Metric {
     if (archive.restoring()) generation_ = ~std::uint64_t{0};
   }
 
+  std::string why_none(const std::string&) const override { return "nothing touched" + since_from_s(); }
+
   void add_figures(Figures& figures) const override {
     add(figures, "count", static_cast<double>(count_));
     add(figures, "first_s", first_s_);

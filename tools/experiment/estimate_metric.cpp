@@ -83,6 +83,14 @@ class EstimateMetric final : public Metric {
     add(figures, "samples", static_cast<double>(samples_.size()));
   }
 
+  std::string why_none(const std::string& figure) const override {
+    if (!samples_.empty() && figure == "per_distance_percent")
+      return fmt::format("the vehicle had travelled less than {} m", shortest_way_m);
+    if (bad_messages_ > 0)
+      return fmt::format("none of {} message{} on '{}' could be used", bad_messages_, bad_messages_ == 1 ? "" : "s",
+                         config().channel);
+    return "no estimate came on '" + config().channel + "'" + since_from_s();
+  }
   const std::vector<ErrorSample>* samples() const override { return &samples_; }
   std::int64_t bad_messages() const override { return bad_messages_; }
 
@@ -238,6 +246,7 @@ class DistanceMetric final : public Metric {
     if (sim::to_seconds(world_.now()) <= config().from_s) before_m_ = truth_.now().travelled_m;
   }
   void visit_state(sim::StateArchive& archive, History) override { archive(before_m_); }
+  std::string why_none(const std::string&) const override { return "nothing was measured"; }
   void add_figures(Figures& figures) const override {
     add(figures, "travelled_m", truth_.now().travelled_m - before_m_);
   }

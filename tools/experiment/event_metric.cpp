@@ -16,6 +16,7 @@ class MissionTimeMetric final : public Metric {
     if (watch_ ? watch_->count_new(world_) > 0 : is_there()) time_s_ = sim::to_seconds(world_.now());
   }
   void add_figures(Figures& figures) const override { add(figures, "time_s", time_s_); }
+  std::string why_none(const std::string&) const override { return "it did not happen"; }
   void visit_state(sim::StateArchive& archive, History) override {
     archive(time_s_);
     // A restored world may have built anew what the watch looks at.
@@ -52,6 +53,9 @@ class MessagesMetric final : public Metric {
     add(figures, "count", static_cast<double>(count_));
     add(figures, "bytes", static_cast<double>(bytes_));
     add(figures, "first_s", first_s_);
+  }
+  std::string why_none(const std::string&) const override {
+    return "no message came on '" + config().channel + "'" + since_from_s();
   }
   void visit_state(sim::StateArchive& archive, History) override {
     archive(count_, bytes_, first_s_);

@@ -30,6 +30,13 @@ class LeanMetric final : public Metric {
     if (lean_rad > fallen_rad && std::isnan(fell_s_)) fell_s_ = now_s;
   }
 
+  void visit_state(sim::StateArchive& archive, History) override {
+    archive(count_, mean_rad_, square_rad2_, most_rad_, fell_s_);
+  }
+  std::string why_none(const std::string& figure) const override {
+    return figure == "fell_s" && count_ > 0 ? "it did not fall" : "the vehicle was not there";
+  }
+
   void add_figures(Figures& figures) const override {
     constexpr double degrees = 180 / std::numbers::pi;
     const bool any = count_ > 0;

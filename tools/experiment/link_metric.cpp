@@ -24,6 +24,9 @@ class DeliveryMetric final : public Metric {
     add(figures, "dropped", static_cast<double>(counts.dropped));
     for (const auto& [cause, count] : counts.lost) add(figures, "lost_" + cause, static_cast<double>(count));
   }
+  std::string why_none(const std::string&) const override { return "nothing was sent to these modems"; }
+  // No state of its own: the modems and the acoustic channel count, and go back with the world.
+  void visit_state(sim::StateArchive&, History) override {}
 
  private:
   const sim::World& world_;
@@ -42,6 +45,13 @@ class BytesPerMetreMetric final : public Metric {
     add(figures, "reduction_m", less_m);
     add(figures, "bytes_per_metre", less_m > 0 ? bytes / less_m : no_figure);
   }
+  std::string why_none(const std::string& figure) const override {
+    return figure == "bytes_per_metre" ? "the error of '" + config().metric + "' is not known to be the smaller one"
+                                       : "one of the errors of '" + config().metric + "' and '" + config().against +
+                                             "' is not known";
+  }
+  // No state of its own: the modems count, and the other metrics keep the errors.
+  void visit_state(sim::StateArchive&, History) override {}
 
  private:
   const sim::World& world_;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spdlog/fmt/fmt.h>
+
 #include <limits>
 #include <map>
 #include <memory>
@@ -56,14 +58,21 @@ class Metric {
   /// Null when it compares no estimates.
   virtual const std::vector<ErrorSample>* samples() const { return nullptr; }
   virtual std::int64_t bad_messages() const { return 0; }
+  /// Why a figure is NaN, in a few words for the rule that fails by it.  `figure`: without the name of the metric.
+  virtual std::string why_none(const std::string& figure) const = 0;
+  /// Names every member that is state, so that the metric goes back with the world; a metric without state says so.
   /// Mail that it has not read yet is thrown away when restoring.
-  virtual void visit_state(sim::StateArchive&, History) {}
+  virtual void visit_state(sim::StateArchive& archive, History history) = 0;
   const sim::MetricConfig& config() const { return config_; }
 
  protected:
   static void empty(sim::Mailbox& mailbox) {
     while (mailbox.take()) {
     }
+  }
+  /// For reasons: ` from 120 s on`; empty when the metric counts from the start.
+  std::string since_from_s() const {
+    return config_.from_s > 0 ? fmt::format(" from {:.6g} s on", config_.from_s) : "";
   }
   void add(Figures& figures, const std::string& figure, double value) const {
     figures[config_.name + "." + figure] = value;

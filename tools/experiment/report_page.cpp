@@ -12,6 +12,7 @@
 #include "tools/experiment/html.hpp"
 #include "tools/experiment/report_figures.hpp"
 #include "tools/experiment/report_pictures.hpp"
+#include "tools/experiment/run_words.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/experiment/study_report.hpp"
 
@@ -48,8 +49,8 @@ std::string why_not_passed(const RunRecord& run) {
 }
 
 std::string verdicts_html(const RunRecord& run) {
-  const Judgement judgement = judgement_of(run);
-  std::string line = judgement_html(judgement, judgement == Judgement::not_judged ? why_not_judged(run) : "") + " ";
+  const Judgement judgement = run.judgement;
+  std::string line = judgement_html(judgement, run.not_judged) + " ";
   if (judgement == Judgement::failed) line += html_text(why_not_passed(run)) + " ";
   std::string html = paragraph(line + html_text(rules_in_words(run.rules)));
   if (run.event)
@@ -111,7 +112,7 @@ std::string warnings_html(const RunRecord& run) {
   warn(run.bad_messages, "messages were received and not usable.");
   warn(run.quick_steps, "steps used QuickStep, for an island of bodies was too large.");
   const auto failed = [](const RunRecord::Process& process) { return process.failed; };
-  if (judgement_of(run) == Judgement::not_judged && std::any_of(run.processes.begin(), run.processes.end(), failed))
+  if (run.judgement == Judgement::not_judged && std::any_of(run.processes.begin(), run.processes.end(), failed))
     warnings.emplace_back("Programs of the world failed.");
   for (const auto& [name, value] : run.metrics)
     if (name.ends_with(".longest_gap_s") && value.value_or(0) > long_gap_s)
@@ -131,8 +132,8 @@ std::string verdict_html(bool passed) {
 
 std::string judgement_html(Judgement judgement, const std::string& why) {
   const char* look = judgement == Judgement::passed ? "good" : judgement == Judgement::failed ? "bad" : "open";
-  return "<span class=\"" + std::string(look) + "\">" + judgement_word(judgement) +
-         (why.empty() ? "" : ": " + html_text(why)) + "</span>";
+  return "<span class=\"" + std::string(look) + "\">" + judgement_word(judgement) + "</span>" +
+         (why.empty() ? "" : ": " + html_text(why) + ".");
 }
 
 std::string rules_html(const std::vector<RunRecord::Rule>& rules) {
@@ -169,7 +170,7 @@ std::string verdict_box(Judgement judgement, const std::string& html) {
 }
 
 std::string outcome_html(const RunRecord& run, const std::vector<RunMetric>& metrics) {
-  return verdict_box(judgement_of(run), verdicts_html(run)) + list_html(findings_in_words(metrics));
+  return verdict_box(run.judgement, verdicts_html(run)) + list_html(findings_in_words(metrics));
 }
 
 std::string made_by_html() {

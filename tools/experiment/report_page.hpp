@@ -4,8 +4,9 @@
 #include <utility>
 #include <vector>
 
+#include "tools/experiment/judgement.hpp"
+#include "tools/experiment/run_metrics.hpp"
 #include "tools/experiment/run_record.hpp"
-#include "tools/experiment/run_words.hpp"
 
 namespace tools {
 

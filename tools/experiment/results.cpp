@@ -51,13 +51,30 @@ void write_file(const std::string& path, const std::string& text) {
 
 }  // namespace
 
-bool Summary::passed() const {
-  if (event && !event->passed) return false;
-  return std::all_of(verdicts.begin(), verdicts.end(), [](const Scoring::Verdict& v) { return v.passed; });
+Judgement Summary::judgement() const {
+  const bool rules_hold =
+      std::all_of(verdicts.begin(), verdicts.end(), [](const Scoring::Verdict& v) { return v.passed; });
+  if (!rules_hold || (event && !event->passed)) return Judgement::failed;
+  if (ended_by_hand()) return Judgement::not_judged;
+  if (exit_code != 0) return Judgement::failed;
+  return verdicts.empty() && !event ? Judgement::not_judged : Judgement::passed;
+}
+
+std::string Summary::why_not_judged() const {
+  if (!ended_by_hand()) return no_verdicts;
+  std::string how = "ended by quit";
+  if (ended == "signal") {
+    const char* name = sigabbrev_np(exit_code - 128);
+    how = name != nullptr ? fmt::format("ended by SIG{}", name) : "ended by a signal";
+  } else if (ended == "rewound") {
+    how = "left for another branch";
+  }
+  const std::string of = duration_s > 0 ? fmt::format(" of {:.10g}", duration_s) : "";
+  return fmt::format("{} at {:.10g}{} s", how, sim_time_s, of);
 }
 
 void Summary::judge_processes() {
-  if (!judged()) return;
+  if (verdicts.empty() && !event) return;
   for (const Process& process : processes)
     if (process.failed)
       verdicts.push_back(
@@ -78,6 +95,7 @@ std::string Summary::to_json() const {
   json["seed"] = seed;
   json["steps"] = steps;
   json["sim_time_s"] = sim_time_s;
+  json["duration_s"] = duration_s;
   json["wall_s"] = wall_s;
   json["real_time_factor"] = real_time_factor();
   json["state_hash"] = fmt::format("{:016x}", state_hash);
@@ -119,7 +137,9 @@ std::string Summary::to_json() const {
   json["serial_dropped_bytes"] = serial_dropped_bytes;
   if (event) json["event"] = {{"text", event->text}, {"passed", event->passed}};
   json["judged"] = judged();
-  json["passed"] = passed() && exit_code == 0;
+  if (!judged()) json["not_judged"] = why_not_judged();
+  json["passed"] = nullptr;
+  if (const auto flag = as_flag(judgement())) json["passed"] = *flag;
   json["ended"] = ended;
   json["error"] = error;
   json["exit_code"] = exit_code;
@@ -151,18 +171,22 @@ std::string Summary::to_text() const {
   if (modem_dropped_messages > 0)
     text += fmt::format("  {} messages were dropped from full queues of modems\n", modem_dropped_messages);
   if (serial_dropped_bytes > 0) text += fmt::format("  {} bytes were fetched from no port\n", serial_dropped_bytes);
-  for (const auto& [name, value] : metrics) text += fmt::format("  {:<28} {:.4g}\n", name, value);
+  for (const auto& [name, value] : metrics)
+    text += fmt::format("  {:<28} {}\n", name, std::isnan(value) ? "none" : fmt::format("{:.4g}", value));
   for (const Scoring::Verdict& verdict : verdicts)
     text += fmt::format("  {}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.rule);
   for (const Process& process : processes)
     text += fmt::format("  process '{}' {} at {:.2f} s\n", process.name, process.how, process.sim_time_s);
   const bool failed = std::any_of(processes.begin(), processes.end(), [](const Process& p) { return p.failed; });
-  if (failed && !judged()) text += "  programs of the world failed; as it has no rules, nothing was judged\n";
+  if (failed && !judged()) text += "  programs of the world failed\n";
   for (const auto& [vehicle, record] : zones) {
     if (record.finish_s) text += fmt::format("  {} finished at {:.2f} s\n", vehicle, *record.finish_s);
     if (record.speeding_s > 0) text += fmt::format("  {} was too fast for {:.2f} s\n", vehicle, record.speeding_s);
   }
   if (event) text += fmt::format("  ended by an event, {}: {}\n", event->passed ? "passed" : "FAILED", event->text);
+  if (!judged())
+    text += ended_by_hand() ? fmt::format("  {}: not judged\n", why_not_judged())
+                            : fmt::format("  not judged: {}\n", why_not_judged());
   text += fmt::format("  state hash {:016x}\n", state_hash);
   return text;
 }

@@ -12,6 +12,7 @@
 #include "sim/config/config_node.hpp"
 #include "sim/script/script.hpp"
 #include "sim/world/world.hpp"
+#include "tools/experiment/judgement.hpp"
 #include "tools/experiment/link_counts.hpp"
 #include "tools/experiment/scoring.hpp"
 
@@ -32,6 +33,7 @@ struct Summary {
   std::int64_t seed = 0;
   std::int64_t steps = 0;
   double sim_time_s = 0;
+  double duration_s = 0;  ///< asked for; 0: until somebody ends it
   double wall_s = 0;
   std::uint64_t state_hash = 0;
   std::uint64_t messages = 0;
@@ -40,6 +42,7 @@ struct Summary {
   std::int64_t quick_steps = 0;
   std::map<std::string, double> metrics;
   std::vector<Scoring::Verdict> verdicts;
+  std::string no_verdicts = "the world has no rules";  ///< why there are none, if so
   std::vector<Process> processes;
   std::vector<bridges::LockstepSummary> clients;  ///< that took part in the lockstep, by name
   std::map<std::string, sim::ZoneRecord> zones;   ///< by vehicle, when the world has zones with rules
@@ -48,7 +51,7 @@ struct Summary {
   std::uint64_t serial_dropped_bytes = 0;         ///< that no program fetched from pseudo-terminals and FIFOs
   std::optional<sim::EndOfRun> event;             ///< of the world that ended the run
   std::string ended =
-      "duration";     ///< duration, event, quit, signal, fault, bus, timeout, process, configuration, error
+      "duration";  ///< duration, event, quit, signal, rewound, fault, bus, timeout, process, configuration, error
   std::string error;  ///< why it ended early, empty when it did not
   int exit_code = 0;
   std::string version;      ///< of shoal
@@ -58,9 +61,14 @@ struct Summary {
   double stepped_s = 0;     ///< simulated in this process
 
   double real_time_factor() const { return wall_s > 0 ? stepped_s / wall_s : 0; }
-  bool passed() const;
-  /// There was a rule, or an event that said what it means.
-  bool judged() const { return !verdicts.empty() || event.has_value(); }
+  /// By the rules, the event that ended it, its programs, and whether it broke off.  A run that was ended by hand is
+  /// not judged.
+  Judgement judgement() const;
+  bool judged() const { return judgement() != Judgement::not_judged; }
+  /// Of a run that was not judged: `the world has no rules`, `ended by quit at 23 of 150 s`.
+  std::string why_not_judged() const;
+  /// By a request, a key or a signal, or by going back to another branch: nobody knows what its rest would have been.
+  bool ended_by_hand() const { return ended == "quit" || ended == "signal" || ended == "rewound"; }
   /// Where something is judged each program that failed is a rule that failed.
   void judge_processes();
   void fail(int code, const std::string& how_ended, const std::string& why);

@@ -25,6 +25,14 @@ std::map<std::string, std::optional<double>> read_figures(const JsonReader& in) 
   return figures;
 }
 
+/// Older versions wrote that a run had passed though nothing was judged.
+Judgement judgement_in(const JsonReader& in, bool has_rules) {
+  if (in.at("passed").is_null()) return Judgement::not_judged;
+  const bool passed = in.boolean("passed");
+  const bool judged = in.has("judged") ? in.boolean("judged") : has_rules;
+  return passed && !judged ? Judgement::not_judged : judgement_of(passed);
+}
+
 }  // namespace
 
 std::string read_whole_file(const std::string& path) {
@@ -77,8 +85,9 @@ RunRecord read_run(const std::string& directory) {
     const JsonReader event(in.object("event"), path + ": event");
     run.event = RunRecord::Rule{event.text("text"), event.boolean("passed")};
   }
-  run.judged = in.has("judged") ? in.boolean("judged") : !run.rules.empty() || run.event;
-  run.passed = in.boolean("passed");
+  run.judgement = judgement_in(in, !run.rules.empty() || run.event);
+  if (run.judgement == Judgement::not_judged)
+    run.not_judged = in.has("not_judged") ? in.text("not_judged") : "it had no rules";
   run.ended = in.text("ended");
   run.error = in.text("error");
   run.exit_code = static_cast<int>(in.whole("exit_code"));

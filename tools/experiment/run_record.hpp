@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "tools/experiment/judgement.hpp"
+
 namespace tools {
 
 /// What a results directory tells of its run, read again.
@@ -34,8 +36,8 @@ struct RunRecord {
   std::vector<Rule> rules;
   std::vector<Process> processes;
   std::optional<Rule> event;  ///< what the event said that ended the run
-  bool judged = false;        ///< by a rule or an event
-  bool passed = false;
+  Judgement judgement = Judgement::not_judged;
+  std::string not_judged;  ///< why it was not; empty when it was
   std::string ended, error;
   int exit_code = 0;
   std::string version;  ///< of shoal; empty: an older one that did not tell

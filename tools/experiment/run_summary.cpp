@@ -30,7 +30,8 @@ void Run::finish(Summary& summary) {
   buses_.close_record();
   if (const auto error = buses_.record_error(); error && summary.exit_code == 0) summary.fail(4, "bus", *error);
   add_figures(summary);
-  if (summary.exit_code == 0 && !summary.passed()) summary.exit_code = 1;  // a rule, or the event that ended it
+  // A rule, a program, or the event that ended it.
+  if (summary.exit_code == 0 && summary.judgement() == Judgement::failed) summary.exit_code = 1;
   note_signal(summary);
   if (results_) write_results(summary);
   tell_missed_snapshots();
@@ -48,6 +49,7 @@ void Run::add_figures(Summary& summary) {
   summary.version = short_version();
   summary.steps = world_.step_number();
   summary.sim_time_s = sim::to_seconds(world_.now());
+  summary.duration_s = duration_s_;
   summary.state_hash = world_.state_hash();
   summary.messages = counts.published + counts.received;
   summary.dropped_messages = counts.dropped_incoming + counts.dropped_outgoing + lockstep_.dropped_messages();
@@ -65,8 +67,10 @@ void Run::add_figures(Summary& summary) {
   summary.event = world_.ended();
   for (const auto& [vehicle, record] : world_.zone_records()) summary.zones[vehicle] = record;
   // Without the programs that a world names there is nothing to judge.
-  const bool judged = loaded_.config.processes.empty() || options_.launch || !options_.await.empty();
-  if (!judged) summary.verdicts.clear();
+  const bool took_part = loaded_.config.processes.empty() || options_.launch || !options_.await.empty();
+  if (!took_part && !summary.verdicts.empty())
+    summary.no_verdicts = "its programs took no part: see --launch and --await";
+  if (!took_part || summary.ended_by_hand()) summary.verdicts.clear();
   summary.judge_processes();
 }
 

@@ -208,16 +208,6 @@ std::string sentence_of(const RunMetric& metric) {
 
 }  // namespace
 
-Judgement judgement_of(const RunRecord& run) {
-  // A run that broke has failed, whether or not it had rules.
-  if (!run.passed) return Judgement::failed;
-  return run.judged ? Judgement::passed : Judgement::not_judged;
-}
-
-std::string why_not_judged(const RunRecord&) {
-  return "the world has no rules, or its programs took no part";
-}
-
 std::string length_text(double length_m) {
   if (std::abs(length_m) >= 1000) return rounded(length_m / 1000) + " km";
   if (length_m != 0 && std::abs(length_m) < 0.01) return fmt::format("{:.2g} mm", 1000 * length_m);

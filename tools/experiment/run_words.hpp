@@ -3,15 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "tools/experiment/judgement.hpp"
 #include "tools/experiment/run_metrics.hpp"
 #include "tools/experiment/run_record.hpp"
 
 namespace tools {
-
-Judgement judgement_of(const RunRecord& run);
-/// Why a run was not judged, such as `the world has no rules`.
-std::string why_not_judged(const RunRecord& run);
 
 /// How rules came out, in one line: `7 of 8 rules hold, 1 failed.`  Empty when there are none.
 std::string rules_in_words(const std::vector<RunRecord::Rule>& rules);

@@ -6,25 +6,6 @@
 
 namespace tools {
 
-namespace {
-
-Scoring::Verdict judge(const sim::PassRule& rule, const Figures& figures) {
-  const double value = figures.at(rule.metric);
-  const auto text = [&](const char* sign, const std::string& right) {
-    return fmt::format("{} ({:.3f}) {} {}", rule.metric, value, sign, right);
-  };
-  if (rule.below) return {text("<", fmt::format("{}", *rule.below)), value < *rule.below};
-  if (rule.above) return {text(">", fmt::format("{}", *rule.above)), value > *rule.above};
-  if (rule.equals) return {text("==", fmt::format("{}", *rule.equals)), value == *rule.equals};
-  const bool below = !rule.below_metric.empty();
-  const std::string& other = below ? rule.below_metric : rule.above_metric;
-  const double limit = rule.factor * figures.at(other);
-  const std::string right = fmt::format("{} * {} ({:.3f})", rule.factor, other, limit);
-  return {text(below ? "<" : ">", right), below ? value < limit : value > limit};
-}
-
-}  // namespace
-
 Scoring::Scoring(sim::World& world) : world_(world) {
   for (const sim::MetricConfig& config : world.config().metrics) metrics_.push_back(make(config));
 }
@@ -63,11 +44,20 @@ void Scoring::after_step() {
   for (const auto& metric : metrics_) metric->after_step();
 }
 
+bool Scoring::is_early(const Metric& metric) const {
+  return sim::to_seconds(world_.now()) < metric.config().from_s;
+}
+
 Figures Scoring::figures() const {
   Figures figures;
   for (const bool needs_others : {false, true})
-    for (const auto& metric : metrics_)
-      if (metric->needs_others() == needs_others) metric->add_figures(figures);
+    for (const auto& metric : metrics_) {
+      if (metric->needs_others() != needs_others) continue;
+      metric->add_figures(figures);
+      if (!is_early(*metric)) continue;
+      // What was not looked at has no count of 0 and no gap of 0 s: a rule would hold by that.
+      for (const std::string& name : metric->config().figures()) figures[name] = no_figure;
+    }
   return figures;
 }
 
@@ -80,6 +70,36 @@ void Scoring::visit_state(sim::StateArchive& archive, History history) {
     archive.section("metric " + metric->config().name);
     metric->visit_state(archive, history);
   }
+}
+
+std::string Scoring::why_none(const std::string& name) const {
+  for (const auto& metric : metrics_) {
+    const sim::MetricConfig& config = metric->config();
+    if (!name.starts_with(config.name + ".")) continue;
+    if (is_early(*metric))
+      return fmt::format("the run ended at {:.6g} s, before from_s, {:.6g} s", sim::to_seconds(world_.now()),
+                         config.from_s);
+    return metric->why_none(name.substr(config.name.size() + 1));
+  }
+  return "there is no such metric";
+}
+
+Scoring::Verdict Scoring::judge(const sim::PassRule& rule, const Figures& figures) const {
+  const double value = figures.at(rule.metric);
+  const auto shown = [&](const std::string& name, double number) {
+    return std::isnan(number) ? "none: " + why_none(name) : fmt::format("{:.3f}", number);
+  };
+  const auto text = [&](const char* sign, const std::string& right) {
+    return fmt::format("{} ({}) {} {}", rule.metric, shown(rule.metric, value), sign, right);
+  };
+  if (rule.below) return {text("<", fmt::format("{}", *rule.below)), value < *rule.below};
+  if (rule.above) return {text(">", fmt::format("{}", *rule.above)), value > *rule.above};
+  if (rule.equals) return {text("==", fmt::format("{}", *rule.equals)), value == *rule.equals};
+  const bool below = !rule.below_metric.empty();
+  const std::string& other = below ? rule.below_metric : rule.above_metric;
+  const double limit = rule.factor * figures.at(other);
+  const std::string right = fmt::format("{} * {} ({})", rule.factor, other, shown(other, limit));
+  return {text(below ? "<" : ">", right), below ? value < limit : value > limit};
 }
 
 std::vector<Scoring::Verdict> Scoring::verdicts() const {

@@ -34,9 +34,9 @@ class Scoring {
   /// Call after every step.
   void after_step();
 
-  /// The figures of every metric, by name.
+  /// The figures of every metric, by name.  Before its from_s a metric has none: they are NaN.
   Figures figures() const;
-  /// The pass rules of the world, each with its outcome.  A figure that is NaN fails.
+  /// The pass rules of the world, each with its outcome.  A figure that is NaN fails, and the rule says why.
   std::vector<Verdict> verdicts() const;
   /// Of the metrics that compare estimates with the truth.
   std::vector<Track> tracks() const;
@@ -46,6 +46,11 @@ class Scoring {
 
  private:
   const TruthHistory& truth_of(const std::string& vehicle);
+  /// The run has not come to the time from which the metric counts.
+  bool is_early(const Metric& metric) const;
+  /// Why a figure, `NAME.figure`, is NaN.
+  std::string why_none(const std::string& name) const;
+  Verdict judge(const sim::PassRule& rule, const Figures& figures) const;
   std::unique_ptr<Metric> make(const sim::MetricConfig& config);
 
   sim::World& world_;

@@ -23,8 +23,9 @@ constexpr std::size_t max_figures_in_words = 6;
 
 Judgement judgement_of(const JsonReader& in, const std::vector<RunRecord::Rule>& rules) {
   if (in.at("passed").is_null()) return Judgement::not_judged;
-  if (!in.boolean("passed")) return Judgement::failed;
-  return rules.empty() ? Judgement::not_judged : Judgement::passed;
+  // Older versions wrote that a study without rules had passed.
+  if (in.boolean("passed") && rules.empty()) return Judgement::not_judged;
+  return judgement_of(in.boolean("passed"));
 }
 
 std::vector<std::string> texts_of(const JsonReader& in, const char* key) {
@@ -39,7 +40,7 @@ std::vector<std::string> texts_of(const JsonReader& in, const char* key) {
 
 /// Statistics of one figure of one case; each may be null.
 struct CaseFigure {
-  std::optional<double> count, mean, std, min, max, median;
+  std::optional<double> count, mean, std, min, max, median, low_95, high_95;
 };
 
 std::optional<double> number_at(const JsonReader& in, const char* key) {
@@ -62,8 +63,10 @@ std::vector<StudyCaseRecord> cases_of(const JsonReader& in) {
     record.sets = texts_of(of_case, "set");
     for (const auto& [name, value] : of_case.object("figures").items()) {
       const JsonReader cells(value, in.where() + ": cases: figures");
-      record.figures[name] = {number_at(cells, "count"), number_at(cells, "mean"), number_at(cells, "std"),
-                              number_at(cells, "min"),   number_at(cells, "max"),  number_at(cells, "median")};
+      record.figures[name] = {number_at(cells, "count"),       number_at(cells, "mean"),
+                              number_at(cells, "std"),         number_at(cells, "min"),
+                              number_at(cells, "max"),         number_at(cells, "median"),
+                              number_at(cells, "mean_low_95"), number_at(cells, "mean_high_95")};
     }
   }
   return cases;
@@ -79,15 +82,19 @@ std::vector<std::string> all_figures(const std::vector<StudyCaseRecord>& cases) 
 }
 
 std::string figures_html(const JsonReader& in, const std::vector<StudyCaseRecord>& cases) {
-  FigureColumns columns({"runs", "mean", "std", "min", "max", "median"}, all_figures(cases));
+  FigureColumns columns({"runs", "mean", "mean, 95 % interval", "std", "min", "max", "median"}, all_figures(cases));
+  const auto seeds = static_cast<double>(in.list("seeds").size());
   for (const std::string& name : texts_of(in, "figures"))
     for (const StudyCaseRecord& each : cases) {
       const auto found = each.figures.find(name);
       if (name == passed_figure || found == each.figures.end()) continue;
       const CaseFigure& f = found->second;
-      FigureColumns::Row row{name, each.name, {}, f.min == 0.0 && f.max == 0.0};
-      for (const auto& value : {f.count, f.mean, f.std, f.min, f.max, f.median})
-        row.values.push_back(figure_text(value));
+      FigureColumns::Row row{name, each.name, {}, f.min == 0.0 && f.max == 0.0 && f.count == seeds};
+      // A mean of the runs that have the figure says nothing of those that do not.
+      row.values.push_back(figure_text(f.count) + (f.count == seeds ? "" : " of " + figure_text(seeds)));
+      row.values.push_back(figure_text(f.mean));
+      row.values.push_back(f.low_95 && f.high_95 ? figure_text(f.low_95) + " to " + figure_text(f.high_95) : "none");
+      for (const auto& value : {f.std, f.min, f.max, f.median}) row.values.push_back(figure_text(value));
       columns.add(std::move(row));
     }
   return columns.html();

@@ -31,6 +31,8 @@ std::string field(const std::string& text) {
 nlohmann::ordered_json json_of(const Statistics& statistics) {
   nlohmann::ordered_json json{{"count", statistics.count}};
   for (const std::string& word : statistic_words()) json[word] = statistics.by_word(word);  // NaN becomes null
+  json["mean_low_95"] = statistics.mean_95.low;
+  json["mean_high_95"] = statistics.mean_95.high;
   return json;
 }
 
@@ -60,7 +62,10 @@ Statistics statistics_of(std::vector<double> values) {
   statistics.mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
   double squares = 0;
   for (const double value : values) squares += (value - statistics.mean) * (value - statistics.mean);
-  if (values.size() > 1) statistics.std = std::sqrt(squares / (count - 1));
+  if (values.size() > 1) {
+    statistics.std = std::sqrt(squares / (count - 1));
+    statistics.mean_95 = mean_interval_95(statistics.mean, statistics.std, values.size());
+  }
   statistics.min = values.front();
   statistics.max = values.back();
   statistics.median = quantile(values, 0.5);
@@ -81,7 +86,9 @@ std::vector<double> StudyResults::values(const std::string& in_case, const std::
     if (!run.record || study_.config.cases[run.in_case].name != in_case) continue;
     const auto found = run.record->metrics.find(figure);
     if (figure == passed_figure)
-      values.push_back(run.record->passed ? 1 : 0);
+      values.push_back(run.record->judgement == Judgement::not_judged  ? no_figure
+                       : run.record->judgement == Judgement::passed ? 1
+                                                                    : 0);
     else if (found != run.record->metrics.end())
       values.push_back(found->second.value_or(no_figure));
   }
@@ -89,7 +96,13 @@ std::vector<double> StudyResults::values(const std::string& in_case, const std::
 }
 
 Statistics StudyResults::of(const std::string& in_case, const std::string& figure) const {
-  return statistics_of(values(in_case, figure));
+  Statistics statistics = statistics_of(values(in_case, figure));
+  if (figure == passed_figure && statistics.count > 0) {
+    const auto count = static_cast<std::size_t>(statistics.count);
+    const auto hits = static_cast<std::size_t>(std::llround(statistics.mean * static_cast<double>(count)));
+    statistics.mean_95 = share_interval_95(hits, count);
+  }
+  return statistics;
 }
 
 std::vector<std::string> StudyResults::table_figures() const {
@@ -99,27 +112,40 @@ std::vector<std::string> StudyResults::table_figures() const {
   return figures;
 }
 
+std::size_t StudyResults::runs_of(const std::string& in_case) const {
+  return static_cast<std::size_t>(std::count_if(runs_.begin(), runs_.end(), [&](const StudyRun& run) {
+    return study_.config.cases[run.in_case].name == in_case;
+  }));
+}
+
+StudyResults::Shown StudyResults::statistic(const StudyRule& rule, const std::string& in_case,
+                                            const std::string& figure) const {
+  const Statistics statistics = of(in_case, figure);
+  const std::size_t runs = runs_of(in_case);
+  const std::size_t lacking = runs - static_cast<std::size_t>(statistics.count);
+  // A figure that nothing could be made of in some of the runs is no good figure.
+  if (lacking > 0)
+    return {no_figure, fmt::format("none: {} of {} runs {} no such figure", lacking, runs, lacking == 1 ? "has" : "have")};
+  const double value = statistics.by_word(rule.statistic);
+  if (std::isnan(value)) return {no_figure, fmt::format("none: {} needs two runs", rule.statistic)};
+  return {value, fmt::format("{:.4g}", value)};
+}
+
 Scoring::Verdict StudyResults::judge(const StudyRule& rule) const {
-  const auto statistic = [&](const std::string& in_case, const std::string& figure) {
-    const Statistics statistics = of(in_case, figure);
-    const auto runs = std::count_if(runs_.begin(), runs_.end(), [&](const StudyRun& run) {
-      return study_.config.cases[run.in_case].name == in_case;
-    });
-    // A figure that nothing could be made of in some of the runs is no good figure.
-    return statistics.count == runs ? statistics.by_word(rule.statistic) : no_figure;
-  };
-  const double value = statistic(rule.in_case, rule.figure);
+  const Shown left = statistic(rule, rule.in_case, rule.figure);
   const auto text = [&](const char* sign, const std::string& right) {
-    return fmt::format("{}: {} of {} ({:.4g}) {} {}", rule.in_case, rule.statistic, rule.figure, value, sign, right);
+    return fmt::format("{}: {} of {} ({}) {} {}", rule.in_case, rule.statistic, rule.figure, left.text, sign, right);
   };
-  if (rule.below) return {text("<", fmt::format("{}", *rule.below)), value < *rule.below};
-  if (rule.above) return {text(">", fmt::format("{}", *rule.above)), value > *rule.above};
-  if (rule.equals) return {text("==", fmt::format("{}", *rule.equals)), value == *rule.equals};
+  if (rule.below) return {text("<", fmt::format("{}", *rule.below)), left.value < *rule.below};
+  if (rule.above) return {text(">", fmt::format("{}", *rule.above)), left.value > *rule.above};
+  if (rule.equals) return {text("==", fmt::format("{}", *rule.equals)), left.value == *rule.equals};
   const bool other_case = !rule.below_case.empty();
-  const double limit =
-      rule.factor * (other_case ? statistic(rule.below_case, rule.figure) : statistic(rule.in_case, rule.below_figure));
+  const Shown right =
+      other_case ? statistic(rule, rule.below_case, rule.figure) : statistic(rule, rule.in_case, rule.below_figure);
   const std::string other = other_case ? "that of " + rule.below_case : rule.below_figure;
-  return {text("<", fmt::format("{} * {} ({:.4g})", rule.factor, other, limit)), value < limit};
+  const double limit = rule.factor * right.value;
+  const std::string shown = std::isnan(limit) ? right.text : fmt::format("{:.4g}", limit);
+  return {text("<", fmt::format("{} * {} ({})", rule.factor, other, shown)), left.value < limit};
 }
 
 std::vector<Scoring::Verdict> StudyResults::verdicts() const {
@@ -143,9 +169,11 @@ std::size_t StudyResults::runs_with_failed_programs() const {
   }));
 }
 
-bool StudyResults::passed() const {
+Judgement StudyResults::judgement() const {
   const auto all = verdicts();
-  return failed_runs() == 0 && std::all_of(all.begin(), all.end(), [](const auto& verdict) { return verdict.passed; });
+  const bool hold = std::all_of(all.begin(), all.end(), [](const auto& verdict) { return verdict.passed; });
+  if (failed_runs() > 0 || !hold) return Judgement::failed;
+  return all.empty() ? Judgement::not_judged : Judgement::passed;
 }
 
 std::string StudyResults::to_text() const {
@@ -159,19 +187,22 @@ std::string StudyResults::to_text() const {
     return text + "\n";
   };
   std::string text = fmt::format("study {}: {} runs of {}\n", config.name, runs_.size(), config.world);
-  text += line("figure", "case", "runs", "mean", "std", "min", "max", "median");
+  text += line("figure", "case", "runs", "mean", "std", "min", "max", "median", "mean 95 %", "");
   for (const std::string& figure : table_figures())
     for (const StudyCase& each : config.cases) {
       const Statistics s = of(each.name, figure);
-      text += line(figure, each.name, std::to_string(s.count), number(s.mean), number(s.std), number(s.min),
-                   number(s.max), number(s.median));
+      // A mean of those that arrived says nothing of those that did not.
+      const std::size_t runs = runs_of(each.name);
+      const bool all = static_cast<std::size_t>(s.count) == runs;
+      text += line(figure, each.name, all ? fmt::format("{}", runs) : fmt::format("{}/{}", s.count, runs), number(s.mean), number(s.std), number(s.min),
+                   number(s.max), number(s.median), number(s.mean_95.low), number(s.mean_95.high));
     }
   for (const Scoring::Verdict& verdict : verdicts())
     text += fmt::format("{}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.rule);
-  if (study_.config.pass.empty() && runs_with_failed_programs() > 0)
-    text += fmt::format("{} runs had programs that failed; as the study has no rules, nothing was judged\n",
-                        runs_with_failed_programs());
+  if (config.pass.empty() && runs_with_failed_programs() > 0)
+    text += fmt::format("{} of {} runs had programs that failed\n", runs_with_failed_programs(), runs_.size());
   if (failed_runs() > 0) text += fmt::format("{} runs have no result\n", failed_runs());
+  if (config.pass.empty()) text += "not judged: the study has no rules\n";
   return text;
 }
 
@@ -186,8 +217,9 @@ std::string StudyResults::to_csv() const {
       continue;
     }
     const RunRecord& record = *run.record;
-    text += fmt::format(",{},{},{},{},{:.3f}", record.exit_code, record.passed ? 1 : 0, field(record.ended),
-                        record.sim_time_s, record.wall_s);
+    const auto passed = as_flag(record.judgement);
+    text += fmt::format(",{},{},{},{},{:.3f}", record.exit_code, !passed ? "" : *passed ? "1" : "0",
+                        field(record.ended), record.sim_time_s, record.wall_s);
     for (const std::string& figure : figures_) {
       const auto found = record.metrics.find(figure);
       const bool known = found != record.metrics.end() && found->second;
@@ -224,7 +256,9 @@ std::string StudyResults::to_json(int exit_code) const {
   for (const Scoring::Verdict& verdict : verdicts())
     json["rules"].push_back({{"rule", verdict.rule}, {"passed", verdict.passed}});
   json["pictures"] = study_pictures(config);
-  json["passed"] = passed() && exit_code == 0;
+  json["judged"] = judgement() != Judgement::not_judged;
+  json["passed"] = nullptr;
+  if (const auto flag = as_flag(judgement())) json["passed"] = *flag && exit_code == 0;
   json["exit_code"] = exit_code;
   json["shoal"] = short_version();
   return json.dump(2) + "\n";

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/experiment/interval.hpp"
 #include "tools/experiment/scoring.hpp"
 #include "tools/experiment/study_runs.hpp"
 
@@ -15,6 +16,8 @@ struct Statistics {
   double mean = no_figure;
   double std = no_figure;  ///< of the sample (n - 1); NaN for one run
   double min = no_figure, max = no_figure, median = no_figure;
+  /// 95 % confidence: of the mean by Student's t, of the share that passed by Wilson's score.  NaN for one run.
+  Interval mean_95{no_figure, no_figure};
 
   double by_word(const std::string& word) const;  ///< one of statistic_words()
 };
@@ -29,7 +32,7 @@ class StudyResults {
  public:
   StudyResults(const LoadedStudy& study, const std::vector<StudyRun>& runs);
 
-  /// Of one figure; `passed`: 1 when the run passed, else 0.
+  /// Of one figure; `passed`: 1 when the run passed, 0 when it failed, none when it was not judged.
   Statistics of(const std::string& in_case, const std::string& figure) const;
   std::vector<double> values(const std::string& in_case, const std::string& figure) const;
   /// Every figure of a run, sorted.
@@ -37,7 +40,8 @@ class StudyResults {
   /// Those of the table, as the study orders them.
   std::vector<std::string> table_figures() const;
   std::vector<Scoring::Verdict> verdicts() const;
-  bool passed() const;
+  /// Runs without a result fail it; without rules it is not judged.
+  Judgement judgement() const;
   std::size_t failed_runs() const;
   /// That came to their end all the same.
   std::size_t runs_with_failed_programs() const;
@@ -49,6 +53,13 @@ class StudyResults {
 
  private:
   Scoring::Verdict judge(const StudyRule& rule) const;
+  std::size_t runs_of(const std::string& in_case) const;
+  /// A statistic over the runs of a case; why there is none is in the text.
+  struct Shown {
+    double value = no_figure;
+    std::string text;
+  };
+  Shown statistic(const StudyRule& rule, const std::string& in_case, const std::string& figure) const;
 
   const LoadedStudy& study_;
   const std::vector<StudyRun>& runs_;

@@ -56,10 +56,13 @@ void read_record(StudyRun& run) {
   try {
     RunRecord record = read_run(run.directory);
     const bool done = record.exit_code == 0 || record.exit_code == 1;
-    if (done && record.ended != "process")
+    const bool by_hand = record.ended == "quit" || record.ended == "signal";
+    if (done && !by_hand && record.ended != "process")
       run.record = std::move(record);
+    else if (!record.error.empty())
+      run.failure = record.error;
     else
-      run.failure = record.error.empty() ? fmt::format("exit code {}", record.exit_code) : record.error;
+      run.failure = by_hand ? record.not_judged : fmt::format("exit code {}", record.exit_code);
   } catch (const std::runtime_error& error) {
     run.failure = error.what();
   }
@@ -208,7 +211,10 @@ class StudyChildren {
     std::string outcome = "failed: " + run.failure + "; see " + run.directory + "/run.log";
     if (run.record) {
       std::ofstream(stamp_file(run), std::ios::binary) << stamp_of(study_, run);
-      outcome = !run.record->passed ? "done, its rules failed" : run.record->judged ? "passed" : "done, not judged";
+      const Judgement judgement = run.record->judgement;
+      outcome = judgement == Judgement::failed   ? "done, its rules failed"
+                : judgement == Judgement::passed ? "passed"
+                                                 : "done, not judged";
     }
     const double wall_s = std::chrono::duration<double>(Clock::now() - ended.begun).count();
     say(fmt::format("[{}/{}] {}, seed {}: {} ({:.1f} s)", done_, runs_.size(), study_.config.cases[run.in_case].name,

@@ -38,7 +38,7 @@ int study(const std::string& path, StudyOptions options) {
     std::vector<StudyRun> runs = plan_study(loaded, options.output);
     run_study(loaded, options, runs);
     const StudyResults results(loaded, runs);
-    int exit_code = results.passed() ? exit_ok : exit_failed;
+    int exit_code = results.judgement() == Judgement::failed ? exit_failed : exit_ok;
     if (results.failed_runs() > 0) exit_code = exit_bus;
     if (caught_signal() != 0) {
       std::cerr << "shoal: stopped; the same command goes on with the runs that are missing\n";

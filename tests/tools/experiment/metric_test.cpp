@@ -346,7 +346,7 @@ TEST(Collisions, CountContactsThatBeginButNotWithTheGround) {
   world.drive(1);
   world.run_for(5);
   EXPECT_EQ(world.figure("crate.count"), 2);
-  EXPECT_EQ(world.figure("late.count"), 0);
+  EXPECT_TRUE(std::isnan(world.figure("late.count"))) << "nothing was counted before from_s";
 }
 
 TEST(Collisions, DoNotChangeTheRun) {

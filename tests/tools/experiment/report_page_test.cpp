@@ -184,13 +184,25 @@ TEST(Report, SaysWhatTheWorldIsAndThatNothingWasJudged) {
   run_into(folder.file("a"), "description: A rover & its <lidar>.\n");
   const std::string page = tools::report_page({folder.file("a")});
   EXPECT_THAT(page, HasSubstr("<p>A rover &amp; its &lt;lidar&gt;.</p>"));
-  EXPECT_THAT(page, HasSubstr("not judged: the world has no rules"));
+  EXPECT_THAT(page, HasSubstr("not judged</span>: the world has no rules"));
   EXPECT_THAT(page, Not(HasSubstr("passed</span>")));
   run_into(folder.file("b"),
            "metrics: [{name: way, type: distance, vehicle: r1}]\n"
            "pass: [{metric: way.travelled_m, below: 1}]\n");
   EXPECT_THAT(tools::report_page({folder.file("a"), folder.file("b")}),
               HasSubstr("<tr><td>verdict</td><td>not judged</td><td>passed</td></tr>"));
+}
+
+TEST(Report, ARunThatWasEndedByHandIsNotJudged) {
+  const ScratchFolder folder;
+  const std::string directory = folder.file("run");
+  tools::Summary summary = run_into(directory, "");
+  summary.ended = "quit";
+  tools::write_summary(directory, summary);
+  const std::string page = tools::report_page({directory});
+  EXPECT_THAT(page, HasSubstr("not judged</span>: ended by quit"));
+  EXPECT_THAT(page, Not(HasSubstr("passed</span>")));
+  EXPECT_THAT(page, Not(HasSubstr("FAILED</span>")));
 }
 
 TEST(Report, TellsOfProgramsThatFailedAndOfAnOutage) {

@@ -77,7 +77,7 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
   EXPECT_THAT(
-      keys, testing::ElementsAre("world", "description", "seed", "steps", "sim_time_s", "wall_s", "real_time_factor",
+      keys, testing::ElementsAre("world", "description", "seed", "steps", "sim_time_s", "duration_s", "wall_s", "real_time_factor",
                                  "state_hash", "messages", "dropped_messages", "bad_messages", "quick_steps", "metrics",
                                  "rules", "processes", "modem_dropped_messages", "serial_dropped_bytes", "judged",
                                  "passed", "ended", "error", "exit_code", "shoal"));
@@ -100,13 +100,12 @@ TEST(Summary, AProgramThatFailedIsARuleThatFailedWhereSomethingIsJudged) {
   summary.processes = {{"done", "exited with code 0", 1, false}, {"pilot", "exited with code 2", 0.5, true}};
   summary.judge_processes();
   EXPECT_FALSE(summary.judged());
-  EXPECT_TRUE(summary.passed());
-  EXPECT_THAT(summary.to_text(), testing::HasSubstr("programs of the world failed; as it has no rules, nothing was"));
+  EXPECT_THAT(summary.to_text(), testing::HasSubstr("programs of the world failed\n  not judged: the world has no"));
   summary.verdicts = {{"a", true}};
   summary.judge_processes();
   ASSERT_EQ(summary.verdicts.size(), 2u);
   EXPECT_EQ(summary.verdicts[1].rule, "process 'pilot' must not fail; it exited with code 2 at 0.50 s");
-  EXPECT_FALSE(summary.passed());
+  EXPECT_EQ(summary.judgement(), tools::Judgement::failed);
   const auto json = nlohmann::json::parse(summary.to_json());
   EXPECT_EQ(json["judged"], true);
   EXPECT_EQ(json["processes"][0]["failed"], false);
@@ -147,6 +146,7 @@ TEST(Summary, AFigureThatIsNoNumberIsNull) {
 
 TEST(Summary, PassesOnlyWhenEveryRuleHoldsAndNothingBroke) {
   tools::Summary summary;
+  summary.verdicts = {{"a", true}};
   EXPECT_EQ(nlohmann::json::parse(summary.to_json())["passed"], true);
   summary.exit_code = 5;
   EXPECT_EQ(nlohmann::json::parse(summary.to_json())["passed"], false);
@@ -154,6 +154,26 @@ TEST(Summary, PassesOnlyWhenEveryRuleHoldsAndNothingBroke) {
   summary.verdicts = {{"a", true}, {"b", false}};
   EXPECT_EQ(nlohmann::json::parse(summary.to_json())["passed"], false);
   EXPECT_THAT(summary.to_text(), testing::HasSubstr("FAILED: b"));
+}
+
+TEST(Summary, WithoutRulesNothingHasPassed) {
+  tools::Summary summary;
+  const auto json = nlohmann::json::parse(summary.to_json());
+  EXPECT_TRUE(json.at("passed").is_null()) << json.at("passed");
+  EXPECT_EQ(json.at("judged"), false);
+  EXPECT_EQ(json.value("not_judged", ""), "the world has no rules");
+  EXPECT_THAT(summary.to_text(), testing::HasSubstr("  not judged: the world has no rules\n"));
+}
+
+TEST(RunWorld, WithoutItsProgramsIsNotJudged) {
+  const auto world = small_world(
+      "metrics: [{name: way, type: distance, vehicle: r1}]\npass: [{metric: way.travelled_m, above: 1000}]\n"
+      "processes: [{name: pilot, command: [sleep, '1000']}]\n");
+  const tools::Summary summary = tools::run_world(world, quiet_run());
+  EXPECT_EQ(summary.exit_code, 0);
+  const auto json = nlohmann::json::parse(summary.to_json());
+  EXPECT_TRUE(json.at("passed").is_null());
+  EXPECT_EQ(json.value("not_judged", ""), "its programs took no part: see --launch and --await");
 }
 
 TEST(Results, AreLeftByARun) {

@@ -1,6 +1,6 @@
 #include "tools/experiment/scoring.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
@@ -209,6 +209,48 @@ TEST(Scoring, FailsARuleWhenNoEstimateCame) {
   world.run_for(0.1);
   EXPECT_TRUE(std::isnan(world.scoring.figures().at("good.rms_m")));
   for (const auto& verdict : world.scoring.verdicts()) EXPECT_FALSE(verdict.passed) << verdict.rule;
+  EXPECT_EQ(world.scoring.verdicts()[0].rule, "good.rms_m (none: no estimate came on 'good') < 1000");
+}
+
+TEST(Scoring, ARuleOnAFigureThatIsNotThereSaysWhy) {
+  ScoredWorld world(
+      "  - {name: way, type: distance, vehicle: r1, from_s: 100}\n"
+      "  - {name: bumps, type: collisions, from_s: 100}\n"
+      "  - {name: talk, type: messages, channel: nothing, from_s: 100}\n"
+      "  - {name: gap, vehicle: r1, channel: good, from_s: 100}\n"
+      "  - {name: link, type: delivery}\n"
+      "  - {name: home, type: mission_time, vehicle: r1, position_m: [9, 9, 9], radius_m: 1}\n"
+      "  - {name: first, type: messages, channel: nothing}\n"
+      "  - {name: cost, type: bytes_per_metre, metric: good, against: late}\n"
+      "pass:\n"
+      "  - {metric: way.travelled_m, below: 10}\n"
+      "  - {metric: bumps.count, equals: 0}\n"
+      "  - {metric: talk.count, equals: 0}\n"
+      "  - {metric: gap.longest_gap_s, below: 10}\n"
+      "  - {metric: link.ratio, above: 0}\n"
+      "  - {metric: home.time_s, below: 100}\n"
+      "  - {metric: first.first_s, below: 100}\n"
+      "  - {metric: cost.bytes_per_metre, below: 100}\n"
+      "  - {metric: late.samples, below_metric: late.rms_m}\n"
+      "  - {metric: good.rms_m, above: 0}\n");
+  world.run_for(1);
+  world.test.send("good", shoal::twist_command_t{});
+  world.run_for(0.01);
+  std::vector<std::string> rules;
+  for (const auto& verdict : world.scoring.verdicts()) {
+    EXPECT_FALSE(verdict.passed) << verdict.rule;
+    rules.push_back(verdict.rule);
+  }
+  const std::string early = "none: the run ended at 1.01 s, before from_s, 100 s";
+  EXPECT_THAT(rules, testing::ElementsAre(
+                         "way.travelled_m (" + early + ") < 10", "bumps.count (" + early + ") == 0",
+                         "talk.count (" + early + ") == 0", "gap.longest_gap_s (" + early + ") < 10",
+                         "link.ratio (none: nothing was sent to these modems) > 0",
+                         "home.time_s (none: it did not happen) < 100",
+                         "first.first_s (none: no message came on 'nothing') < 100",
+                         "cost.bytes_per_metre (none: the error of 'good' is not known to be the smaller one) < 100",
+                         "late.samples (0.000) < 1 * late.rms_m (none: no estimate came on 'late' from 0.5 s on)",
+                         "good.rms_m (none: none of 1 message on 'good' could be used) > 0"));
 }
 
 }  // namespace

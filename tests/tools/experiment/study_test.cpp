@@ -8,6 +8,7 @@
 #include "tests/devices/world_fixture.hpp"
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
+#include "tools/experiment/results.hpp"
 #include "tools/experiment/study_curves.hpp"
 #include "tools/experiment/study_report.hpp"
 #include "tools/experiment/study_results.hpp"
@@ -55,7 +56,7 @@ std::vector<tools::StudyRun> made_up_runs(const tools::LoadedStudy& study,
     const double value = rms[run.in_case][static_cast<std::size_t>(run.seed - study.config.seeds[0])];
     run.record.emplace();
     run.record->metrics["e.rms_m"] = std::isnan(value) ? std::nullopt : std::optional<double>(value);
-    run.record->passed = value < 3;
+    run.record->judgement = tools::judgement_of(value < 3);
     run.record->ended = "duration";
   }
   return runs;
@@ -69,7 +70,9 @@ TEST(Statistics, AreThoseOfTheSample) {
   EXPECT_DOUBLE_EQ(s.min, 1);
   EXPECT_DOUBLE_EQ(s.max, 8);
   EXPECT_DOUBLE_EQ(s.median, 3.5);
+  EXPECT_NEAR(s.mean_95.low, 4 - 3.18245 * s.std / 2, 1e-3);  // Student's t for 3 degrees of freedom
   EXPECT_TRUE(std::isnan(tools::statistics_of({5}).std));
+  EXPECT_TRUE(std::isnan(tools::statistics_of({5}).mean_95.high));
   EXPECT_DOUBLE_EQ(tools::statistics_of({5}).mean, 5);
   EXPECT_TRUE(std::isnan(tools::statistics_of({}).mean));
 }
@@ -204,11 +207,13 @@ TEST(StudyResults, JudgeStatisticsOfCases) {
   std::vector<bool> passed;
   for (const auto& verdict : results.verdicts()) passed.push_back(verdict.passed);
   EXPECT_THAT(passed, ElementsAre(true, false, true, false, true, false, false));
-  EXPECT_FALSE(results.passed());
+  EXPECT_EQ(results.judgement(), tools::Judgement::failed);
   EXPECT_EQ(results.verdicts()[2].rule, "plain: mean of e.rms_m (2) < 0.5 * that of quick (3)");
   EXPECT_THAT(results.to_text(), HasSubstr("FAILED: plain: max of e.rms_m (3) < 2.5"));
   const auto json = nlohmann::json::parse(results.to_json(1));
   EXPECT_EQ(json["cases"][0]["figures"]["e.rms_m"]["mean"], 2);
+  EXPECT_NEAR(json["cases"][0]["figures"]["e.rms_m"]["mean_high_95"], 2 + 12.7062, 1e-3);  // std / sqrt(2) is 1
+  EXPECT_NEAR(json["cases"][1]["figures"]["passed"]["mean_high_95"], 0.657620, 1e-5);  // 0 of 2: z^2 / (2 + z^2)
   EXPECT_EQ(json["cases"][1]["figures"]["e.rms_m"]["std"], 0);
   EXPECT_EQ(json["passed"], false);
   EXPECT_THAT(results.to_csv(), HasSubstr("case,seed,exit_code,passed,ended,sim_time_s,wall_s,e.rms_m\n"
@@ -230,11 +235,49 @@ TEST(StudyResults, ARuleFailsWhenARunLacksItsFigure) {
   std::vector<bool> passed;
   for (const auto& verdict : results.verdicts()) passed.push_back(verdict.passed);
   EXPECT_THAT(passed, ElementsAre(false, false, false, false, true));
-  EXPECT_EQ(results.verdicts()[0].rule, "quick: max of e.rms_m (nan) < 10");
+  EXPECT_EQ(results.verdicts()[0].rule, "quick: max of e.rms_m (none: 1 of 2 runs has no such figure) < 10");
+  EXPECT_THAT(results.to_text(), testing::ContainsRegex("e.rms_m +quick +1/2 "));
+  EXPECT_THAT(results.to_text(), testing::ContainsRegex("e.rms_m +plain +2 "));
   const auto json = nlohmann::json::parse(results.to_json(1));
   EXPECT_EQ(json["cases"][1]["figures"]["e.rms_m"]["count"], 1);
   EXPECT_TRUE(json["cases"][1]["figures"]["e.rms_m"]["std"].is_null());
   EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,0,0,duration,0,0.000,\n"));
+}
+
+TEST(StudyResults, WithoutRulesNothingHasPassed) {
+  const StudyFolder folder(two_cases);
+  const tools::LoadedStudy study = tools::load_study(folder.path());
+  const auto runs = made_up_runs(study, {{1, 3}, {6, 7}});
+  const tools::StudyResults results(study, runs);
+  EXPECT_THAT(results.to_text(), HasSubstr("not judged: the study has no rules\n"));
+  const auto json = nlohmann::json::parse(results.to_json(0));
+  EXPECT_TRUE(json["passed"].is_null()) << json["passed"];
+  EXPECT_EQ(json.value("judged", true), false);
+  const ScratchFolder out;
+  tools::write_study(out.file("study"), study, runs, results, 0);
+  const std::string page = tools::study_report(out.file("study"));
+  EXPECT_THAT(page, HasSubstr("not judged</span>: the study has no rules"));
+  EXPECT_THAT(page, testing::Not(HasSubstr("passed</span>")));
+}
+
+TEST(StudyResults, ARunThatNobodyJudgedHasNotPassed) {
+  const StudyFolder folder("launch: false\npass: [{case: world, figure: passed, equals: 1}]\n");
+  const tools::LoadedStudy study = tools::load_study(folder.path());
+  auto runs = tools::plan_study(study, "out");
+  const ScratchFolder results_of_runs;
+  for (tools::StudyRun& run : runs) {
+    tools::Summary summary;
+    summary.seed = run.seed;
+    if (run.seed == 1) summary.verdicts = {{"a", true}};
+    tools::write_summary(results_of_runs.file(std::to_string(run.seed)), summary);
+    run.record = tools::read_run(results_of_runs.file(std::to_string(run.seed)));
+  }
+  const tools::StudyResults results(study, runs);
+  EXPECT_EQ(results.of("world", "passed").count, 1);
+  EXPECT_EQ(results.verdicts().at(0).passed, false);
+  EXPECT_EQ(results.verdicts().at(0).rule, "world: mean of passed (none: 1 of 2 runs has no such figure) == 1");
+  EXPECT_THAT(results.to_csv(), HasSubstr("\nworld,1,0,1,"));
+  EXPECT_THAT(results.to_csv(), HasSubstr("\nworld,2,0,,"));
 }
 
 TEST(StudyResults, CountRunsWithoutAResult) {
@@ -245,7 +288,7 @@ TEST(StudyResults, CountRunsWithoutAResult) {
   runs[3].failure = "<b>exit code 4</b>";
   const tools::StudyResults results(study, runs);
   EXPECT_EQ(results.failed_runs(), 1u);
-  EXPECT_FALSE(results.passed());
+  EXPECT_EQ(results.judgement(), tools::Judgement::failed);
   EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,,,failed,,,\n"));
   const ScratchFolder out;
   tools::write_study(out.file("study"), study, runs, results, 4);

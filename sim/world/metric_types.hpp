@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace sim {
+
+/// The words of all types of metrics, as in `type: position_error`.
+std::vector<std::string> metric_type_words();
+
+}  // namespace sim
