@@ -250,7 +250,7 @@ TEST(Report, ExitCodesTellWhatIsWrong) {
   EXPECT_EQ(run_shoal({"report", folder.file("a"), folder.file("b")}).exit_code, 4);
   const Ended none = run_shoal({"report", folder.file("a")});
   EXPECT_EQ(none.exit_code, 4);
-  EXPECT_THAT(none.errors, HasSubstr("is no folder"));
+  EXPECT_THAT(none.errors, HasSubstr("is not a folder"));
   ASSERT_EQ(run_shoal({"run", source("worlds/minimal.yaml"), "--bus", "none", "--duration", "1", "--results",
                        folder.file("run")})
                 .exit_code,

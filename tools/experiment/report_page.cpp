@@ -192,13 +192,13 @@ std::string report_page(const std::vector<std::string>& directories) {
     std::string directory = given;
     while (directory.size() > 1 && directory.back() == '/') directory.pop_back();
     std::error_code error;
-    if (!fs::is_directory(directory, error)) throw std::runtime_error(given + ": is no folder");
+    if (!fs::is_directory(directory, error)) throw std::runtime_error(given + ": is not a folder");
     const bool study = fs::exists(directory + "/study.json", error);
     if (study && directories.size() > 1)
       throw std::runtime_error(given + ": is a study, which cannot be compared with other folders");
     if (study) return study_report(directory);
     if (!fs::exists(directory + "/summary.json", error))
-      throw std::runtime_error(given + ": is no results folder: it has neither summary.json nor study.json");
+      throw std::runtime_error(given + ": is not a results folder: it has neither summary.json nor study.json");
     runs.push_back(read_run(directory));
   }
   return runs.size() == 1 ? run_report(runs.front()) : comparison_report(runs);

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "tools/experiment/gnuplot.hpp"
+#include "tools/experiment/results_world.hpp"
 #include "tools/experiment/run_pictures.hpp"
 
 namespace tools {
@@ -210,6 +211,10 @@ void try_to_write_summary(const std::string& directory, const Summary& summary) 
   }
 }
 
+void write_results_world(const std::string& directory, const sim::ConfigNode& resolved) {
+  write_file(directory + "/world.yaml", sim::to_yaml(resolved));
+}
+
 Results::Results(const std::string& directory, const sim::World& world, bool pictures)
     : directory_(directory), world_(world), pictures_(pictures) {
   std::error_code error;
@@ -248,10 +253,6 @@ void Results::after_step() {
 
 void Results::write(const std::string& file, const std::string& text) const {
   write_file(directory_ + "/" + file, text);
-}
-
-void Results::write_world(const sim::ConfigNode& resolved) const {
-  write("world.yaml", sim::to_yaml(resolved));
 }
 
 void Results::write_outlines() const {
@@ -341,7 +342,7 @@ void Results::finish(const Summary& summary, const Scoring& scoring, const sim::
   attempt([&] { close_tracks(); });
   attempt([&] { write_metrics(directory_, summary); });
   attempt([&] { write_errors(directory_, scoring); });
-  attempt([&] { write_world(resolved); });
+  attempt([&] { write_results_world(directory_, resolved); });
   attempt([&] { plot(summary, scoring, give_up); });
   if (first_error) throw std::runtime_error(*first_error);
 }

@@ -90,8 +90,6 @@ class Results {
   Results(const std::string& directory, const sim::World& world, bool pictures = true);
   ~Results();
   const std::string& directory() const { return directory_; }
-  /// world.yaml, before the first step: a run that is killed leaves it, too.  Throws std::runtime_error.
-  void write_world(const sim::ConfigNode& resolved) const;
   /// Adds a sample of every vehicle's true pose when one is due.
   void after_step();
   /// Why tracks cannot be written; looked at once a simulated second.

@@ -8,6 +8,7 @@
 
 #include "bridges/lcm/bus_error.hpp"
 #include "bridges/serial/serial_port.hpp"
+#include "tools/experiment/results_world.hpp"
 #include "tools/experiment/run_error.hpp"
 #include "tools/experiment/run_identity.hpp"
 #include "tools/experiment/run_name.hpp"
@@ -69,7 +70,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
   }
   if (!options.results.empty()) {
     results_ = std::make_unique<Results>(options.results, world_, options.pictures);
-    results_->write_world(loaded.resolved);
+    write_results_world(options.results, loaded.resolved);
   }
   progress_.restart(world_.now());
   plan_snapshots();

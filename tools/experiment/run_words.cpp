@@ -125,6 +125,7 @@ std::string consistency_sentence(const RunMetric& metric) {
 }
 
 std::string distance_sentence(const RunMetric& metric) {
+  if (!metric.value("travelled_m")) return metric.name + ": nothing was measured.";
   return (metric.vehicle.empty() ? metric.name + ": " : metric.vehicle + " travelled ") +
          length_text(metric.value("travelled_m").value_or(0)) + ".";
 }
@@ -182,8 +183,16 @@ std::string lean_sentence(const RunMetric& metric) {
   return text + (fell_s ? " and falls " + at_time(fell_s) : " and does not fall") + ".";
 }
 
+/// The run ended before the metric began to look.
+bool has_nothing(const RunMetric& metric) {
+  return std::none_of(metric.figures.begin(), metric.figures.end(),
+                      [](const RunMetric::Figure& figure) { return figure.value.has_value(); });
+}
+
 /// Empty: told elsewhere.
 std::string sentence_of(const RunMetric& metric) {
+  const bool counts = metric.kind->figures.front().is_count || metric.kind->type == sim::MetricType::bytes_per_metre;
+  if (counts && has_nothing(metric)) return metric.name + ": nothing was measured.";
   switch (metric.kind->type) {
     case sim::MetricType::position_error:
     case sim::MetricType::distance:

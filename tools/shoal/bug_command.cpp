@@ -1,3 +1,5 @@
+#include "tools/shoal/bug_command.hpp"
+
 #include <iostream>
 #include <memory>
 #include <stdexcept>

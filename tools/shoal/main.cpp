@@ -14,6 +14,7 @@
 #include "sim/config/diagnostics.hpp"
 #include "sim/device/device_registry.hpp"
 #include "tools/experiment/runner.hpp"
+#include "tools/shoal/bug_command.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace {

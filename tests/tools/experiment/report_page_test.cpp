@@ -307,11 +307,11 @@ TEST(Report, TakesFiguresOfAnyName) {
 
 TEST(Report, TellsWhatIsNoResultsFolder) {
   const ScratchFolder folder;
-  EXPECT_THAT(error_of_report({folder.file("nowhere")}), HasSubstr("nowhere: is no folder"));
+  EXPECT_THAT(error_of_report({folder.file("nowhere")}), HasSubstr("nowhere: is not a folder"));
   fs::create_directory(folder.file("empty"));
   EXPECT_THAT(error_of_report({folder.file("empty")}), HasSubstr("it has neither summary.json nor study.json"));
   write(folder.file("file"), "x");
-  EXPECT_THAT(error_of_report({folder.file("file")}), HasSubstr("is no folder"));
+  EXPECT_THAT(error_of_report({folder.file("file")}), HasSubstr("is not a folder"));
 }
 
 TEST(Report, TellsWhatIsWrongWithASummary) {

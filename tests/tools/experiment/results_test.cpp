@@ -12,6 +12,7 @@
 #include "shoal/message_writer.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 #include "tests/devices/world_fixture.hpp"
+#include "tools/experiment/results_world.hpp"
 #include "tools/experiment/runner.hpp"
 
 namespace {
@@ -331,7 +332,7 @@ TEST(Results, OfAnEarlierRunAreGoneWhenARunIsKilled) {
   sim::World world(loaded.config, bus);
   {
     const tools::Results killed(options.results, world);  // as far as a run comes that is killed in its first step
-    killed.write_world(loaded.resolved);
+    tools::write_results_world(killed.directory(), loaded.resolved);
   }
   for (const char* file : {"summary.json", "metrics.csv", "errors.csv", "tracks.png"})
     EXPECT_FALSE(fs::exists(options.results + "/" + file)) << file;
