@@ -14,11 +14,12 @@ namespace {
 /// What is the same kind of thing for every run.
 std::string overview(const std::vector<RunRecord>& runs) {
   std::vector<std::string> head{"run"};
-  std::vector<std::vector<std::string>> rows{{"verdict"}, {"world"}, {"seed"}, {"simulated, s"}, {"state hash"}};
+  std::vector<std::vector<std::string>> rows{{"verdict"},      {"world"},    {"seed"},
+                                             {"simulated, s"}, {"run hash"}, {"state hash"}};
   for (const RunRecord& run : runs) {
     head.push_back(run.directory);
-    const std::string cells[] = {judgement_word(run.judgement), run.world, fmt::format("{}", run.seed),
-                                 fmt::format("{:.2f}", run.sim_time_s), run.state_hash};
+    const std::string cells[] = {judgement_word(run.judgement),         run.world,    fmt::format("{}", run.seed),
+                                 fmt::format("{:.2f}", run.sim_time_s), run.run_hash, run.state_hash};
     for (std::size_t i = 0; i < std::size(cells); ++i) rows[i].push_back(cells[i]);
   }
   return html_table(head, rows);

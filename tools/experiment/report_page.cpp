@@ -67,6 +67,7 @@ std::string facts_html(const RunRecord& run) {
                       {"Ended by", run.ended},
                       {"Exit code", fmt::format("{}", run.exit_code)},
                       {"Messages", fmt::format("{}", run.messages)},
+                      {"Run hash", run.run_hash.empty() ? "not told" : run.run_hash},
                       {"State hash", run.state_hash},
                       {"Shoal", run.version.empty() ? "of an unknown version" : run.version}});
 }
@@ -170,7 +171,10 @@ std::string verdict_box(Judgement judgement, const std::string& html) {
 }
 
 std::string outcome_html(const RunRecord& run, const std::vector<RunMetric>& metrics) {
-  return verdict_box(run.judgement, verdicts_html(run)) + list_html(findings_in_words(metrics));
+  std::vector<std::string> words = findings_in_words(metrics);
+  for (std::string& contact : contacts_in_words(run)) words.push_back(std::move(contact));
+  if (metrics.empty() && words.empty()) words.emplace_back("The world has no metrics: nothing was measured.");
+  return verdict_box(run.judgement, verdicts_html(run)) + list_html(words);
 }
 
 std::string made_by_html() {

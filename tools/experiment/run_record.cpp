@@ -66,6 +66,7 @@ RunRecord read_run(const std::string& directory) {
   run.sim_time_s = in.number("sim_time_s");
   run.wall_s = in.number("wall_s");
   run.state_hash = in.text("state_hash");
+  if (in.has("run_hash")) run.run_hash = in.text("run_hash");
   run.messages = in.whole("messages");
   run.dropped_messages = in.whole("dropped_messages");
   run.bad_messages = in.whole("bad_messages");
@@ -81,6 +82,12 @@ RunRecord read_run(const std::string& directory) {
     run.processes.push_back({process.text("name"), process.text("how"), process.number("sim_time_s"),
                              process.has("failed") && process.boolean("failed")});
   }
+  if (in.has("contacts"))
+    for (const auto& item : in.list("contacts")) {
+      const JsonReader contact(item, path + ": contacts");
+      run.contacts.push_back(
+          {contact.text("vehicle"), contact.text("with"), contact.number("first_s"), contact.whole("count")});
+    }
   if (in.has("event")) {
     const JsonReader event(in.object("event"), path + ": event");
     run.event = RunRecord::Rule{event.text("text"), event.boolean("passed")};

@@ -15,6 +15,7 @@ using Metrics = std::vector<const RunMetric*>;
 
 /// More vehicles than this are summed up.
 constexpr std::size_t max_vehicles_by_name = 4;
+constexpr std::size_t max_contacts_by_name = 5;
 
 /// Three digits, without an exponent.
 std::string rounded(double value) {
@@ -152,7 +153,7 @@ std::string cost_sentence(const RunMetric& metric) {
 
 /// `at 12.3 s`, where something happened.
 std::string at_time(const std::optional<double>& time_s) {
-  return time_s ? fmt::format("at {} s", rounded(*time_s)) : "";
+  return time_s ? fmt::format("at {:.1f} s", *time_s) : "";
 }
 
 std::string time_sentence(const RunMetric& metric) {
@@ -246,6 +247,19 @@ std::vector<std::string> findings_in_words(const std::vector<RunMetric>& metrics
     if (metric.kind == nullptr) continue;
     std::string sentence = sentence_of(metric);
     if (!sentence.empty()) sentences.push_back(std::move(sentence));
+  }
+  return sentences;
+}
+
+std::vector<std::string> contacts_in_words(const RunRecord& run) {
+  std::vector<std::string> sentences;
+  for (const RunRecord::Contact& contact : run.contacts) {
+    if (sentences.size() == max_contacts_by_name) {
+      sentences.push_back(fmt::format("{} more pairs touch.", run.contacts.size() - max_contacts_by_name));
+      break;
+    }
+    sentences.push_back(fmt::format("{} hits {} {}{}.", contact.vehicle, contact.with, at_time(contact.first_s),
+                                    contact.count > 1 ? fmt::format(", {} times in all", contact.count) : ""));
   }
   return sentences;
 }

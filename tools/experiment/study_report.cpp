@@ -12,6 +12,7 @@
 #include "tools/experiment/report_figures.hpp"
 #include "tools/experiment/report_page.hpp"
 #include "tools/experiment/report_pictures.hpp"
+#include "tools/experiment/run_words.hpp"
 
 namespace tools {
 
@@ -21,7 +22,7 @@ namespace {
 constexpr const char* passed_figure = "passed";
 constexpr std::size_t max_figures_in_words = 6;
 
-Judgement judgement_of(const JsonReader& in, const std::vector<RunRecord::Rule>& rules) {
+Judgement judgement_in(const JsonReader& in, const std::vector<RunRecord::Rule>& rules) {
   if (in.at("passed").is_null()) return Judgement::not_judged;
   // Older versions wrote that a study without rules had passed.
   if (in.boolean("passed") && rules.empty()) return Judgement::not_judged;
@@ -182,7 +183,7 @@ std::string failed_runs_html(const JsonReader& in) {
 std::string outcome_html(const JsonReader& in, const std::vector<StudyCaseRecord>& cases) {
   const std::vector<RunRecord::Rule> rules = rules_of(in);
   const auto failed_runs = in.list("failed_runs").size();
-  const Judgement judgement = judgement_of(in, rules);
+  const Judgement judgement = judgement_in(in, rules);
   std::string text = judgement_html(judgement, judgement == Judgement::not_judged ? "the study has no rules" : "") +
                      " " + html_text(rules_in_words(rules));
   if (failed_runs > 0) text += html_text(fmt::format(" {} runs have no result.", failed_runs));
@@ -192,6 +193,9 @@ std::string outcome_html(const JsonReader& in, const std::vector<StudyCaseRecord
       words.push_back((cases.size() > 1 ? each.name + ": " : "") + passed + " runs hold the rules of their world.");
   const std::vector<std::string> found = findings(main_figures(in, rules), cases);
   std::string html = verdict_box(judgement, "<p>" + text + "</p>\n" + rules_html(rules)) + list_html(words);
+  // Not in files of older versions.
+  if (in.has("notes"))
+    for (const std::string& note : texts_of(in, "notes")) html += "<p>Note: " + html_text(note) + ".</p>\n";
   if (!found.empty()) html += "<p>Mean and standard deviation over the runs:</p>\n" + list_html(found);
   return html;
 }

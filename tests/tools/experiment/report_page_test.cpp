@@ -295,6 +295,16 @@ TEST(Report, GroupsFiguresByMetricWithUnitsAndFoldsZeros) {
   EXPECT_LT(page.find("lost_noise", of_link), folded);
 }
 
+TEST(Report, SaysWhatTouchedWhat) {
+  const ScratchFolder folder;
+  const std::string directory = folder_of(folder, {}, "");
+  EXPECT_THAT(tools::report_page({directory}), HasSubstr("The world has no metrics: nothing was measured."));
+  std::string summary = text_of_file(directory + "/summary.json");
+  summary.insert(2, "\"contacts\": [{\"vehicle\": \"auv4\", \"with\": \"rock\", \"first_s\": 105.7, \"count\": 3}],");
+  write(directory + "/summary.json", summary);
+  EXPECT_THAT(tools::report_page({directory}), HasSubstr("<li>auv4 hits rock at 105.7 s, 3 times in all.</li>"));
+}
+
 TEST(Report, TakesFiguresOfAnyName) {
   const ScratchFolder folder;
   const std::string page = tools::report_page(
