@@ -8,6 +8,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/script/action.hpp"
+#include "sim/world/metric_kind.hpp"
 #include "sim/world/metric_types.hpp"
 #include "sim/world/world_config.hpp"
 
@@ -17,53 +18,7 @@ namespace {
 
 constexpr const char* position_error_kind = "position_error";
 
-/// What a type of metric needs, takes and gives.
-struct MetricKind {
-  const char* word;
-  MetricType type;
-  std::vector<const char*> required, optional;
-  std::vector<std::string> figures;
-};
-
-std::vector<std::string> delivery_figures() {
-  std::vector<std::string> figures{"sent", "received", "lost", "ratio", "bytes_sent", "unsent", "dropped"};
-  for (const std::string& cause : loss_causes()) figures.push_back("lost_" + cause);
-  return figures;
-}
-
-const std::vector<MetricKind>& metric_kinds() {
-  static const std::vector<MetricKind> kinds{
-      {position_error_kind,
-       MetricType::position_error,
-       {"vehicle", "channel"},
-       {"from_s", "dimensions"},
-       {"rms_m", "final_m", "max_m", "samples", "longest_gap_s", "per_distance_percent"}},
-      {"consistency",
-       MetricType::consistency,
-       {"vehicle", "channel"},
-       {"from_s", "dimensions"},
-       {"nees_mean", "inside_95_share", "samples"}},
-      {"distance", MetricType::distance, {"vehicle"}, {"from_s"}, {"travelled_m"}},
-      {"delivery", MetricType::delivery, {}, {"vehicle", "device"}, delivery_figures()},
-      {"bytes_per_metre",
-       MetricType::bytes_per_metre,
-       {"metric", "against"},
-       {"vehicle", "device"},
-       {"bytes_sent", "reduction_m", "bytes_per_metre"}},
-      {"mission_time", MetricType::mission_time, {}, {"when", "vehicle", "position_m", "radius_m"}, {"time_s"}},
-      {"collisions", MetricType::collisions, {}, {"vehicle", "with", "from_s"}, {"count", "first_s"}},
-      {"messages", MetricType::messages, {"channel"}, {"vehicle", "from_s"}, {"count", "bytes", "first_s"}},
-      {"lean", MetricType::lean, {"vehicle"}, {"from_s"}, {"mean_deg", "rms_deg", "max_deg", "fell_s"}},
-  };
-  return kinds;
-}
-
-const MetricKind& kind_of(MetricType type) {
-  const auto& kinds = metric_kinds();
-  return *std::find_if(kinds.begin(), kinds.end(), [type](const MetricKind& kind) { return kind.type == type; });
-}
-
-bool contains(const std::vector<const char*>& keys, const std::string& key) {
+bool contains(const std::vector<std::string>& keys, const std::string& key) {
   return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
@@ -99,7 +54,7 @@ void MetricConfig::read(ParamReader& in) {
   for (const MetricKind& kind : metric_kinds()) types.emplace_back(kind.word, kind.type);
   in.read_choice("type", type, types, "what it looks at");
   if (!in.describing())
-    for (const char* key : kind_of(type).required) in.require(key);
+    for (const std::string& key : metric_kind(type).required) in.require(key.c_str());
   in.read_reference("vehicle", vehicle, "vehicle", "whose truth counts; where it is not needed: unset: all");
   in.read("channel", channel,
           "of the estimate, shoal.pose_t or shoal.estimate_t; messages: whose messages are counted");
@@ -122,7 +77,7 @@ void MetricConfig::read(ParamReader& in) {
 }
 
 void MetricConfig::check_keys(ParamReader& in) const {
-  const MetricKind& kind = kind_of(type);
+  const MetricKind& kind = metric_kind(type);
   std::vector<std::string> keys{"name", "type"};
   keys.insert(keys.end(), kind.required.begin(), kind.required.end());
   keys.insert(keys.end(), kind.optional.begin(), kind.optional.end());
@@ -152,7 +107,7 @@ std::vector<std::string> metric_type_words() {
 
 std::vector<std::string> MetricConfig::figures() const {
   std::vector<std::string> names;
-  for (const std::string& figure : kind_of(type).figures) names.push_back(name + "." + figure);
+  for (const FigureKind& figure : metric_kind(type).figures) names.push_back(name + "." + figure.name);
   return names;
 }
 

@@ -59,7 +59,7 @@ TEST(Study, RunsAWorldForEverySeedAndCase) {
 
   const Ended report = run_shoal({"report", study.folder.file("out")});
   EXPECT_EQ(report.exit_code, 0) << report.errors;
-  EXPECT_THAT(study.text("report.html"), HasSubstr("<td>way.travelled_m</td><td>b</td><td>2</td>"));
+  EXPECT_THAT(study.text("report.html"), HasSubstr("<th scope=\"row\">b</th><td>2</td>"));
   EXPECT_THAT(study.text("report.html"), HasSubstr("data:image/png;base64,"));
 }
 
@@ -272,7 +272,7 @@ TEST(Report, ExitCodesTellWhatIsWrong) {
   EXPECT_EQ(run_shoal({"report", folder.file("a"), folder.file("b")}).exit_code, 4);
   const Ended none = run_shoal({"report", folder.file("a")});
   EXPECT_EQ(none.exit_code, 4);
-  EXPECT_THAT(none.errors, HasSubstr("is no folder"));
+  EXPECT_THAT(none.errors, HasSubstr("is not a folder"));
   ASSERT_EQ(run_shoal({"run", source("worlds/minimal.yaml"), "--bus", "none", "--duration", "1", "--results",
                        folder.file("run")})
                 .exit_code,

@@ -15,6 +15,9 @@ std::string base64(std::string_view bytes);
 /// A table of texts (not HTML yet); columns after the first are right-aligned.
 std::string html_table(const std::vector<std::string>& head, const std::vector<std::vector<std::string>>& rows);
 
+/// What is folded away until one asks for it; `body` is HTML.
+std::string html_details(const std::string& summary, const std::string& body);
+
 /// A page that needs nothing but itself: `body` is HTML.
 std::string html_page(const std::string& title, const std::string& body);
 

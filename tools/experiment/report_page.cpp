@@ -10,8 +10,9 @@
 #include <stdexcept>
 
 #include "tools/experiment/html.hpp"
-#include "tools/experiment/png_check.hpp"
-#include "tools/experiment/run_pictures.hpp"
+#include "tools/experiment/report_figures.hpp"
+#include "tools/experiment/report_pictures.hpp"
+#include "tools/experiment/run_words.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/experiment/study_report.hpp"
 
@@ -39,37 +40,36 @@ std::string title_of(const RunRecord& run) {
   return run.world.empty() ? "A run" : run.world;
 }
 
-std::string facts_of(const RunRecord& run) {
-  const double speed = run.wall_s > 0 ? run.sim_time_s / run.wall_s : 0;
-  return fmt::format(
-      "Seed {}. {:.2f} s simulated in {:.2f} s, {:.1f} times real time. Shoal {}. Run hash {}, state hash {}.",
-      run.seed, run.sim_time_s, run.wall_s, speed, run.version.empty() ? "of an unknown version" : run.version,
-      run.run_hash.empty() ? "not told" : run.run_hash, run.state_hash);
-}
-
+/// What the rules do not say of a run that failed; empty: nothing.
 std::string why_not_passed(const RunRecord& run) {
   if (!run.error.empty()) return run.error;
-  if (run.ended == "signal") return "It was stopped by a signal.";
-  return fmt::format("Exit code {}.", run.exit_code);
+  if (run.ended == "signal") return fmt::format("It was stopped by a signal after {:.2f} s.", run.sim_time_s);
+  const bool by_rule = run.exit_code <= 1 && (!run.rules.empty() || run.event);
+  return by_rule ? "" : fmt::format("Exit code {}.", run.exit_code);
 }
 
 std::string verdicts_html(const RunRecord& run) {
-  if (run.judgement == Judgement::not_judged)
-    return paragraph(verdict_html(run.judgement) + ": " + html_text(run.not_judged));
-  const bool passed = run.judgement == Judgement::passed;
-  std::string html = paragraph(verdict_html(run.judgement) + (passed ? "" : ": " + html_text(why_not_passed(run))));
+  const Judgement judgement = run.judgement;
+  std::string line = judgement_html(judgement, run.not_judged) + " ";
+  if (judgement == Judgement::failed) line += html_text(why_not_passed(run)) + " ";
+  std::string html = paragraph(line + html_text(rules_in_words(run.rules)));
   if (run.event)
-    html += paragraph(verdict_html(judgement_of(run.event->passed)) +
-                      ": ended by an event: " + html_text(run.event->rule));
-  if (run.rules.empty()) return html + paragraph("No rules were judged.", "soft");
+    html += paragraph(verdict_html(run.event->passed) + ": ended by an event: " + html_text(run.event->rule));
   return html + rules_html(run.rules);
 }
 
-std::string figures_html(const RunRecord& run) {
-  if (run.metrics.empty()) return {};
-  std::vector<std::vector<std::string>> rows;
-  for (const auto& [name, value] : run.metrics) rows.push_back({name, figure_text(value)});
-  return heading("Figures") + html_table({"figure", "value"}, rows);
+std::string facts_html(const RunRecord& run) {
+  const double speed = run.wall_s > 0 ? run.sim_time_s / run.wall_s : 0;
+  return heading("This run") +
+         facts_table({{"Seed", fmt::format("{}", run.seed)},
+                      {"Simulated", fmt::format("{:.2f} s, {} steps", run.sim_time_s, run.steps)},
+                      {"Computed in", fmt::format("{:.2f} s, {:.1f} times real time", run.wall_s, speed)},
+                      {"Ended by", run.ended},
+                      {"Exit code", fmt::format("{}", run.exit_code)},
+                      {"Messages", fmt::format("{}", run.messages)},
+                      {"Run hash", run.run_hash.empty() ? "not told" : run.run_hash},
+                      {"State hash", run.state_hash},
+                      {"Shoal", run.version.empty() ? "of an unknown version" : run.version}});
 }
 
 std::string tail_of(const std::string& text) {
@@ -98,8 +98,7 @@ std::string processes_html(const RunRecord& run) {
       text = problem.what();
     }
     if (text.empty()) continue;
-    html += "<details><summary>" + html_text("End of " + log.filename().string()) + "</summary>\n<pre>" +
-            html_text(tail_of(text)) + "</pre></details>\n";
+    html += html_details("End of " + log.filename().string(), "<pre>" + html_text(tail_of(text)) + "</pre>");
   }
   return html.empty() ? "" : heading("Programs") + html;
 }
@@ -121,108 +120,74 @@ std::string warnings_html(const RunRecord& run) {
       warnings.push_back(fmt::format("For {:.1f} s there was no estimate: {}.", *value, name));
   for (const auto& [name, value] : run.metrics)
     if (!value && (name.ends_with(".rms_m") || name.ends_with(".nees_mean")))
-      warnings.push_back("There was no estimate to make " + name + " of.");
+      warnings.push_back("No estimate was compared with the truth: there is no " + name + ".");
   if (run.ended != "duration" && run.ended != "event") warnings.push_back("The run ended early: " + run.ended + ".");
-  if (warnings.empty()) return {};
-  std::string html = heading("Warnings") + "<ul>\n";
-  for (const std::string& warning : warnings) html += "<li>" + html_text(warning) + "</li>\n";
-  return html + "</ul>\n";
-}
-
-std::vector<std::string> pictures_of(const RunRecord& run) {
-  std::vector<std::string> files{"tracks.png"};
-  const bool compared = std::any_of(run.metrics.begin(), run.metrics.end(), [](const auto& figure) {
-    return figure.first.ends_with(".samples") && figure.second.value_or(0) > 0;
-  });
-  if (compared) files.emplace_back("errors.png");
-  std::error_code error;
-  for (const char* file : run_pictures)
-    if (fs::exists(run.directory + "/" + file, error) && std::find(files.begin(), files.end(), file) == files.end())
-      files.emplace_back(file);
-  return files;
-}
-
-std::string made_by() {
-  return paragraph(html_text("Made by shoal " + short_version() + "."), "soft");
+  return warnings.empty() ? "" : heading("Warnings") + list_html(warnings);
 }
 
 }  // namespace
 
-std::string figure_text(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? fmt::format("{:.6g}", *value) : "-";
+std::string verdict_html(bool passed) {
+  return judgement_html(judgement_of(passed));
 }
 
-std::string verdict_html(Judgement judgement) {
-  const char* look = judgement == Judgement::passed ? "good" : judgement == Judgement::failed ? "bad" : "unjudged";
-  return fmt::format("<span class=\"{}\">{}</span>", look, judgement_word(judgement));
+std::string judgement_html(Judgement judgement, const std::string& why) {
+  const char* look = judgement == Judgement::passed ? "good" : judgement == Judgement::failed ? "bad" : "open";
+  return "<span class=\"" + std::string(look) + "\">" + judgement_word(judgement) + "</span>" +
+         (why.empty() ? "" : ": " + html_text(why) + ".");
 }
 
-std::string rules_html(std::vector<RunRecord::Rule> rules) {
-  std::stable_partition(rules.begin(), rules.end(), [](const RunRecord::Rule& rule) { return !rule.passed; });
-  std::string html = "<ul class=\"rules\">\n";
-  for (const RunRecord::Rule& rule : rules)
-    html += "<li>" + verdict_html(judgement_of(rule.passed)) + " " + html_text(rule.rule) + "</li>\n";
-  return html + "</ul>\n";
-}
-
-std::string pictures_html(const std::string& directory, const std::vector<std::string>& files) {
-  std::string html;
-  for (const std::string& file : files) {
-    std::string bytes;
-    try {
-      bytes = read_whole_file(directory + "/" + file);
-    } catch (const std::runtime_error&) {
-      html += paragraph(html_text(file + " is missing."), "soft");
-      continue;
-    }
-    if (!is_whole_png(bytes)) {
-      spdlog::warn("{}/{}: is no whole PNG picture; the page goes without it", directory, file);
-      html += paragraph(html_text(file + " is no whole PNG picture."), "soft");
-      continue;
-    }
-    html +=
-        "<figure><img alt=\"" + html_text(file) + "\" src=\"data:image/png;base64," + base64(bytes) + "\"></figure>\n";
+std::string rules_html(const std::vector<RunRecord::Rule>& rules) {
+  std::string failed, held;
+  std::size_t count = 0;
+  for (const RunRecord::Rule& rule : rules) {
+    (rule.passed ? held : failed) += "<li>" + verdict_html(rule.passed) + " " + html_text(rule.rule) + "</li>\n";
+    count += rule.passed ? 1 : 0;
   }
-  return html.empty() ? "" : heading("Pictures") + html;
+  std::string html;
+  if (!failed.empty()) html += "<ul class=\"rules\">\n" + failed + "</ul>\n";
+  if (!held.empty())
+    html += html_details(count == 1 ? "The rule that holds" : fmt::format("The {} rules that hold", count),
+                         "<ul class=\"rules\">\n" + held + "</ul>\n");
+  return html;
+}
+
+std::string list_html(const std::vector<std::string>& texts) {
+  std::string html;
+  for (const std::string& text : texts) html += "<li>" + html_text(text) + "</li>\n";
+  return html.empty() ? "" : "<ul>\n" + html + "</ul>\n";
+}
+
+std::string facts_table(const std::vector<std::pair<std::string, std::string>>& facts) {
+  std::string html = "<table class=\"facts\">\n<tbody>\n";
+  for (const auto& [name, value] : facts)
+    html += "<tr><th scope=\"row\">" + html_text(name) + "</th><td>" + html_text(value) + "</td></tr>\n";
+  return html + "</tbody></table>\n";
+}
+
+std::string verdict_box(Judgement judgement, const std::string& html) {
+  const char* look = judgement == Judgement::passed ? " is-good" : judgement == Judgement::failed ? " is-bad" : "";
+  return "<div class=\"verdict" + std::string(look) + "\">\n" + html + "</div>\n";
+}
+
+std::string outcome_html(const RunRecord& run, const std::vector<RunMetric>& metrics) {
+  std::vector<std::string> words = findings_in_words(metrics);
+  for (std::string& contact : contacts_in_words(run)) words.push_back(std::move(contact));
+  if (metrics.empty() && words.empty()) words.emplace_back("The world has no metrics: nothing was measured.");
+  return verdict_box(run.judgement, verdicts_html(run)) + list_html(words);
+}
+
+std::string made_by_html() {
+  return paragraph(html_text("Made by shoal " + short_version() + "."), "soft small");
 }
 
 std::string run_report(const RunRecord& run) {
+  const std::vector<RunMetric> metrics = metrics_of(run);
   return html_page(title_of(run), "<h1>" + html_text(title_of(run)) + "</h1>\n" +
                                       (run.description.empty() ? "" : paragraph(html_text(run.description))) +
-                                      verdicts_html(run) + paragraph(html_text(facts_of(run)), "soft") +
-                                      warnings_html(run) + figures_html(run) +
-                                      pictures_html(run.directory, pictures_of(run)) + processes_html(run) + made_by());
-}
-
-std::string comparison_report(const std::vector<RunRecord>& runs) {
-  std::set<std::string> names;
-  for (const RunRecord& run : runs)
-    for (const auto& [name, value] : run.metrics) names.insert(name);
-  std::vector<std::string> head{"run"};
-  std::vector<std::vector<std::string>> rows{{"world"},        {"seed"},     {"verdict"},
-                                             {"simulated, s"}, {"run hash"}, {"state hash"}};
-  for (const RunRecord& run : runs) {
-    head.push_back(run.directory);
-    const std::string cells[] = {run.world,
-                                 fmt::format("{}", run.seed),
-                                 judgement_word(run.judgement),
-                                 fmt::format("{:.2f}", run.sim_time_s),
-                                 run.run_hash,
-                                 run.state_hash};
-    for (std::size_t i = 0; i < std::size(cells); ++i) rows[i].push_back(cells[i]);
-  }
-  for (const std::string& name : names) {
-    std::vector<std::string>& row = rows.emplace_back(std::vector<std::string>{name});
-    for (const RunRecord& run : runs) {
-      const auto found = run.metrics.find(name);
-      row.push_back(found == run.metrics.end() ? "" : figure_text(found->second));
-    }
-  }
-  std::string body = "<h1>" + html_text(fmt::format("{} runs", runs.size())) + "</h1>\n" + html_table(head, rows);
-  for (const RunRecord& run : runs)
-    body += "<h2>" + html_text(run.directory) + "</h2>\n" + verdicts_html(run) +
-            "<details><summary>Pictures</summary>\n" + pictures_html(run.directory, pictures_of(run)) + "</details>\n";
-  return html_page(fmt::format("{} runs", runs.size()), body + made_by());
+                                      outcome_html(run, metrics) + run_pictures_html(run) + warnings_html(run) +
+                                      figures_html(metrics, run.rules) + processes_html(run) + facts_html(run) +
+                                      made_by_html());
 }
 
 std::string report_page(const std::vector<std::string>& directories) {
@@ -231,13 +196,13 @@ std::string report_page(const std::vector<std::string>& directories) {
     std::string directory = given;
     while (directory.size() > 1 && directory.back() == '/') directory.pop_back();
     std::error_code error;
-    if (!fs::is_directory(directory, error)) throw std::runtime_error(given + ": is no folder");
+    if (!fs::is_directory(directory, error)) throw std::runtime_error(given + ": is not a folder");
     const bool study = fs::exists(directory + "/study.json", error);
     if (study && directories.size() > 1)
       throw std::runtime_error(given + ": is a study, which cannot be compared with other folders");
     if (study) return study_report(directory);
     if (!fs::exists(directory + "/summary.json", error))
-      throw std::runtime_error(given + ": is no results folder: it has neither summary.json nor study.json");
+      throw std::runtime_error(given + ": is not a results folder: it has neither summary.json nor study.json");
     runs.push_back(read_run(directory));
   }
   return runs.size() == 1 ? run_report(runs.front()) : comparison_report(runs);

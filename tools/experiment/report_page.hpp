@@ -1,14 +1,17 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "tools/experiment/judgement.hpp"
+#include "tools/experiment/run_metrics.hpp"
 #include "tools/experiment/run_record.hpp"
 
 namespace tools {
 
-/// A results directory as one HTML page that needs no network: verdicts first, then figures, pictures, programs and
-/// warnings.  Takes a study's directory too; several directories of runs become a table that compares them.
+/// A results directory as one HTML page that needs no network: verdict and plots first, then figures by metric, logs of
+/// programs and facts about the run.  Takes a study's directory too; several directories of runs are compared.
 /// Throws std::runtime_error with file and reason.
 std::string report_page(const std::vector<std::string>& directories);
 
@@ -17,13 +20,20 @@ std::string run_report(const RunRecord& run);
 /// Runs beside each other.
 std::string comparison_report(const std::vector<RunRecord>& runs);
 
-/// A figure of the page as a number of a few digits, `-` when there is none.
-std::string figure_text(const std::optional<double>& value);
-/// Pictures of a directory as HTML; those that are missing or no PNG are named.
-std::string pictures_html(const std::string& directory, const std::vector<std::string>& files);
-/// `passed`, `FAILED` or `not judged`, coloured.
-std::string verdict_html(Judgement judgement);
-/// Rules with their outcome, failed ones first.
-std::string rules_html(std::vector<RunRecord::Rule> rules);
+/// Verdict, rules, and what came out in words.
+std::string outcome_html(const RunRecord& run, const std::vector<RunMetric>& metrics);
+/// `passed`, `FAILED` or `not judged`, coloured; `why` follows it after a colon.
+std::string judgement_html(Judgement judgement, const std::string& why = "");
+std::string verdict_html(bool passed);
+/// Rules with their outcome: those that failed, then those that hold folded away.
+std::string rules_html(const std::vector<RunRecord::Rule>& rules);
+/// A box with a coloured edge; `html` is what it says.
+std::string verdict_box(Judgement judgement, const std::string& html);
+/// Texts as a list; empty: nothing.
+std::string list_html(const std::vector<std::string>& texts);
+/// A table of names and values.
+std::string facts_table(const std::vector<std::pair<std::string, std::string>>& facts);
+/// The version that made the page.
+std::string made_by_html();
 
 }  // namespace tools

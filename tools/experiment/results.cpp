@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "tools/experiment/gnuplot.hpp"
+#include "tools/experiment/results_world.hpp"
 #include "tools/experiment/run_pictures.hpp"
 
 namespace tools {
@@ -232,6 +233,10 @@ void try_to_write_summary(const std::string& directory, const Summary& summary) 
   }
 }
 
+void write_results_world(const std::string& directory, const sim::ConfigNode& resolved) {
+  write_file(directory + "/world.yaml", sim::to_yaml(resolved));
+}
+
 Results::Results(const std::string& directory, const sim::World& world, bool pictures)
     : directory_(directory), world_(world), pictures_(pictures) {
   std::error_code error;
@@ -239,8 +244,11 @@ Results::Results(const std::string& directory, const sim::World& world, bool pic
   const std::string path = directory + "/tracks.csv";
   tracks_ = error ? nullptr : std::fopen(path.c_str(), "w");
   if (tracks_ == nullptr) throw cannot_write(path, error ? error.message() : std::strerror(errno));
-  // Pictures of an earlier run would be taken for this one's.
+  // What an earlier run left would be taken for this one's, which may be killed.
   for (const char* picture : run_pictures) std::filesystem::remove(directory + "/" + picture, error);
+  for (const char* file : {"summary.json", "metrics.csv", "errors.csv"})
+    if (!std::filesystem::is_directory(directory + "/" + file, error))
+      std::filesystem::remove(directory + "/" + file, error);
   std::fprintf(tracks_, "time_s,vehicle,x_m,y_m,z_m,yaw_rad\n");
   const double step_s = sim::to_seconds(world.step_time());
   every_steps_ = std::max<std::int64_t>(1, std::llround(1.0 / (world.config().run.track_rate_hz * step_s)));
@@ -356,7 +364,7 @@ void Results::finish(const Summary& summary, const Scoring& scoring, const sim::
   attempt([&] { close_tracks(); });
   attempt([&] { write_metrics(directory_, summary); });
   attempt([&] { write_errors(directory_, scoring); });
-  attempt([&] { write("world.yaml", sim::to_yaml(resolved)); });
+  attempt([&] { write_results_world(directory_, resolved); });
   attempt([&] { plot(summary, scoring, give_up); });
   if (first_error) throw std::runtime_error(*first_error);
 }

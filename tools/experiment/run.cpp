@@ -8,6 +8,7 @@
 
 #include "bridges/lcm/bus_error.hpp"
 #include "bridges/serial/serial_port.hpp"
+#include "tools/experiment/results_world.hpp"
 #include "tools/experiment/run_error.hpp"
 #include "tools/experiment/run_identity.hpp"
 #include "tools/experiment/run_name.hpp"
@@ -67,7 +68,10 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
     // What came before is not in this run's log, and a gap says so.
     journal_.begin_branch(control_.branch, 1);
   }
-  if (!options.results.empty()) results_ = std::make_unique<Results>(options.results, world_, options.pictures);
+  if (!options.results.empty()) {
+    results_ = std::make_unique<Results>(options.results, world_, options.pictures);
+    write_results_world(options.results, loaded.resolved);
+  }
   if (!options.quiet) scoring_.contacts().set_say([this](const std::string& line) { progress_.say(line); });
   progress_.restart(world_.now());
   plan_snapshots();

@@ -62,14 +62,30 @@ constexpr const char* canvas_for_tracks =
     "height = larger(larger(N_max, ON_max) + larger(-N_min, -ON_min), 1e-3)\n"
     "across = larger(400, 900 * (height > width ? width / height : 1))\n"
     "up = larger(250, 900 * (width > height ? height / width : 1))\n"
-    "set terminal pngcairo size across + 100, up + 180\n";
+    "set terminal pngcairo size across + 100, up + 220 font ',13'\n";
 
 constexpr std::array pale_colors{"#9ecae1", "#fdbe85", "#a1d99b", "#d4b9da", "#e0c9a6", "#fcc5c0"};
-constexpr std::array strong_colors{"#000000", "#cb181d", "#54278f", "#006d2c"};
+constexpr std::array strong_colors{"#000000", "#cb181d", "#54278f", "#006d2c",
+                                   "#b15900", "#08519c", "#ae017e", "#636363"};
 
 template <std::size_t n>
 const char* cycled(const std::array<const char*, n>& colors, std::size_t i) {
   return colors[i % n];
+}
+
+/// Where the vehicles are at the end: one that stands still would not be seen otherwise.
+std::string end_positions(const sim::World& world) {
+  std::string text = "$ends << EOD\n";
+  for (const auto& vehicle : world.vehicles()) {
+    const sim::Vector3d p = vehicle->X_WV().translation();
+    text += fmt::format("{:.4f},{:.4f}\n", p.x(), p.y());
+  }
+  return text + "EOD\n";
+}
+
+/// `set title`, of a plot of this world.
+std::string title_of(const sim::World& world, const std::string& what) {
+  return "set title " + gnuplot_text(world.config().name + ": " + what) + " noenhanced\n";
 }
 
 /// Tracks are drawn pale and broad, estimates dark and thin on top of them, so that both are seen.
@@ -92,8 +108,11 @@ std::string tracks_script(const sim::World& world, const Tracks& tracks) {
       curves.push_back(curve(track.metric, 4, "5",
                              fmt::format("lw 1.5 dt 2 lc '{}' title {} noenhanced", cycled(strong_colors, estimates++),
                                          gnuplot_text(track.metric + " estimate of " + track.vehicle))));
-  return canvas_for_tracks + std::string("set output 'tracks.png'\nset size ratio -1\nset xlabel 'east (m)'\n") +
-         "set ylabel 'north (m)'\n" + joined(curves);
+  if (!world.vehicles().empty())
+    curves.emplace_back("$ends using 1:2 with points pt 7 ps 1 lc 'gray20' title 'at the end'");
+  return canvas_for_tracks + end_positions(world) + title_of(world, "tracks from above") +
+         "set output 'tracks.png'\nset size ratio -1\nset xlabel 'east (m)'\nset ylabel 'north (m)'\n" +
+         "set offsets graph 0.03, graph 0.03, graph 0.03, graph 0.03\n" + joined(curves) + "unset offsets\n";
 }
 
 double rms_of(const Scoring::Track& track) {
@@ -106,16 +125,16 @@ double rms_of(const Scoring::Track& track) {
 std::string errors_script(const Tracks& tracks, const char* file, const char* x_label, int x) {
   std::vector<std::string> curves;
   std::vector<double> errors_m;
-  int color = 1;
+  std::size_t number = 0;
   for (const Scoring::Track& track : tracks) {
+    const char* color = cycled(strong_colors, number++);  // as in tracks.png
     errors_m.push_back(rms_of(track));
-    curves.push_back(
-        curve(track.metric, x, "3", fmt::format("lw 2 lc {} title {} noenhanced", color, gnuplot_text(track.metric))));
+    curves.push_back(curve(track.metric, x, "3",
+                           fmt::format("lw 2 lc '{}' title {} noenhanced", color, gnuplot_text(track.metric))));
     if (has_covariance(track))
       curves.push_back(curve(track.metric, x, "(3*$11)",
-                             fmt::format("lw 1 dt 2 lc {} title {} noenhanced", color,
+                             fmt::format("lw 1 dt 2 lc '{}' title {} noenhanced", color,
                                          gnuplot_text(track.metric + ": 3 sigma as estimated"))));
-    ++color;
   }
   return fmt::format("set output '{}'\nset size noratio\nset xlabel '{}'\nset ylabel 'position error (m)'\n", file,
                      x_label) +
@@ -126,10 +145,14 @@ std::string errors_script(const Tracks& tracks, const char* file, const char* x_
 std::string nees_script(const Tracks& tracks) {
   std::vector<std::string> curves;
   std::set<int> dimensions;
+  std::size_t number = 0;
   for (const Scoring::Track& track : tracks) {
+    ++number;
     if (!has_covariance(track)) continue;
     dimensions.insert(track.dimensions);
-    curves.push_back(curve(track.metric, 1, "12", fmt::format("title {} noenhanced", gnuplot_text(track.metric))));
+    curves.push_back(curve(
+        track.metric, 1, "12",
+        fmt::format("lc '{}' title {} noenhanced", cycled(strong_colors, number - 1), gnuplot_text(track.metric))));
   }
   if (curves.empty()) return {};
   for (const int size : dimensions) {
@@ -147,16 +170,19 @@ std::string run_pictures_script(const sim::World& world, const Scoring& scoring)
   const Tracks tracks = distinct(scoring.tracks());
   std::string script =
       // The vehicles' rows alternate: without `missing` each row of another one would break the line.
-      "set datafile separator ','\nset datafile missing NaN\n"
-      "set terminal pngcairo size 1000,1080\nset grid\nset key below\nset title " +
-      gnuplot_text(world.config().name) + " noenhanced\n" + tracks_script(world, tracks);
+      "set datafile separator ','\nset datafile missing NaN\nset grid\n"
+      // Below the axis and its label, not on the data.
+      "set key outside center bottom horizontal height 0.6 spacing 1.1\n" +
+      tracks_script(world, tracks);
   if (tracks.empty()) return script;
-  script += "set terminal pngcairo size 1000,700\n";
+  script += "set terminal pngcairo size 1000,700 font ',13'\n" + title_of(world, "position error over time");
   script += errors_script(tracks, "errors.png", "time (s)", 1);
   const auto went = [](const Scoring::Track& track) { return track.samples->back().travelled_m >= shortest_way_m; };
-  if (std::any_of(tracks.begin(), tracks.end(), went))
+  if (std::any_of(tracks.begin(), tracks.end(), went)) {
+    script += title_of(world, "position error over distance");
     script += errors_script(tracks, "errors_by_distance.png", "distance travelled (m)", 10);
-  return script + nees_script(tracks);
+  }
+  return script + title_of(world, "consistency of the estimates") + nees_script(tracks);
 }
 
 }  // namespace tools

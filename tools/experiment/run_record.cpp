@@ -82,6 +82,12 @@ RunRecord read_run(const std::string& directory) {
     run.processes.push_back({process.text("name"), process.text("how"), process.number("sim_time_s"),
                              process.has("failed") && process.boolean("failed")});
   }
+  if (in.has("contacts"))
+    for (const auto& item : in.list("contacts")) {
+      const JsonReader contact(item, path + ": contacts");
+      run.contacts.push_back(
+          {contact.text("vehicle"), contact.text("with"), contact.number("first_s"), contact.whole("count")});
+    }
   if (in.has("event")) {
     const JsonReader event(in.object("event"), path + ": event");
     run.event = RunRecord::Rule{event.text("text"), event.boolean("passed")};

@@ -22,6 +22,12 @@ struct RunRecord {
     double sim_time_s = 0;
     bool failed = false;
   };
+  /// Of a vehicle with another one, or with an object.
+  struct Contact {
+    std::string vehicle, with;
+    double first_s = 0;
+    std::int64_t count = 0;
+  };
 
   std::string directory;
   std::string world, description;
@@ -36,7 +42,8 @@ struct RunRecord {
   std::map<std::string, std::optional<double>> metrics;  ///< unset: there was nothing to make the figure of
   std::vector<Rule> rules;
   std::vector<Process> processes;
-  std::optional<Rule> event;  ///< what the event said that ended the run
+  std::vector<Contact> contacts;  ///< a pair each, in order of time; empty in older runs
+  std::optional<Rule> event;      ///< what the event said that ended the run
   Judgement judgement = Judgement::not_judged;
   std::string not_judged;  ///< why it was not; empty when it was
   std::string ended, error;

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "tools/experiment/gnuplot.hpp"
+#include "tools/experiment/run_metrics.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/experiment/study_curves.hpp"
 #include "tools/experiment/study_results.hpp"
@@ -39,13 +40,16 @@ class StudyPainter {
       : directory_(std::move(directory)), study_(study), runs_(runs), results_(results) {}
 
   void draw() {
-    script_ = "set terminal pngcairo size 1000,700\nset grid\nset key below\n";
+    script_ =
+        "set terminal pngcairo size 1000,700 font ',13'\nset grid\n"
+        "set key outside center bottom horizontal height 0.6 spacing 1.1\n";
     bool any = false;
     for (const StudyPlot& plot : study_.config.plots) {
       const std::string curves = plot.over == StudyPlot::Over::cases ? by_case(plot) : along(plot);
       if (curves.empty()) continue;  // gnuplot fails on a plot without a point
       any = true;
-      script_ += "set output " + gnuplot_text(plot.name + ".png") + "\n" + curves + "\n";
+      script_ += "set output " + gnuplot_text(plot.name + ".png") + "\nset title " +
+                 gnuplot_text(study_.config.name + ": " + plot.name) + " noenhanced\n" + curves + "\n";
     }
     if (!any) return;
     write_file(directory_ + "/plot.gp", script_);
@@ -74,7 +78,16 @@ class StudyPainter {
         "plot {} index 0 using 1:2 with points pt 7 ps 0.8 lc 1 title 'runs', "
         "{} index 1 using 1:2:3 with yerrorbars lw 2 pt 5 lc 2 title 'mean and standard deviation'\n"
         "set xrange [*:*]\nset xtics auto enhanced",
-        tics, number, gnuplot_text(plot.figure), file, file);
+        tics, number, gnuplot_text(with_unit(plot.figure)), file, file);
+  }
+
+  /// `cooperative.rms_m (m)`
+  std::string with_unit(const std::string& name) const {
+    for (const RunMetric& metric : metrics_named(results_.figures()))
+      for (const RunMetric::Figure& figure : metric.figures)
+        if (name == metric.name + "." + figure.name && figure.kind != nullptr && figure.kind->unit != "1")
+          return name + " (" + figure.kind->unit + ")";
+    return name;
   }
 
   /// Errors over distance or time: the median of the runs, in a band of 5 to 95 % of them.

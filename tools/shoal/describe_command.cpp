@@ -16,7 +16,7 @@ namespace tools {
 namespace {
 
 std::string unknown_name(const std::string& name) {
-  std::vector<std::string> known = {"device", "noise", "world", "vehicle"};
+  std::vector<std::string> known = {"device", "noise", "world", "vehicle", "metrics"};
   for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all()) known.push_back(type->name);
   for (const auto& [message, schema] : shoal::embedded_types().all())
     known.push_back(message.substr(message.find('.') + 1));
@@ -33,19 +33,19 @@ void add_describe_command(CLI::App& app, int& exit_code) {
   const auto name = std::make_shared<std::string>();
   const auto page = std::make_shared<std::string>();
   const auto schema = std::make_shared<std::string>();
-  CLI::Option* name_option =
-      command->add_option("NAME", *name, "a device type, a message type, or one of: device, noise, world, vehicle");
+  CLI::Option* name_option = command->add_option(
+      "NAME", *name, "a device type, a message type, or one of: device, noise, world, vehicle, metrics");
   CLI::Option* page_option = command->add_option("--page", *page, "print a whole page of docs/ in Markdown")
                                  ->type_name("PAGE")
-                                 ->check(one_of({"devices", "messages", "world_format"}));
+                                 ->check(one_of({"devices", "messages", "metrics", "world_format"}));
   CLI::Option* schema_option = command->add_option("--schema", *schema, "print the JSON Schema of a file's keys")
                                    ->type_name("FILE")
                                    ->check(one_of({"world", "vehicle"}));
   name_option->excludes(page_option)->excludes(schema_option);
   page_option->excludes(schema_option);
   add_plugin_option(*command);
-  command_line::set_help_end(*command, {{"shoal describe lidar", "shoal describe world", "shoal describe pose_t",
-                                         "shoal describe --schema world > world.schema.json",
+  command_line::set_help_end(*command, {{"shoal describe lidar", "shoal describe world", "shoal describe metrics",
+                                         "shoal describe pose_t", "shoal describe --schema world > world.schema.json",
                                          "shoal describe thermometer --plugin build/thermometer.so"},
                                         {{0, "success"}, {2, "wrong usage, or nothing has this name"}},
                                         {}});

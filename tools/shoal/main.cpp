@@ -17,6 +17,7 @@
 #include "tools/command_line/parse.hpp"
 #include "tools/command_line/text_layout.hpp"
 #include "tools/experiment/runner.hpp"
+#include "tools/shoal/bug_command.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/new_command.hpp"
 
@@ -63,6 +64,7 @@ int run(int argc, char** argv) {
   tools::add_fidelity_command(app, exit_code);
   tools::add_acoustics_command(app, exit_code);
   tools::add_report_command(app, exit_code);
+  tools::add_bug_command(app, exit_code);
   tools::add_study_command(app, exit_code);
   try {
     if (const auto ended = command_line::parse(app, argc, argv)) return *ended;

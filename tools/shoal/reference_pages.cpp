@@ -8,6 +8,7 @@
 #include "shoal/message_schema.hpp"
 #include "sim/config/param_table.hpp"
 #include "sim/random/noise.hpp"
+#include "sim/world/metric_kind.hpp"
 #include "sim/world/world_config.hpp"
 #include "tools/command_line/text_layout.hpp"
 #include "tools/shoal/param_tables.hpp"
@@ -143,13 +144,52 @@ std::string messages_page() {
   return page;
 }
 
+std::string unit_text(const sim::FigureKind& figure) {
+  return figure.unit == "1" ? "ratio" : figure.unit;
+}
+
+std::string keys_text(const sim::MetricKind& kind) {
+  std::string text;
+  for (const std::string& key : kind.required) text += (text.empty() ? "" : ", ") + std::string("**`") + key + "`**";
+  for (const std::string& key : kind.optional) text += (text.empty() ? "" : ", ") + std::string("`") + key + "`";
+  return text;
+}
+
+std::string metrics_page() {
+  std::string page = fmt::format(fmt::runtime(generated), "metrics") +
+                     "# Metrics and their figures\n\nEach type of metric gives these figures, called `NAME.figure` in "
+                     "`summary.json`, `metrics.csv` and pass rules. A figure that there is nothing to compute from is "
+                     "NaN: null in `summary.json`, `none` in reports. Keys that a type needs are bold; "
+                     "[world_format.md](world_format.md) explains them, [scores.md](scores.md) the metrics.\n";
+  for (const sim::MetricKind& kind : sim::metric_kinds()) {
+    page += fmt::format("\n## {}\n\nMeasures {}. Keys: {}.\n\n| figure | unit | meaning |\n|---|---|---|\n", kind.word,
+                        kind.meaning, keys_text(kind));
+    for (const sim::FigureKind& figure : kind.figures)
+      page += fmt::format("| `{}` | {} | {} |\n", figure.name, unit_text(figure), figure.meaning);
+  }
+  return page;
+}
+
+std::string metrics_text(std::size_t columns) {
+  constexpr std::size_t meaning_at = 36;
+  std::string text = "Figures of the metrics of a world, NAME.figure.\n";
+  for (const sim::MetricKind& kind : sim::metric_kinds()) {
+    text += "\n" + command_line::wrapped(fmt::format("{}: {}", kind.word, kind.meaning), columns) + "\n";
+    for (const sim::FigureKind& figure : kind.figures)
+      text += fmt::format("  {:<21} {:<10}  {}\n", figure.name, unit_text(figure),
+                          command_line::wrapped(figure.meaning, columns, meaning_at, meaning_at));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string reference_page(const std::string& name) {
   if (name == "devices") return devices_page();
   if (name == "world_format") return world_format_page();
   if (name == "messages") return messages_page();
-  throw std::out_of_range("no page '" + name + "'; pages: devices, messages, world_format");
+  if (name == "metrics") return metrics_page();
+  throw std::out_of_range("no page '" + name + "'; pages: devices, messages, metrics, world_format");
 }
 
 std::string describe_text(const std::string& name, std::size_t columns) {
@@ -160,6 +200,7 @@ std::string describe_text(const std::string& name, std::size_t columns) {
   if (name == "noise") return keys("Error of a measured quantity.", params_of<sim::NoiseParams>());
   if (name == "world") return keys("Keys of a world file.", params_of<sim::WorldConfig>());
   if (name == "vehicle") return keys("Keys of a vehicle file.", params_of<sim::VehicleConfig>());
+  if (name == "metrics") return metrics_text(columns);
   if (const sim::DeviceType* type = sim::DeviceRegistry::instance().find(name)) {
     std::string traffic = traffic_of(*type);
     traffic.pop_back();  // the newline

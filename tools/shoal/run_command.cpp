@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "shoal/message_writer.hpp"
+#include "tools/experiment/bug_report.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/experiment/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
@@ -72,6 +73,8 @@ int run(RunArguments& arguments) {
   if (summary.steps > 0 && !arguments.run.quiet) std::cout << summary.to_text();
   if (summary.steps > 0 && !arguments.run.results.empty() && !arguments.run.quiet)
     std::cout << "  results in " << arguments.run.results << "/ (summary.json, tracks.png)\n";
+  if (summary.ended == "fault" || summary.ended == "error")
+    std::cerr << bug_hint(arguments.run.results, arguments.run.record) << '\n';
   return summary.exit_code;
 }
 

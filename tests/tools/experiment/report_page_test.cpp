@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
+#include "sim/world/metric_kind.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tools/experiment/html.hpp"
@@ -125,12 +127,14 @@ TEST(Report, OfARunIsOnePageWithVerdictsFirst) {
   const std::string page = tools::report_page({directory});
   EXPECT_EQ(problems_of_page(page), "");
   EXPECT_THAT(page, HasSubstr("<title>small</title>"));
-  EXPECT_THAT(page, HasSubstr("Seed 7."));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">Seed</th><td>7</td>"));
   EXPECT_THAT(page, HasSubstr(tools::short_version()));
   EXPECT_THAT(page, HasSubstr("<span class=\"bad\">FAILED</span> way.travelled_m"));
   EXPECT_THAT(page, HasSubstr("<span class=\"good\">passed</span> way.travelled_m"));
-  EXPECT_LT(page.find("FAILED"), page.find("<h2>Figures"));
-  EXPECT_LT(page.find("<h2>Figures"), page.find("<img"));
+  EXPECT_THAT(page, HasSubstr("1 of 2 rules holds, 1 failed."));
+  EXPECT_LT(page.find("FAILED"), page.find("r1 travelled"));
+  EXPECT_LT(page.find("r1 travelled"), page.find("<img"));
+  EXPECT_LT(page.find("<img"), page.find("<h2>Figures"));
   EXPECT_THAT(page, HasSubstr("src=\"data:image/png;base64,iVBORw0KGgo"));
   EXPECT_EQ(problems_of_page(tools::report_page({directory + "/"})), "");
 }
@@ -154,7 +158,7 @@ TEST(Report, NamesPicturesThatAreMissingOrNone) {
   write(directory + "/errors.png", "GIF89a");
   const std::string page = tools::report_page({directory});
   EXPECT_THAT(page, HasSubstr("tracks.png is missing."));
-  EXPECT_THAT(page, HasSubstr("errors.png is no whole PNG picture."));
+  EXPECT_THAT(page, HasSubstr("errors.png is not a whole PNG file."));
   EXPECT_EQ(problems_of_page(page), "");
 }
 
@@ -170,7 +174,7 @@ TEST(Report, TakesNoPictureThatIsCutOffOrDamaged) {
     EXPECT_FALSE(tools::is_whole_png(bad));
     write(directory + "/tracks.png", bad);
     const std::string page = tools::report_page({directory});
-    EXPECT_THAT(page, HasSubstr("tracks.png is no whole PNG picture."));
+    EXPECT_THAT(page, HasSubstr("tracks.png is not a whole PNG file."));
     EXPECT_THAT(page, Not(HasSubstr("<img")));
   }
 }
@@ -222,16 +226,102 @@ TEST(Report, OfSeveralRunsComparesThem) {
   const std::string page = tools::report_page({folder.file("a"), folder.file("b")});
   EXPECT_EQ(problems_of_page(page), "");
   EXPECT_THAT(page, HasSubstr("<tr><td>world</td><td>small</td><td>large</td></tr>"));
-  EXPECT_THAT(page, HasSubstr("<tr><td>other.count</td><td></td><td>0</td></tr>"));
+  EXPECT_THAT(page, HasSubstr("<td></td><td>0</td></tr>"));
+  EXPECT_THAT(page, HasSubstr("<summary>Figures that are 0</summary>"));  // nobody moved, nothing touched
+}
+
+/// A results folder of the figures alone, with the world that they are of.
+std::string folder_of(const ScratchFolder& scratch, const std::map<std::string, double>& metrics,
+                      const std::string& world) {
+  const std::string directory = scratch.file("figures");
+  tools::Summary summary;
+  summary.world = "sea";
+  summary.metrics = metrics;
+  tools::write_summary(directory, summary);
+  write(directory + "/world.yaml", world);
+  return directory;
+}
+
+constexpr const char* sea_metrics =
+    "metrics:\n"
+    "  - {name: cooperative, vehicle: auv, channel: auv.estimate}\n"
+    "  - {name: alone, vehicle: auv, channel: auv.dead_reckoning}\n"
+    "  - {name: link, type: delivery, vehicle: auv}\n";
+
+std::map<std::string, double> sea_figures() {
+  std::map<std::string, double> figures;
+  const auto error = [&](const std::string& name, double rms_m, double final_m, double percent) {
+    figures[name + ".rms_m"] = rms_m, figures[name + ".final_m"] = final_m, figures[name + ".max_m"] = 2 * final_m;
+    figures[name + ".samples"] = 1951, figures[name + ".longest_gap_s"] = 1;
+    figures[name + ".per_distance_percent"] = percent;
+  };
+  error("cooperative", 0.912, 0.7, 0.025);
+  error("alone", 61.25, 138, 138.0 / 28);  // per cent of 2800 m
+  for (const sim::FigureKind& figure : sim::metric_kind(sim::MetricType::delivery).figures)
+    figures["link." + figure.name] = 0;
+  figures["link.sent"] = 130, figures["link.received"] = 75, figures["link.lost"] = figures["link.lost_noise"] = 25;
+  figures["link.ratio"] = 0.75;
+  return figures;
+}
+
+TEST(Report, SaysInWordsWhatCameOut) {
+  const ScratchFolder folder;
+  const std::string page = tools::report_page({folder_of(folder, sea_figures(), sea_metrics)});
+  EXPECT_EQ(problems_of_page(page), "");
+  EXPECT_THAT(page, HasSubstr("auv localises itself to 0.91 m rms (cooperative); alone: 61.2 m rms, 138 m at the end, "
+                              "after 2.80 km."));
+  EXPECT_THAT(page, HasSubstr("link: 130 packets sent by auv; 75 % of 100 addressed to auv arrived."));
+  // Without the world nobody knows whose they are; a world that is not YAML is not known.
+  const std::string unknown = tools::report_page({folder_of(folder, sea_figures(), "}{")});
+  EXPECT_THAT(unknown, HasSubstr("cooperative: 0.91 m rms; alone: 61.2 m rms, 138 m at the end, after 2.80 km."));
+}
+
+TEST(Report, GroupsFiguresByMetricWithUnitsAndFoldsZeros) {
+  const ScratchFolder folder;
+  const std::string page = tools::report_page({folder_of(folder, sea_figures(), sea_metrics)});
+  const auto of_link = page.find("<h3>link ");
+  // The order is that of the world, not of the alphabet.
+  EXPECT_LT(page.find("<h3>cooperative "), page.find("<h3>alone "));
+  EXPECT_LT(page.find("<h3>alone "), of_link);
+  EXPECT_THAT(page, HasSubstr("delivery of auv"));
+  EXPECT_THAT(page, HasSubstr("<td>0.912 m</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>1951 estimates</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>0.025 %</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>0.75</td>"));
+  // 12 causes but noise, bytes_sent, unsent and dropped.
+  const auto folded = page.find("<summary>14 figures that are 0</summary>", of_link);
+  ASSERT_NE(folded, page.npos);
+  EXPECT_GT(page.find("lost_doppler", of_link), folded);
+  EXPECT_LT(page.find("lost_noise", of_link), folded);
+}
+
+TEST(Report, SaysWhatTouchedWhat) {
+  const ScratchFolder folder;
+  const std::string directory = folder_of(folder, {}, "");
+  EXPECT_THAT(tools::report_page({directory}), HasSubstr("The world has no metrics: nothing was measured."));
+  std::string summary = text_of_file(directory + "/summary.json");
+  summary.insert(2, "\"contacts\": [{\"vehicle\": \"auv4\", \"with\": \"rock\", \"first_s\": 105.7, \"count\": 3}],");
+  write(directory + "/summary.json", summary);
+  EXPECT_THAT(tools::report_page({directory}), HasSubstr("<li>auv4 hits rock at 105.7 s, 3 times in all.</li>"));
+}
+
+TEST(Report, TakesFiguresOfAnyName) {
+  const ScratchFolder folder;
+  const std::string page = tools::report_page(
+      {folder_of(folder, {{"a", 1}, {"a.", 2}, {".b", 3}, {"c.d.e", 4}, {"", 5}, {"<x>.rms_m", tools::no_figure}},
+                 "metrics: [1, {name: [a]}, {name: a}]")});
+  EXPECT_EQ(problems_of_page(page), "");
+  EXPECT_THAT(page, HasSubstr("&lt;x&gt;"));
+  EXPECT_THAT(page, HasSubstr("<td>none</td>"));
 }
 
 TEST(Report, TellsWhatIsNoResultsFolder) {
   const ScratchFolder folder;
-  EXPECT_THAT(error_of_report({folder.file("nowhere")}), HasSubstr("nowhere: is no folder"));
+  EXPECT_THAT(error_of_report({folder.file("nowhere")}), HasSubstr("nowhere: is not a folder"));
   fs::create_directory(folder.file("empty"));
   EXPECT_THAT(error_of_report({folder.file("empty")}), HasSubstr("it has neither summary.json nor study.json"));
   write(folder.file("file"), "x");
-  EXPECT_THAT(error_of_report({folder.file("file")}), HasSubstr("is no folder"));
+  EXPECT_THAT(error_of_report({folder.file("file")}), HasSubstr("is not a folder"));
 }
 
 TEST(Report, TellsWhatIsWrongWithASummary) {

@@ -12,6 +12,7 @@
 #include "shoal/message_writer.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 #include "tests/devices/world_fixture.hpp"
+#include "tools/experiment/results_world.hpp"
 #include "tools/experiment/runner.hpp"
 
 namespace {
@@ -322,6 +323,23 @@ TEST(Results, ReplaceThoseOfAnEarlierRun) {
   const auto json = nlohmann::json::parse(text_of_file(options.results + "/summary.json"));
   EXPECT_EQ(json["ended"], "configuration");
   EXPECT_EQ(json["steps"], 0);
+}
+
+TEST(Results, OfAnEarlierRunAreGoneWhenARunIsKilled) {
+  const ScratchFolder folder;
+  const auto loaded = small_world();
+  auto options = quiet_run();
+  options.results = folder.file("results");
+  EXPECT_EQ(tools::run_world(loaded, options).exit_code, 0);
+  sim::InProcessBus bus;
+  sim::World world(loaded.config, bus);
+  {
+    const tools::Results killed(options.results, world);  // as far as a run comes that is killed in its first step
+    tools::write_results_world(killed.directory(), loaded.resolved);
+  }
+  for (const char* file : {"summary.json", "metrics.csv", "errors.csv", "tracks.png"})
+    EXPECT_FALSE(fs::exists(options.results + "/" + file)) << file;
+  EXPECT_TRUE(fs::exists(options.results + "/world.yaml"));
 }
 
 TEST(Results, AFullDiskEndsTheRunAndTheRestIsWritten) {

@@ -8,12 +8,13 @@
 
 #include "shoal/message_schema.hpp"
 #include "sim/device/device_registry.hpp"
+#include "sim/world/metric_kind.hpp"
 #include "tests/project_paths.hpp"
 
 namespace {
 
 TEST(ReferencePages, InDocsAreUpToDate) {
-  for (const std::string name : {"devices", "world_format", "messages"}) {
+  for (const std::string name : {"devices", "world_format", "messages", "metrics"}) {
     std::ifstream in(test_support::source_path("docs/") + name + ".md", std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     // Not EXPECT_EQ: nobody wants to read two whole pages.
@@ -34,6 +35,27 @@ TEST(ReferencePages, NameEveryDeviceAndEveryMessage) {
   const std::string messages = tools::reference_page("messages");
   for (const auto& [name, schema] : shoal::embedded_types().all())
     EXPECT_THAT(messages, testing::HasSubstr("\n## " + name + "\n"));
+}
+
+TEST(ReferencePages, ExplainEveryFigureWithItsUnit) {
+  const std::string page = tools::reference_page("metrics");
+  for (const sim::MetricKind& kind : sim::metric_kinds()) {
+    EXPECT_THAT(page, testing::HasSubstr("\n## " + kind.word + "\n"));
+    EXPECT_EQ(&sim::metric_kind(kind.type), &kind);
+    std::set<std::string> names;
+    for (const sim::FigureKind& figure : kind.figures) {
+      EXPECT_NE(figure.unit, "") << kind.word << "." << figure.name;
+      EXPECT_NE(figure.meaning, "") << kind.word << "." << figure.name;
+      EXPECT_EQ(figure.name.ends_with("_m"), figure.unit == "m") << figure.name;
+      EXPECT_EQ(figure.name.ends_with("_s"), figure.unit == "s") << figure.name;
+      EXPECT_EQ(figure.name.ends_with("_deg"), figure.unit == "deg") << figure.name;
+      EXPECT_THAT(page, testing::HasSubstr("| `" + figure.name + "` | "));
+      names.insert(figure.name);
+    }
+    // Reports find the type of a metric by its figures.
+    EXPECT_EQ(sim::metric_kind_of_figures(names), &kind);
+  }
+  EXPECT_EQ(sim::metric_kind_of_figures({"rms_m"}), nullptr);
 }
 
 TEST(ReferencePages, NoDeviceTakesAKeyThatAllDevicesHave) {
@@ -58,6 +80,7 @@ TEST(Describe, KnowsDevicesMessagesAndFiles) {
   EXPECT_THAT(tools::describe_text("device"), testing::HasSubstr("rate_hz"));
   EXPECT_THAT(tools::describe_text("world"), testing::HasSubstr("duration_s"));
   EXPECT_THAT(tools::describe_text("vehicle"), testing::HasSubstr("bodies"));
+  EXPECT_THAT(tools::describe_text("metrics"), testing::HasSubstr("rms_m"));
   EXPECT_THAT(tools::describe_text("noise"), testing::HasSubstr("gaussian_std"));
   EXPECT_THAT(tools::describe_text("pose_t"), testing::HasSubstr("fingerprint"));
   EXPECT_EQ(tools::describe_text("pose_t"), tools::describe_text("shoal.pose_t"));

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace tools {
+
+/// Adds `shoal bug`, as the functions of commands.hpp add theirs.
+void add_bug_command(CLI::App& app, int& exit_code);
+
+}  // namespace tools
