@@ -272,7 +272,8 @@ TEST_F(LiveRun, ThatIsEndedByHandIsNotJudged) {
       EXPECT_TRUE(request("quit").ok);
     EXPECT_EQ(shoal_->wait(), by_signal ? 130 : 0) << shoal_->errors();
     const std::string how = by_signal ? "SIGINT" : "quit";
-    EXPECT_THAT(shoal_->output(), testing::ContainsRegex("\n  ended by " + how + " at [0-9.]+ of 1000 s: not judged\n"));
+    EXPECT_THAT(shoal_->output(),
+                testing::ContainsRegex("\n  ended by " + how + " at [0-9.]+ of 1000 s: not judged\n"));
     EXPECT_THAT(shoal_->output(), testing::Not(HasSubstr("FAILED")));
     EXPECT_EQ(summary_value(results, "passed"), "null");
     EXPECT_EQ(summary_value(results, "judged"), "false");

@@ -58,8 +58,8 @@ std::string verdicts_html(const RunRecord& run) {
   const bool passed = run.judgement == Judgement::passed;
   std::string html = paragraph(verdict_html(run.judgement) + (passed ? "" : ": " + html_text(why_not_passed(run))));
   if (run.event)
-    html += paragraph(verdict_html(judgement_of(run.event->passed)) +
-                      ": ended by an event: " + html_text(run.event->rule));
+    html +=
+        paragraph(verdict_html(judgement_of(run.event->passed)) + ": ended by an event: " + html_text(run.event->rule));
   if (run.rules.empty()) return html + paragraph("No rules were judged.", "soft");
   return html + rules_html(run.rules);
 }
@@ -201,8 +201,7 @@ std::string comparison_report(const std::vector<RunRecord>& runs) {
   std::vector<std::vector<std::string>> rows{{"world"}, {"seed"}, {"verdict"}, {"simulated, s"}, {"state hash"}};
   for (const RunRecord& run : runs) {
     head.push_back(run.directory);
-    const std::string cells[] = {run.world, fmt::format("{}", run.seed),
-                                 judgement_word(run.judgement),
+    const std::string cells[] = {run.world, fmt::format("{}", run.seed), judgement_word(run.judgement),
                                  fmt::format("{:.2f}", run.sim_time_s), run.state_hash};
     for (std::size_t i = 0; i < std::size(cells); ++i) rows[i].push_back(cells[i]);
   }

@@ -40,7 +40,8 @@ std::string table_html(const JsonReader& in) {
       else
         row.emplace_back("-");
     }
-  return "<h2>Figures</h2>\n" + html_table({"figure", "case", "runs", "mean", "std", "min", "max", "median", "mean, 95 % interval"}, rows);
+  return "<h2>Figures</h2>\n" +
+         html_table({"figure", "case", "runs", "mean", "std", "min", "max", "median", "mean, 95 % interval"}, rows);
 }
 
 std::string cases_html(const JsonReader& in) {

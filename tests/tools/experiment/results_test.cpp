@@ -76,11 +76,11 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   const auto json = nlohmann::ordered_json::parse(summary.to_json());
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(
-      keys, testing::ElementsAre("world", "description", "seed", "steps", "sim_time_s", "duration_s", "wall_s", "real_time_factor",
-                                 "state_hash", "messages", "dropped_messages", "bad_messages", "quick_steps", "metrics",
-                                 "rules", "processes", "modem_dropped_messages", "serial_dropped_bytes", "judged",
-                                 "passed", "ended", "error", "exit_code", "shoal"));
+  EXPECT_THAT(keys,
+              testing::ElementsAre("world", "description", "seed", "steps", "sim_time_s", "duration_s", "wall_s",
+                                   "real_time_factor", "state_hash", "messages", "dropped_messages", "bad_messages",
+                                   "quick_steps", "metrics", "rules", "processes", "modem_dropped_messages",
+                                   "serial_dropped_bytes", "judged", "passed", "ended", "error", "exit_code", "shoal"));
   EXPECT_EQ(json["world"], "harbor");
   EXPECT_EQ(json["seed"], 3);
   EXPECT_EQ(json["steps"], 1000);
