@@ -272,12 +272,26 @@ TEST_F(LiveRun, ThatIsEndedByHandIsNotJudged) {
       EXPECT_TRUE(request("quit").ok);
     EXPECT_EQ(shoal_->wait(), by_signal ? 130 : 0) << shoal_->errors();
     const std::string how = by_signal ? "SIGINT" : "quit";
-    EXPECT_THAT(shoal_->output(), testing::ContainsRegex("\n  ended by " + how + " at [0-9.]+ of 1000 s: not judged\n"));
+    EXPECT_THAT(shoal_->output(),
+                testing::ContainsRegex("\n  ended by " + how + " at [0-9.]+ of 1000 s: not judged\n"));
     EXPECT_THAT(shoal_->output(), testing::Not(HasSubstr("FAILED")));
     EXPECT_EQ(summary_value(results, "passed"), "null");
     EXPECT_EQ(summary_value(results, "judged"), "false");
     EXPECT_THAT(summary_value(results, "not_judged"), HasSubstr("ended by " + how + " at "));
   }
+}
+
+TEST_F(LiveRun, ThatIsEndedByHandHasFailedWhenAProgramDid) {
+  const std::string results = folder_.file("results");
+  start(
+      "metrics: [{name: way, type: distance, vehicle: rover1}]\npass: [{metric: way.travelled_m, below: 1000}]\n"
+      "processes: [{name: pilot, command: [sh, -c, exit 3]}]\n",
+      {"--launch", "--duration", "1000", "--results", results, "--no-pictures"});
+  EXPECT_TRUE(await([&] { return shoal_->errors().find("exited with code 3") != std::string::npos; }, patience));
+  EXPECT_TRUE(request("quit").ok);
+  EXPECT_EQ(shoal_->wait(), 1) << shoal_->errors();
+  EXPECT_THAT(shoal_->output(), HasSubstr("FAILED: process 'pilot' must not fail"));
+  EXPECT_EQ(summary_value(results, "passed"), "false");
 }
 
 }  // namespace

@@ -44,12 +44,13 @@ std::string world_text() {
       "objects:\n  - {name: ground, fixed: true, parts: [{shape: plane}]}\n"
       "  - {name: ball, position_m: [9, 9, 0.5], parts: [{shape: sphere, radius_m: 0.2, mass_kg: 1}]}\n"
       "vehicles:\n  - {name: r1, file: " +
-      source("vehicles/rover.yaml") + "}\n  - {name: r2, position_m: [0, 5, 0], file: " +
       source("vehicles/rover.yaml") +
+      "}\n  - {name: r2, position_m: [0, 5, 0], file: " + source("vehicles/rover.yaml") +
       "}\n"
       "zones: [{name: goal, shape: box, position_m: [2, 0, 0], size_m: [2, 2, 2]}]\n"
       "events:\n"
-      "  - {name: go, every: 0.2, do: [{publish: r1.drive.cmd, type: shoal.twist_command_t, value: {forward_mps: 0.4}}]}\n"
+      "  - {name: go, every: 0.2, do: [{publish: r1.drive.cmd, type: shoal.twist_command_t, value: {forward_mps: "
+      "0.4}}]}\n"
       "  - {name: think, every: 0.3, do: [{publish: r1.estimate, type: shoal.estimate_t, value: "
       "{covariance_m2: [1, 0, 0, 0, 1, 0, 0, 0, 1]}}]}\n"
       "  - {name: think_far, every: 0.3, do: [{publish: r1.far, type: shoal.pose_t, value: {pos: [99, 0, 0]}}]}\n"
@@ -155,7 +156,10 @@ TEST_F(MetricsInTime, OfEveryTypeGoBackWithTheWorld) {
     const Ended ended = run_shoal({"run", "--from", folder_.file("snaps/two.snapshot"), "--bus", "none", "--duration",
                                    duration_s, "--results", results, "--no-pictures"});
     EXPECT_EQ(ended.exit_code, 0) << ended.errors;
-    expect_same(metrics_in(results), duration_s == "2" ? at2 : duration_s == "4" ? at4 : at6,
+    expect_same(metrics_in(results),
+                duration_s == "2"   ? at2
+                : duration_s == "4" ? at4
+                                    : at6,
                 "--from 2 s to " + duration_s + " s");
   }
 }

@@ -46,9 +46,9 @@ class BytesPerMetreMetric final : public Metric {
     add(figures, "bytes_per_metre", less_m > 0 ? bytes / less_m : no_figure);
   }
   std::string why_none(const std::string& figure) const override {
-    return figure == "bytes_per_metre" ? "the error of '" + config().metric + "' is not known to be the smaller one"
-                                       : "one of the errors of '" + config().metric + "' and '" + config().against +
-                                             "' is not known";
+    return figure == "bytes_per_metre"
+               ? "the error of '" + config().metric + "' is not known to be the smaller one"
+               : "one of the errors of '" + config().metric + "' and '" + config().against + "' is not known";
   }
   // No state of its own: the modems count, and the other metrics keep the errors.
   void visit_state(sim::StateArchive&, History) override {}

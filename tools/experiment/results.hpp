@@ -53,7 +53,7 @@ struct Summary {
   std::uint64_t serial_dropped_bytes = 0;         ///< that no program fetched from pseudo-terminals and FIFOs
   std::optional<sim::EndOfRun> event;             ///< of the world that ended the run
   std::string ended =
-      "duration";  ///< duration, event, quit, signal, rewound, fault, bus, timeout, process, configuration, error
+      "duration";     ///< duration, event, quit, signal, rewound, fault, bus, timeout, process, configuration, error
   std::string error;  ///< why it ended early, empty when it did not
   int exit_code = 0;
   std::string version;      ///< of shoal

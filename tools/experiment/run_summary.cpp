@@ -78,9 +78,12 @@ void Run::add_figures(Summary& summary) {
   const bool took_part = programs_take_part(loaded_.config, options_);
   if (!took_part && !summary.verdicts.empty())
     summary.no_verdicts = "its programs took no part: see --launch and --await";
-  if (!took_part || summary.ended_by_hand()) summary.verdicts.clear();
+  if (!took_part) summary.verdicts.clear();
+  const auto rules = static_cast<std::ptrdiff_t>(summary.verdicts.size());
   summary.contacts = scoring_.contacts().all();
   summary.judge_processes();
+  // A rule is about the whole run; a program that failed has failed.
+  if (summary.ended_by_hand()) summary.verdicts.erase(summary.verdicts.begin(), summary.verdicts.begin() + rules);
 }
 
 void Run::write_results(Summary& summary) {

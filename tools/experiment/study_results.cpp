@@ -87,9 +87,9 @@ std::vector<double> StudyResults::values(const std::string& in_case, const std::
     if (!run.record || study_.config.cases[run.in_case].name != in_case) continue;
     const auto found = run.record->metrics.find(figure);
     if (figure == passed_figure)
-      values.push_back(run.record->judgement == Judgement::not_judged  ? no_figure
-                       : run.record->judgement == Judgement::passed ? 1
-                                                                    : 0);
+      values.push_back(run.record->judgement == Judgement::not_judged ? no_figure
+                       : run.record->judgement == Judgement::passed   ? 1
+                                                                      : 0);
     else if (found != run.record->metrics.end())
       values.push_back(found->second.value_or(no_figure));
   }
@@ -126,7 +126,8 @@ StudyResults::Shown StudyResults::statistic(const StudyRule& rule, const std::st
   const std::size_t lacking = runs - static_cast<std::size_t>(statistics.count);
   // A figure that nothing could be made of in some of the runs is no good figure.
   if (lacking > 0)
-    return {no_figure, fmt::format("none: {} of {} runs {} no such figure", lacking, runs, lacking == 1 ? "has" : "have")};
+    return {no_figure,
+            fmt::format("none: {} of {} runs {} no such figure", lacking, runs, lacking == 1 ? "has" : "have")};
   const double value = statistics.by_word(rule.statistic);
   if (std::isnan(value)) return {no_figure, fmt::format("none: {} needs two runs", rule.statistic)};
   return {value, fmt::format("{:.4g}", value)};
@@ -195,8 +196,9 @@ std::string StudyResults::to_text() const {
       // A mean of those that arrived says nothing of those that did not.
       const std::size_t runs = runs_of(each.name);
       const bool all = static_cast<std::size_t>(s.count) == runs;
-      text += line(figure, each.name, all ? fmt::format("{}", runs) : fmt::format("{}/{}", s.count, runs), number(s.mean), number(s.std), number(s.min),
-                   number(s.max), number(s.median), number(s.mean_95.low), number(s.mean_95.high));
+      text += line(figure, each.name, all ? fmt::format("{}", runs) : fmt::format("{}/{}", s.count, runs),
+                   number(s.mean), number(s.std), number(s.min), number(s.max), number(s.median), number(s.mean_95.low),
+                   number(s.mean_95.high));
     }
   for (const Scoring::Verdict& verdict : verdicts())
     text += fmt::format("{}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.rule);

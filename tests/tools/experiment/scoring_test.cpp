@@ -242,15 +242,15 @@ TEST(Scoring, ARuleOnAFigureThatIsNotThereSaysWhy) {
     rules.push_back(verdict.rule);
   }
   const std::string early = "none: the run ended at 1.01 s, before from_s, 100 s";
-  EXPECT_THAT(rules, testing::ElementsAre(
-                         "way.travelled_m (" + early + ") < 10", "bumps.count (" + early + ") == 0",
-                         "talk.count (" + early + ") == 0", "gap.longest_gap_s (" + early + ") < 10",
-                         "link.ratio (none: nothing was sent to these modems) > 0",
-                         "home.time_s (none: it did not happen) < 100",
-                         "first.first_s (none: no message came on 'nothing') < 100",
-                         "cost.bytes_per_metre (none: the error of 'good' is not known to be the smaller one) < 100",
-                         "late.samples (0.000) < 1 * late.rms_m (none: no estimate came on 'late' from 0.5 s on)",
-                         "good.rms_m (none: none of 1 message on 'good' could be used) > 0"));
+  EXPECT_THAT(
+      rules,
+      testing::ElementsAre(
+          "way.travelled_m (" + early + ") < 10", "bumps.count (" + early + ") == 0", "talk.count (" + early + ") == 0",
+          "gap.longest_gap_s (" + early + ") < 10", "link.ratio (none: nothing was sent to these modems) > 0",
+          "home.time_s (none: it did not happen) < 100", "first.first_s (none: no message came on 'nothing') < 100",
+          "cost.bytes_per_metre (none: the error of 'good' is not known to be the smaller one) < 100",
+          "late.samples (0.000) < 1 * late.rms_m (none: no estimate came on 'late' from 0.5 s on)",
+          "good.rms_m (none: none of 1 message on 'good' could be used) > 0"));
 }
 
 }  // namespace

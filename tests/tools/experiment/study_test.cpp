@@ -256,7 +256,7 @@ TEST(StudyResults, JudgeStatisticsOfCases) {
   const auto json = nlohmann::json::parse(results.to_json(1));
   EXPECT_EQ(json["cases"][0]["figures"]["e.rms_m"]["mean"], 2);
   EXPECT_NEAR(json["cases"][0]["figures"]["e.rms_m"]["mean_high_95"], 2 + 12.7062, 1e-3);  // std / sqrt(2) is 1
-  EXPECT_NEAR(json["cases"][1]["figures"]["passed"]["mean_high_95"], 0.657620, 1e-5);  // 0 of 2: z^2 / (2 + z^2)
+  EXPECT_NEAR(json["cases"][1]["figures"]["passed"]["mean_high_95"], 0.657620, 1e-5);      // 0 of 2: z^2 / (2 + z^2)
   EXPECT_EQ(json["cases"][1]["figures"]["e.rms_m"]["std"], 0);
   EXPECT_EQ(json["passed"], false);
   EXPECT_THAT(results.to_csv(), HasSubstr("case,seed,exit_code,passed,ended,sim_time_s,wall_s,run_hash,e.rms_m\n"
