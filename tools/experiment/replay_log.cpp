@@ -109,7 +109,11 @@ class Reader {
     std::vector<Came> came = {};  ///< of a record: all messages in it since the sim.mail before
   };
 
-  std::int64_t step_of(std::int64_t utime) const { return (utime - log_.info.epoch_utime) / log_.info.step_us; }
+  /// Without signs on the way: a damaged stamp may overflow.
+  std::int64_t step_of(std::int64_t utime) const {
+    const std::uint64_t since = static_cast<std::uint64_t>(utime) - static_cast<std::uint64_t>(log_.info.epoch_utime);
+    return static_cast<std::int64_t>(since) / log_.info.step_us;
+  }
 
   /// A record holds what came from outside beside sim.mail: where a channel has just as many messages more than letters
   /// as came in the holes, those tell of the steps that the holes are about.
@@ -141,7 +145,9 @@ class Reader {
   /// step cannot be run again.
   void leave_out_what_is_not_whole() {
     // In a record all of a step stands before anything of a later one.
-    const std::int64_t stamped = step_of(last_stamp_);
+    std::int64_t stamped = step_of(last_stamp_);
+    // There is a sim.info every 10 s: a stamp that is far beyond is damaged.
+    if (stamped > log_.last_step + 2 + 10'000'000 / log_.info.step_us) stamped = log_.last_step;
     if (log_.own_stamps) whole_step_ = std::max(whole_step_, stamped - 1);
     const std::int64_t known = std::max(log_.last_step, log_.own_stamps ? stamped : 0);
     log_.last_step = std::max(whole_step_, log_.begin_step());

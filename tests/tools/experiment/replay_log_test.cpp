@@ -224,6 +224,14 @@ TEST(ReplayLog, EndsWithTheLastStepOfWhichAllIsThere) {
   EXPECT_EQ(other.cut, "the log breaks off in step 61: what stands behind step 59 is left out");
 }
 
+TEST(ReplayLog, ADamagedStampAtItsEndProvesNothing) {
+  HandMade log;
+  log.info(0, 0, 0);
+  log.mail(0, 5, 0);
+  log.raw("r1.odometry", sim::Bytes(8), 1'000'000'000);
+  EXPECT_EQ(log.read().usable_step(), 5);
+}
+
 TEST(ReplayMessages, ARecordIsNotReadAheadOfTheStep) {
   HandMade log;
   log.info(0, 0, 0);
