@@ -190,12 +190,14 @@ TEST(PositionError, SaysOnceWhatIsWrongAndThenHowOften) {
 
 TEST(PositionError, SaysOnceWhatIsWrongBetweenGoodOnesAndStopsAtAHundred) {
   const test_support::LogCapture log;
+  std::ptrdiff_t of_the_world = 0;  // that no device of it publishes on 'est'
   const auto lines = [&] {
     const std::string said = log.text();
-    return std::count(said.begin(), said.end(), '\n');
+    return std::count(said.begin(), said.end(), '\n') - of_the_world;
   };
   {
     MetricWorld world("  - {name: e, vehicle: r1, channel: est}\n");
+    of_the_world = lines();
     world.run_for(0.1);
     for (int i = 0; i < 300; ++i) {
       world.estimate({1, 0, 0}, some_covariance(), i % 2 == 0 ? -20 : 0);
@@ -210,6 +212,27 @@ TEST(PositionError, SaysOnceWhatIsWrongBetweenGoodOnesAndStopsAtAHundred) {
   }
   EXPECT_EQ(lines(), 101);
   EXPECT_NE(log.text().find("metric 'e': 550 messages were ignored in all"), std::string::npos) << log.text();
+}
+
+TEST(PositionError, WarnsAtTheEndThatNothingCame) {
+  MetricWorld world(
+      "  - {name: e, vehicle: r1, channel: est}\n  - {name: late, vehicle: r1, channel: est, from_s: 5}\n");
+  const auto warnings = [&] {
+    const test_support::LogCapture log;
+    sim::Warnings at_the_end;
+    world.scoring.warn_of_silence(at_the_end);
+    return at_the_end.lines();
+  };
+  world.run_for(0.1);
+  ASSERT_EQ(warnings().size(), 2u);
+  EXPECT_NE(warnings()[0].find("metric 'e': nothing came on 'est': its figures are not numbers"), std::string::npos);
+  EXPECT_NE(warnings()[1].find("metric 'late': nothing came on 'est' after 5 s"), std::string::npos);
+  world.estimate({1, 0, 0}, some_covariance(), -20);
+  world.run_for(0.01);
+  EXPECT_NE(warnings()[0].find("none of 1 messages on 'est' was usable"), std::string::npos);
+  world.estimate({1, 0, 0}, some_covariance());
+  world.run_for(0.01);
+  EXPECT_EQ(warnings().size(), 1u) << "the other one still waits";
 }
 
 TEST(PositionError, SaysAtTheEndHowManyWereIgnored) {
