@@ -75,7 +75,7 @@ if arguments == ["--preset", "release"]:
         cache.write("CMAKE_HOME_DIRECTORY:INTERNAL=" + os.getcwd() + "\\n")
     sys.exit(0)
 if arguments[:2] == ["--install", here]:
-    os.execv({cmake!r}, ["cmake", "--install", binary_dir, *arguments[2:]])
+    os.execv({cmake!r}, [{cmake!r}, "--install", binary_dir, *arguments[2:]])
 if arguments[:2] != ["--build", here]:
     sys.exit("cmake: not expected: " + " ".join(arguments))
 if arguments[2:3] != ["--target"]:
