@@ -20,10 +20,11 @@ using Parameters = std::vector<std::pair<std::string, ConfigNode>>;
 /// Where a file named in a world is found: beside it, then in ../vehicles, then among the shipped ones.
 std::string find_file(const std::string& file, const SourcePlace& named_in) {
   const fs::path directory = named_in.file ? fs::path(*named_in.file).parent_path() : fs::path();
-  const fs::path shipped = fs::path(shipped_folder()) / "vehicles" / file;
-  for (const fs::path& candidate : {directory / file, directory / ".." / "vehicles" / file, shipped}) {
+  std::vector<fs::path> candidates{directory / file, directory / ".." / "vehicles" / file};
+  if (!shipped_folder().empty()) candidates.push_back(fs::path(shipped_folder()) / "vehicles" / file);
+  for (const fs::path& candidate : candidates) {
     std::error_code ignored;
-    if (!file.empty() && fs::is_regular_file(candidate, ignored)) return candidate.lexically_normal().string();
+    if (fs::is_regular_file(candidate, ignored)) return candidate.lexically_normal().string();
   }
   return {};
 }

@@ -128,6 +128,22 @@ TEST(Autopilot, ABoatCirclesWhereItIsToldTo) {
   EXPECT_EQ(test.state_after(1).mode, 1) << "a heading ends the circle";
 }
 
+TEST(Autopilot, GoesOnWithItsCircleFromASnapshot) {
+  const std::string yaml =
+      world_with("otter_autopilot.yaml", "      devices.autopilot.hold: {speed_mps: 1.2, heading_deg: 0}\n", across, 0);
+  AutopilotWorld test(yaml);
+  test.run_for(10);
+  test.mode(4);
+  test.run_for(30);
+  const auto snapshot = test.world.snapshot();
+  test.run_for(30);
+  AutopilotWorld again(yaml);
+  again.world.restore(snapshot);
+  again.run_for(30);
+  EXPECT_EQ(again.states.last().mode, 4);
+  EXPECT_EQ(again.world.state_hash(), test.world.state_hash());
+}
+
 TEST(Autopilot, ABoatWithTwoPropellersGoesRoundItsWaypoints) {
   AutopilotWorld test(
       world_with("otter_autopilot.yaml",
