@@ -17,7 +17,7 @@ namespace {
 
 std::string row_text(const char* name, sim::Decibels value, const std::string& remark) {
   std::string text = fmt::format("{:<26}{:>8.1f} dB", name, value.dB());
-  if (!remark.empty()) text += "   " + remark;
+  if (!remark.empty()) text += "  " + remark;
   return text + "\n";
 }
 
@@ -59,21 +59,21 @@ std::string budget_text(const AcousticLink& link, const LinkBudget& budget, cons
     const sim::PowerRatio both = sim::to_power(budget.noise) + sim::to_power(*budget.late);
     text += row_text("signal over noise, echoes", budget.level + *budget.echoes - sim::to_decibels(both), "");
   }
-  text += fmt::format("{:<26}{:>8.4f} s    over {:.1f} m, {:.2f} m/s on average\n", "travel time", budget.travel_time_s,
+  text += fmt::format("{:<26}{:>8.4f} s   over {:.1f} m, {:.2f} m/s on average\n", "travel time", budget.travel_time_s,
                       budget.range_m, budget.range_m / std::max(budget.travel_time_s, 1e-12));
   return text;
 }
 
 std::string packets_text(const AcousticLink& link, const LinkBudget& budget, const std::vector<AcousticPacket>& packets,
                          const std::vector<double>& delivered) {
-  std::string text = fmt::format("{:<10}{:>8}{:>8}{:>9}{:>11}{:>12}{:>16}{:>11}\n", "modulation", "bit/s", "bytes",
+  std::string text = fmt::format("{:<10}{:>8}{:>7}{:>8}{:>10}{:>11}{:>15}{:>10}\n", "modulation", "bit/s", "bytes",
                                  "time_s", "Eb/N0_dB", "bit_error", "all_bits_right", "delivered");
   for (std::size_t i = 0; i < packets.size(); ++i) {
     const AcousticPacket& packet = packets[i];
     const sim::PowerRatio energy =
         sim::energy_per_bit(sim::to_power(budget.snr + link.coding_gain), link.bandwidth_Hz, packet.bit_rate_bps);
     const double bit_error = sim::bit_error_probability(packet.modulation, energy);
-    text += fmt::format("{:<10}{:>8g}{:>8}{:>9.3f}{:>11.1f}{:>12.3g}{:>16.4f}{:>11.4f}\n",
+    text += fmt::format("{:<10}{:>8g}{:>7}{:>8.3f}{:>10.1f}{:>11.3g}{:>15.4f}{:>10.4f}\n",
                         sim::to_string(packet.modulation), packet.bit_rate_bps, packet.bytes,
                         sim::packet_duration_s(8 * packet.bytes, packet.bit_rate_bps), sim::to_decibels(energy).dB(),
                         bit_error, sim::packet_success_probability(bit_error, 8 * packet.bytes), delivered[i]);

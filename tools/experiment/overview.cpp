@@ -46,16 +46,16 @@ std::vector<Subject> subjects_of(const sim::World& world, bool everything) {
   return subjects;
 }
 
-/// The subjects, and around them half as much again as the largest of them measures.
+/// The subjects, and something of what is around them.
 Eigen::AlignedBox3d framed(const std::vector<Subject>& subjects) {
   Eigen::AlignedBox3d all;
   double largest_m = 0;
   for (const Subject& subject : subjects) {
     all.extend(subject.box);
-    largest_m = std::max(largest_m, subject.box.diagonal().norm());
+    if (subject.is_vehicle) largest_m = std::max(largest_m, subject.box.diagonal().norm());
   }
   if (all.isEmpty()) return {sim::Vector3d(-1, -1, 0), sim::Vector3d(1, 1, 1)};
-  const double around_m = std::max(0.2, 0.25 * largest_m);
+  const double around_m = std::clamp(0.25 * largest_m, 0.2, 2.0);
   const sim::Vector3d margin(around_m, around_m, 0);
   return {all.min() - margin, all.max() + margin};
 }

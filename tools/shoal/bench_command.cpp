@@ -18,14 +18,14 @@ struct BenchArguments {
 
 void bench(const BenchArguments& arguments) {
   const int threads = sim::ThreadPool(arguments.scale.threads).threads();
-  std::cout << fmt::format("scale scene: wandering rovers, 180 rays at 10 Hz each, step 0.01 s, {}, in-process bus\n",
+  std::cout << fmt::format("scale scene: wandering rovers, 180 rays at 10 Hz each, step 0.01 s, {},\nin-process bus\n",
                            threads == 1 ? "one thread" : fmt::format("{} threads", threads))
-            << fmt::format("{:>7} {:>9} {:>28} {:>18} {:>18}\n", "robots", "load s", "CPU ms per robot second",
+            << fmt::format("{:>7} {:>9} {:>24} {:>17} {:>17}\n", "robots", "load s", "CPU ms per robot second",
                            "real-time factor", "run hash");
   for (const int robots : arguments.robots) {
     if (!(std::cout << std::flush)) return;  // nobody reads on
     const ScaleFigures figures = measure_scale(robots, arguments.scale);
-    std::cout << fmt::format("{:>7} {:>9.3f} {:>28.3f} {:>18.2f}   {:016x}\n", robots, figures.load_s,
+    std::cout << fmt::format("{:>7} {:>9.3f} {:>24.3f} {:>17.2f}  {:016x}\n", robots, figures.load_s,
                              figures.cpu_ms_per_robot_second, figures.real_time_factor, figures.run_hash)
               << std::flush;
   }

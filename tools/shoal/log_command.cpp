@@ -1,7 +1,9 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -10,6 +12,7 @@
 #include "bridges/lcm/event_log.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
+#include "sim/config/message_text.hpp"
 #include "tools/experiment/allan_table.hpp"
 #include "tools/experiment/log_picture.hpp"
 #include "tools/shoal/commands.hpp"
@@ -69,11 +72,13 @@ int info(const std::string& path, const shoal::MessageTypes& types) {
   }
   fmt::print("{}: {} events, {} bytes, {:.3f} s\n", path, events, log.file_bytes(),
              static_cast<double>(last_us - first_us) * 1e-6);
-  fmt::print("{:>9} {:>9} {:>12}  {:<32} {}\n", "events", "Hz", "bytes", "channel", "type");
+  std::size_t width = 7;
+  for (const auto& [channel, count] : channels) width = std::max(width, channel.size());
+  fmt::print("{:>8} {:>8} {:>11}  {:<{}} {}\n", "events", "Hz", "bytes", "channel", width, "type");
   for (const auto& [channel, count] : channels) {
     const double span_s = static_cast<double>(count.last_us - count.first_us) * 1e-6;
     const double rate_hz = span_s > 0 ? static_cast<double>(count.events - 1) / span_s : 0;
-    fmt::print("{:>9} {:>9.2f} {:>12} {:>1}{:<32} {}\n", count.events, rate_hz, count.bytes, " ", channel,
+    fmt::print("{:>8} {:>8.2f} {:>11}  {:<{}} {}\n", count.events, rate_hz, count.bytes, sim::printable(channel), width,
                type_name(types, count.fingerprint));
   }
   return show_problems(log);

@@ -78,7 +78,7 @@ std::optional<Screen> find_screen() {
   Screen screen;
   screen.columns = static_cast<std::size_t>(command_line::text_columns(STDOUT_FILENO));
   winsize size{};
-  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 3) screen.lines = size.ws_row;
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 4) screen.lines = size.ws_row;
   return screen;
 }
 
@@ -106,7 +106,8 @@ void print_table(std::map<std::string, Seen>& channels, const shoal::MessageType
   for (auto& [channel, seen] : channels) {
     const double rate_hz = static_cast<double>(seen.messages - seen.messages_before) / since_s;
     seen.messages_before = seen.messages;
-    if (screen && lines + 2 > screen->lines && ++left_out > 0) continue;
+    // Below the last row are the count of what is left out and the cursor.
+    if (screen && lines + 3 > screen->lines && ++left_out > 0) continue;
     const std::string name = one_line(channel);
     text += fitted(fmt::format("{:<{}} {:>8} {:>8.1f} {:>8}  {}", screen ? command_line::cut_to(name, width) : name,
                                width, seen.messages, rate_hz, seen.last.size(), decoded(types, seen.last, 6, " "))) +
