@@ -157,6 +157,26 @@ TEST(DeviceState, AMicromodemGoesOnInTheMiddleOfACycle) {
   run.expect_restored_worlds_go_on_alike({25, 35, 130, 420, 1550}, 900);
 }
 
+TEST(DeviceState, AMicromodemGoesOnWithAnotherAddressAndATimeThatWaitsForThePulse) {
+  const std::string modem = "{name: modem, type: micromodem, rate_hz: 10, revision: 2.0.26038, address: ";
+  const std::string yaml = test::modem_sea({{"a", "[0, 0, -20]", modem + "1, lbl: {transponders: [b]}}"},
+                                            {"b", "[750, 0, -20]", modem + "2}, {name: beacon, type: transponder}"}});
+  test::SavedRun run(yaml, [](test::TappedWorld& to, int step) {
+    const auto host = [&](const std::string& vehicle, const std::string& sentence) {
+      shoal::nmea_sentence_t message{};
+      message.sentence = sentence;
+      to.send(vehicle + ".modem.cmd", message);
+    };
+    if (step == 3) host("a", "$CCCFG,ALL,0"), host("a", "$CCCFG,SRC,9"), host("a", "$CCCFG,SNV,1");
+    if (step == 10) host("a", "$CCTMS,2031-01-01T00:00:00Z,1");
+    if (step == 120) host("a", "$CCPGT,26000,28,1f,2000,25000,1,0,0,0,2000,0");
+    if (step == 400) host("b", "$CCMPC,2,9");
+    if (step == 1300) host("a", "$CCTMQ,0");
+  });
+  // Before the pulse; between ping and answer; a ping to the other address.
+  run.expect_restored_worlds_go_on_alike({20, 150, 420}, 900);
+}
+
 TEST(DeviceState, MarineActuatorsGoOnAfterARestore) {
   const std::string yaml = R"(shoal: 1
 physics: {step_s: 0.01}

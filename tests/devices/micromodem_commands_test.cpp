@@ -113,6 +113,19 @@ TEST(MicromodemCommands, ClockModesAreThoseOfThePage) {
   EXPECT_EQ(clock_mode(synchronous), "3");
 }
 
+TEST(MicromodemCommands, WithThePulseTheClockLearnsWhichSecondItIsOnly) {
+  for (const bool pulse : {false, true}) {
+    Modem modem;
+    if (pulse) modem.host("$CCCFG,SNV,1");
+    modem.wait(0.4);
+    modem.host("$CCCLK,2026,3,4,5,6,20");  // 12.6 s later than the vehicle's clock: with the pulse 13 s
+    modem.wait(0.55);
+    EXPECT_THAT(modem.host("$CCXYZ"), ElementsAre(StartsWith("CAERR,050620,")));  // 20.55 s, or 20.95
+    modem.wait(0.1);
+    EXPECT_THAT(modem.host("$CCXYZ"), ElementsAre(StartsWith(pulse ? "CAERR,050621," : "CAERR,050620,")));
+  }
+}
+
 TEST(MicromodemCommands, ClockModesOfASecondGenerationAreBits) {
   Modem modem = modem_of("2.0.26038");
   EXPECT_EQ(clock_mode(modem), "4");  // no time; pulse of its own

@@ -28,7 +28,7 @@ ReplayLog log_of_two_rovers() {
   ReplayLog log;
   for (const int step : {0, 10, 20})
     for (const char* channel : {"a.cmd", "b.cmd"}) log.letters.push_back({step, "", channel, command(step)});
-  log.letters.insert(log.letters.begin(), {5, "serial", "/tmp/port", sim::Bytes(3)});
+  log.letters.insert(log.letters.begin() + 2, {5, "serial", "/tmp/port", sim::Bytes(3)});
   return log;
 }
 
