@@ -137,10 +137,10 @@ TEST(ExitCode, Is3ForAPhysicsFaultAndTheRecordIsWhole) {
   EXPECT_EQ(summary_value(folder.file("results"), "ended"), "\"fault\"");
   // What to report is one command.
   const std::string record = " --record " + folder.file("run.lcm");
-  EXPECT_THAT(ended.errors, testing::HasSubstr("to report this: shoal bug " + folder.file("results") + record + "\n"));
+  EXPECT_THAT(ended.errors, HasSubstr("to report this: shoal bug " + folder.file("results") + record + "\n"));
   const Ended bug = run_shoal({"bug", folder.file("results"), "--record", folder.file("run.lcm")});
   EXPECT_EQ(bug.exit_code, 0) << bug.errors;
-  EXPECT_THAT(bug.output, testing::StartsWith(folder.file("results") + "/bug.tar.gz\n"));
+  EXPECT_THAT(bug.output, StartsWith(folder.file("results") + "/bug.tar.gz\n"));
   EXPECT_EQ(run_shoal({"bug", folder.file("nowhere")}).exit_code, 4);
   EXPECT_EQ(run_shoal({"bug"}).exit_code, 2);
   EXPECT_EQ(summary_value(folder.file("results"), "passed"), "false");

@@ -126,6 +126,7 @@ class Writer {
     for (bool begun = false; from.next(event);) {
       if (event.offset < start.offset) {
         look_at(event);
+        if (snapshot && event.utime == snapshot->utime()) keep_state(event);
         continue;
       }
       if (!begun) begin(snapshot);
@@ -165,11 +166,18 @@ class Writer {
     }
   }
 
+  /// What a run that begins with the snapshot publishes of its step.
+  void keep_state(const bridges::LogEventView& event) {
+    if (event.channel == "sim.clock" || event.channel == "sim.state" || event.channel == "sim.hash")
+      state_.emplace_back(event.channel, sim::Bytes(event.payload.begin(), event.payload.end()));
+  }
+
   void begin(const std::optional<Snapshot>& snapshot) {
     if (!info_.empty()) write(info_utime_, "sim.info", info_);
     if (!snapshot) return;
     for (const shoal::sim_snapshot_t& piece : in_pieces(*snapshot, branch_, sequence_))
       write(piece.utime, "sim.snapshot", shoal::encode(piece));
+    for (const auto& [channel, payload] : state_) write(snapshot->utime(), channel, payload);
   }
 
   void write(std::int64_t utime, std::string_view channel, std::span<const std::byte> payload) {
@@ -180,6 +188,7 @@ class Writer {
   std::string record_, out_;
   bridges::EventLogWriter log_;
   std::int64_t number_ = 0;
+  std::vector<std::pair<std::string, sim::Bytes>> state_;  // of the snapshot's step
   sim::Bytes info_;
   std::int64_t info_utime_ = 0;
   std::int32_t branch_ = 0;
