@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "bridges/lcm/lockstep_line.hpp"
 #include "bridges/lcm/resend.hpp"
@@ -17,6 +18,14 @@ namespace {
 /// After this the world takes another client of the same name.
 constexpr std::chrono::seconds alive_for{1};
 constexpr std::size_t most_ended_sessions = 1000;
+/// How the summary calls the end of a client that asked for it.
+constexpr const char* left = "left";
+
+std::string seconds_text(sim::Time time) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f s", sim::to_seconds(time));
+  return text;
+}
 
 }  // namespace
 
@@ -33,9 +42,10 @@ bool LockstepService::join(int line, const shoal::sim_control_request_t& request
   const sim::LockstepTerms terms = sim::read_lockstep_terms(request.text, defaults_);
   check_session(request.client, terms.session);
   const sim::LockstepMember* first = lockstep_.find(request.client);
-  if (first && terms.session != 0 && first->terms.session == terms.session && first->line != line)
-    throw std::runtime_error("the session " + std::to_string(terms.session) + " of client '" + request.client +
-                             "' takes part on another bus; join with another one");
+  // A request acts on its own bus only.
+  if (first && first->line != line && !first->gone)
+    throw std::runtime_error("a client '" + request.client + "' takes part on " + line_of(first->line).called +
+                             "; give this one on " + line_of(line).called + " another name");
   if (first && (first->terms.session != terms.session || first->line != line)) {
     if (!may_join(*first, terms)) return false;
     forget(request.client, "another client of its name took its place");
@@ -88,10 +98,24 @@ bool LockstepService::may_join(const sim::LockstepMember& first, const sim::Lock
   return false;
 }
 
-bool LockstepService::leave(const shoal::sim_control_request_t& request) {
+bool LockstepService::has(const std::string& client, int line) const {
+  const auto member = lockstep_.members().find(client);
+  return member != lockstep_.members().end() && member->second.line == line;
+}
+
+bool LockstepService::has_left(const std::string& client) const {
+  const auto summary = summaries_.find(client);
+  return !lockstep_.has(client) && summary != summaries_.end() && summary->second.ended == left;
+}
+
+bool LockstepService::leave(int line, const shoal::sim_control_request_t& request) {
+  const std::string called = "client '" + sim::printable(sim::shortened(request.client)) + "'";
   const sim::LockstepMember* member = lockstep_.find(request.client);
   if (member == nullptr)
     throw std::runtime_error("no client of the name '" + sim::shortened(request.client) + "' has joined");
+  if (member->line != line)
+    throw std::runtime_error("the " + called + " takes part on " + line_of(member->line).called +
+                             "; a request on " + line_of(line).called + " does not act there");
   const sim::LeaveTerms terms = sim::read_leave_terms(request.text);
   if (terms.session != 0 && terms.session != member->terms.session)
     throw std::runtime_error("the client '" + member->name + "' that has joined is another one");
@@ -102,8 +126,32 @@ bool LockstepService::leave(const shoal::sim_control_request_t& request) {
   const bool answered = member->answered || (terms.acknowledged >= 0 && terms.acknowledged < member->sequence);
   const bool complete = line_of(member->line).mail.is_complete(member->name);
   if (terms.session != 0 && !(answered && complete)) return false;
-  forget(request.client, "left");
+  const std::string at = " at " + seconds_text(world_.now()) + " on " + line_of(line).called;
+  if (terms.session == 0 && member->terms.session != 0)
+    spdlog::warn("lockstep: a request without its session{} let go of {}; the world goes on without it", at, called);
+  else
+    spdlog::info("lockstep: {} left{}", called, at);
+  forget(request.client, left);
   return true;
+}
+
+void LockstepService::follow(int line, const shoal::sim_control_request_t& request) {
+  constexpr std::size_t most_followers = 1000;
+  if (request.client.empty() || request.client.size() > 60)
+    throw std::runtime_error("'follow' needs a client name of 1 to 60 characters");
+  const std::int64_t session = sim::read_follow_terms(request.text).session;
+  if (session == 0) throw std::runtime_error("'follow' needs a 'session' from 1 on");
+  const auto known = std::find_if(followers_.begin(), followers_.end(), [&](const Follower& each) {
+    return each.name == request.client && each.session == session && each.line == line;
+  });
+  if (known != followers_.end()) return;
+  followers_.push_back({request.client, session, line});
+  if (followers_.size() > most_followers) followers_.pop_front();
+}
+
+std::string LockstepService::what_is_missing(const sim::LockstepMember& member) {
+  return "client '" + member.name + "' acknowledged step " + std::to_string(member.asked) + ", but " +
+         line_of(member.line).mail.missing_text(member.name);
 }
 
 void LockstepService::client_gone(const std::string& client) {

@@ -98,7 +98,9 @@ void ProcessConfig::read(ParamReader& in) {
   in.read("command", command, "program and its arguments; {lcm_url} and {run} are replaced");
   in.read("client", client, "the name it joins the lockstep with; the run then waits for it");
   in.read_reference("bus", bus, "bus", "its LCM URL is that of this bus, named in `buses`; unset: the world's");
-  in.read_choice("on_exit", on_exit, {"continue", "end"}, "when it ends before the run does");
+  in.read_choice("on_exit", on_exit, {"continue", "end", "ignore"},
+                 "when it ends before the run does: the run goes on, but fails if the program failed; the run ends and "
+                 "fails; or it goes on, whatever the program came to");
   if (in.has("command") && command.empty() && in.child("command")->scalar.empty())
     in.error("command", "'command' must name a program");
 }

@@ -24,7 +24,7 @@ struct Summary {
     std::string name;
     std::string how;  ///< `exited with code 1`
     double sim_time_s = 0;
-    bool failed = false;  ///< with an exit code, or by a signal
+    bool failed = false;  ///< with an exit code, by a signal, or before its last tick; never with `on_exit: ignore`
   };
 
   std::string world;
@@ -59,9 +59,9 @@ struct Summary {
 
   double real_time_factor() const { return wall_s > 0 ? stepped_s / wall_s : 0; }
   bool passed() const;
-  /// There was a rule, or an event that said what it means.
+  /// There was a rule, an event that said what it means, or a program that failed.
   bool judged() const { return !verdicts.empty() || event.has_value(); }
-  /// Where something is judged each program that failed is a rule that failed.
+  /// Each program that failed is a rule that failed.
   void judge_processes();
   void fail(int code, const std::string& how_ended, const std::string& why);
   std::string to_json() const;

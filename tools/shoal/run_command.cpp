@@ -123,6 +123,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--bus", arguments->run.bus, "lcm, or none: within the process only")
       ->check(CLI::IsMember({"lcm", "none"}));
   command->add_option("--lcm-url", arguments->run.lcm_url, "instead of LCM_DEFAULT_URL and the default");
+  command->add_flag("--lcm-shared", arguments->run.lcm_shared,
+                    "start though another simulator is on the bus; without it the exit code is then 4");
   command->add_option("--record", arguments->run.record, "write an LCM event log, stamped with simulated time");
   command->add_flag("--overwrite", arguments->run.overwrite, "the record may replace a file");
   command->add_option("--results", arguments->run.results, "directory for summary.json, CSV files and plots");

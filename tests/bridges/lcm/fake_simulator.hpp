@@ -62,7 +62,7 @@ class FakeSimulator {
   shoal::sim_resent_t await_bundle() { return await_message<shoal::sim_resent_t>(*bundles_); }
 
   void reply(const shoal::sim_control_request_t& request, bool ok, const std::string& text) {
-    if (ok && request.command == "join") join(request);
+    if (ok && (request.command == "join" || request.command == "follow")) join(request);
     shoal::sim_control_reply_t reply{};
     reply.id = request.id;
     reply.client = request.client;
