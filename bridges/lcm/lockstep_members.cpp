@@ -61,9 +61,13 @@ bool LockstepService::join(int line, const shoal::sim_control_request_t& request
   return true;
 }
 
+bool LockstepService::is_over(const std::string& client, std::int64_t session) const {
+  return session != 0 && std::find(ended_.begin(), ended_.end(), std::pair(client, session)) != ended_.end();
+}
+
 /// A request that the network repeated, or held back, must not take in again who has left.
 void LockstepService::check_session(const std::string& client, std::int64_t session) const {
-  if (session == 0 || std::find(ended_.begin(), ended_.end(), std::pair(client, session)) == ended_.end()) return;
+  if (!is_over(client, session)) return;
   const auto summary = summaries_.find(client);
   throw std::runtime_error("the session " + std::to_string(session) + " of client '" + client + "' is over" +
                            (summary == summaries_.end() || summary->second.ended.empty() || lockstep_.has(client)
@@ -110,13 +114,15 @@ bool LockstepService::has_left(const std::string& client) const {
 
 bool LockstepService::leave(int line, const shoal::sim_control_request_t& request) {
   const std::string called = "client '" + sim::printable(sim::shortened(request.client)) + "'";
+  const sim::LeaveTerms terms = sim::read_leave_terms(request.text);
   const sim::LockstepMember* member = lockstep_.find(request.client);
+  if (member == nullptr && is_over(request.client, terms.session))
+    return true;  // it asks again: the answer was lost, or is on its way
   if (member == nullptr)
     throw std::runtime_error("no client of the name '" + sim::shortened(request.client) + "' has joined");
   if (member->line != line)
-    throw std::runtime_error("the " + called + " takes part on " + line_of(member->line).called +
-                             "; a request on " + line_of(line).called + " does not act there");
-  const sim::LeaveTerms terms = sim::read_leave_terms(request.text);
+    throw std::runtime_error("the " + called + " takes part on " + line_of(member->line).called + "; a request on " +
+                             line_of(line).called + " does not act there");
   if (terms.session != 0 && terms.session != member->terms.session)
     throw std::runtime_error("the client '" + member->name + "' that has joined is another one");
   if (terms.acknowledged > member->sequence)

@@ -118,8 +118,10 @@ void LockstepService::take_messages() {
     Line& line = *lines_[i];
     if (!lockstep_.empty()) line.mail.collect();
     take_up_to(most_at_once, *line.acks, [&](const sim::Message& ack) { take_ack(static_cast<int>(i), ack); });
-    take_up_to(most_at_once, *line.questions, [&](const sim::Message& question) { take_question(static_cast<int>(i), question); });
-    take_up_to(most_at_once, *line.bundles, [&](const sim::Message& bundle) { take_bundle(static_cast<int>(i), bundle); });
+    take_up_to(most_at_once, *line.questions,
+               [&](const sim::Message& question) { take_question(static_cast<int>(i), question); });
+    take_up_to(most_at_once, *line.bundles,
+               [&](const sim::Message& bundle) { take_bundle(static_cast<int>(i), bundle); });
     for (const auto& mailbox : line.passed_on)
       while (mailbox->take()) {
       }
@@ -150,6 +152,8 @@ void LockstepService::take_ack(int line_index, const sim::Message& message) {
       if (const auto dropped = dropped_.find(ack.client);
           dropped != dropped_.end() && dropped->second.session == ack.session && !lockstep_.has(ack.client))
         tell_dropped(dropped->second, ack.client);
+      else if (is_over(ack.client, ack.session))
+        return;  // its last answer, sent again while it left
       throw std::runtime_error(why);
     }
     if (heard_ && line_index == 0) heard_(ack.client);
@@ -175,6 +179,7 @@ void LockstepService::take_ack(int line_index, const sim::Message& message) {
       if (!line.gate.reads(channel) && lockstep_.somebody_receives(line_index, channel) && !channel.empty() &&
           channel.size() <= sim::Bus::max_channel_length)
         line.passed_on.push_back(line.gate.open_mailbox(channel));
+    line.mail.collect();  // what came before this answer, also since the mail was looked at
     line.mail.expect(ack.client, named);
     Asked& asked = asked_[ack.client];
     asked.send_at = Clock::now() + resend_grace;
@@ -192,6 +197,7 @@ void LockstepService::take_question(int line_index, const sim::Message& message)
     who = question.client.substr(0, 60);
     check_line(line_index, question.client, "asks for messages");
     const sim::LockstepMember* member = lockstep_.find(question.client);
+    if (is_over(question.client, question.session)) return;
     if (member == nullptr || member->terms.session != question.session)
       throw std::runtime_error("client '" + question.client + "' asks for messages, but takes no part in the lockstep");
     if (question.sequence != member->sequence || member->answered) return;  // late
@@ -236,6 +242,7 @@ void LockstepService::take_bundle(int line_index, const sim::Message& message) {
     who = bundle.client.substr(0, 60);
     check_line(line_index, bundle.client, "sends messages again");
     const sim::LockstepMember* member = lockstep_.find(bundle.client);
+    if (is_over(bundle.client, bundle.session)) return;
     if (member == nullptr || member->terms.session != bundle.session)
       throw std::runtime_error("client '" + bundle.client +
                                "' sends messages again, but takes no part in the lockstep");

@@ -135,6 +135,8 @@ class LockstepService {
     int line;
   };
 
+  /// This session of the client took part, and does no more.
+  bool is_over(const std::string& client, std::int64_t session) const;
   void check_session(const std::string& client, std::int64_t session) const;
   bool may_join(const sim::LockstepMember& first, const sim::LockstepTerms& terms);
   void ask_whether_it_lives(const sim::LockstepMember& member);

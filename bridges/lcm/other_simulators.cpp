@@ -96,7 +96,8 @@ bool OtherSimulators::answer_questions(Line& line) {
 std::optional<std::string> OtherSimulators::take(Line& line) {
   if (is_answered(line)) return "another simulator answers on " + line.url;
   for (const auto& [channel, mailbox] : {std::pair("sim.clock", line.clock.get()), {"sim.tick", line.tick.get()}})
-    if (mailbox->take()) return "another simulator, or a player of a log, publishes " + std::string(channel) + " on " + line.url;
+    if (mailbox->take())
+      return "another simulator, or a player of a log, publishes " + std::string(channel) + " on " + line.url;
   return std::nullopt;
 }
 

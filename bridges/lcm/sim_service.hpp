@@ -98,7 +98,7 @@ class SimService {
   std::int64_t info_step_ = -1;  // of the last sim.info
   const OtherSimulators* others_ = nullptr;
   bool told_of_sharing_ = false;
-  std::vector<Line> lines_;      // the world's first
+  std::vector<Line> lines_;  // the world's first
   sim::Bytes buffer_;
   std::int64_t bad_messages_ = 0;
 };

@@ -128,9 +128,10 @@ TEST_F(LiveRun, RefusesWhatItDoesNotUnderstand) {
   start();
   const auto unknown = request("fly");
   EXPECT_FALSE(unknown.ok);
-  EXPECT_EQ(unknown.text,
-            "unknown command 'fly'; known commands: alive, describe, do, follow, join, leave, pause, quit, remove, restore, "
-            "resume, rewind, snapshot, spawn, speed, step, until, where");
+  EXPECT_EQ(
+      unknown.text,
+      "unknown command 'fly'; known commands: alive, describe, do, follow, join, leave, pause, quit, remove, restore, "
+      "resume, rewind, snapshot, spawn, speed, step, until, where");
   EXPECT_FALSE(request("speed", -1).ok);
   EXPECT_FALSE(request("step", 0).ok);
   EXPECT_FALSE(request("step", 1e300).ok);
@@ -189,8 +190,7 @@ TEST_F(LiveRun, ASecondSimulatorLeavesTheBusToTheFirst) {
 TEST_F(LiveRun, AnotherSimulatorIsFoundOnTheBusOfAVehicle) {
   start();
   write_file(folder_.file("separate.yaml"), endless_world("buses: [{name: own, lcm_url: '" + own_url() + "'}]\n"));
-  const Ended second =
-      run_shoal({"run", folder_.file("separate.yaml"), "--lcm-url", own_url(1), "--duration", "0.1"});
+  const Ended second = run_shoal({"run", folder_.file("separate.yaml"), "--lcm-url", own_url(1), "--duration", "0.1"});
   EXPECT_EQ(second.exit_code, 4);
   EXPECT_THAT(second.errors, HasSubstr("another simulator answers on " + own_url()));
   quit();
@@ -198,7 +198,8 @@ TEST_F(LiveRun, AnotherSimulatorIsFoundOnTheBusOfAVehicle) {
 
 TEST_F(LiveRun, GoesOnWithoutAProcessThatDiedAndFails) {
   start("processes: [{name: pilot, command: [sh, -c, exit 3]}]\n", {"--launch"});
-  EXPECT_TRUE(await([&] { return shoal_->errors().find("the run goes on without it, and fails") != std::string::npos; }));
+  EXPECT_TRUE(
+      await([&] { return shoal_->errors().find("the run goes on without it, and fails") != std::string::npos; }));
   EXPECT_THAT(shoal_->errors(), HasSubstr("process 'pilot' exited with code 3"));
   await_steps(3);
   quit(1);

@@ -139,8 +139,9 @@ void Run::start_clients() {
   if (const auto other = others_.look([this](std::chrono::milliseconds time) { buses_.wait(time); })) {
     alone_ = false;
     throw RunError(4, "bus",
-                   *other + "; clients and reports of the two would mix: choose another port with --lcm-url, or share "
-                            "this one with --lcm-shared");
+                   *other +
+                       "; clients and reports of the two would mix: choose another port with --lcm-url, or share "
+                       "this one with --lcm-shared");
   }
   service_.publish_info();  // a log tells of its run from the first event
   if (options_.from) publish_snapshot();

@@ -19,7 +19,7 @@ void note_signal(Summary& summary) {
 
 void Run::finish(Summary& summary) {
   programs_.note_last(world_.now(), clients());
-  if (alone_) {  // else the bus is another simulator's
+  if (alone_) {    // else the bus is another simulator's
     admit_mail();  // what came after the last step is in the log: the journal says that it came from outside
     journal_.finish(summary.ended != "fault" && summary.ended != "error");
     lockstep_.publish_end([this](std::chrono::milliseconds time) { buses_.wait(time); },
