@@ -132,13 +132,22 @@ bool LockstepService::leave(int line, const shoal::sim_control_request_t& reques
   const bool answered = member->answered || (terms.acknowledged >= 0 && terms.acknowledged < member->sequence);
   const bool complete = line_of(member->line).mail.is_complete(member->name);
   if (terms.session != 0 && !(answered && complete)) return false;
-  const std::string at = " at " + seconds_text(world_.now()) + " on " + line_of(line).called;
-  if (terms.session == 0 && member->terms.session != 0)
-    spdlog::warn("lockstep: a request without its session{} let go of {}; the world goes on without it", at, called);
-  else
-    spdlog::info("lockstep: {} left{}", called, at);
+  tell_who_left(*member, line, terms);
   forget(request.client, left);
   return true;
+}
+
+void LockstepService::tell_who_left(const sim::LockstepMember& member, int line, const sim::LeaveTerms& terms) {
+  constexpr int most_told = 100;
+  if (++told_left_ > most_told) return;
+  const std::string called = "client '" + sim::printable(member.name) + "'";
+  const std::string at = " at " + seconds_text(world_.now()) + " on " + line_of(line).called;
+  const std::string more = told_left_ == most_told ? " (no more of these are told)" : "";
+  if (terms.session == 0 && member.terms.session != 0)
+    spdlog::warn("lockstep: a request without its session{} let go of {}; the world goes on without it{}", at, called,
+                 more);
+  else
+    spdlog::info("lockstep: {} left{}{}", called, at, more);
 }
 
 void LockstepService::follow(int line, const shoal::sim_control_request_t& request) {

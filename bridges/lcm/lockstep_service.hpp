@@ -146,6 +146,7 @@ class LockstepService {
   void check_time(const std::string& client, Asked& asked, Clock::time_point now);
   void drop(const std::string& client, const std::string& why);
   void forget(const std::string& client, const std::string& why);
+  void tell_who_left(const sim::LockstepMember& member, int line, const sim::LeaveTerms& terms);
   void tell_dropped(const Dropped& dropped, const std::string& client);
   void resume();
 
@@ -184,6 +185,7 @@ class LockstepService {
   std::deque<Follower> followers_;                          // the last ones
   Clock::time_point served_, window_began_;
   bool told_repeated_ = false;
+  int told_left_ = 0;
   std::map<std::string, LockstepSummary, std::less<>> summaries_;
   std::set<std::string, std::less<>> told_;  // whose bad messages were told of
   std::function<void(const std::string&)> heard_;
