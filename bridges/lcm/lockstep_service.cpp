@@ -46,6 +46,10 @@ void LockstepService::add_line(sim::Bus& network, sim::MailGate& gate, const std
   });
 }
 
+const std::string& LockstepService::called(int line) const {
+  return line_of(line).called;
+}
+
 void LockstepService::watch_gates() {
   const bool wanted = std::any_of(lockstep_.members().begin(), lockstep_.members().end(),
                                   [](const auto& entry) { return !entry.second.terms.receives.empty(); });

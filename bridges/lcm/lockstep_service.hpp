@@ -53,6 +53,8 @@ class LockstepService {
   /// A bus on which clients may be: the world's first, whose `name` is empty.  `network` is under `gate`; the handshake
   /// goes there directly, so that records leave it out.  Both must outlive this.
   void add_line(sim::Bus& network, sim::MailGate& gate, const std::string& name = {});
+  /// `the world's bus`, or `bus 'NAME'`.
+  const std::string& called(int line) const;
   /// Called with the name of each client that answers on the world's bus.
   void set_on_heard(std::function<void(const std::string&)> heard) { heard_ = std::move(heard); }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "bridges/lcm/run_journal.hpp"
 #include "shoal/message_codec.hpp"
@@ -35,7 +36,7 @@ SimService::SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim:
 }
 
 void SimService::serve_vehicles(sim::Bus& network) {
-  lines_.push_back({&network, network.open_mailbox("sim.control")});
+  lines_.push_back({&network, network.open_mailbox("sim.control"), nullptr});
 }
 
 void SimService::use_journal(RunJournal& journal) {
@@ -135,22 +136,33 @@ void SimService::handle_requests() {
       if (!message) break;
       handle_request(line, *message);
     }
+  for (Line& line : lines_)
+    while (line.infos) {
+      const auto info = line.infos->take();
+      if (!info) break;
+      if (info->from_outside) warn_of_another(line, "publishes");
+    }
 }
 
-/// A question for other simulators.  False: it is another run's, or none, and to be answered.
-bool SimService::is_of_a_run(const shoal::sim_control_request_t& request) {
+/// Of a run that starts, for other simulators.  Another one's is answered, and that run then refuses to start; one that
+/// starts all the same is warned of.
+bool SimService::is_own_question(Line& line, const shoal::sim_control_request_t& request) {
   const OtherSimulators::Asker asker = others_->who_asks(request);
-  if (asker == OtherSimulators::Asker::another_run_that_shares && !told_of_sharing_) {
-    told_of_sharing_ = true;
-    spdlog::warn("another simulator was started on a bus of this run, with --lcm-shared: clients hear both");
-  }
+  if (asker == OtherSimulators::Asker::another_run && !line.infos) line.infos = line.network->open_mailbox("sim.info");
+  if (asker == OtherSimulators::Asker::another_run_that_shares) warn_of_another(line, "was started with --lcm-shared");
   return asker == OtherSimulators::Asker::this_run;
+}
+
+void SimService::warn_of_another(const Line& line, const char* how) {
+  if (std::exchange(warned_of_another_, true)) return;
+  spdlog::warn("another simulator {} on {} of this run: clients and reports of the two mix", how,
+               lockstep_.called(number_of(line)));
 }
 
 void SimService::handle_request(Line& line, const sim::Message& message) {
   try {
     const auto request = shoal::decode<shoal::sim_control_request_t>(message.payload, shoal::Finite::any);
-    if (others_ != nullptr && is_of_a_run(request)) return;  // our own
+    if (others_ != nullptr && is_own_question(line, request)) return;
     answer(line, request);
   } catch (const shoal::MessageError& error) {
     complain(std::string("sim.control: ") + error.what());
@@ -176,7 +188,8 @@ void SimService::answer(Line& line, const shoal::sim_control_request_t& request)
   } catch (const std::exception& error) {  // whatever it is, it is the request's fault, and the run goes on
     reply.ok = false;
     reply.text = sim::shortened(error.what(), 4000);
-    complain("sim.control: client '" + sim::shortened(request.client) + "': " + error.what());
+    complain((on_own_bus ? "sim.control of " + lockstep_.called(number_of(line)) : "sim.control") + ": client '" +
+             sim::shortened(request.client) + "': " + error.what());
   }
   reply.utime = world_.epoch_us() + world_.now().count();  // after a rewind the new time
   publish(*line.network, "sim.control.reply", reply);
@@ -185,7 +198,7 @@ void SimService::answer(Line& line, const shoal::sim_control_request_t& request)
 
 std::optional<std::string> SimService::obey(Line& line, const shoal::sim_control_request_t& request) {
   const std::string& command = request.command;
-  const int number = static_cast<int>(&line - lines_.data());
+  const int number = number_of(line);
   if (time_machine_ != nullptr)
     if (auto text = time_machine_->obey(command, request.text, request.value)) return text;
   if (command == "quit") {

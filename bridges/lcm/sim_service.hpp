@@ -70,6 +70,7 @@ class SimService {
   struct Line {
     sim::Bus* network;
     std::unique_ptr<sim::Mailbox> requests;
+    std::unique_ptr<sim::Mailbox> infos;  ///< of another simulator, once one has asked; null: none has
   };
 
   void publish_state();
@@ -78,7 +79,9 @@ class SimService {
   /// What came of it; nothing: it is not decided yet, and not answered.  Throws std::runtime_error that says why it was
   /// refused.
   std::optional<std::string> obey(Line& line, const shoal::sim_control_request_t& request);
-  bool is_of_a_run(const shoal::sim_control_request_t& request);
+  int number_of(const Line& line) const { return static_cast<int>(&line - lines_.data()); }
+  bool is_own_question(Line& line, const shoal::sim_control_request_t& request);
+  void warn_of_another(const Line& line, const char* how);
   bool leave(int line, const shoal::sim_control_request_t& request);
   void complain(const std::string& text);
   bool due(double rate_hz) const;
@@ -97,7 +100,7 @@ class SimService {
   bool muted_ = false;
   std::int64_t info_step_ = -1;  // of the last sim.info
   const OtherSimulators* others_ = nullptr;
-  bool told_of_sharing_ = false;
+  bool warned_of_another_ = false;
   std::vector<Line> lines_;  // the world's first
   sim::Bytes buffer_;
   std::int64_t bad_messages_ = 0;

@@ -257,7 +257,7 @@ TEST_F(Policy, AnotherSimulatorOnTheBusDoesNotEndTheClients) {
   EXPECT_EQ(shoal_->children().size(), 1u);
   EXPECT_TRUE(request("quit").ok);
   EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
-  EXPECT_THAT(shoal_->errors(), HasSubstr("another simulator was started on a bus of this run, with --lcm-shared"));
+  EXPECT_THAT(shoal_->errors(), HasSubstr("another simulator was started with --lcm-shared on the world's bus of this run"));
   EXPECT_THAT(text_of_file(folder_.file("results") + "/pilot.log"), HasSubstr(" end 1"));
 }
 

@@ -6,6 +6,7 @@
 #include <future>
 
 #include "bridges/lcm/lcm_bus.hpp"
+#include "shoal/sim_info_t.hpp"
 #include "shoal/sim_tick_t.hpp"
 #include "shoal/utime_t.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
@@ -94,6 +95,37 @@ TEST(OtherSimulators, OfTwoThatStartAtTheSameTimeOneStays) {
     const auto found_b = b.look(looked, 2);
     EXPECT_NE(found_a.get().has_value(), found_b.has_value());
   }
+}
+
+TEST(OtherSimulators, OneThatAskedAndStartsAllTheSameIsWarnedOf) {
+  test::TestWorld test(world);
+  bridges::LcmBus bus(lcm_test::own_url(2)), others_bus(lcm_test::own_url(2));
+  sim::MailGate gate(bus);
+  sim::RunControl control;
+  bridges::LockstepService lockstep(test.world, control);
+  lockstep.add_line(bus, gate);
+  bridges::SimService service(bus, bus, test.world, control, lockstep, {"{}", "test"});
+  OtherSimulators own({}, false);
+  service.use_others(own);
+  OtherSimulators second({{"here", &others_bus}}, false);
+  // It is answered, but does not wait for it.
+  EXPECT_TRUE(second.look([&](milliseconds) { service.handle_requests(); }));
+  testing::internal::CaptureStdout();
+  service.publish_info();  // its own
+  bus.end_of_step();
+  EXPECT_TRUE(bus.flush(std::chrono::seconds(10)));
+  service.handle_requests();
+  others_bus.publish("sim.info", shoal::encode(shoal::sim_info_t{}), sim::Time(0));
+  others_bus.end_of_step();
+  std::string said;
+  EXPECT_TRUE(lcm_test::await([&] {
+    service.handle_requests();
+    said += testing::internal::GetCapturedStdout();
+    testing::internal::CaptureStdout();
+    return !said.empty();
+  }));
+  testing::internal::GetCapturedStdout();
+  EXPECT_THAT(said, testing::HasSubstr("another simulator publishes on the world's bus of this run"));
 }
 
 TEST(OtherSimulators, OneThatSharesDoesNotLookAndSaysSo) {
