@@ -263,9 +263,9 @@ void Run::check_bus() const {
   if (const auto lost = buses_.lost_connection()) throw RunError(4, "bus", *lost);
 }
 
-RunPrograms::Clients Run::clients() {
-  return {[this](const std::string& client) {
-            service_.handle_requests();  // the last that it sent
+RunPrograms::Clients Run::clients(bool goes_on) {
+  return {[this, goes_on](const std::string& client) {
+            if (goes_on) service_.handle_requests();  // its last may be that it leaves
             return lockstep_.has_left(client);
           },
           [this](const std::string& client) {
@@ -276,7 +276,7 @@ RunPrograms::Clients Run::clients() {
 }
 
 void Run::check_programs() {
-  programs_.check(world_.now(), clients());
+  programs_.check(world_.now(), clients(true));
 }
 
 std::uint64_t Run::messages() const {

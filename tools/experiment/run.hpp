@@ -56,7 +56,8 @@ class Run {
   /// Waits until the next step is due, answering requests meanwhile.
   void pace();
   void check_bus() const;
-  RunPrograms::Clients clients();
+  /// `goes_on`: requests may still change the world.
+  RunPrograms::Clients clients(bool goes_on);
   void check_programs();
   bool wanted() const;
   std::string how_ended() const;

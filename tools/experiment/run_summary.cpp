@@ -18,7 +18,7 @@ void note_signal(Summary& summary) {
 }  // namespace
 
 void Run::finish(Summary& summary) {
-  programs_.note_last(world_.now(), clients());
+  programs_.note_last(world_.now(), clients(false));
   if (alone_) {    // else the bus is another simulator's
     admit_mail();  // what came after the last step is in the log: the journal says that it came from outside
     journal_.finish(summary.ended != "fault" && summary.ended != "error");
