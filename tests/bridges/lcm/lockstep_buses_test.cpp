@@ -38,7 +38,8 @@ struct TwoBuses : Service {
     other_bus.publish(channel, shoal::encode(message), sim::Time(0));
   }
 
-  sim::InProcessBus other_bus;
+  sim::InProcessBus in_process;
+  sim::Bus& other_bus = in_process;
   sim::MailGate other_gate{other_bus};
   std::unique_ptr<sim::Mailbox> replies_there = other_bus.open_mailbox("sim.control.reply");
 };
