@@ -26,7 +26,6 @@ struct Client::Connection {
   std::int64_t period_us = 0;  ///< of free running; 0: it does not
   std::optional<std::int64_t> clock_utime;
   std::optional<std::int64_t> due_utime;
-  bool run_is_over = false;
   End end = End::none;
 };
 
@@ -114,21 +113,17 @@ void Client::follow(double period_s) {
 }
 
 void Client::Connection::follow_clock(std::int64_t new_period_us) {
-  if (period_us == 0) {
+  if (period_us == 0)
     lcm.subscribe("sim.clock", [this](std::span<const std::byte> payload) {
       try {
-        clock_utime = shoal::decode<shoal::utime_t>(payload, Finite::any).utime;
+        const std::int64_t utime = shoal::decode<shoal::utime_t>(payload, Finite::any).utime;
+        // The clock of another run, or of one that went back: only the run itself can say that it ends.
+        if (!clock_utime || utime < *clock_utime) lcm.follow();
+        clock_utime = utime;
       } catch (const MessageError&) {
         // Anybody may publish anything; the next one counts.
       }
     });
-    lcm.subscribe("sim.tick", [this](std::span<const std::byte> payload) {
-      try {
-        if (shoal::decode<shoal::sim_tick_t>(payload, Finite::any).last != 0) run_is_over = true;
-      } catch (const MessageError&) {
-      }
-    });
-  }
   period_us = new_period_us;
   due_utime.reset();
 }
@@ -156,7 +151,7 @@ std::optional<std::int64_t> Client::Connection::next_joined_tick() {
 std::optional<std::int64_t> Client::Connection::next_free_tick() {
   const std::optional<std::int64_t> before = clock_utime;
   if (!clock_utime) lcm.wait_for("the time on 'sim.clock', which a simulator publishes while its run goes on");
-  while (!run_is_over) {
+  while (true) {
     if (!lcm.handle_message()) {
       end = end_of(lcm.end());
       return std::nullopt;
@@ -169,8 +164,6 @@ std::optional<std::int64_t> Client::Connection::next_free_tick() {
     due_utime = (*clock_utime / period_us + 1) * period_us;
     return clock_utime;
   }
-  end = End::last_tick;
-  return std::nullopt;
 }
 
 std::optional<std::int64_t> Client::wait_until(std::int64_t utime) {

@@ -25,6 +25,8 @@ constexpr const char* question_channel = "sim.resend";
 constexpr const char* bundle_channel = "sim.resent";
 
 constexpr milliseconds slice{50};
+/// How often somebody who follows a run asks, at most, to be told of its end.
+constexpr int most_questions = 20;
 /// What a client waits, at most, for the simulator to let it go.
 constexpr milliseconds time_to_leave{1000};
 
@@ -131,6 +133,7 @@ void LockstepClient::join(double period_s, milliseconds timeout, const JoinOptio
     outbox_.restart();
   }
   joined_ = again;
+  following_ = false;
   period_s_ = period_s;
   options_ = options;
   end_ = End::none;
@@ -159,15 +162,44 @@ void LockstepClient::call_handlers(const std::string& channel, std::span<const s
   for (std::size_t i = 0; i < count; ++i) found->second[i](payload);
 }
 
+void LockstepClient::follow() {
+  following_ = true;
+  end_ = End::none;
+  join_id_ = ++request_id_;  // the number of the request: follow() takes the place of join()
+  answered_id_.reset();
+  questions_left_ = most_questions;
+  ask_at_ = Clock::now();
+  ask_interval_ = first_resend_interval;
+}
+
+void LockstepClient::ask_to_be_told_of_the_end() {
+  if (questions_left_ == 0 || answered_id_ == join_id_ || Clock::now() < ask_at_) return;
+  --questions_left_;
+  ask_at_ = Clock::now() + ask_interval_;
+  ask_interval_ = next_resend_interval(ask_interval_);
+  send_request("follow", join_id_, 0, text_of(sim::FollowTerms{session_}));
+}
+
 bool LockstepClient::handle_message() {
   const bool forever = silence_limit_.count() == 0;
-  const auto message = wait(forever ? Clock::time_point::max() : Clock::now() + silence_limit_);
-  if (!message) {
+  const auto deadline = forever ? Clock::time_point::max() : Clock::now() + silence_limit_;
+  while (true) {
+    auto until = deadline;
+    if (following_) {
+      ask_to_be_told_of_the_end();
+      if (questions_left_ > 0 && answered_id_ != join_id_) until = std::min(until, ask_at_);
+    }
+    const auto message = wait(until);
+    if (message) {
+      if (following_ && message->channel == reply_channel) take_reply(message->payload);
+      if (following_ && message->channel == tick_channel) take_tick(message->payload);
+      call_handlers(message->channel, message->payload);
+      return end_ != End::last_tick;
+    }
+    if (!stop_ && Clock::now() < deadline) continue;
     end_ = stop_ ? End::stopped : End::silence;
     return false;
   }
-  call_handlers(message->channel, message->payload);
-  return true;
 }
 
 void LockstepClient::take(Received message) {
@@ -202,12 +234,9 @@ void LockstepClient::take_tick(std::span<const std::byte> payload) {
   const auto due = std::find_if(tick->client.begin(), tick->client.end(), [&](const shoal::sim_due_t& each) {
     return each.name == name_ && each.session == session_;
   });
-  if (due == tick->client.end()) {
-    // The end of the run concerns all, named or not.
-    if (tick->last != 0 && joined_) {
-      tick_ = std::move(*tick);
-      end_ = End::last_tick;
-    }
+  if (due == tick->client.end()) return;  // also a last one: the end of somebody else's run
+  if (following_) {
+    if (tick->last != 0) end_ = End::last_tick;
     return;
   }
   if (due->sequence == sequence_ && !outbox_.is_open())

@@ -72,8 +72,11 @@ class LockstepClient {
   /// Acknowledges the tick that is open, and tells the simulator not to wait for this client any more.  Waits for a
   /// moment until it knows.
   void leave();
-  /// Calls the handlers of the next message, whatever it is: for who does not take part in the lockstep.  False when
-  /// stop() was called, or after `silence_limit`.
+  /// For a program that does not take part in the lockstep: asks the simulator, from handle_message(), to be listed in
+  /// the last tick of its run.  Again for each run that is followed.
+  void follow();
+  /// Calls the handlers of the next message, whatever it is: for a program that does not take part in the lockstep.
+  /// False when stop() was called, after `silence_limit`, and after follow() at the end of the run.
   bool handle_message();
   /// `handler` is called when the world went back, before the messages of the first tick there.
   void on_rewind(std::function<void(const shoal::sim_tick_t&)> handler) { rewound_ = std::move(handler); }
@@ -111,6 +114,7 @@ class LockstepClient {
                bool heed_stop);
   void send_request(const std::string& command, std::int32_t id, double value, const std::string& text);
   void ask_to_join(Clock::time_point deadline);
+  void ask_to_be_told_of_the_end();
   void call_handlers(const std::string& channel, std::span<const std::byte> payload);
 
   void take(Received message);
@@ -139,6 +143,11 @@ class LockstepClient {
   std::int32_t request_id_ = 0, join_id_ = 0;
   std::optional<std::int32_t> answered_id_;
   std::string refusal_;  // of the request; empty: granted
+
+  bool following_ = false;
+  int questions_left_ = 0;  // to be told of the end of the run that is followed
+  Clock::time_point ask_at_;
+  std::chrono::milliseconds ask_interval_{0};
 
   std::optional<Incomplete> incomplete_;
   std::int64_t sequence_ = 0;  // of the last tick that was handled

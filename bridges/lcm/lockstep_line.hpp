@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "bridges/lcm/lockstep_service.hpp"
@@ -10,9 +11,10 @@ namespace bridges {
 
 /// A bus on which clients may be.
 struct LockstepService::Line {
-  Line(sim::Bus& bus, sim::MailGate& mail_gate)
+  Line(sim::Bus& bus, sim::MailGate& mail_gate, const std::string& name)
       : network(bus),
         gate(mail_gate),
+        called(name.empty() ? "the world's bus" : "bus '" + name + "'"),
         mail(mail_gate),
         acks(bus.open_mailbox("sim.ack")),
         questions(bus.open_mailbox("sim.resend")),
@@ -27,6 +29,7 @@ struct LockstepService::Line {
 
   sim::Bus& network;
   sim::MailGate& gate;
+  const std::string called;  // in texts
   sim::ClientMail mail;
   std::unique_ptr<sim::Mailbox> acks, questions, bundles;
   std::vector<std::unique_ptr<sim::Mailbox>> passed_on;  // read for the sake of other clients only

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "bridges/lcm/lockstep_line.hpp"
 #include "bridges/lcm/resend.hpp"
@@ -17,6 +18,14 @@ namespace {
 /// After this the world takes another client of the same name.
 constexpr std::chrono::seconds alive_for{1};
 constexpr std::size_t most_ended_sessions = 1000;
+/// How the summary calls the end of a client that asked for it.
+constexpr const char* left = "left";
+
+std::string seconds_text(sim::Time time) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f s", sim::to_seconds(time));
+  return text;
+}
 
 }  // namespace
 
@@ -39,9 +48,10 @@ bool LockstepService::join(int line, const shoal::sim_control_request_t& request
   const sim::LockstepTerms terms = sim::read_lockstep_terms(request.text, defaults_);
   check_session(request.client, terms.session);
   const sim::LockstepMember* first = lockstep_.find(request.client);
-  if (first && terms.session != 0 && first->terms.session == terms.session && first->line != line)
-    throw std::runtime_error("the session " + std::to_string(terms.session) + " of client '" + request.client +
-                             "' takes part on another bus; join with another one");
+  // A request acts on its own bus only.
+  if (first && first->line != line && !first->gone)
+    throw std::runtime_error("a client '" + request.client + "' takes part on " + line_of(first->line).called +
+                             "; give this one on " + line_of(line).called + " another name");
   if (first && (first->terms.session != terms.session || first->line != line)) {
     if (!may_join(*first, terms)) return false;
     forget(request.client, "another client of its name took its place");
@@ -57,9 +67,13 @@ bool LockstepService::join(int line, const shoal::sim_control_request_t& request
   return true;
 }
 
+bool LockstepService::is_over(const std::string& client, std::int64_t session) const {
+  return session != 0 && std::find(ended_.begin(), ended_.end(), std::pair(client, session)) != ended_.end();
+}
+
 /// A request that the network repeated, or held back, must not take in again who has left.
 void LockstepService::check_session(const std::string& client, std::int64_t session) const {
-  if (session == 0 || std::find(ended_.begin(), ended_.end(), std::pair(client, session)) == ended_.end()) return;
+  if (!is_over(client, session)) return;
   const auto summary = summaries_.find(client);
   throw std::runtime_error("the session " + std::to_string(session) + " of client '" + client + "' is over" +
                            (summary == summaries_.end() || summary->second.ended.empty() || lockstep_.has(client)
@@ -94,11 +108,27 @@ bool LockstepService::may_join(const sim::LockstepMember& first, const sim::Lock
   return false;
 }
 
-bool LockstepService::leave(const shoal::sim_control_request_t& request) {
+bool LockstepService::has(const std::string& client, int line) const {
+  const auto member = lockstep_.members().find(client);
+  return member != lockstep_.members().end() && member->second.line == line;
+}
+
+bool LockstepService::has_left(const std::string& client) const {
+  const auto summary = summaries_.find(client);
+  return !lockstep_.has(client) && summary != summaries_.end() && summary->second.ended == left;
+}
+
+bool LockstepService::leave(int line, const shoal::sim_control_request_t& request) {
+  const std::string called = "client '" + sim::printable(sim::shortened(request.client)) + "'";
+  const sim::LeaveTerms terms = sim::read_leave_terms(request.text);
   const sim::LockstepMember* member = lockstep_.find(request.client);
+  if (member == nullptr && is_over(request.client, terms.session))
+    return true;  // it asks again: the answer was lost, or is on its way
   if (member == nullptr)
     throw std::runtime_error("no client of the name '" + sim::shortened(request.client) + "' has joined");
-  const sim::LeaveTerms terms = sim::read_leave_terms(request.text);
+  if (member->line != line)
+    throw std::runtime_error("the " + called + " takes part on " + line_of(member->line).called + "; a request on " +
+                             line_of(line).called + " does not act there");
   if (terms.session != 0 && terms.session != member->terms.session)
     throw std::runtime_error("the client '" + member->name + "' that has joined is another one");
   if (terms.acknowledged > member->sequence)
@@ -108,8 +138,41 @@ bool LockstepService::leave(const shoal::sim_control_request_t& request) {
   const bool answered = member->answered || (terms.acknowledged >= 0 && terms.acknowledged < member->sequence);
   const bool complete = line_of(member->line).mail.is_complete(member->name);
   if (terms.session != 0 && !(answered && complete)) return false;
-  forget(request.client, "left");
+  tell_who_left(*member, line, terms);
+  forget(request.client, left);
   return true;
+}
+
+void LockstepService::tell_who_left(const sim::LockstepMember& member, int line, const sim::LeaveTerms& terms) {
+  constexpr int most_told = 100;
+  if (++told_left_ > most_told) return;
+  const std::string called = "client '" + sim::printable(member.name) + "'";
+  const std::string at = " at " + seconds_text(world_.now()) + " on " + line_of(line).called;
+  const std::string more = told_left_ == most_told ? " (no more of these are told)" : "";
+  if (terms.session == 0 && member.terms.session != 0)
+    spdlog::warn("lockstep: a request without its session{} let go of {}; the world goes on without it{}", at, called,
+                 more);
+  else
+    spdlog::info("lockstep: {} left{}{}", called, at, more);
+}
+
+void LockstepService::follow(int line, const shoal::sim_control_request_t& request) {
+  constexpr std::size_t most_followers = 1000;
+  if (request.client.empty() || request.client.size() > 60)
+    throw std::runtime_error("'follow' needs a client name of 1 to 60 characters");
+  const std::int64_t session = sim::read_follow_terms(request.text).session;
+  if (session == 0) throw std::runtime_error("'follow' needs a 'session' from 1 on");
+  const auto known = std::find_if(followers_.begin(), followers_.end(), [&](const Follower& each) {
+    return each.name == request.client && each.session == session && each.line == line;
+  });
+  if (known != followers_.end()) return;
+  followers_.push_back({request.client, session, line});
+  if (followers_.size() > most_followers) followers_.pop_front();
+}
+
+std::string LockstepService::what_is_missing(const sim::LockstepMember& member) {
+  return "client '" + member.name + "' acknowledged step " + std::to_string(member.asked) + ", but " +
+         line_of(member.line).mail.missing_text(member.name);
 }
 
 void LockstepService::client_gone(const std::string& client) {

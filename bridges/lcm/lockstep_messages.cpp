@@ -51,6 +51,14 @@ void LockstepService::publish_tick(const std::vector<std::string>& clients, bool
       if (member == nullptr || member->line != static_cast<int>(i)) continue;
       tick.client.push_back(due_of(*member));
     }
+    for (const Follower& follower : followers_)
+      if (last && follower.line == static_cast<int>(i)) {
+        shoal::sim_due_t& due = tick.client.emplace_back();
+        due.name = follower.name;
+        due.session = follower.session;
+        due.sequence = 0;  // it has no ticks, and does not answer
+        due.count = 0;
+      }
     tick.count = static_cast<std::int32_t>(tick.client.size());
     if (tick.count > 0 || last) lines_[i]->publish("sim.tick", tick, world_.now());
   }
@@ -110,12 +118,22 @@ void LockstepService::take_messages() {
     Line& line = *lines_[i];
     if (!lockstep_.empty()) line.mail.collect();
     take_up_to(most_at_once, *line.acks, [&](const sim::Message& ack) { take_ack(static_cast<int>(i), ack); });
-    take_up_to(most_at_once, *line.questions, [&](const sim::Message& question) { take_question(question); });
-    take_up_to(most_at_once, *line.bundles, [&](const sim::Message& bundle) { take_bundle(bundle); });
+    take_up_to(most_at_once, *line.questions,
+               [&](const sim::Message& question) { take_question(static_cast<int>(i), question); });
+    take_up_to(most_at_once, *line.bundles,
+               [&](const sim::Message& bundle) { take_bundle(static_cast<int>(i), bundle); });
     for (const auto& mailbox : line.passed_on)
       while (mailbox->take()) {
       }
   }
+}
+
+void LockstepService::check_line(int line, const std::string& client, const char* does) const {
+  const auto& members = lockstep_.members();
+  const auto member = members.find(client);
+  if (member == members.end() || member->second.line == line) return;
+  throw std::runtime_error("client '" + client + "' " + does + " on " + line_of(line).called + ", but takes part on " +
+                           line_of(member->second.line).called);
 }
 
 void LockstepService::take_ack(int line_index, const sim::Message& message) {
@@ -126,6 +144,7 @@ void LockstepService::take_ack(int line_index, const sim::Message& message) {
     if (ack.channel.size() > sim::most_named_messages)
       throw std::runtime_error("client '" + ack.client + "' names " + std::to_string(ack.channel.size()) +
                                " messages; at most " + std::to_string(sim::most_named_messages) + " are allowed");
+    check_line(line_index, ack.client, "acknowledges a tick");
     std::string why;
     const auto verdict =
         lockstep_.acknowledge({ack.client, ack.step, ack.session, ack.sequence}, world_.step_number(), why);
@@ -133,9 +152,11 @@ void LockstepService::take_ack(int line_index, const sim::Message& message) {
       if (const auto dropped = dropped_.find(ack.client);
           dropped != dropped_.end() && dropped->second.session == ack.session && !lockstep_.has(ack.client))
         tell_dropped(dropped->second, ack.client);
+      else if (is_over(ack.client, ack.session))
+        return;  // its last answer, sent again while it left
       throw std::runtime_error(why);
     }
-    if (heard_) heard_(ack.client);
+    if (heard_ && line_index == 0) heard_(ack.client);
     if (const auto challenge = challenges_.find(ack.client); challenge != challenges_.end())
       challenge->second.lives = true;
     if (verdict == sim::Lockstep::Verdict::repeated) return;
@@ -158,6 +179,7 @@ void LockstepService::take_ack(int line_index, const sim::Message& message) {
       if (!line.gate.reads(channel) && lockstep_.somebody_receives(line_index, channel) && !channel.empty() &&
           channel.size() <= sim::Bus::max_channel_length)
         line.passed_on.push_back(line.gate.open_mailbox(channel));
+    line.mail.collect();  // what came before this answer, also since the mail was looked at
     line.mail.expect(ack.client, named);
     Asked& asked = asked_[ack.client];
     asked.send_at = Clock::now() + resend_grace;
@@ -167,13 +189,15 @@ void LockstepService::take_ack(int line_index, const sim::Message& message) {
   }
 }
 
-void LockstepService::take_question(const sim::Message& message) {
+void LockstepService::take_question(int line_index, const sim::Message& message) {
   std::string who;
   try {
     const auto question = shoal::decode<shoal::sim_resend_t>(message.payload, shoal::Finite::any);
     if (question.of_client) return;  // our own
     who = question.client.substr(0, 60);
+    check_line(line_index, question.client, "asks for messages");
     const sim::LockstepMember* member = lockstep_.find(question.client);
+    if (is_over(question.client, question.session)) return;
     if (member == nullptr || member->terms.session != question.session)
       throw std::runtime_error("client '" + question.client + "' asks for messages, but takes no part in the lockstep");
     if (question.sequence != member->sequence || member->answered) return;  // late
@@ -210,13 +234,15 @@ void LockstepService::send_again(const sim::LockstepMember& member, std::int32_t
       });
 }
 
-void LockstepService::take_bundle(const sim::Message& message) {
+void LockstepService::take_bundle(int line_index, const sim::Message& message) {
   std::string who;
   try {
     const auto bundle = shoal::decode<shoal::sim_resent_t>(message.payload, shoal::Finite::any);
     if (!bundle.of_client) return;  // our own
     who = bundle.client.substr(0, 60);
+    check_line(line_index, bundle.client, "sends messages again");
     const sim::LockstepMember* member = lockstep_.find(bundle.client);
+    if (is_over(bundle.client, bundle.session)) return;
     if (member == nullptr || member->terms.session != bundle.session)
       throw std::runtime_error("client '" + bundle.client +
                                "' sends messages again, but takes no part in the lockstep");
@@ -227,7 +253,9 @@ void LockstepService::take_bundle(const sim::Message& message) {
       ++summary_of(bundle.client).messages_asked_for;
       if (!line.mail.add(bundle.client, bundle.first + static_cast<std::int32_t>(i), bundle.message[i].channel,
                          {bytes.begin(), bytes.end()}))
-        throw std::runtime_error("client '" + bundle.client + "' sends again what it had not named");
+        throw std::runtime_error("client '" + bundle.client + "' " +
+                                 line.mail.why_not(bundle.client, bundle.first + static_cast<std::int32_t>(i),
+                                                   bundle.message[i].channel, {bytes.begin(), bytes.end()}));
     }
   } catch (const std::runtime_error& error) {
     complain(who, std::string("sim.resent: ") + error.what());

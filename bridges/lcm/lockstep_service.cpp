@@ -37,14 +37,18 @@ LockstepService::~LockstepService() {
   }
 }
 
-void LockstepService::add_line(sim::Bus& network, sim::MailGate& gate) {
+void LockstepService::add_line(sim::Bus& network, sim::MailGate& gate, const std::string& name) {
   const int index = static_cast<int>(lines_.size());
-  lines_.push_back(std::make_unique<Line>(network, gate));
+  lines_.push_back(std::make_unique<Line>(network, gate, name));
   gate.set_order([this, index, line = lines_.back().get()](std::vector<sim::MailGate::Mail>& mail) {
     if (!suspended_) line->mail.order(mail);
     if (!posts_mail_) return;
     for (const sim::MailGate::Mail& each : mail) lockstep_.post(index, each.channel, each.payload);
   });
+}
+
+const std::string& LockstepService::called(int line) const {
+  return line_of(line).called;
 }
 
 void LockstepService::watch_gates() {
@@ -245,9 +249,11 @@ void LockstepService::check_time(const std::string& client, Asked& asked, Clock:
   char limit[32];
   std::snprintf(limit, sizeof limit, "%g s", timeout_s);
   const std::string step = std::to_string(member->asked);
-  const std::string why = member->gone
+  const std::string when = member->gone ? "before its process ended" : "within " + std::string(limit);
+  const std::string why = member->answered ? what_is_missing(*member) + " " + when
+                          : member->gone
                               ? "the process of client '" + client + "' ended before it answered step " + step
-                              : "no acknowledgement from '" + client + "' for step " + step + " within " + limit;
+                              : "no acknowledgement from '" + client + "' for step " + step + " " + when;
   if (!asked.told) ++summary_of(client).timeouts;
   switch (member->terms.policy()) {
     case sim::OnTimeout::wait:
@@ -277,26 +283,31 @@ void LockstepService::check_time(const std::string& client, Asked& asked, Clock:
   asked.told = true;
 }
 
+/// All members are listed, for nobody obeys a last tick that does not list him; who cannot answer is not waited for.
 void LockstepService::publish_end(const Wait& wait, milliseconds limit) {
   asked_.clear();
   lockstep_.ask_all(world_.step_number());
+  for (const auto& [client, dropped] : dropped_) tell_dropped(dropped, client);
   const Clock::time_point end = Clock::now() + limit;
   milliseconds interval = first_resend_interval;
   Clock::time_point send_at = Clock::now();
   while (true) {
     std::vector<std::string> names;
-    for (const auto& [name, member] : lockstep_.members())
-      if (member.terms.session != 0 && !member.answered && !member.gone && summary_of(name).ended.empty()) {
-        names.push_back(name);
-        asked_.try_emplace(name);
-      }
+    bool wanted = false;
+    for (const auto& [name, member] : lockstep_.members()) {
+      if (member.answered || member.gone) continue;
+      names.push_back(name);
+      if (member.terms.session == 0 || !summary_of(name).ended.empty()) continue;
+      wanted = true;
+      asked_.try_emplace(name);
+    }
     const Clock::time_point now = Clock::now();
     if (now >= send_at) {
       publish_tick(names, true);
       send_at = now + interval;
       interval = next_resend_interval(interval);
     }
-    if (names.empty() || now >= end) break;
+    if (!wanted || now >= end) break;
     wait(milliseconds(10));
     take_messages();
   }

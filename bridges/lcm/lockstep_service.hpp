@@ -50,26 +50,35 @@ class LockstepService {
   LockstepService& operator=(const LockstepService&) = delete;
   ~LockstepService();
 
-  /// A bus on which clients may be: the world's first.  `network` is under `gate`; the handshake goes there directly,
-  /// so that records leave it out.  Both must outlive this.
-  void add_line(sim::Bus& network, sim::MailGate& gate);
+  /// A bus on which clients may be: the world's first, whose `name` is empty.  `network` is under `gate`; the handshake
+  /// goes there directly, so that records leave it out.  Both must outlive this.
+  void add_line(sim::Bus& network, sim::MailGate& gate, const std::string& name = {});
+  /// `the world's bus`, or `bus 'NAME'`.
+  const std::string& called(int line) const;
   /// False: what comes from outside is put on nobody's list.  For who plays a record, which holds what came then.
   void set_posts_mail(bool posts) { posts_mail_ = posts; }
   /// Some client on the bus `line` must have every message of this channel.
   bool somebody_receives(std::string_view channel, int line = 0) const {
     return lockstep_.somebody_receives(line, channel);
   }
-  /// Called with the name of each client that answers.
+  /// Called with the name of each client that answers on the world's bus.
   void set_on_heard(std::function<void(const std::string&)> heard) { heard_ = std::move(heard); }
 
   /// False: not decided yet, and not to be answered; the client asks again.  Throws std::runtime_error that says why
   /// it is refused.
   bool join(int line, const shoal::sim_control_request_t& request);
-  /// False as with join().  Throws std::runtime_error when there is no such client.
-  bool leave(const shoal::sim_control_request_t& request);
+  /// False as with join().  Throws std::runtime_error when there is no such client on this line.
+  bool leave(int line, const shoal::sim_control_request_t& request);
+  /// A program that does not take part is to be listed in the last tick.  Throws std::runtime_error that says why it is
+  /// refused.
+  void follow(int line, const shoal::sim_control_request_t& request);
   /// Its process has ended: what was agreed for a time-out is done at once; the world goes on when nothing was agreed.
   void client_gone(const std::string& client);
   bool has(const std::string& client) const { return lockstep_.has(client); }
+  /// It takes part on this line.
+  bool has(const std::string& client, int line) const;
+  /// It took part and asked to leave; false: it takes part, was dropped, or never joined.
+  bool has_left(const std::string& client) const;
   bool empty() const { return lockstep_.empty(); }
   /// Of those that take part, in order, with commas between.
   std::string names() const;
@@ -129,7 +138,15 @@ class LockstepService {
     int line = 0;
     std::string why;
   };
+  /// A program that follows the run without taking part.
+  struct Follower {
+    std::string name;
+    std::int64_t session;
+    int line;
+  };
 
+  /// This session of the client took part, and does no more.
+  bool is_over(const std::string& client, std::int64_t session) const;
   void check_session(const std::string& client, std::int64_t session) const;
   bool may_join(const sim::LockstepMember& first, const sim::LockstepTerms& terms);
   void ask_whether_it_lives(const sim::LockstepMember& member);
@@ -139,18 +156,23 @@ class LockstepService {
   void check_time(const std::string& client, Asked& asked, Clock::time_point now);
   void drop(const std::string& client, const std::string& why);
   void forget(const std::string& client, const std::string& why);
+  void tell_who_left(const sim::LockstepMember& member, int line, const sim::LeaveTerms& terms);
   void tell_dropped(const Dropped& dropped, const std::string& client);
   void resume();
 
   void rest_time_outs(Clock::time_point now);
   void tell_repeated();
+  /// A client that answered, but not all that it names has come.
+  std::string what_is_missing(const sim::LockstepMember& member);
+  /// Throws std::runtime_error when the client takes part on another line.
+  void check_line(int line, const std::string& client, const char* does) const;
   void publish_tick(const std::vector<std::string>& clients, bool last);
   void publish_left_tick(const sim::LockstepMember& member);
   void ask_client(const sim::LockstepMember& member);
   void take_messages();
   void take_ack(int line, const sim::Message& message);
-  void take_question(const sim::Message& message);
-  void take_bundle(const sim::Message& message);
+  void take_question(int line, const sim::Message& message);
+  void take_bundle(int line, const sim::Message& message);
   void send_again(const sim::LockstepMember& member, std::int32_t first);
   void complain(const std::string& client, const std::string& text);
   void watch_gates();
@@ -158,6 +180,7 @@ class LockstepService {
   std::int64_t utime() const { return world_.epoch_us() + world_.now().count(); }
   LockstepSummary& summary_of(const std::string& client);
   Line& line_of(int number) { return *lines_[static_cast<std::size_t>(number)]; }
+  const Line& line_of(int number) const { return *lines_[static_cast<std::size_t>(number)]; }
 
   sim::World& world_;
   sim::RunControl& control_;
@@ -169,8 +192,10 @@ class LockstepService {
   std::map<std::string, std::int32_t, std::less<>> join_ids_;
   std::map<std::string, Challenge, std::less<>> challenges_;
   std::deque<std::pair<std::string, std::int64_t>> ended_;  // clients and their sessions, the last ones
+  std::deque<Follower> followers_;                          // the last ones
   Clock::time_point served_, window_began_;
   bool told_repeated_ = false;
+  int told_left_ = 0;
   std::map<std::string, LockstepSummary, std::less<>> summaries_;
   std::set<std::string, std::less<>> told_;  // whose bad messages were told of
   std::function<void(const std::string&)> heard_;

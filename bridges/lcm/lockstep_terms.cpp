@@ -30,4 +30,8 @@ std::string text_of(const sim::LeaveTerms& terms) {
   return "{session: " + std::to_string(terms.session) + ", acknowledged: " + std::to_string(terms.acknowledged) + "}";
 }
 
+std::string text_of(const sim::FollowTerms& terms) {
+  return "{session: " + std::to_string(terms.session) + "}";
+}
+
 }  // namespace bridges

@@ -13,4 +13,7 @@ std::string text_of(const sim::LockstepTerms& terms);
 /// The `text` of a leave, as sim::read_leave_terms() reads it.
 std::string text_of(const sim::LeaveTerms& terms);
 
+/// The `text` of a follow, as sim::read_follow_terms() reads it.
+std::string text_of(const sim::FollowTerms& terms);
+
 }  // namespace bridges

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+#include <utility>
 
 #include "bridges/lcm/run_journal.hpp"
 #include "shoal/message_codec.hpp"
@@ -19,8 +19,6 @@ namespace bridges {
 namespace {
 
 constexpr double info_rate_hz = 0.1;
-/// Who asks whether another simulator is there.
-constexpr const char* probe_name = "shoal-run";
 
 }  // namespace
 
@@ -38,7 +36,7 @@ SimService::SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim:
 }
 
 void SimService::serve_vehicles(sim::Bus& network) {
-  lines_.push_back({&network, network.open_mailbox("sim.control")});
+  lines_.push_back({&network, network.open_mailbox("sim.control"), nullptr});
 }
 
 void SimService::use_journal(RunJournal& journal) {
@@ -123,37 +121,6 @@ void SimService::publish_state() {
   publish(bus_, "sim.state", state);
 }
 
-bool SimService::hears_another_simulator(const Wait& wait) {
-  const auto clock = network_.open_mailbox("sim.clock");
-  const auto tick = network_.open_mailbox("sim.tick");
-  const auto replies = network_.open_mailbox("sim.control.reply");
-  // One that is paused publishes nothing, but answers.
-  std::random_device random;
-  probe_id_ = static_cast<std::int32_t>(random() >> 1);
-  shoal::sim_control_request_t probe{};
-  probe.id = probe_id_;
-  probe.client = probe_name;
-  probe.command = "alive";
-  const auto answered = [&] {
-    while (const auto message = replies->take()) {
-      try {
-        const auto reply = shoal::decode<shoal::sim_control_reply_t>(message->payload, shoal::Finite::any);
-        if (reply.client == probe_name && reply.id == probe_id_) return true;
-      } catch (const shoal::MessageError&) {  // somebody else's
-      }
-    }
-    return false;
-  };
-  publish(network_, "sim.control", probe);
-  network_.end_of_step();
-  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(300);
-  while (std::chrono::steady_clock::now() < end) {
-    if (clock->take() || tick->take() || answered()) return true;
-    wait(std::chrono::milliseconds(50));
-  }
-  return false;
-}
-
 void SimService::complain(const std::string& text) {
   if (++bad_messages_ <= 100) spdlog::warn("{} (ignored)", sim::shortened(sim::printable(text), 300));
 }
@@ -169,12 +136,33 @@ void SimService::handle_requests() {
       if (!message) break;
       handle_request(line, *message);
     }
+  for (Line& line : lines_)
+    while (line.infos) {
+      const auto info = line.infos->take();
+      if (!info) break;
+      if (info->from_outside) warn_of_another(line, "publishes");
+    }
+}
+
+/// Of a run that starts, for other simulators.  Another one's is answered, and that run then refuses to start; one that
+/// starts all the same is warned of.
+bool SimService::is_own_question(Line& line, const shoal::sim_control_request_t& request) {
+  const OtherSimulators::Asker asker = others_->who_asks(request);
+  if (asker == OtherSimulators::Asker::another_run && !line.infos) line.infos = line.network->open_mailbox("sim.info");
+  if (asker == OtherSimulators::Asker::another_run_that_shares) warn_of_another(line, "was started with --lcm-shared");
+  return asker == OtherSimulators::Asker::this_run;
+}
+
+void SimService::warn_of_another(const Line& line, const char* how) {
+  if (std::exchange(warned_of_another_, true)) return;
+  spdlog::warn("another simulator {} on {} of this run: clients and reports of the two mix", how,
+               lockstep_.called(number_of(line)));
 }
 
 void SimService::handle_request(Line& line, const sim::Message& message) {
   try {
     const auto request = shoal::decode<shoal::sim_control_request_t>(message.payload, shoal::Finite::any);
-    if (request.client == probe_name && request.id == probe_id_) return;  // our own
+    if (others_ != nullptr && is_own_question(line, request)) return;
     answer(line, request);
   } catch (const shoal::MessageError& error) {
     complain(std::string("sim.control: ") + error.what());
@@ -185,21 +173,23 @@ void SimService::answer(Line& line, const shoal::sim_control_request_t& request)
   shoal::sim_control_reply_t reply;
   reply.id = request.id;
   reply.client = request.client;
-  const bool joins = request.command == "join";
-  reply.session = joins || request.command == "leave" ? sim::session_in(request.text, joins) : 0;
+  reply.session = sim::session_in(request.text, request.command);
   reply.ok = true;
-  visitors_.heard_of(request.client);
+  const bool on_own_bus = &line != &lines_.front();
+  if (!on_own_bus) visitors_.heard_of(request.client);  // vehicles are brought on the world's bus
   try {
-    const bool of_lockstep = request.command == "join" || request.command == "leave" || request.command == "alive";
-    if (&line != &lines_.front() && !of_lockstep)
-      throw std::runtime_error("only alive, join and leave are served on a vehicle's bus");
+    const bool of_lockstep = request.command == "join" || request.command == "leave" || request.command == "alive" ||
+                             request.command == "follow";
+    if (on_own_bus && !of_lockstep)
+      throw std::runtime_error("only alive, follow, join and leave are served on a vehicle's bus");
     const std::optional<std::string> text = obey(line, request);
     if (!text) return;
     reply.text = *text;
   } catch (const std::exception& error) {  // whatever it is, it is the request's fault, and the run goes on
     reply.ok = false;
     reply.text = sim::shortened(error.what(), 4000);
-    complain("sim.control: client '" + sim::shortened(request.client) + "': " + error.what());
+    complain((on_own_bus ? "sim.control of " + lockstep_.called(number_of(line)) : "sim.control") + ": client '" +
+             sim::shortened(request.client) + "': " + error.what());
   }
   reply.utime = world_.epoch_us() + world_.now().count();  // after a rewind the new time
   publish(*line.network, "sim.control.reply", reply);
@@ -208,14 +198,18 @@ void SimService::answer(Line& line, const shoal::sim_control_request_t& request)
 
 std::optional<std::string> SimService::obey(Line& line, const shoal::sim_control_request_t& request) {
   const std::string& command = request.command;
+  const int number = number_of(line);
   if (time_machine_ != nullptr)
     if (auto text = time_machine_->obey(command, request.text, request.value)) return text;
   if (command == "quit") {
+    spdlog::info("'{}' asks the run to quit", sim::shortened(sim::printable(request.client)));
     control_.quit = true;
   } else if (command == "join") {
-    if (!lockstep_.join(static_cast<int>(&line - lines_.data()), request)) return std::nullopt;
+    if (!lockstep_.join(number, request)) return std::nullopt;
   } else if (command == "leave") {
-    if (!leave(request)) return std::nullopt;
+    if (!leave(number, request)) return std::nullopt;
+  } else if (command == "follow") {
+    lockstep_.follow(number, request);
   } else if (command == "spawn") {
     return visitors_.spawn(request.client, request.text);
   } else if (command == "remove") {
@@ -226,15 +220,17 @@ std::optional<std::string> SimService::obey(Line& line, const shoal::sim_control
     visitors_.act(request.text);
   } else if (command != "alive") {
     throw std::runtime_error("unknown command '" + sim::shortened(sim::printable(command)) +
-                             "'; known commands: alive, describe, do, join, leave, pause, quit, remove, "
-                             "restore, resume, rewind, snapshot, spawn, speed, step, until, where");
+                             "'; known commands: alive, describe, do, follow, join, leave, pause, quit, "
+                             "remove, restore, resume, rewind, snapshot, spawn, speed, step, until, where");
   }
   return "";
 }
 
-bool SimService::leave(const shoal::sim_control_request_t& request) {
-  if ((lockstep_.has(request.client) || !visitors_.has(request.client)) && !lockstep_.leave(request)) return false;
-  visitors_.remove_those_of(request.client);
+bool SimService::leave(int line, const shoal::sim_control_request_t& request) {
+  const bool brought_vehicles = line == 0 && visitors_.has(request.client);
+  const bool takes_part = lockstep_.has(request.client, line);
+  if ((takes_part || !brought_vehicles) && !lockstep_.leave(line, request)) return false;
+  if (line == 0) visitors_.remove_those_of(request.client);
   return true;
 }
 
@@ -253,8 +249,9 @@ void SimService::obey_again(const shoal::sim_control_request_t& request) {
 }
 
 void SimService::client_gone(const std::string& client) {
+  const bool on_own_bus = lockstep_.has(client) && !lockstep_.has(client, 0);
   lockstep_.client_gone(client);
-  visitors_.remove_those_of(client);
+  if (!on_own_bus) visitors_.remove_those_of(client);
 }
 
 }  // namespace bridges

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bridges/lcm/lockstep_service.hpp"
+#include "bridges/lcm/other_simulators.hpp"
 #include "bridges/lcm/time_machine.hpp"
 #include "bridges/lcm/visitors.hpp"
 #include "shoal/sim_control_request_t.hpp"
@@ -40,6 +41,8 @@ class SimService {
   /// Serves what is about time: pause, resume, step, speed, until, where, snapshot, restore and rewind.  It must
   /// outlive this; null: nobody does.
   void set_time_machine(TimeMachine* machine) { time_machine_ = machine; }
+  /// Who else starts on the buses: asked by them, which is told of once.  It must outlive this.
+  void use_others(const OtherSimulators& others) { others_ = &others; }
   /// Whose vehicles there are.
   void visit_state(sim::StateArchive& archive) { visitors_.visit_state(archive); }
   /// While muted only the world's bus is published on.
@@ -57,10 +60,6 @@ class SimService {
   /// A client is gone: it leaves the lockstep, and the vehicles that came with it go.
   void client_gone(const std::string& client);
 
-  using Wait = LockstepService::Wait;
-  /// Asks and listens for 0.3 s of wall time, before anything is published: two simulators that answer the same clients
-  /// would spoil each other's runs.
-  bool hears_another_simulator(const Wait& wait);
   /// For whom the world waits; empty: for nobody.
   std::string waits_for() { return lockstep_.waits_for(); }
   /// Bad requests so far.
@@ -71,6 +70,7 @@ class SimService {
   struct Line {
     sim::Bus* network;
     std::unique_ptr<sim::Mailbox> requests;
+    std::unique_ptr<sim::Mailbox> infos;  ///< of another simulator, once one has asked; null: none has
   };
 
   void publish_state();
@@ -79,7 +79,10 @@ class SimService {
   /// What came of it; nothing: it is not decided yet, and not answered.  Throws std::runtime_error that says why it was
   /// refused.
   std::optional<std::string> obey(Line& line, const shoal::sim_control_request_t& request);
-  bool leave(const shoal::sim_control_request_t& request);
+  int number_of(const Line& line) const { return static_cast<int>(&line - lines_.data()); }
+  bool is_own_question(Line& line, const shoal::sim_control_request_t& request);
+  void warn_of_another(const Line& line, const char* how);
+  bool leave(int line, const shoal::sim_control_request_t& request);
   void complain(const std::string& text);
   bool due(double rate_hz) const;
   template <typename Message>
@@ -96,8 +99,9 @@ class SimService {
   TimeMachine* time_machine_ = nullptr;
   bool muted_ = false;
   std::int64_t info_step_ = -1;  // of the last sim.info
-  std::int32_t probe_id_ = -1;   // of our question for another simulator
-  std::vector<Line> lines_;      // the world's first
+  const OtherSimulators* others_ = nullptr;
+  bool warned_of_another_ = false;
+  std::vector<Line> lines_;  // the world's first
   sim::Bytes buffer_;
   std::int64_t bad_messages_ = 0;
 };

@@ -171,7 +171,7 @@ public class LockstepClient implements LCMSubscriber {
       }
       return;
     }
-    over = over || next.last;
+    // It does not list us: also a last one is no concern of ours, but the end of somebody else's run.
   }
 
   private boolean hasAll() {

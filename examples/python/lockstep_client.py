@@ -101,8 +101,8 @@ class LockstepClient:
         tick = shoal.sim_tick_t.decode(data)
         mine = [due for due in tick.client if due.name == self.name and due.session == self.session]
         if not mine:
-            self.over = self.over or bool(tick.last)
-        elif mine[0].sequence == self.sequence:
+            return  # also a last one: the end of somebody else's run
+        if mine[0].sequence == self.sequence:
             self.lc.publish("sim.ack", self.ack.encode())  # ours was lost, or somebody asks whether we live
         elif mine[0].sequence > (self.due.sequence if self.tick else self.sequence):  # takes the place of an older one
             if tick.branch != self.branch and self.sequence > 0:

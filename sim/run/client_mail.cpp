@@ -1,10 +1,22 @@
 #include "sim/run/client_mail.hpp"
 
+#include <algorithm>
+#include <cstdio>
 #include <utility>
 
 #include "sim/bus/crc32.hpp"
+#include "sim/config/message_text.hpp"
 
 namespace sim {
+namespace {
+
+std::string text_of(const NamedMessage& named) {
+  char crc[32];
+  std::snprintf(crc, sizeof crc, "' with CRC-32 %08x", static_cast<unsigned>(named.crc));
+  return "'" + printable(shortened(named.channel)) + crc;
+}
+
+}  // namespace
 
 void ClientMail::expect(const std::string& client, const std::vector<NamedMessage>& named) {
   std::vector<Expected>& list = expected_[client];
@@ -76,9 +88,30 @@ std::int32_t ClientMail::first_missing(const std::string& client) const {
   return -1;
 }
 
+std::string ClientMail::missing_text(const std::string& client) const {
+  const auto found = expected_.find(client);
+  const std::int32_t first = first_missing(client);
+  if (first < 0) return "";
+  const std::vector<Expected>& list = found->second;
+  const auto missing = std::count_if(list.begin(), list.end(),
+                                     [](const Expected& expected) { return expected.wanted && !expected.there; });
+  return std::to_string(missing) + " of the " + std::to_string(list.size()) +
+         " messages that it names have not come, first " + text_of(list[static_cast<std::size_t>(first)].named);
+}
+
+std::string ClientMail::why_not(const std::string& client, std::int32_t place, const std::string& channel,
+                                const Bytes& payload) const {
+  const std::string sent = "sends again " + text_of({channel, crc32(payload)}) + " at place " + std::to_string(place);
+  const auto found = expected_.find(client);
+  if (found == expected_.end() || place < 0 || static_cast<std::size_t>(place) >= found->second.size())
+    return sent + ", but named " + std::to_string(found == expected_.end() ? 0 : found->second.size());
+  return sent + ", but named " + text_of(found->second[static_cast<std::size_t>(place)].named);
+}
+
 bool ClientMail::add(const std::string& client, std::int32_t place, const std::string& channel, const Bytes& payload) {
   const auto found = expected_.find(client);
-  if (found == expected_.end() || place < 0 || static_cast<std::size_t>(place) >= found->second.size()) return false;
+  if (found == expected_.end()) return true;  // it came by itself meanwhile, and the list was admitted
+  if (place < 0 || static_cast<std::size_t>(place) >= found->second.size()) return false;
   Expected& expected = found->second[static_cast<std::size_t>(place)];
   if (expected.named.channel != channel || expected.named.crc != crc32(payload)) return false;
   if (!expected.wanted || expected.there) return true;

@@ -31,8 +31,15 @@ class ClientMail {
   bool is_complete(const std::string& client) const;
   /// Place, in the list given to expect(), of the first message that has not come; -1: all are there.
   std::int32_t first_missing(const std::string& client) const;
-  /// A message of the list that was sent again.  False when it is not the one that was named.
+  /// How many of the list are missing, and the first: `2 of the 3 messages that it names have not come, first 'a.cmd'
+  /// with CRC-32 1a2b3c4d`.  Empty: none is.
+  std::string missing_text(const std::string& client) const;
+  /// A message of the list that was sent again.  False when it is not the one that was named.  One that comes after the
+  /// list was complete and admitted is left alone.
   bool add(const std::string& client, std::int32_t place, const std::string& channel, const Bytes& payload);
+  /// What is wrong with one that add() refuses: `sends again 'a.cmd' with CRC-32 ... at place 2, but named ...`.
+  std::string why_not(const std::string& client, std::int32_t place, const std::string& channel,
+                      const Bytes& payload) const;
   /// What is missing will not come any more.
   void give_up(const std::string& client);
   /// The mail of the step that begins; for MailGate::set_order.

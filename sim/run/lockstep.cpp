@@ -64,12 +64,22 @@ LeaveTerms read_leave_terms(const std::string& text) {
   return terms_in(text, "leave", LeaveTerms{});
 }
 
-std::int64_t session_in(const std::string& text, bool of_join) {
+void FollowTerms::read(ParamReader& in) {
+  in.read("session", session, between(0, 9e18), "random number of the program, its own at each start");
+}
+
+FollowTerms read_follow_terms(const std::string& text) {
+  return terms_in(text, "follow", FollowTerms{});
+}
+
+std::int64_t session_in(const std::string& text, std::string_view command) {
   try {
-    return of_join ? read_lockstep_terms(text, {}).session : read_leave_terms(text).session;
+    if (command == "join") return read_lockstep_terms(text, {}).session;
+    if (command == "leave") return read_leave_terms(text).session;
+    if (command == "follow") return read_follow_terms(text).session;
   } catch (const std::runtime_error&) {
-    return 0;
   }
+  return 0;
 }
 
 void Lockstep::join(const std::string& client, const LockstepTerms& terms, std::int64_t period_steps, std::int64_t step,

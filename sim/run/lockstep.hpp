@@ -49,8 +49,17 @@ struct LeaveTerms {
 /// Throws ConfigError.
 LeaveTerms read_leave_terms(const std::string& text);
 
-/// Of the `text` of a join or leave; 0: it names none, or cannot be read.
-std::int64_t session_in(const std::string& text, bool of_join);
+/// The `text` of `follow`, a YAML map.
+struct FollowTerms {
+  std::int64_t session = 0;  ///< of the program that is to be listed in the last tick
+  void read(ParamReader& in);
+};
+
+/// Throws ConfigError.
+FollowTerms read_follow_terms(const std::string& text);
+
+/// Of the `text` of a `join`, `leave` or `follow`; 0: it names none, cannot be read, or is of another command.
+std::int64_t session_in(const std::string& text, std::string_view command);
 
 /// A message that a client must have.
 struct PostedMessage {

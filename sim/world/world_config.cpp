@@ -99,7 +99,10 @@ void ProcessConfig::read(ParamReader& in) {
   in.read("command", command, "program and its arguments; {lcm_url} and {run} are replaced");
   in.read("client", client, "the name it joins the lockstep with; the run then waits for it");
   in.read_reference("bus", bus, "bus", "its LCM URL is that of this bus, named in `buses`; unset: the world's");
-  in.read_choice("on_exit", on_exit, {"continue", "end"}, "when it ends before the run does");
+  in.read_choice(
+      "on_exit", on_exit, {"continue", "end", "ignore"},
+      "when it ends before the run; continue: the run goes on, and fails if the program failed; end: the run "
+      "ends with exit code 1; ignore: the run goes on, and a failure does not count");
   if (in.has("command") && command.empty() && in.child("command")->scalar.empty())
     in.error("command", "'command' must name a program");
 }

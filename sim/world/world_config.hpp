@@ -99,7 +99,7 @@ struct ProcessConfig {
   std::vector<std::string> command;  ///< program and arguments; looked up beside the shoal program, then in PATH
   std::string client;                ///< name it joins the lockstep with; empty: it does not
   std::string bus;                   ///< of `buses:`; empty: the world's
-  std::string on_exit = "continue";  ///< when it ends before the run: continue, end (exit code 1)
+  std::string on_exit = "continue";  ///< when it ends before the run: continue, end (exit code 1), ignore
   void read(ParamReader& in);
 };
 

@@ -80,9 +80,9 @@ class LiveRun : public testing::Test {
     await_clock([&](std::int64_t utime) { return utime >= end; });
   }
 
-  void quit() {
+  void quit(int exit_code = 0) {
     EXPECT_TRUE(request("quit").ok);
-    EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+    EXPECT_EQ(shoal_->wait(), exit_code) << shoal_->errors();
   }
 
   ScratchFolder folder_;
@@ -128,9 +128,10 @@ TEST_F(LiveRun, RefusesWhatItDoesNotUnderstand) {
   start();
   const auto unknown = request("fly");
   EXPECT_FALSE(unknown.ok);
-  EXPECT_EQ(unknown.text,
-            "unknown command 'fly'; known commands: alive, describe, do, join, leave, pause, quit, remove, restore, "
-            "resume, rewind, snapshot, spawn, speed, step, until, where");
+  EXPECT_EQ(
+      unknown.text,
+      "unknown command 'fly'; known commands: alive, describe, do, follow, join, leave, pause, quit, remove, restore, "
+      "resume, rewind, snapshot, spawn, speed, step, until, where");
   EXPECT_FALSE(request("speed", -1).ok);
   EXPECT_FALSE(request("step", 0).ok);
   EXPECT_FALSE(request("step", 1e300).ok);
@@ -167,21 +168,47 @@ TEST_F(LiveRun, WaitsForAClientThatJoinsLate) {
   quit();
 }
 
-TEST_F(LiveRun, ASecondSimulatorWithClientsLeavesTheBusToTheFirst) {
+TEST_F(LiveRun, ASecondSimulatorLeavesTheBusToTheFirst) {
   start();
-  const Ended second =
-      run_shoal({"run", source("worlds/minimal.yaml"), "--lcm-url", own_url(), "--await", "pilot", "--duration", "1"});
-  EXPECT_EQ(second.exit_code, 4);
-  EXPECT_THAT(second.errors, HasSubstr("another simulator publishes on"));
+  const std::string minimal = source("worlds/minimal.yaml");
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--await", "pilot"}}) {
+    std::vector<std::string> arguments = {"run", minimal, "--lcm-url", own_url(), "--duration", "0.1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Ended second = run_shoal(arguments);
+    EXPECT_EQ(second.exit_code, 4);
+    EXPECT_THAT(second.errors, HasSubstr("another simulator answers on " + own_url()));
+    EXPECT_THAT(second.errors, HasSubstr("--lcm-shared"));
+  }
+  request("pause");  // then it publishes nothing, but answers
+  EXPECT_EQ(run_shoal({"run", minimal, "--lcm-url", own_url(), "--duration", "0.1"}).exit_code, 4);
+  EXPECT_EQ(run_shoal({"run", minimal, "--lcm-url", own_url(), "--duration", "0.1", "--lcm-shared"}).exit_code, 0);
+  EXPECT_EQ(run_shoal({"run", minimal, "--bus", "none", "--duration", "0.1"}).exit_code, 0);
   await_steps(5);  // the first goes on
   quit();
 }
 
-TEST_F(LiveRun, GoesOnWithoutAProcessThatDied) {
+TEST_F(LiveRun, AnotherSimulatorIsFoundOnTheBusOfAVehicle) {
+  start();
+  write_file(folder_.file("separate.yaml"), endless_world("buses: [{name: own, lcm_url: '" + own_url() + "'}]\n"));
+  const Ended second = run_shoal({"run", folder_.file("separate.yaml"), "--lcm-url", own_url(1), "--duration", "0.1"});
+  EXPECT_EQ(second.exit_code, 4);
+  EXPECT_THAT(second.errors, HasSubstr("another simulator answers on " + own_url()));
+  quit();
+}
+
+TEST_F(LiveRun, GoesOnWithoutAProcessThatDiedAndFails) {
   start("processes: [{name: pilot, command: [sh, -c, exit 3]}]\n", {"--launch"});
-  EXPECT_TRUE(await([&] { return shoal_->errors().find("the run goes on without it") != std::string::npos; }));
+  EXPECT_TRUE(
+      await([&] { return shoal_->errors().find("the run goes on without it, and fails") != std::string::npos; }));
   EXPECT_THAT(shoal_->errors(), HasSubstr("process 'pilot' exited with code 3"));
   await_steps(3);
+  quit(1);
+  EXPECT_THAT(shoal_->output(), HasSubstr("FAILED: process 'pilot' must not fail; it exited with code 3"));
+}
+
+TEST_F(LiveRun, GoesOnWithoutAProcessWhoseEndDoesNotMatter) {
+  start("processes: [{name: pilot, command: [sh, -c, exit 3], on_exit: ignore}]\n", {"--launch"});
+  EXPECT_TRUE(await([&] { return shoal_->errors().find("process 'pilot' exited with code 3") != std::string::npos; }));
   quit();
 }
 

@@ -26,6 +26,7 @@ struct Pilot {
   unsigned seed = 1;           ///< of that
   std::int64_t stop_at = -1;   ///< tick after which it says nothing any more, but lives
   std::int64_t die_at = -1;    ///< tick at which it kills itself
+  std::int64_t quit_at = -1;   ///< tick at which it ends with exit code 0, and does not leave
   std::int64_t leave_at = -1;  ///< tick after which it leaves
   bool go_back = false;        ///< with the world
 };
@@ -51,6 +52,7 @@ int fly(const Pilot& pilot) {
   while (const auto now = client.next_tick()) {
     if (++ticks == pilot.leave_at) break;
     if (ticks == pilot.die_at) kill(getpid(), SIGKILL);
+    if (ticks == pilot.quit_at) _exit(0);
     while (ticks == pilot.stop_at) pause();
     if (pilot.slow_ms > 0)
       std::this_thread::sleep_for(
@@ -89,6 +91,7 @@ int main(int argc, char** argv) {
   app.add_option("--seed", pilot.seed);
   app.add_option("--stop-at", pilot.stop_at);
   app.add_option("--die-at", pilot.die_at);
+  app.add_option("--quit-at", pilot.quit_at);
   app.add_option("--leave-at", pilot.leave_at);
   app.add_flag("--go-back", pilot.go_back);
   app.add_option("--lcm-url", pilot.lcm_url);

@@ -11,6 +11,7 @@
 #include "shoal/sim_control_reply_t.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "shoal/sim_resend_t.hpp"
+#include "shoal/sim_tick_t.hpp"
 #include "tests/system/lossy_relay.hpp"
 #include "tests/system/shoal_program.hpp"
 
@@ -148,7 +149,7 @@ class Policy : public testing::Test {
     write_file(folder_.file("world.yaml"),
                two_rovers(duration_s_, "processes: [{name: pilot, client: pilot, command: [" + built("lockstep_pilot") +
                                            ", --name, pilot, --vehicle, rover1, --lcm-url, '{lcm_url}', " + options +
-                                           "]}]\n" + world));
+                                           "]" + on_exit_ + "}]\n" + world));
     listener_.listen("sim.control.reply");
     listener_.listen("sim.tick");
     shoal_ = std::make_unique<Program>(Arguments{built("shoal"), "run", folder_.file("world.yaml"), "--launch",
@@ -182,6 +183,7 @@ class Policy : public testing::Test {
   bridges::LcmListener listener_{own_url()};
   std::unique_ptr<Program> shoal_;
   std::string duration_s_ = "2";
+  std::string on_exit_;  ///< of the process, in YAML
   std::int32_t id_ = 0;
 };
 
@@ -201,8 +203,62 @@ TEST_F(Policy, ContinueGoesOnWithoutASilentClient) {
 
 TEST_F(Policy, ContinueGoesOnWithoutAKilledClientAtOnce) {
   start("--die-at, '5', --on-timeout, continue, --timeout, '1000'");
-  EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+  EXPECT_EQ(shoal_->wait(), 1) << shoal_->errors();
+  EXPECT_THAT(shoal_->output(), HasSubstr("FAILED: process 'pilot' must not fail; it was killed by signal 9"));
+  EXPECT_THAT(summary(), HasSubstr("\"sim_time_s\": 2.0"));
   EXPECT_THAT(shoal_->errors(), HasSubstr("the process of client 'pilot' ended before it answered step 40"));
+}
+
+TEST_F(Policy, AClientThatEndsBeforeItsLastTickWithoutLeavingHasFailedWhateverItsExitCode) {
+  start("--quit-at, '5'", "lockstep: {timeout_s: 1000}\n");
+  EXPECT_EQ(shoal_->wait(), 1) << shoal_->errors();
+  const char* how = "exited with code 0 before the last tick of client 'pilot', which did not leave";
+  EXPECT_THAT(shoal_->errors(), HasSubstr(std::string("process 'pilot' ") + how));
+  EXPECT_THAT(shoal_->output(), HasSubstr(std::string("FAILED: process 'pilot' must not fail; it ") + how));
+  EXPECT_THAT(summary(), HasSubstr("\"failed\": true"));
+}
+
+TEST_F(Policy, AClientThatLeavesHasNotFailed) {
+  start("--leave-at, '5'", "lockstep: {timeout_s: 1000}\n");
+  EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+  EXPECT_THAT(shoal_->errors(), HasSubstr("lockstep: client 'pilot' left at 0.40 s on the world's bus"));
+  EXPECT_THAT(summary(), HasSubstr("\"failed\": false"));
+  EXPECT_THAT(summary(), HasSubstr("\"ended\": \"left\""));
+}
+
+TEST_F(Policy, AFailureDoesNotCountWhereTheWorldSaysIgnore) {
+  on_exit_ = ", on_exit: ignore";
+  start("--die-at, '5', --on-timeout, continue, --timeout, '1000'");
+  EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+  EXPECT_THAT(summary(), HasSubstr("was killed by signal 9"));
+  EXPECT_THAT(summary(), HasSubstr("\"failed\": false"));
+  EXPECT_THAT(summary(), HasSubstr("\"rules\": []"));
+}
+
+TEST_F(Policy, AnotherSimulatorOnTheBusDoesNotEndTheClients) {
+  duration_s_ = "0";
+  start("--period, '0.01', --slow-ms, '2'");
+  const auto await_ticks = [&](int count) {
+    for (int ticks = 0; ticks < count;) {
+      const auto message = listener_.next(patience);
+      if (!message) return false;
+      if (message->channel != "sim.tick") continue;
+      const auto tick = shoal::decode<shoal::sim_tick_t>(message->payload, shoal::Finite::any);
+      if (tick.count == 1 && tick.client[0].name == "pilot") ++ticks;
+    }
+    return true;
+  };
+  ASSERT_TRUE(await_ticks(1));
+  const Ended second = run_shoal({"run", source("worlds/minimal.yaml"), "--lcm-url", own_url(), "--lcm-shared",
+                                  "--duration", "0.1", "--speed", "max"});
+  EXPECT_EQ(second.exit_code, 0) << second.errors;
+  // What waits here came before the other run ended, so many more come after it.
+  EXPECT_TRUE(await_ticks(1000));
+  EXPECT_EQ(shoal_->children().size(), 1u);
+  EXPECT_TRUE(request("quit").ok);
+  EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+  EXPECT_THAT(shoal_->errors(), HasSubstr("another simulator was started with --lcm-shared on the world's bus of this run"));
+  EXPECT_THAT(text_of_file(folder_.file("results") + "/pilot.log"), HasSubstr(" end 1"));
 }
 
 TEST_F(Policy, AKilledClientFailsARunThatIsJudgedThoughTheWorldGoesOn) {
@@ -222,7 +278,7 @@ TEST_F(Policy, EndThatWasAgreedEndsTheRunWithAKilledClientAtOnce) {
 
 TEST_F(Policy, KilledClientThatAgreedNothingIsGoneAndTheRunGoesOn) {
   start("--die-at, '5'", "lockstep: {timeout_s: 1000}\n");
-  EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+  EXPECT_EQ(shoal_->wait(), 1) << shoal_->errors();
   EXPECT_THAT(summary(), HasSubstr("\"ended\": \"its process ended\""));
 }
 
@@ -258,7 +314,7 @@ TEST_F(Policy, WaitWaitsForAKilledClientUntilAnotherTakesItsPlace) {
   start("--die-at, '5', --on-timeout, wait, --timeout, '0.1'");
   await_error("the world waits");
   Program second({built("lockstep_pilot"), "--name", "pilot", "--vehicle", "rover1", "--lcm-url", own_url()});
-  EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+  EXPECT_EQ(shoal_->wait(), 1) << shoal_->errors();  // its own program failed
   EXPECT_EQ(second.wait(), 0) << second.errors();
   EXPECT_THAT(second.output(), HasSubstr("ticks 17 "));  // 21 for the whole run, of which 4 were answered by the first
 }
@@ -296,7 +352,7 @@ TEST_F(Policy, AClientThatAnswersTooLateIsToldAndMayJoinAgain) {
   await_error("process 'pilot' exited with code 1");
   EXPECT_THAT(text_of_file(folder_.file("results") + "/pilot.log"), HasSubstr("join again"));
   EXPECT_TRUE(request("quit").ok);
-  EXPECT_EQ(shoal_->wait(), 0);
+  EXPECT_EQ(shoal_->wait(), 1);
 }
 
 /// Two clients that go back with their world.

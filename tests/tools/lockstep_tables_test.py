@@ -34,7 +34,7 @@ class Tables(unittest.TestCase):
         code, (killed, stalled) = table("killed", "--policies", "wait", "--duration", "3")
         self.assertEqual(code, 0)
         self.assertIn("the world waits", killed[2])
-        self.assertEqual(killed[3:6], ["leave --client rover2", "3", "0"])
+        self.assertEqual(killed[3:6], ["leave --client rover2", "3", "1"])
         self.assertNotEqual(killed[6], undisturbed[0][4])
         self.assertEqual(stalled[3:], ["SIGCONT", "3", "0", undisturbed[0][4]])
 

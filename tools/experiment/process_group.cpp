@@ -89,8 +89,8 @@ std::vector<ProcessGroup::Exit> ProcessGroup::reap() {
     int status = 0;
     if (waitpid(process.pid, &status, WNOHANG) != process.pid) return false;
     const bool failed = !WIFEXITED(status) || WEXITSTATUS(status) != 0;
-    exits.push_back(
-        {process.config.name, describe_status(status), process.config.client, process.config.on_exit == "end", failed});
+    exits.push_back({process.config.name, describe_status(status), process.config.client,
+                     process.config.on_exit == "end", failed, process.config.on_exit == "ignore"});
     if (kill(-process.pid, SIGTERM) == 0) left_behind_.push_back(process.pid);  // its children live on
     return true;
   });

@@ -18,7 +18,8 @@ class ProcessGroup {
     std::string how;     ///< `exited with code 1`, `was killed by signal 9 (Killed)`
     std::string client;  ///< its lockstep name
     bool ends_run = false;
-    bool failed = false;
+    bool failed = false;   ///< with an exit code that is not 0, or by a signal
+    bool ignored = false;  ///< the world says that this does not matter
   };
 
   ProcessGroup() = default;

@@ -25,7 +25,7 @@ struct Summary {
     std::string name;
     std::string how;  ///< `exited with code 1`
     double sim_time_s = 0;
-    bool failed = false;  ///< with an exit code, or by a signal
+    bool failed = false;  ///< with an exit code, by a signal, or before its last tick; never with `on_exit: ignore`
   };
 
   std::string world;
@@ -71,7 +71,7 @@ struct Summary {
   std::string why_not_judged() const;
   /// By a request, a key or a signal, or by going back to another branch: nobody knows what its rest would have been.
   bool ended_by_hand() const { return ended == "quit" || ended == "signal" || ended == "rewound"; }
-  /// Where something is judged each program that failed is a rule that failed.
+  /// Each program that failed is a rule that failed.
   void judge_processes();
   void fail(int code, const std::string& how_ended, const std::string& why);
   std::string to_json() const;

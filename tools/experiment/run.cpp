@@ -32,6 +32,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       options_(options),
       files_(files_text(loaded.resolved)),
       buses_(loaded.config, options),
+      others_(buses_.networks(), options.lcm_shared),
       journal_(buses_.outer()),
       world_(loaded.config, buses_.outer(),
              options.serial_ports ? journal_.wrap(port_opener(options.name)) : sim::PortOpener(),
@@ -51,11 +52,12 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
   journal_.attach(world_);
   journal_.set_heard([this] { return heard() || buses_.gate().reads("sim.hash"); });
   service_.use_journal(journal_);
+  service_.use_others(others_);
   world_.use_threads(options.threads);
   lockstep_.add_line(buses_.network(), buses_.gate());
   for (const sim::BusConfig& bus : loaded.config.buses) {
     service_.serve_vehicles(buses_.network(bus.name));
-    lockstep_.add_line(buses_.network(bus.name), buses_.gate(bus.name));
+    lockstep_.add_line(buses_.network(bus.name), buses_.gate(bus.name), bus.name);
   }
   control_.speed = options.speed.value_or(loaded.config.run.speed);
   control_.paused = options.paused;
@@ -139,13 +141,12 @@ bool Run::wanted() const {
 }
 
 void Run::start_clients() {
-  const bool takes_clients = !options_.await.empty() || (options_.launch && !loaded_.config.processes.empty());
-  if (takes_clients && buses_.over_lcm() &&
-      service_.hears_another_simulator([this](std::chrono::milliseconds time) { buses_.wait(time); })) {
+  if (const auto other = others_.look([this](std::chrono::milliseconds time) { buses_.wait(time); })) {
     alone_ = false;
     throw RunError(4, "bus",
-                   "another simulator publishes on " + buses_.url("") +
-                       "; their clients would mix: choose another port with --lcm-url");
+                   *other +
+                       "; clients and reports of the two would mix: choose another port with --lcm-url, or share "
+                       "this one with --lcm-shared");
   }
   service_.publish_info();  // a log tells of its run from the first event
   if (options_.from) publish_snapshot();
@@ -267,12 +268,20 @@ void Run::check_bus() const {
   if (const auto lost = buses_.lost_connection()) throw RunError(4, "bus", *lost);
 }
 
+RunPrograms::Clients Run::clients(bool goes_on) {
+  return {[this, goes_on](const std::string& client) {
+            if (goes_on) service_.handle_requests();  // its last may be that it leaves
+            return lockstep_.has_left(client);
+          },
+          [this](const std::string& client) {
+            progress_.clear();
+            service_.client_gone(client);
+            return !lockstep_.has(client);
+          }};
+}
+
 void Run::check_programs() {
-  programs_.check(world_.now(), [this](const std::string& client) {
-    progress_.clear();
-    service_.client_gone(client);
-    return !lockstep_.has(client);
-  });
+  programs_.check(world_.now(), clients(true));
 }
 
 std::uint64_t Run::messages() const {

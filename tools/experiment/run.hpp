@@ -5,6 +5,7 @@
 #include <string>
 
 #include "bridges/lcm/lockstep_service.hpp"
+#include "bridges/lcm/other_simulators.hpp"
 #include "bridges/lcm/run_journal.hpp"
 #include "bridges/lcm/sim_service.hpp"
 #include "sim/run/run_control.hpp"
@@ -55,6 +56,8 @@ class Run {
   /// Waits until the next step is due, answering requests meanwhile.
   void pace();
   void check_bus() const;
+  /// `goes_on`: requests may still change the world.
+  RunPrograms::Clients clients(bool goes_on);
   void check_programs();
   bool wanted() const;
   std::string how_ended() const;
@@ -67,6 +70,7 @@ class Run {
   const RunOptions& options_;
   const std::string files_;  ///< hashes of those that the world names
   RunBuses buses_;
+  bridges::OtherSimulators others_;  ///< are asked before the world is built
   sim::RunControl control_;
   bridges::RunJournal journal_;
   sim::World world_;
@@ -81,7 +85,7 @@ class Run {
   Pacer pacer_;
   RunPrograms programs_;
   bool synchronized_ = true;  ///< the clients have answered the present step
-  bool alone_ = true;         ///< no other simulator was heard at the start
+  bool alone_ = true;         ///< no other simulator was found at the start
   std::unique_ptr<Results> results_;
   std::unique_ptr<RunKeys> keys_;          ///< null: no terminal
   std::int64_t steps_taken_ = 0;           ///< in this process

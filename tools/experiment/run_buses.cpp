@@ -48,6 +48,14 @@ std::string RunBuses::url(const std::string& name) const {
   return line.lcm ? line.lcm->url() : "";
 }
 
+std::vector<bridges::OtherSimulators::BusToAsk> RunBuses::networks() const {
+  std::vector<bridges::OtherSimulators::BusToAsk> networks;
+  for_each([&](const Line& line) {
+    if (line.lcm) networks.push_back({line.lcm->url(), line.lcm});
+  });
+  return networks;
+}
+
 void RunBuses::admit(const Admitted& admitted) {
   const auto hand_over = [&](const std::string& name, Line& line) {
     const std::vector<sim::MailGate::Mail>& mail = line.gate->admit();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bridges/lcm/lcm_bus.hpp"
+#include "bridges/lcm/other_simulators.hpp"
 #include "bridges/lcm/recording_bus.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/bus/mail_gate.hpp"
@@ -41,6 +42,8 @@ class RunBuses {
   bool over_lcm() const { return main_.lcm != nullptr; }
   /// LCM URL of a bus; empty when it is none.
   std::string url(const std::string& name) const;
+  /// Those over LCM, without record and gate.
+  std::vector<bridges::OtherSimulators::BusToAsk> networks() const;
   /// Waits for a message on any bus, up to `time`.
   void wait(std::chrono::milliseconds time);
   void end_of_step();

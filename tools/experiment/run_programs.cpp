@@ -29,15 +29,26 @@ std::vector<std::string> RunPrograms::start() {
   return awaited;
 }
 
-void RunPrograms::check(sim::Time now, const std::function<bool(const std::string& client)>& told_of) {
+std::vector<ProcessGroup::Exit> RunPrograms::reap(const Clients& clients) {
+  std::vector<ProcessGroup::Exit> exits = processes_.reap();
+  for (ProcessGroup::Exit& exit : exits) {
+    if (exit.failed || exit.client.empty() || clients.has_left(exit.client)) continue;
+    exit.failed = true;
+    exit.how += " before the last tick of client '" + exit.client + "', which did not leave";
+  }
+  return exits;
+}
+
+void RunPrograms::check(sim::Time now, const Clients& clients) {
   if (processes_.empty()) return;
-  for (const ProcessGroup::Exit& exit : processes_.reap()) {
+  for (const ProcessGroup::Exit& exit : reap(clients)) {
     const std::string text = "process '" + exit.name + "' " + exit.how;
     note(exit, now);
     if (exit.ends_run) throw RunError(1, "process", text + "; the world says the run ends with it");
-    const bool goes_on = told_of(exit.client);
-    if (exit.failed)
-      spdlog::error("{}; {}", text, goes_on ? "the run goes on without it" : "its `on_timeout` decides what follows");
+    const bool goes_on = clients.gone(exit.client);
+    if (exit.failed && !exit.ignored)
+      spdlog::error("{}; {}", text,
+                    goes_on ? "the run goes on without it, and fails" : "its `on_timeout` decides what follows");
     else
       spdlog::info("{}", text);
     gone_.insert(exit.client);
@@ -45,11 +56,12 @@ void RunPrograms::check(sim::Time now, const std::function<bool(const std::strin
 }
 
 void RunPrograms::note(const ProcessGroup::Exit& exit, sim::Time now) {
-  ended_.push_back({exit.name, exit.how, sim::to_seconds(now), exit.failed});
+  ended_.push_back({exit.name, exit.how, sim::to_seconds(now), exit.failed && !exit.ignored});
 }
 
-void RunPrograms::note_last(sim::Time now) {
-  for (const ProcessGroup::Exit& exit : processes_.reap()) note(exit, now);
+void RunPrograms::note_last(sim::Time now, const Clients& clients) {
+  if (processes_.empty()) return;
+  for (const ProcessGroup::Exit& exit : reap(clients)) note(exit, now);
 }
 
 }  // namespace tools

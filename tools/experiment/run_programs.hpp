@@ -20,12 +20,19 @@ class RunPrograms {
 
   /// Starts the programs when the options say so.  Returns the lockstep clients to wait for.  Throws RunError.
   std::vector<std::string> start();
-  /// Looks for programs that have ended.  `told_of` gets the lockstep name of each, and says whether the run goes on
-  /// without it at once; else its `on_timeout` decides.  Throws RunError when the world says that the run ends with
-  /// one.
-  void check(sim::Time now, const std::function<bool(const std::string& client)>& told_of);
+  /// What the lockstep knows of its clients, by name.
+  struct Clients {
+    /// It asked to leave, and takes no part any more.
+    std::function<bool(const std::string& client)> has_left;
+    /// Its process is gone.  Says whether the run goes on without it at once; else its `on_timeout` decides.
+    std::function<bool(const std::string& client)> gone;
+  };
+
+  /// Looks for programs that have ended.  A client that ended before its last tick and did not leave has failed,
+  /// whatever its exit code.  Throws RunError when the world says that the run ends with one.
+  void check(sim::Time now, const Clients& clients);
   /// The run is about to end, and to tell the programs: notes those that have ended by themselves.
-  void note_last(sim::Time now);
+  void note_last(sim::Time now, const Clients& clients);
   bool is_gone(const std::string& client) const { return gone_.contains(client); }
   /// Lets those that take part in the lockstep end by themselves.
   void await_clients() { processes_.await_clients(); }
@@ -34,6 +41,7 @@ class RunPrograms {
   const std::vector<Summary::Process>& ended() const { return ended_; }
 
  private:
+  std::vector<ProcessGroup::Exit> reap(const Clients& clients);
   void note(const ProcessGroup::Exit& exit, sim::Time now);
 
   const sim::WorldConfig& config_;

@@ -23,10 +23,10 @@ bool programs_take_part(const sim::WorldConfig& world, const RunOptions& options
 }  // namespace
 
 void Run::finish(Summary& summary) {
-  admit_mail();  // what came after the last step is in the log: the journal says that it came from outside
-  journal_.finish(summary.ended != "fault" && summary.ended != "error");
-  programs_.note_last(world_.now());
-  if (alone_) {  // else it would end the other simulator's clients
+  programs_.note_last(world_.now(), clients(false));
+  if (alone_) {    // else the bus is another simulator's
+    admit_mail();  // what came after the last step is in the log: the journal says that it came from outside
+    journal_.finish(summary.ended != "fault" && summary.ended != "error");
     lockstep_.publish_end([this](std::chrono::milliseconds time) { buses_.wait(time); },
                           std::chrono::milliseconds(caught_signal() == 0 ? 1000 : 200));
     if (caught_signal() == 0) programs_.await_clients();

@@ -17,6 +17,7 @@ struct RunOptions {
   std::optional<double> speed;       ///< instead of the world's; 0: as fast as possible
   std::string bus = "lcm";           ///< lcm, none
   std::string lcm_url;               ///< empty: LCM_DEFAULT_URL, then the default
+  bool lcm_shared = false;           ///< other simulators may be on the same buses
   std::string record;                ///< file for the LCM event log; empty: none
   bool overwrite = false;            ///< of the record
   std::string results;               ///< directory; empty: none

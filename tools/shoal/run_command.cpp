@@ -117,6 +117,8 @@ void add_bus_options(CLI::App& command, RunArguments& arguments) {
       ->type_name("BUS")
       ->check(one_of({"lcm", "none"}).description(""));
   add_lcm_url_option(command, arguments.run.lcm_url);
+  command.add_flag("--lcm-shared", arguments.run.lcm_shared,
+                   "start though another simulator is on the bus; without it the exit code is then 4");
   command.add_flag("--launch", arguments.run.launch, "start the programs that the world names");
   command.add_option("--await", arguments.run.await, "lockstep clients to wait for, started by hand: NAME,NAME,...")
       ->type_name("NAMES")
@@ -177,7 +179,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
                   "shoal run --from snaps/branch0_step1000.snapshot --set vehicles.rover3.devices.lidar.rate_hz=5",
                   "shoal run worlds/coop_land.yaml --seed 7 --set vehicles.rover3.devices.modem.loss_probability=0.2"},
                  {{0, "the run ended; no rule of the world failed"},
-                  {1, "a rule of the world failed"},
+                  {1, "a rule of the world or one of its programs failed"},
                   {2, "wrong usage, or a mistake in the world"},
                   {3, "physics fault"},
                   {4, "bus or file trouble"},

@@ -6,7 +6,9 @@
 #include <memory>
 #include <optional>
 #include <regex>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bridges/lcm/lcm_bus.hpp"
@@ -56,13 +58,20 @@ class FakeSimulator {
         }
   }
 
-  shoal::sim_control_request_t await_request() { return await_message<shoal::sim_control_request_t>(*requests_); }
+  /// The next one that was not replied to: on a busy machine a client asks again while the reply is on its way.
+  shoal::sim_control_request_t await_request() {
+    while (true) {
+      const auto request = await_message<shoal::sim_control_request_t>(*requests_);
+      if (!replied_.contains({request.client, request.id}) || request.command.empty()) return request;
+    }
+  }
   shoal::sim_ack_t await_ack() { return await_message<shoal::sim_ack_t>(*acks_); }
   shoal::sim_resend_t await_question() { return await_message<shoal::sim_resend_t>(*questions_); }
   shoal::sim_resent_t await_bundle() { return await_message<shoal::sim_resent_t>(*bundles_); }
 
   void reply(const shoal::sim_control_request_t& request, bool ok, const std::string& text) {
-    if (ok && request.command == "join") join(request);
+    replied_.insert({request.client, request.id});
+    if (ok && (request.command == "join" || request.command == "follow")) join(request);
     shoal::sim_control_reply_t reply{};
     reply.id = request.id;
     reply.client = request.client;
@@ -140,6 +149,7 @@ class FakeSimulator {
   bridges::LcmBus bus_;
   std::unique_ptr<sim::Mailbox> requests_, acks_, questions_, bundles_, commands_;
   std::map<std::string, Member> members_;
+  std::set<std::pair<std::string, std::int32_t>> replied_;  // client and number of the request
   shoal::sim_tick_t last_tick_;
 };
 

@@ -132,19 +132,35 @@ TEST(LockstepClient, SaysThatItLivesBeforeItsFirstTick) {
   thread.join();
 }
 
-TEST(LockstepClient, EndsWithTheRunThoughTheLastTickNamesNobody) {
+TEST(LockstepClient, GoesOnWhenALastTickThatDoesNotListItEndsAnotherRun) {
   FakeSimulator simulator;
   LockstepClient client(own_url(1), "pilot");
   std::thread thread([&] {
     simulator.reply(simulator.await_request(), true, "");
     simulator.tick(1, {"pilot"});
     EXPECT_EQ(simulator.await_ack().step, 1);
-    simulator.tick(1, {}, true);  // the run ends at the step that was just acknowledged
+    simulator.tick(1, {}, true);        // of a run without clients
+    simulator.tick(1, {"else"}, true);  // of one with others
+    shoal::sim_tick_t tick{};           // and of one with a client of the same name
+    tick.last = 1;
+    tick.client.resize(1);
+    tick.client[0].name = "pilot";
+    tick.client[0].session = simulator.session("pilot") + 1;
+    tick.client[0].sequence = 2;
+    tick.count = 1;
+    simulator.send("sim.tick", tick);
+    simulator.tick(2, {"pilot"});
+    EXPECT_EQ(simulator.await_ack().step, 2);
+    simulator.tick(2, {"pilot"}, true);
+    EXPECT_EQ(simulator.await_ack().sequence, 3);
   });
   client.join(0.1, 10s);
   client.set_silence_limit(10s);
   shoal::sim_tick_t tick;
   ASSERT_TRUE(client.next_tick(tick));
+  client.acknowledge(tick);
+  EXPECT_TRUE(client.next_tick(tick));
+  EXPECT_EQ(tick.step, 2);
   client.acknowledge(tick);
   EXPECT_FALSE(client.next_tick(tick));
   thread.join();

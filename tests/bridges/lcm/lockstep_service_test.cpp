@@ -7,83 +7,13 @@
 #include <utility>
 
 #include "bridges/lcm/resend.hpp"
-#include "shoal/sim_ack_t.hpp"
-#include "shoal/sim_resend_t.hpp"
-#include "shoal/sim_resent_t.hpp"
-#include "shoal/sim_tick_t.hpp"
-#include "sim/bus/crc32.hpp"
-#include "sim/bus/in_process_bus.hpp"
-#include "tests/bridges/lcm/service_fixture.hpp"
+#include "tests/bridges/lcm/lockstep_fixture.hpp"
 
 namespace {
 
+using lcm_test::bytes_of;
 using testing::HasSubstr;
-
-sim::Bytes bytes_of(const std::string& text) {
-  const auto* data = reinterpret_cast<const std::byte*>(text.data());
-  return {data, data + text.size()};
-}
-
-/// A world with one box.
-struct Service : lcm_test::ServedWorld {
-  explicit Service(const std::string& terms = "{timeout_s: 0.02}")
-      : ServedWorld("shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nlockstep: " + terms +
-                    "\nvehicles: [{name: a, model: {shoal: 1, bodies: [{name: b, parts: [{shape: box, mass_kg: "
-                    "1}]}]}}]\n") {}
-
-  shoal::sim_control_reply_t join(const std::string& client, const std::string& text = "", double period_s = 0.01) {
-    return ask("join", period_s, text, client);
-  }
-  void send_request(const std::string& command, double value, const std::string& client = "",
-                    const std::string& text = "") {
-    shoal::sim_control_request_t request{};
-    request.client = client;
-    request.command = command;
-    request.value = value;
-    request.text = text;
-    test.send("sim.control", request);
-  }
-  /// A request that is not answered yet.
-  bool is_undecided(const std::string& command, const std::string& client, const std::string& text) {
-    replies.take_all();
-    send_request(command, 0.01, client, text);
-    service.handle_requests();
-    return replies.take_all().empty();
-  }
-  void acknowledge(std::int64_t step, const std::string& client, std::int64_t session = 0, std::int64_t sequence = 0,
-                   const std::vector<std::pair<std::string, std::string>>& published = {}) {
-    shoal::sim_ack_t ack{};
-    ack.step = step;
-    ack.client = client;
-    ack.session = session;
-    ack.sequence = sequence;
-    ack.listed = session != 0;
-    for (const auto& [channel, text] : published) {
-      ack.channel.push_back(channel);
-      ack.crc.push_back(sim::crc32(bytes_of(text)));
-    }
-    ack.count = static_cast<std::int32_t>(published.size());
-    test.send("sim.ack", ack);
-  }
-  /// `while_waiting` is called each time that the world waits for somebody.
-  bridges::LockstepOutcome synchronize(const std::function<void()>& while_waiting = [] {}) {
-    return lockstep.synchronize([&](std::chrono::milliseconds) { while_waiting(); },
-                                [&] {
-                                  service.handle_requests();
-                                  return true;
-                                });
-  }
-  std::string admitted() {
-    std::string all;
-    for (const sim::MailGate::Mail& mail : gate.admit())
-      all.append(reinterpret_cast<const char*>(mail.payload.data()), mail.payload.size());
-    return all;
-  }
-
-  test::Listener<shoal::sim_tick_t> ticks{test, "sim.tick"};
-  test::Listener<shoal::sim_resend_t> questions{test, "sim.resend"};
-  test::Listener<shoal::sim_resent_t> bundles{test, "sim.resent"};
-};
+using Service = lcm_test::LockstepWorld;
 
 TEST(LockstepService, WaitsForTheClientsThatAreDueAndNamesTheMissing) {
   Service s;
@@ -597,39 +527,6 @@ TEST(LockstepService, OnlySoManyClientsOfThePastAreListed) {
     ASSERT_TRUE(s.ask("leave", 0, "", name).ok);
   }
   EXPECT_EQ(s.lockstep.summaries().size(), 2000u);
-}
-
-TEST(LockstepService, AClientOfTheSameNameOnAnotherBusIsASecondOne) {
-  sim::InProcessBus other_bus;
-  sim::MailGate other_gate(other_bus);
-  Service s;
-  s.lockstep.add_line(other_bus, other_gate);
-  ASSERT_TRUE(s.join("pilot").ok);
-  shoal::sim_control_request_t request{};
-  request.client = "pilot";
-  request.value = 0.01;
-  EXPECT_FALSE(s.lockstep.join(1, request));  // not decided
-  s.synchronize([&] { s.acknowledge(0, "pilot"); });
-  EXPECT_THROW(s.lockstep.join(1, request), std::runtime_error);
-}
-
-TEST(LockstepService, ASessionStaysOnItsBus) {
-  sim::InProcessBus other_bus;
-  sim::MailGate other_gate(other_bus);
-  Service s;
-  s.lockstep.add_line(other_bus, other_gate);
-  ASSERT_TRUE(s.join("pilot", "{session: 7}").ok);
-  shoal::sim_control_request_t request{};
-  request.client = "pilot";
-  request.value = 0.01;
-  request.text = "{session: 7}";
-  try {
-    s.lockstep.join(1, request);
-    ADD_FAILURE();
-  } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("the session 7 of client 'pilot' takes part on another bus"));
-  }
-  EXPECT_TRUE(s.join("pilot", "{session: 7}").ok);
 }
 
 TEST(LockstepService, TellsTheEndUntilAllKnow) {

@@ -29,5 +29,9 @@ TEST(LeaveTermsText, IsReadAsItWasMeant) {
   EXPECT_EQ(read.acknowledged, 17);
 }
 
+TEST(FollowTermsText, IsReadAsItWasMeant) {
+  EXPECT_EQ(sim::read_follow_terms(text_of(sim::FollowTerms{.session = 5})).session, 5);
+}
+
 }  // namespace
 }  // namespace bridges

@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 
 #include "shoal/sim_state_t.hpp"
-#include "shoal/sim_tick_t.hpp"
 #include "tests/bridges/lcm/service_fixture.hpp"
 
 namespace {
@@ -14,6 +13,7 @@ struct Service : lcm_test::ServedWorld {
             "[{name: "
             "b, parts: [{shape: box, mass_kg: 1}]}]}}]\n") {}
 
+  using ServedWorld::ask;
   shoal::sim_control_reply_t ask(const std::string& command, double value) {
     return ServedWorld::ask(command, value, "");
   }
@@ -53,28 +53,13 @@ TEST(SimService, SaysWhyItRefuses) {
   EXPECT_EQ(s.service.bad_messages(), 3);
 }
 
-TEST(SimService, HearsAnotherSimulatorOnItsBus) {
+TEST(SimService, ItsOwnQuestionForOtherSimulatorsIsNoRequest) {
   Service s;
-  EXPECT_FALSE(s.service.hears_another_simulator([](std::chrono::milliseconds) {}));
-  bool published = false;
-  EXPECT_TRUE(s.service.hears_another_simulator([&](std::chrono::milliseconds) {
-    if (!published) s.test.send("sim.tick", shoal::sim_tick_t{});
-    published = true;
-  }));
-}
-
-TEST(SimService, HearsAnotherSimulatorThatIsPausedAndPublishesNothing) {
-  Service s;
-  s.control.paused = true;
-  sim::RunControl control;
-  sim::MailGate gate{s.test.bus};
-  bridges::LockstepService lockstep{s.test.world, control};
-  bridges::SimService starting{s.test.bus, s.test.bus, s.test.world, control, lockstep, {"{}", "test"}};
-  EXPECT_TRUE(starting.hears_another_simulator([&](std::chrono::milliseconds) { s.service.handle_requests(); }));
-  // Its own question is no request to itself.
-  s.replies.take_all();
-  starting.handle_requests();
+  bridges::OtherSimulators others({{"here", &s.test.bus}}, false);
+  s.service.use_others(others);
+  s.service.handle_requests();
   EXPECT_TRUE(s.replies.take_all().empty());
+  EXPECT_TRUE(s.ask("alive", 0, "", "shoal-run").ok) << "another run's is answered";
 }
 
 TEST(SimService, PublishesTheStateAtItsRate) {

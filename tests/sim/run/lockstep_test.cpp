@@ -251,10 +251,12 @@ TEST(LockstepTerms, CannotAskForMorePatienceThanTheWorldHas) {
 }
 
 TEST(LockstepTerms, TellTheSessionAlsoOfTextThatIsWrong) {
-  EXPECT_EQ(sim::session_in("{session: 12, receives: [a]}", true), 12);
-  EXPECT_EQ(sim::session_in("{session: 12, acknowledged: 3}", false), 12);
-  EXPECT_EQ(sim::session_in("{sesion: 12}", true), 0);
-  EXPECT_EQ(sim::session_in("{", false), 0);
+  EXPECT_EQ(sim::session_in("{session: 12, receives: [a]}", "join"), 12);
+  EXPECT_EQ(sim::session_in("{session: 12, acknowledged: 3}", "leave"), 12);
+  EXPECT_EQ(sim::session_in("{sesion: 12}", "join"), 0);
+  EXPECT_EQ(sim::session_in("{", "leave"), 0);
+  EXPECT_EQ(sim::session_in("{session: 12}", "follow"), 12);
+  EXPECT_EQ(sim::session_in("{session: 12}", "quit"), 0);
 }
 
 TEST(LockstepTerms, AreReadWithClearErrors) {

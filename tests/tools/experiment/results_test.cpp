@@ -99,12 +99,19 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   EXPECT_THAT(summary.to_text(), testing::HasSubstr("process 'pilot' exited with code 1 at 2.50 s"));
 }
 
-TEST(Summary, AProgramThatFailedIsARuleThatFailedWhereSomethingIsJudged) {
+TEST(Summary, AProgramThatFailedIsARuleThatFailedAlsoWithoutOtherRules) {
   tools::Summary summary;
-  summary.processes = {{"done", "exited with code 0", 1, false}, {"pilot", "exited with code 2", 0.5, true}};
+  summary.processes = {{"done", "exited with code 0", 1, false}};
   summary.judge_processes();
   EXPECT_FALSE(summary.judged());
-  EXPECT_THAT(summary.to_text(), testing::HasSubstr("programs of the world failed\n  not judged: the world has no"));
+  EXPECT_EQ(summary.judgement(), tools::Judgement::not_judged);
+  summary.processes.push_back({"pilot", "exited with code 2", 0.5, true});
+  tools::Summary ruled = summary;
+  summary.judge_processes();
+  EXPECT_EQ(summary.judgement(), tools::Judgement::failed);
+  EXPECT_THAT(summary.to_text(),
+              testing::HasSubstr("FAILED: process 'pilot' must not fail; it exited with code 2 at 0.50 s"));
+  summary = ruled;
   summary.verdicts = {{"a", true}};
   summary.judge_processes();
   ASSERT_EQ(summary.verdicts.size(), 2u);
