@@ -28,7 +28,7 @@ std::optional<Outcome> outcome_of(std::size_t in_case, const std::vector<StudyRu
   for (const StudyRun& run : runs) {
     if (run.in_case != in_case) continue;
     if (!run.record) return std::nullopt;
-    outcome.hashes.push_back(run.record->state_hash);
+    outcome.hashes.push_back(run.record->run_hash);
     outcome.figures.push_back(run.record->metrics);
     for (const auto& [name, value] : run.record->metrics) outcome.has_figures |= value.has_value();
   }
