@@ -138,7 +138,7 @@ TEST(MicromodemCommands, ClockModesOfASecondGenerationAreBits) {
   EXPECT_EQ(clock_mode(older), "1");
 }
 
-TEST(MicromodemCommands, ASecondGenerationIsToldTheTimeByTms) {
+TEST(MicromodemCommands, ASecondGenerationTakesTheTimeByTms) {
   Modem modem = modem_of("2.0.16421");
   EXPECT_THAT(modem.host("$CCTMQ,0"), ElementsAre("CATMQ,2026-03-04T05:06:07Z,NONE,RTC"));
   EXPECT_THAT(modem.host("$CCTMS,2030-12-31T23:59:58Z,0"), ElementsAre("CATMS,0,2030-12-31T23:59:58Z"));

@@ -1,13 +1,10 @@
 #include "tools/experiment/play.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <memory>
-#include <set>
 #include <thread>
 
 #include "bridges/lcm/lcm_bus.hpp"
