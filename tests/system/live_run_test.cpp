@@ -286,26 +286,38 @@ TEST_F(LiveRun, SurvivesHostileMessagesAndCountsThem) {
 }
 
 /// Its rule fails after any time: that it does not count shows in the exit code.
-TEST_F(LiveRun, ThatIsEndedByHandIsNotJudged) {
-  for (const bool by_signal : {false, true}) {
-    const std::string results = folder_.file(by_signal ? "signal" : "quit");
+class UnjudgedRun : public LiveRun {
+ protected:
+  void start_it() {
     start(
         "metrics: [{name: way, type: distance, vehicle: rover1}]\n"
         "pass: [{metric: way.travelled_m, above: 1000000}]\n",
-        {"--duration", "1000", "--results", results, "--no-pictures"});
-    if (by_signal)
-      shoal_->send_signal(SIGINT);
-    else
-      EXPECT_TRUE(request("quit").ok);
-    EXPECT_EQ(shoal_->wait(), by_signal ? 130 : 0) << shoal_->errors();
-    const std::string how = by_signal ? "SIGINT" : "quit";
+        {"--duration", "1000", "--results", folder_.file("results"), "--no-pictures"});
+  }
+  void expect_not_judged(const std::string& how) {
     EXPECT_THAT(shoal_->output(),
                 testing::ContainsRegex("\n  ended by " + how + " at [0-9.]+ of 1000 s: not judged\n"));
     EXPECT_THAT(shoal_->output(), testing::Not(HasSubstr("FAILED")));
+    const std::string results = folder_.file("results");
     EXPECT_EQ(summary_value(results, "passed"), "null");
     EXPECT_EQ(summary_value(results, "judged"), "false");
     EXPECT_THAT(summary_value(results, "not_judged"), HasSubstr("ended by " + how + " at "));
   }
+};
+
+TEST_F(UnjudgedRun, WasEndedByQuit) {
+  start_it();
+  EXPECT_TRUE(request("quit").ok);
+  EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
+  expect_not_judged("quit");
+}
+
+TEST_F(UnjudgedRun, WasEndedByASignal) {
+  start_it();
+  await_steps(10);
+  shoal_->send_signal(SIGINT);
+  EXPECT_EQ(shoal_->wait(), 130) << shoal_->errors();
+  expect_not_judged("SIGINT");
 }
 
 TEST_F(LiveRun, ThatIsEndedByHandHasFailedWhenAProgramDid) {
