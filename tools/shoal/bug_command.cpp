@@ -34,8 +34,9 @@ int pack(const BugOptions& options) {
 void add_bug_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("bug", "Pack a run into one archive for a report to the developers");
   const auto options = std::make_shared<BugOptions>();
-  command->add_option("RUN", options->directory, "results folder of the run")->required();
-  command->add_option("--record", options->record, "record of the run; unset: the one *.lcm file in the folder");
+  command->add_option("RUN", options->directory, "results folder of the run")->required()->type_name("DIR");
+  command->add_option("--record", options->record, "record of the run; unset: the one *.lcm file in the folder")
+      ->type_name("FILE");
   command->add_option("--last-s", options->last_s, "simulated seconds of the record, from its end")
       ->check(number_from(0.1, 1e9))
       ->capture_default_str();
@@ -43,7 +44,7 @@ void add_bug_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
   command->add_flag("!--no-files", options->files, "hashes alone of the files that the world names, no copies");
-  command->add_option("--out", options->out, "the archive; unset: RUN/bug.tar.gz");
+  command->add_option("--out", options->out, "the archive; unset: RUN/bug.tar.gz")->type_name("FILE");
   command->footer(
       "Examples:\n"
       "  shoal bug results/coop_land --record coop.lcm\n"

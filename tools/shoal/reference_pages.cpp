@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <sstream>
 #include <stdexcept>
 
 #include "shoal/message_schema.hpp"
@@ -131,12 +132,26 @@ std::string metrics_page() {
   return page;
 }
 
+/// The words of a text in lines of at most 80 characters, each behind `indent` blanks.
+std::string wrapped(const std::string& text, std::size_t indent) {
+  std::istringstream words(text);
+  std::string out, line;
+  for (std::string word; words >> word;) {
+    if (!line.empty() && indent + line.size() + 1 + word.size() > 80) {
+      out += std::string(indent, ' ') + line + "\n";
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return out + std::string(indent, ' ') + line + "\n";
+}
+
 std::string metrics_text() {
   std::string text = "Figures of the metrics of a world, NAME.figure.\n";
   for (const sim::MetricKind& kind : sim::metric_kinds()) {
-    text += fmt::format("\n{}: {}\n", kind.word, kind.meaning);
+    text += "\n" + wrapped(kind.word + ": " + kind.meaning, 0);
     for (const sim::FigureKind& figure : kind.figures)
-      text += fmt::format("  {:<21} {:<10} {}\n", figure.name, unit_text(figure), figure.meaning);
+      text += fmt::format("  {} ({})\n", figure.name, unit_text(figure)) + wrapped(figure.meaning, 6);
   }
   return text;
 }
