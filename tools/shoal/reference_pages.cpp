@@ -124,8 +124,8 @@ std::string metrics_page() {
                      "NaN: null in `summary.json`, `none` in reports. Keys that a type needs are bold; "
                      "[world_format.md](world_format.md) explains them, [scores.md](scores.md) the metrics.\n";
   for (const sim::MetricKind& kind : sim::metric_kinds()) {
-    page += fmt::format("\n## {}\n\nWhat it measures: {}. Keys: {}.\n\n| figure | unit | meaning |\n|---|---|---|\n", kind.word,
-                        kind.meaning, keys_text(kind));
+    page += fmt::format("\n## {}\n\nWhat it measures: {}. Keys: {}.\n\n| figure | unit | meaning |\n|---|---|---|\n",
+                        kind.word, kind.meaning, keys_text(kind));
     for (const sim::FigureKind& figure : kind.figures)
       page += fmt::format("| `{}` | {} | {} |\n", figure.name, unit_text(figure), figure.meaning);
   }
