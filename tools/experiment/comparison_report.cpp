@@ -1,5 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <set>
 
 #include "tools/experiment/html.hpp"
@@ -22,6 +23,10 @@ std::string overview(const std::vector<RunRecord>& runs) {
                                  fmt::format("{:.2f}", run.sim_time_s), run.run_hash, run.state_hash};
     for (std::size_t i = 0; i < std::size(cells); ++i) rows[i].push_back(cells[i]);
   }
+  // Older runs have no run hash.
+  std::erase_if(rows, [](const auto& row) {
+    return std::all_of(row.begin() + 1, row.end(), [](const std::string& cell) { return cell.empty(); });
+  });
   return html_table(head, rows);
 }
 

@@ -9,6 +9,7 @@
 
 #include "bridges/lcm/lcm_bus.hpp"
 #include "bridges/lcm/lockstep_service.hpp"
+#include "bridges/lcm/other_simulators.hpp"
 #include "bridges/lcm/sim_service.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/message_writer.hpp"
@@ -66,6 +67,7 @@ class Player {
         log_(read_record(options.log)),
         empty_(load_empty_world(log_)),
         bus_(options.lcm_url),
+        others_({{bus_.url(), &bus_}}, false),
         gate_(bus_),
         world_(empty_.config, inner_),
         lockstep_(world_, control_),
@@ -75,6 +77,7 @@ class Player {
         answers_(log_),
         progress_(sim::to_seconds(world_.step_time()) * static_cast<double>(last_step()), options.quiet) {
     control_.speed = options.speed;
+    service_.use_others(others_);
     lockstep_.add_line(bus_, gate_);
     lockstep_.set_posts_mail(false);
     service_.set_time_machine(&requests_);
@@ -84,10 +87,9 @@ class Player {
 
   PlayOutcome run() {
     const auto wait = [this](milliseconds time) { bus_.wait_for_message(time); };
-    if (service_.hears_another_simulator(wait))
+    if (const auto other = others_.look(wait))
       throw RunError(4, "bus",
-                     "another simulator publishes on " + bus_.url() +
-                         "; its messages and those of the record would mix: choose another port with --lcm-url");
+                     *other + "; its messages and those of the record would mix: choose another port with --lcm-url");
     shoal::encode_into(log_.info, buffer_);
     publish("sim.info", buffer_);
     gate_.end_of_step();
@@ -254,6 +256,7 @@ class Player {
   ReplayLog log_;
   sim::LoadedWorld empty_;
   bridges::LcmBus bus_;
+  bridges::OtherSimulators others_;
   sim::MailGate gate_;
   sim::InProcessBus inner_;  // of the empty world, which has nothing to say
   sim::RunControl control_;

@@ -60,16 +60,17 @@ std::string verdicts_html(const RunRecord& run) {
 
 std::string facts_html(const RunRecord& run) {
   const double speed = run.wall_s > 0 ? run.sim_time_s / run.wall_s : 0;
-  return heading("This run") +
-         facts_table({{"Seed", fmt::format("{}", run.seed)},
-                      {"Simulated", fmt::format("{:.2f} s, {} steps", run.sim_time_s, run.steps)},
-                      {"Computed in", fmt::format("{:.2f} s, {:.1f} times real time", run.wall_s, speed)},
-                      {"Ended by", run.ended},
-                      {"Exit code", fmt::format("{}", run.exit_code)},
-                      {"Messages", fmt::format("{}", run.messages)},
-                      {"Run hash", run.run_hash.empty() ? "not told" : run.run_hash},
-                      {"State hash", run.state_hash},
-                      {"Shoal", run.version.empty() ? "of an unknown version" : run.version}});
+  std::vector<std::pair<std::string, std::string>> facts{
+      {"Seed", fmt::format("{}", run.seed)},
+      {"Simulated", fmt::format("{:.2f} s, {} steps", run.sim_time_s, run.steps)},
+      {"Computed in", fmt::format("{:.2f} s, {:.1f} times real time", run.wall_s, speed)},
+      {"Ended by", run.ended},
+      {"Exit code", fmt::format("{}", run.exit_code)},
+      {"Messages", fmt::format("{}", run.messages)}};
+  if (!run.run_hash.empty()) facts.emplace_back("Run hash", run.run_hash);
+  facts.emplace_back("State hash", run.state_hash);
+  facts.emplace_back("Shoal", run.version.empty() ? "of an unknown version" : run.version);
+  return heading("This run") + facts_table(facts);
 }
 
 std::string tail_of(const std::string& text) {

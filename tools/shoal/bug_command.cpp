@@ -35,7 +35,7 @@ void add_bug_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("bug", "Pack a run into one archive for a report to the developers");
   add_log_level_option(*command);
   const auto options = std::make_shared<BugOptions>();
-  command->add_option("RUN", options->directory, "results folder of the run")->required();
+  command->add_option("RUN", options->directory, "results folder of the run")->required()->type_name("DIR");
   command->add_option("--record", options->record, "record of the run; unset: the one *.lcm file in the folder")
       ->type_name("FILE");
   command->add_option("--last-s", options->last_s, "simulated seconds of the record, from its end")

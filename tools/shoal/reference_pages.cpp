@@ -162,8 +162,8 @@ std::string metrics_page() {
                      "NaN: null in `summary.json`, `none` in reports. Keys that a type needs are bold; "
                      "[world_format.md](world_format.md) explains them, [scores.md](scores.md) the metrics.\n";
   for (const sim::MetricKind& kind : sim::metric_kinds()) {
-    page += fmt::format("\n## {}\n\nMeasures {}. Keys: {}.\n\n| figure | unit | meaning |\n|---|---|---|\n", kind.word,
-                        kind.meaning, keys_text(kind));
+    page += fmt::format("\n## {}\n\nWhat it measures: {}. Keys: {}.\n\n| figure | unit | meaning |\n|---|---|---|\n",
+                        kind.word, kind.meaning, keys_text(kind));
     for (const sim::FigureKind& figure : kind.figures)
       page += fmt::format("| `{}` | {} | {} |\n", figure.name, unit_text(figure), figure.meaning);
   }
@@ -171,13 +171,13 @@ std::string metrics_page() {
 }
 
 std::string metrics_text(std::size_t columns) {
-  constexpr std::size_t meaning_at = 36;
+  constexpr std::size_t indent = 6;
   std::string text = "Figures of the metrics of a world, NAME.figure.\n";
   for (const sim::MetricKind& kind : sim::metric_kinds()) {
-    text += "\n" + command_line::wrapped(fmt::format("{}: {}", kind.word, kind.meaning), columns) + "\n";
+    text += "\n" + command_line::wrapped(kind.word + ": " + kind.meaning, columns) + "\n";
     for (const sim::FigureKind& figure : kind.figures)
-      text += fmt::format("  {:<21} {:<10}  {}\n", figure.name, unit_text(figure),
-                          command_line::wrapped(figure.meaning, columns, meaning_at, meaning_at));
+      text += fmt::format("  {} ({})\n{:{}}{}\n", figure.name, unit_text(figure), "", indent,
+                          command_line::wrapped(figure.meaning, columns, indent, indent));
   }
   return text;
 }

@@ -337,7 +337,8 @@ TEST(StudyResults, CountRunsWithoutAResult) {
   tools::write_study(out.file("study"), study, runs, results, 4);
   const std::string page = tools::study_report(out.file("study"));
   EXPECT_THAT(page, HasSubstr("quick, seed 2: &lt;b&gt;exit code 4&lt;/b&gt;"));
-  EXPECT_THAT(page, HasSubstr("<td>e.rms_m</td><td>plain</td><td>2</td><td>2</td>"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">plain</th><td>2</td><td>2</td>"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">quick</th><td>1 of 2</td><td>6</td>"));
 }
 
 }  // namespace

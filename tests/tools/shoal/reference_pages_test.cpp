@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <sstream>
 
 #include "shoal/message_schema.hpp"
 #include "sim/device/device_registry.hpp"
@@ -80,7 +81,9 @@ TEST(Describe, KnowsDevicesMessagesAndFiles) {
   EXPECT_THAT(tools::describe_text("device"), testing::HasSubstr("rate_hz"));
   EXPECT_THAT(tools::describe_text("world"), testing::HasSubstr("duration_s"));
   EXPECT_THAT(tools::describe_text("vehicle"), testing::HasSubstr("bodies"));
-  EXPECT_THAT(tools::describe_text("metrics"), testing::HasSubstr("rms_m"));
+  std::istringstream metrics(tools::describe_text("metrics"));
+  EXPECT_THAT(metrics.str(), testing::HasSubstr("  rms_m (m)\n      root mean square of the position errors\n"));
+  for (std::string line; std::getline(metrics, line);) EXPECT_LE(line.size(), 80u) << line;
   EXPECT_THAT(tools::describe_text("noise"), testing::HasSubstr("gaussian_std"));
   EXPECT_THAT(tools::describe_text("pose_t"), testing::HasSubstr("fingerprint"));
   EXPECT_EQ(tools::describe_text("pose_t"), tools::describe_text("shoal.pose_t"));
