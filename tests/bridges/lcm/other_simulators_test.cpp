@@ -109,7 +109,10 @@ TEST(OtherSimulators, OneThatAskedAndStartsAllTheSameIsWarnedOf) {
   service.use_others(own);
   OtherSimulators second({{"here", &others_bus}}, false);
   // It is answered, but does not wait for it.
-  EXPECT_TRUE(second.look([&](milliseconds) { service.handle_requests(); }));
+  EXPECT_TRUE(second.look([&](milliseconds time) {
+    service.handle_requests();
+    others_bus.wait_for_message(time);
+  }));
   testing::internal::CaptureStdout();
   service.publish_info();  // its own
   bus.end_of_step();
