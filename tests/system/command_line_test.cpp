@@ -121,7 +121,7 @@ TEST(CommandLine, HelpOfEveryCommandIsInOurWords) {
   EXPECT_GT(commands.size(), 25u);
   static const std::regex inside(
       "FLOAT|\\bU?INT\\b|REQUIRED|TEXT \\.\\.\\.|\\{(true|false)\\}|SUBCOMMAND|Positionals|Needs:|Excludes:|Env:|"
-      "[\\w:]+ in \\[|\\d - \\d|--help-all|e\\+\\d|=NUMBER|\\(\\)|;;");
+      "[\\w:]+ in \\[|\\[\\d+ - \\d|--help-all|e\\+\\d|=NUMBER|\\(\\)|;;");
   for (const Command& command : commands) {
     std::smatch found;
     EXPECT_FALSE(std::regex_search(command.help, found, inside)) << command.path() << ": '" << found[0] << "'";
