@@ -121,7 +121,7 @@ TEST(CommandLine, HelpOfEveryCommandIsInOurWords) {
   EXPECT_GT(commands.size(), 25u);
   static const std::regex inside(
       "FLOAT|\\bU?INT\\b|REQUIRED|TEXT \\.\\.\\.|\\{(true|false)\\}|SUBCOMMAND|Positionals|Needs:|Excludes:|Env:|"
-      "[\\w:]+ in \\[|\\d - \\d|--help-all|e\\+\\d|=NUMBER|\\(\\)|;;");
+      "[\\w:]+ in \\[|\\[\\d+ - \\d|--help-all|e\\+\\d|=NUMBER|\\(\\)|;;");
   for (const Command& command : commands) {
     std::smatch found;
     EXPECT_FALSE(std::regex_search(command.help, found, inside)) << command.path() << ": '" << found[0] << "'";
@@ -348,8 +348,8 @@ TEST(CommandLine, FilesThatAreNotWhatTheyShouldBeAreNamed) {
 }
 
 TEST(CommandLine, OutputFitsEightyColumns) {
-  for (const std::string& what : {"device", "noise", "world", "vehicle", "lidar", "micromodem", "camera", "pose_t",
-                                  "sim_info_t", "planar_lidar_t", "multibeam_t"}) {
+  for (const char* what : {"device", "noise", "world", "vehicle", "lidar", "micromodem", "camera", "pose_t",
+                           "sim_info_t", "planar_lidar_t", "multibeam_t"}) {
     const Ended ended = run_program("shoal", {"describe", what}, {"COLUMNS=80"});
     for (const std::string& line : lines_of(ended.output))
       EXPECT_TRUE(line.size() <= 80 || line.find(' ', line.find_first_not_of(' ')) == std::string::npos) << line;
@@ -371,7 +371,9 @@ TEST(CommandLine, LogLevelDecidesWhatGoesToStderr) {
     EXPECT_EQ(ended.exit_code, 0) << ended.errors;
     EXPECT_EQ(ended.errors.find("here it is") != std::string::npos, says) << level << ended.errors;
     EXPECT_THAT(ended.output, HasSubstr("state hash")) << level;
-    if (std::string(level) == "off") EXPECT_EQ(ended.errors, "");
+    if (std::string(level) == "off") {
+      EXPECT_EQ(ended.errors, "");
+    }
   }
   // An error that ends the command is said at every level.
   const Ended ended = run_shoal({"run", folder.file("none.yaml"), "--log-level", "off"});

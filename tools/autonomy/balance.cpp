@@ -24,11 +24,11 @@ SpeedPoint parse_point(const std::string& text) {
       read = 0;
     }
     if (read == 0 || read != part.size() || !std::isfinite(number))
-      throw std::invalid_argument("speeds: '" + part + "' in '" + text + "' is not a number");
+      throw std::invalid_argument("'" + part + "' in '" + text + "' is not a number");
     numbers.push_back(number);
   }
   if (numbers.size() != 2 && numbers.size() != 3)
-    throw std::invalid_argument("speeds: '" + text + "' must be TIME:SPEED or TIME:SPEED:TURN");
+    throw std::invalid_argument("'" + text + "' must be TIME:SPEED or TIME:SPEED:TURN");
   return {numbers[0], numbers[1], numbers.size() == 3 ? numbers[2] : 0};
 }
 
@@ -50,7 +50,7 @@ std::vector<SpeedPoint> parse_speeds(const std::string& text) {
   for (std::string part; std::getline(parts, part, ';');) points.push_back(parse_point(part));
   for (std::size_t i = 1; i < points.size(); ++i)
     if (points[i].from_s <= points[i - 1].from_s)
-      throw std::invalid_argument("speeds: the times must grow, in '" + text + "'");
+      throw std::invalid_argument("the times must grow, in '" + text + "'");
   return points;
 }
 

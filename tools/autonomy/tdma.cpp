@@ -40,10 +40,10 @@ Tdma::Params parse_slot(const std::string& text) {
   const auto number = [&](std::string_view part, int& value) {
     const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
     if (part.empty() || error != std::errc() || end != part.data() + part.size())
-      throw std::invalid_argument("'" + text + "' is no slot; it looks like 0/2, the first of two");
+      throw std::invalid_argument("'" + text + "' is not a slot; it looks like 0/2, the first of two");
   };
   if (slash == std::string::npos)
-    throw std::invalid_argument("'" + text + "' is no slot; it looks like 0/2, the first of two");
+    throw std::invalid_argument("'" + text + "' is not a slot; it looks like 0/2, the first of two");
   number(std::string_view(text).substr(0, slash), params.slot);
   number(std::string_view(text).substr(slash + 1), params.slots);
   const Tdma checked(params);

@@ -105,7 +105,7 @@ std::vector<std::string> pieces_of(const std::string& example) {
 std::string example_text(const std::string& example, std::size_t columns) {
   std::string text;
   std::size_t used = 1;
-  for (const std::string& piece : pieces_of(example)) {
+  const auto add = [&](const std::string& piece) {
     const std::size_t width = column_count(piece);
     if (!text.empty() && used + 1 + width > columns - 2) {
       text += " \\\n     ";
@@ -113,6 +113,16 @@ std::string example_text(const std::string& example, std::size_t columns) {
     }
     text += (text.empty() ? "  " : " ") + piece;
     used += 1 + width;
+  };
+  for (const std::string& piece : pieces_of(example)) {
+    // A value that does not fit beside its option goes below it.
+    const std::size_t space = piece.starts_with("--") ? piece.find(' ') : std::string::npos;
+    if (space != std::string::npos && 6 + column_count(piece) > columns - 2) {
+      add(piece.substr(0, space));
+      add(piece.substr(space + 1));
+    } else {
+      add(piece);
+    }
   }
   return text + "\n";
 }

@@ -16,7 +16,7 @@ namespace tools {
 namespace {
 
 std::string row_text(const char* name, sim::Decibels value, const std::string& remark) {
-  std::string text = fmt::format("{:<26}{:>8.1f} dB", name, value.dB());
+  std::string text = fmt::format("{:<25}{:>8.1f} dB", name, value.dB());
   if (!remark.empty()) text += "  " + remark;
   return text + "\n";
 }
@@ -59,7 +59,7 @@ std::string budget_text(const AcousticLink& link, const LinkBudget& budget, cons
     const sim::PowerRatio both = sim::to_power(budget.noise) + sim::to_power(*budget.late);
     text += row_text("signal over noise, echoes", budget.level + *budget.echoes - sim::to_decibels(both), "");
   }
-  text += fmt::format("{:<26}{:>8.4f} s   over {:.1f} m, {:.2f} m/s on average\n", "travel time", budget.travel_time_s,
+  text += fmt::format("{:<25}{:>8.4f} s   over {:.1f} m, {:.2f} m/s on average\n", "travel time", budget.travel_time_s,
                       budget.range_m, budget.range_m / std::max(budget.travel_time_s, 1e-12));
   return text;
 }

@@ -69,7 +69,7 @@ TEST(Overview, GoesToAnotherSideWhereAWallIsInTheWay) {
 
 TEST(Overview, NamesWhatCannotBeSeen) {
   const std::string box_around =
-      "objects: [{name: shed, fixed: true, position_m: [0, 0, 0], parts: [{shape: box, size_m: [20, 20, 20]}]}]\n";
+      "objects: [{name: shed, fixed: true, position_m: [0, 0, 1], parts: [{shape: box, size_m: [2.2, 2.2, 2.2]}]}]\n";
   const Viewed shut_in(box_around + "vehicles:\n" + cube("a", "[0, 0, 1]", "[1, 1, 1]"));
   EXPECT_EQ(shut_in.view.hidden, std::vector<std::string>{"a"});
   const Viewed far_apart("vehicles:\n" + cube("a", "[0, 0, 1]", "[1, 1, 1]") + cube("b", "[3000, 0, 1]", "[1, 1, 1]"));
