@@ -70,21 +70,21 @@ def stop_at_random(run, chance):
 
 
 def hashes(options):
-    print("| speed | threads | clients | wall s | state hash |\n|---|---|---|---|---|")
+    print("| speed | threads | clients | wall s | run hash |\n|---|---|---|---|---|")
     found = set()
     for speed, threads, slowed in itertools.product(options.speeds, options.threads, (False, True)):
         run = Run(options, "--speed", speed, "--threads", threads)
         if slowed:
             stop_at_random(run, random.Random(f"{speed} {threads}"))
         code, summary = run.finish()
-        found.add((code, summary["state_hash"]))
+        found.add((code, summary["run_hash"]))
         print(f"| {speed} | {threads} | {'stopped at random' if slowed else 'as they are'} | {summary['wall_s']:.1f} "
-              f"| {summary['state_hash'] if code == 0 else f'exit code {code}'} |", flush=True)
+              f"| {summary['run_hash'] if code == 0 else f'exit code {code}'} |", flush=True)
     return len(found) - 1 and 1
 
 
 def killed(options):
-    print("| on_timeout | client | the run says | then | simulated s | exit code | state hash |\n" + "|---" * 7 + "|")
+    print("| on_timeout | client | the run says | then | simulated s | exit code | run hash |\n" + "|---" * 7 + "|")
     for policy, how in itertools.product(options.policies, (signal.SIGKILL, signal.SIGSTOP)):
         run = Run(options, "--paused", "--set", f"lockstep.on_timeout={policy}", "--set", "lockstep.timeout_s=1")
         run.await_that(lambda: run.request("until", "--value", str(options.duration / 2)))
@@ -105,7 +105,7 @@ def killed(options):
         code, summary = run.finish()
         said = "<br>".join(line.split("lockstep: ")[1].strip() for line in run.said if "lockstep: " in line)
         print(f"| {policy} | {'killed' if how == signal.SIGKILL else 'stalled'} | {said} | {then} "
-              f"| {summary['sim_time_s']:g} | {code} | {summary['state_hash']} |", flush=True)
+              f"| {summary['sim_time_s']:g} | {code} | {summary['run_hash']} |", flush=True)
     return 0
 
 

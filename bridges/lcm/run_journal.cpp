@@ -98,7 +98,11 @@ void RunJournal::after_step() {
 void RunJournal::finish(bool step_is_whole) {
   if (muted_ || world_ == nullptr) return;
   if (!waiting_.empty()) publish_mail();
-  if (step_is_whole && every_steps_ > 0 && started_ && last_hash_step_ != world_->step_number()) publish_hash();
+  if (!step_is_whole || !started_ || last_hash_step_ == world_->step_number()) return;
+  if (every_steps_ > 0) return publish_hash();
+  if (heard_ && !heard_()) return;
+  publish_mail();  // without letters: a log that ends with this one was not cut off
+  last_hash_step_ = world_->step_number();
 }
 
 void RunJournal::begin_branch(std::int32_t branch, std::int64_t next_sequence) {
@@ -137,6 +141,8 @@ void RunJournal::publish_hash() {
     message.part_hash.push_back(static_cast<std::int64_t>(part.hash));
   }
   message.hash = static_cast<std::int64_t>(whole.value());
+  message.part.push_back(run_hash_part);
+  message.part_hash.push_back(static_cast<std::int64_t>(world_->run_hash()));
   message.count = static_cast<std::int32_t>(message.part.size());
   shoal::encode_into(message, buffer_);
   bus_.publish("sim.hash", buffer_, world_->now());

@@ -38,6 +38,8 @@ class RunJournal {
   static constexpr const char* serial_bus = "serial";
   /// In sim_letter_t::channel, for a request that changes the world.
   static constexpr const char* request_channel = "sim.control";
+  /// In sim_hash_t::part, after the parts of the state: World::run_hash().  No name in a world has a space.
+  static constexpr const char* run_hash_part = "run hash";
   /// In sim_letter_t::step, before the first reports.
   static constexpr std::int64_t before_first_reports = -1;
 
@@ -71,7 +73,8 @@ class RunJournal {
 
   /// After each step: publishes what came to it, and a hash when one is due.
   void after_step();
-  /// Publishes what is left, and a last hash unless the last step broke off half-way.  Safe to call twice.
+  /// Publishes what is left, and unless the last step broke off half-way a last hash; where there are none, a sim.mail
+  /// without letters.  Safe to call twice.
   void finish(bool step_is_whole = true);
 
   /// While a part of a run is worked out again nothing is published or written down, and serial ports give what is in
@@ -100,7 +103,7 @@ class RunJournal {
   bool started_ = false, muted_ = false;
   std::int32_t branch_ = 0;
   std::int64_t sequence_ = 0;
-  std::int64_t last_hash_step_ = -1;
+  std::int64_t last_hash_step_ = -1;  // or of what stands for the last one
   std::vector<shoal::sim_letter_t> waiting_;
   std::size_t waiting_bytes_ = 0;
   sim::Bytes buffer_;

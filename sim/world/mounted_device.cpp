@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/bus/utime_stamp.hpp"
+#include "sim/world/run_hash.hpp"
 #include "sim/world/vehicle.hpp"
 #include "sim/world/world.hpp"
 
@@ -12,8 +13,8 @@ namespace sim {
 /// Keeps what a sensor reports until the world publishes it: at once, or at a later simulated time by way of an event.
 class MountedDevice::Outlet final : public Publisher {
  public:
-  Outlet(MountedDevice& device, const std::string& channel, const VehicleClock* clock)
-      : Publisher(device.host_.epoch_us, clock), device_(device), channel_(channel) {}
+  Outlet(MountedDevice& device, Bus& bus, const std::string& channel, const VehicleClock* clock)
+      : Publisher(device.host_.epoch_us, clock), device_(device), bus_(bus), channel_(channel) {}
 
   void set(Time now, Time latency) {
     now_ = now;
@@ -33,7 +34,7 @@ class MountedDevice::Outlet final : public Publisher {
   void flush() {
     for (std::size_t i = 0; i < waiting_; ++i) {
       if (latency_.count() == 0) {
-        device_.bus_.publish(channel_, payloads_[i], now_);
+        bus_.publish(channel_, payloads_[i], now_);
         continue;
       }
       Event event;
@@ -49,6 +50,7 @@ class MountedDevice::Outlet final : public Publisher {
 
  private:
   MountedDevice& device_;
+  Bus& bus_;
   const std::string& channel_;
   Time now_{0};
   Time latency_{0};
@@ -97,8 +99,9 @@ MountedDevice::MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig&
   acting_->safe_state = config_.safe;
   acting_->is_actuator = type_.is_actuator();
   acting_->always_on = type_.always_on;
-  report_outlet_ = std::make_unique<Outlet>(*this, report_channel_, &vehicle.clock());
-  truth_outlet_ = std::make_unique<Outlet>(*this, truth_channel_, nullptr);
+  report_outlet_ = std::make_unique<Outlet>(*this, bus_, report_channel_, &vehicle.clock());
+  // Who switches the truth on observes: the run, and its hash, stay what they are.
+  truth_outlet_ = std::make_unique<Outlet>(*this, RunHash::uncounted(bus_), truth_channel_, nullptr);
   plan_schedule();
 }
 

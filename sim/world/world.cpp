@@ -10,6 +10,7 @@
 #include "sim/script/script.hpp"
 #include "sim/world/bottom_check.hpp"
 #include "sim/world/notice.hpp"
+#include "sim/world/run_hash.hpp"
 #include "sim/world/world_journal.hpp"
 
 namespace sim {
@@ -27,7 +28,8 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
       physics_(std::make_unique<PhysicsWorld>(config.physics, config.materials, config.contacts, config.categories,
                                               static_cast<std::uint64_t>(config.run.seed))),
       medium_(config.medium, config.physics.gravity_mps2, static_cast<std::uint64_t>(config.run.seed)),
-      journal_(std::make_unique<WorldJournal>(*this)) {
+      journal_(std::make_unique<WorldJournal>(*this)),
+      run_hash_(std::make_unique<RunHash>()) {
   StateArchive start = StateArchive::saver();
   start(medium_);
   medium_at_start_ = start.take_bytes();
@@ -193,6 +195,7 @@ void World::step() {
   advance_clocks();
   run_due_events();
   sense();
+  add_to_run_hash();
   in_step_ = false;
 }
 
@@ -271,7 +274,11 @@ const WorldObject* World::find_object(const std::string& name) const {
 }
 
 Bus& World::bus_of(const std::string& name) {
-  return name.empty() || !find_bus_ ? bus_ : find_bus_(name);
+  return name.empty() || !find_bus_ ? bus() : run_hash_->counted(find_bus_(name));
+}
+
+Bus& World::bus() {
+  return run_hash_->counted(bus_);
 }
 
 void World::schedule_arrival(int device, Time due, Bytes payload) {
@@ -284,7 +291,7 @@ void World::publish(const std::string& channel, std::span<const std::byte> paylo
 
 Bus& World::bus_of_channel(const std::string& channel) {
   const auto known = channels_.find(channel);
-  return known == channels_.end() ? bus_ : *known->second;
+  return known == channels_.end() ? bus() : *known->second;
 }
 
 void World::end(const EndOfRun& end) {

@@ -37,6 +37,7 @@ struct WorldCounts {
 };
 
 class AcousticChannel;
+class RunHash;
 class Script;
 class WorldJournal;
 struct ZoneRecord;
@@ -150,7 +151,8 @@ class World {
     return *static_cast<T*>(slot.get());
   }
   const PortOpener& open_port() const { return open_port_; }
-  Bus& bus() { return bus_; }
+  /// The world's own.
+  Bus& bus();
   /// Where a channel is spoken: the bus of the vehicle whose device has it, else the world's.
   Bus& bus_of_channel(const std::string& channel);
 
@@ -163,8 +165,12 @@ class World {
 
   /// A hash over all that is state: bodies, joints, devices, clocks, medium, events, sound under way, script.
   std::uint64_t state_hash() const;
-  /// The same by part, in an order that does not change: `world`, `medium`, vehicles such as `auv1`, devices such as
-  /// `auv1/dvl`, `objects`, `events`, `acoustics`, `script`.
+  /// A hash over the whole way here: every message that devices and events have published, the motion of every body
+  /// after each step, the whole state after every tenth step and now.  Equal ones prove equal runs, equal state hashes
+  /// only equal ends.  What is published for observation alone does not count; see RunHash.  A snapshot holds it.
+  std::uint64_t run_hash() const;
+  /// The state hash by part, in an order that does not change: `world`, `medium`, vehicles such as `auv1`, devices such
+  /// as `auv1/dvl`, `objects`, `events`, `acoustics`, `script`.
   std::vector<PartHash> part_hashes() const;
   /// All of the state between two steps, and what has come, gone and been changed since the start.  Throws
   /// SnapshotError when a vehicle or object was added that was not read from YAML.
@@ -209,6 +215,7 @@ class World {
   void advance_clocks();
   void sense();
   void cast_rays();
+  void add_to_run_hash();
 
   const WorldConfig& config_;
   Bus& bus_;
@@ -270,6 +277,7 @@ class World {
   std::unique_ptr<WorldJournal> journal_;
   Bytes medium_at_start_;
   mutable std::size_t last_snapshot_bytes_ = 0;
+  std::unique_ptr<RunHash> run_hash_;  // devices hold on to its buses, and publish nothing at their end
 };
 
 }  // namespace sim

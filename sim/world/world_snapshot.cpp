@@ -2,6 +2,7 @@
 
 #include "sim/acoustics/channel.hpp"
 #include "sim/script/script.hpp"
+#include "sim/world/run_hash.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_journal.hpp"
 
@@ -12,7 +13,7 @@ namespace sim {
 namespace {
 
 /// Grows when the order or the meaning of what a snapshot holds changes.
-constexpr std::uint32_t state_version = 3;
+constexpr std::uint32_t state_version = 4;
 
 /// Whom the events are for is looked up by number when they are due.
 void check_events(EventQueue& queue, std::size_t devices, const AcousticChannel& acoustics,
@@ -36,7 +37,7 @@ void check_events(EventQueue& queue, std::size_t devices, const AcousticChannel&
 void World::visit_state(StateArchive& archive) {
   archive.section("world");
   archive(step_number_, ended_);
-  archive.unhashed(next_vehicle_number_, next_object_number_, counts_, complaints_);
+  archive.unhashed(next_vehicle_number_, next_object_number_, counts_, complaints_, *run_hash_);
   constexpr int most_vehicles_ever = 100'000'000;  // lists have a place for each number
   if (archive.restoring() &&
       (next_vehicle_number_ < 0 || next_vehicle_number_ > most_vehicles_ever || next_object_number_ < 0))
@@ -89,6 +90,26 @@ std::uint64_t World::state_hash() const {
   StateArchive archive = StateArchive::quick_hasher();
   const_cast<World*>(this)->visit_state(archive);  // hashing changes nothing
   return archive.hash();
+}
+
+std::uint64_t World::run_hash() const {
+  StateHash hash;
+  hash.add(run_hash_->value());
+  hash.add(state_hash());
+  return hash.value();
+}
+
+/// What moves after each step, the rest after every tenth: the whole state takes up to a tenth of a step to hash, and
+/// what differs in it shows in motion or in messages, or still differs then.
+void World::add_to_run_hash() {
+  constexpr std::int64_t steps_per_whole_state = 10;
+  StateArchive archive = StateArchive::quick_hasher();
+  if (step_number_ % steps_per_whole_state == 0)
+    visit_state(archive);
+  else
+    for (const auto& body : physics_->bodies())
+      if (body && !body->fixed()) body->visit_state(archive);
+  run_hash_->add_state(archive.hash());
 }
 
 std::vector<PartHash> World::part_hashes() const {

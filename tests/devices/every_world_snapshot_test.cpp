@@ -33,7 +33,7 @@ class HashingBus final : public sim::Bus {
 
 /// What a step came to.
 struct StepResult {
-  std::uint64_t state, messages;
+  std::uint64_t run, messages;
   bool operator==(const StepResult&) const = default;
 };
 
@@ -44,7 +44,7 @@ struct SteppedWorld {
         }) {}
   StepResult step() {
     world.step();
-    return {world.state_hash(), bus.take_hash()};
+    return {world.run_hash(), bus.take_hash()};
   }
   HashingBus bus;
   sim::World world;
@@ -97,7 +97,7 @@ class EveryWorld : public testing::TestWithParam<std::string> {
     test.bus.take_hash();
     for (std::size_t step = at; step < at + more_steps; ++step) {
       const StepResult result = test.step();
-      ASSERT_EQ(result.state, results[step].state) << "in the state after step " << step;
+      ASSERT_EQ(result.run, results[step].run) << "in the run hash after step " << step;
       ASSERT_EQ(result.messages, results[step].messages) << "in the messages of step " << step;
     }
   }

@@ -34,9 +34,9 @@ class Determinism : public testing::TestWithParam<Case> {
     return arguments;
   }
   std::string hash_of(const std::vector<std::string>& more) const {
-    return state_hash_in(run_shoal(run_arguments(more)));
+    return run_hash_in(run_shoal(run_arguments(more)));
   }
-  /// The hash after every step, in this process.
+  /// The hash of the run after every step, in this process.
   std::vector<std::uint64_t> hashes_here(int threads = 1) const {
     sim::LoadOptions options;
     options.encode_message = shoal::encode_own_message;
@@ -47,7 +47,7 @@ class Determinism : public testing::TestWithParam<Case> {
     std::vector<std::uint64_t> hashes;
     while (world.now() < sim::from_seconds(std::stod(GetParam().duration_s))) {
       world.step();
-      hashes.push_back(world.state_hash());
+      hashes.push_back(world.run_hash());
     }
     return hashes;
   }
@@ -77,7 +77,13 @@ TEST_P(Determinism, HoldsForAnySpeedBusRecordAndListener) {
   EXPECT_EQ(hash_of({"--bus", "none", "--speed", "20"}), expected);
   const std::string url = own_url();
   EXPECT_EQ(hash_of({"--lcm-url", url, "--speed", "max"}), expected);
-  EXPECT_EQ(hash_of({"--lcm-url", url, "--speed", "50", "--record", folder.file("run.lcm")}), expected);
+  EXPECT_EQ(hash_of({"--lcm-url", url, "--speed", "50", "--record", folder.file("run.lcm"), "--results",
+                     folder.file("results"), "--no-pictures"}),
+            expected);
+  EXPECT_EQ(summary_value(folder.file("results"), "run_hash"), '"' + expected + '"');
+  EXPECT_EQ(hash_of({"--bus", "none", "--speed", "max", "--set", "state_rate_hz=100", "--set", "run.track_rate_hz=1",
+                     "--set", "run.hash_every_steps=7", "--record", folder.file("more.lcm"), "--rewind-s", "5"}),
+            expected);
 
   Program spy({built("shoal"), "spy", "--lcm-url", url});
   bridges::LcmListener listener(url);
@@ -98,8 +104,10 @@ TEST_P(Determinism, HoldsForRecordsByteByByte) {
 }
 
 TEST_P(Determinism, AnotherSeedIsAnotherRun) {
-  EXPECT_NE(hash_of({"--bus", "none", "--speed", "max", "--seed", "1"}),
-            hash_of({"--bus", "none", "--speed", "max", "--seed", "2"}));
+  const auto hash = [&](const char* seed) {
+    return state_hash_in(run_shoal(run_arguments({"--bus", "none", "--speed", "max", "--seed", seed})));
+  };
+  EXPECT_NE(hash("1"), hash("2"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Worlds, Determinism,
@@ -133,7 +141,7 @@ TEST(CoopLand, IsTheSameRunAtAnySpeedWithItsProcesses) {
     const Ended ended = run_shoal({"run", source("worlds/coop_land.yaml"), "--launch", "--duration", "20", "--speed",
                                    speeds[i], "--lcm-url", own_url(i), "--record", folder.file(speeds[i])});
     EXPECT_TRUE(ended.exit_code == 0 || ended.exit_code == 1) << ended.errors;  // too short to be judged
-    hashes[i] = state_hash_in(ended);
+    hashes[i] = run_hash_in(ended);
   }
   EXPECT_EQ(hashes[0], hashes[1]);
   const std::string record = text_of_file(folder.file("max"));

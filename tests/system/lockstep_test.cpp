@@ -45,7 +45,7 @@ struct Mission {
       {"c", {"--period", "0.2", "--receive", "a.note", "b.note", "sim.state"}},
   };
 
-  /// The state hash, and what each client printed up to its number of ticks.
+  /// The run hash, and what each client printed up to its number of ticks.
   std::string fly() const {
     const ScratchFolder folder;
     write_file(folder.file("world.yaml"), two_rovers(duration_s));
@@ -60,7 +60,7 @@ struct Mission {
     }
     Program shoal(arguments);
     const int exit_code = shoal.wait();
-    std::string result = exit_code == 0 ? state_hash_in({0, shoal.output(), shoal.errors()})
+    std::string result = exit_code == 0 ? run_hash_in({0, shoal.output(), shoal.errors()})
                                         : "exit code " + std::to_string(exit_code) + ": " + shoal.errors();
     for (const auto& pilot : pilots) {
       const int code = pilot->wait();
@@ -302,7 +302,7 @@ TEST_F(Policy, AClientThatAnswersTooLateIsToldAndMayJoinAgain) {
 /// Two clients that go back with their world.
 class Rewound : public Policy {
  protected:
-  /// What is there at 2 s when the world went back to 0.5 s from the given step: the state hash, and what the clients
+  /// What is there at 2 s when the world went back to 0.5 s from the given step: the run hash, and what the clients
   /// handled since.
   std::string from_step(int step) {
     write_file(folder_.file("world.yaml"), two_rovers("2"));
@@ -319,7 +319,7 @@ class Rewound : public Policy {
     EXPECT_THAT(request("rewind", "", "test", step * 0.01 - 0.5).text, HasSubstr("step 50, 0.5 s, branch 1, paused"));
     EXPECT_TRUE(request("resume").ok);
     EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
-    std::string result = state_hash_in({0, shoal_->output(), shoal_->errors()});
+    std::string result = run_hash_in({0, shoal_->output(), shoal_->errors()});
     for (Program* pilot : {&a, &b}) {
       EXPECT_EQ(pilot->wait(), 0) << pilot->errors();
       result += " " + pilot->output().substr(0, pilot->output().find(" ticks"));
@@ -339,7 +339,7 @@ TEST_F(Policy, WrongAcknowledgementsAndFloodsChangeNothing) {
   start("--period, '0.01', --slow-ms, '1'");
   const std::string undisturbed_run = [&] {
     EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
-    return summary_value(folder_.file("results"), "state_hash");
+    return summary_value(folder_.file("results"), "run_hash");
   }();
   start("--period, '0.01', --slow-ms, '1'");
   shoal::sim_ack_t ack{};
@@ -364,7 +364,7 @@ TEST_F(Policy, WrongAcknowledgementsAndFloodsChangeNothing) {
     }
   }
   EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
-  EXPECT_EQ(summary_value(folder_.file("results"), "state_hash"), undisturbed_run);
+  EXPECT_EQ(summary_value(folder_.file("results"), "run_hash"), undisturbed_run);
   EXPECT_GT(std::stol(summary_value(folder_.file("results"), "bad_messages")), 100);
 }
 

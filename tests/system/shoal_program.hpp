@@ -62,6 +62,8 @@ struct Ended {
 Ended run_shoal(std::vector<std::string> arguments, std::chrono::milliseconds limit = patience);
 /// The 16 digits after `state hash`, or what was said instead.
 std::string state_hash_in(const Ended& ended);
+/// The same after `run hash`: equal for equal runs, not only for equal ends.
+std::string run_hash_in(const Ended& ended);
 
 /// Neither gone nor dead and waiting to be noticed.
 bool is_running(pid_t pid);

@@ -88,11 +88,22 @@ Ended run_shoal(std::vector<std::string> arguments, std::chrono::milliseconds li
   return {exit_code, program.output(), program.errors()};
 }
 
-std::string state_hash_in(const Ended& ended) {
-  static const std::regex pattern("state hash ([0-9a-f]{16})");
+namespace {
+
+std::string hash_in(const Ended& ended, const std::string& kind) {
   std::smatch match;
-  if (std::regex_search(ended.output, match, pattern)) return match[1];
+  if (std::regex_search(ended.output, match, std::regex(kind + " hash ([0-9a-f]{16})"))) return match[1];
   return "exit code " + std::to_string(ended.exit_code) + ": " + ended.errors + ended.output;
+}
+
+}  // namespace
+
+std::string state_hash_in(const Ended& ended) {
+  return hash_in(ended, "state");
+}
+
+std::string run_hash_in(const Ended& ended) {
+  return hash_in(ended, "run");
 }
 
 bool is_running(pid_t pid) {

@@ -101,7 +101,7 @@ TEST_F(Page, SnapshotFilesGoOnAsItSays) {
     ended.push_back(run(command.text));
     EXPECT_EQ(ended.back().exit_code, 0) << command.text << ended.back().errors;
   }
-  EXPECT_EQ(state_hash_in(ended[2]), state_hash_in(ended[0]));
+  EXPECT_EQ(run_hash_in(ended[2]), run_hash_in(ended[0]));
 }
 
 }  // namespace

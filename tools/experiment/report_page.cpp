@@ -41,9 +41,10 @@ std::string title_of(const RunRecord& run) {
 
 std::string facts_of(const RunRecord& run) {
   const double speed = run.wall_s > 0 ? run.sim_time_s / run.wall_s : 0;
-  return fmt::format("Seed {}. {:.2f} s simulated in {:.2f} s, {:.1f} times real time. Shoal {}. State hash {}.",
-                     run.seed, run.sim_time_s, run.wall_s, speed,
-                     run.version.empty() ? "of an unknown version" : run.version, run.state_hash);
+  return fmt::format(
+      "Seed {}. {:.2f} s simulated in {:.2f} s, {:.1f} times real time. Shoal {}. Run hash {}, state hash {}.",
+      run.seed, run.sim_time_s, run.wall_s, speed, run.version.empty() ? "of an unknown version" : run.version,
+      run.run_hash.empty() ? "not told" : run.run_hash, run.state_hash);
 }
 
 std::string why_not_passed(const RunRecord& run) {
@@ -199,14 +200,18 @@ std::string comparison_report(const std::vector<RunRecord>& runs) {
   for (const RunRecord& run : runs)
     for (const auto& [name, value] : run.metrics) names.insert(name);
   std::vector<std::string> head{"run"};
-  std::vector<std::vector<std::string>> rows{{"world"}, {"seed"}, {"verdict"}, {"simulated, s"}, {"state hash"}};
+  std::vector<std::vector<std::string>> rows{{"world"},        {"seed"},     {"verdict"},
+                                             {"simulated, s"}, {"run hash"}, {"state hash"}};
   for (const RunRecord& run : runs) {
     head.push_back(run.directory);
-    const std::string cells[] = {run.world, fmt::format("{}", run.seed),
+    const std::string cells[] = {run.world,
+                                 fmt::format("{}", run.seed),
                                  is_unjudged(run) ? "not judged"
                                  : run.passed     ? "passed"
                                                   : "FAILED",
-                                 fmt::format("{:.2f}", run.sim_time_s), run.state_hash};
+                                 fmt::format("{:.2f}", run.sim_time_s),
+                                 run.run_hash,
+                                 run.state_hash};
     for (std::size_t i = 0; i < std::size(cells); ++i) rows[i].push_back(cells[i]);
   }
   for (const std::string& name : names) {

@@ -80,6 +80,7 @@ std::string Summary::to_json() const {
   json["sim_time_s"] = sim_time_s;
   json["wall_s"] = wall_s;
   json["real_time_factor"] = real_time_factor();
+  json["run_hash"] = fmt::format("{:016x}", run_hash);
   json["state_hash"] = fmt::format("{:016x}", state_hash);
   json["messages"] = messages;
   json["dropped_messages"] = dropped_messages;
@@ -163,7 +164,7 @@ std::string Summary::to_text() const {
     if (record.speeding_s > 0) text += fmt::format("  {} was too fast for {:.2f} s\n", vehicle, record.speeding_s);
   }
   if (event) text += fmt::format("  ended by an event, {}: {}\n", event->passed ? "passed" : "FAILED", event->text);
-  text += fmt::format("  state hash {:016x}\n", state_hash);
+  text += fmt::format("  run hash {:016x}, state hash {:016x}\n", run_hash, state_hash);
   return text;
 }
 

@@ -33,7 +33,8 @@ struct Summary {
   std::int64_t steps = 0;
   double sim_time_s = 0;
   double wall_s = 0;
-  std::uint64_t state_hash = 0;
+  std::uint64_t state_hash = 0;  ///< of the last state
+  std::uint64_t run_hash = 0;    ///< of the whole run: World::run_hash()
   std::uint64_t messages = 0;
   std::uint64_t dropped_messages = 0;
   std::int64_t bad_messages = 0;

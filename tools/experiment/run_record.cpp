@@ -58,6 +58,7 @@ RunRecord read_run(const std::string& directory) {
   run.sim_time_s = in.number("sim_time_s");
   run.wall_s = in.number("wall_s");
   run.state_hash = in.text("state_hash");
+  if (in.has("run_hash")) run.run_hash = in.text("run_hash");
   run.messages = in.whole("messages");
   run.dropped_messages = in.whole("dropped_messages");
   run.bad_messages = in.whole("bad_messages");

@@ -28,6 +28,7 @@ struct RunRecord {
   double sim_time_s = 0;
   double wall_s = 0;
   std::string state_hash;
+  std::string run_hash;  ///< empty: an older run
   std::int64_t messages = 0, dropped_messages = 0, bad_messages = 0, quick_steps = 0;
   std::int64_t modem_dropped_messages = 0;
   std::map<std::string, std::optional<double>> metrics;  ///< unset: there was nothing to make the figure of

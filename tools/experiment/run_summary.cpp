@@ -49,6 +49,7 @@ void Run::add_figures(Summary& summary) {
   summary.steps = world_.step_number();
   summary.sim_time_s = sim::to_seconds(world_.now());
   summary.state_hash = world_.state_hash();
+  summary.run_hash = world_.run_hash();
   summary.messages = counts.published + counts.received;
   summary.dropped_messages = counts.dropped_incoming + counts.dropped_outgoing + lockstep_.dropped_messages();
   summary.bad_messages =

@@ -44,7 +44,7 @@ struct ScaleFigures {
   double load_s = 0;                   ///< wall time to read and build the world
   double cpu_ms_per_robot_second = 0;  ///< CPU milliseconds per robot and simulated second
   double real_time_factor = 0;
-  std::uint64_t state_hash = 0;
+  std::uint64_t run_hash = 0;
 };
 
 struct ScaleOptions {

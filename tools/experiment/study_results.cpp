@@ -176,18 +176,18 @@ std::string StudyResults::to_text() const {
 }
 
 std::string StudyResults::to_csv() const {
-  std::string text = "case,seed,exit_code,passed,ended,sim_time_s,wall_s";
+  std::string text = "case,seed,exit_code,passed,ended,sim_time_s,wall_s,run_hash";
   for (const std::string& figure : figures_) text += "," + figure;
   text += "\n";
   for (const StudyRun& run : runs_) {
     text += fmt::format("{},{}", study_.config.cases[run.in_case].name, run.seed);
     if (!run.record) {
-      text += ",,,failed,," + std::string(figures_.size(), ',') + "\n";
+      text += ",,,failed,,," + std::string(figures_.size(), ',') + "\n";
       continue;
     }
     const RunRecord& record = *run.record;
-    text += fmt::format(",{},{},{},{},{:.3f}", record.exit_code, record.passed ? 1 : 0, field(record.ended),
-                        record.sim_time_s, record.wall_s);
+    text += fmt::format(",{},{},{},{},{:.3f},{}", record.exit_code, record.passed ? 1 : 0, field(record.ended),
+                        record.sim_time_s, record.wall_s, record.run_hash);
     for (const std::string& figure : figures_) {
       const auto found = record.metrics.find(figure);
       const bool known = found != record.metrics.end() && found->second;

@@ -21,11 +21,11 @@ void bench(const BenchArguments& arguments) {
   std::cout << fmt::format("scale scene: wandering rovers, 180 rays at 10 Hz each, step 0.01 s, {}, in-process bus\n",
                            threads == 1 ? "one thread" : fmt::format("{} threads", threads))
             << fmt::format("{:>7} {:>9} {:>28} {:>18} {:>18}\n", "robots", "load s", "CPU ms per robot second",
-                           "real-time factor", "state hash");
+                           "real-time factor", "run hash");
   for (const int robots : arguments.robots) {
     const ScaleFigures figures = measure_scale(robots, arguments.scale);
     std::cout << fmt::format("{:>7} {:>9.3f} {:>28.3f} {:>18.2f}   {:016x}\n", robots, figures.load_s,
-                             figures.cpu_ms_per_robot_second, figures.real_time_factor, figures.state_hash)
+                             figures.cpu_ms_per_robot_second, figures.real_time_factor, figures.run_hash)
               << std::flush;
   }
 }

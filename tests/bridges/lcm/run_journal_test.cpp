@@ -100,6 +100,19 @@ TEST(RunJournal, HashesAreThoseOfTheWorldAtEveryNthStepAndAtTheEnd) {
   EXPECT_EQ(hashes, expected);
 }
 
+TEST(RunJournal, TheHashOfTheRunIsTheLastOfTheParts) {
+  Journalled run(10);
+  run.journal.start();
+  std::int64_t expected = 0;
+  for (int i = 0; i < 10; ++i) run.step();
+  expected = static_cast<std::int64_t>(run.test.world.run_hash());
+  const auto messages = run.hashes.take_all();
+  ASSERT_EQ(messages.size(), 1u);
+  ASSERT_EQ(messages[0].part.size(), messages[0].part_hash.size());
+  EXPECT_EQ(messages[0].part.back(), "run hash");
+  EXPECT_EQ(messages[0].part_hash.back(), expected);
+}
+
 TEST(RunJournal, NoneAreAskedFor) {
   Journalled run(0);
   run.journal.start();

@@ -357,7 +357,7 @@ TEST(Collisions, DoNotChangeTheRun) {
     world->run_for(4);
   }
   EXPECT_EQ(with.figure("all.count"), 1);
-  EXPECT_EQ(with.test.world.state_hash(), without.test.world.state_hash());
+  EXPECT_EQ(with.test.world.run_hash(), without.test.world.run_hash());
 }
 
 TEST(Messages, AreCountedWithTheirBytes) {

@@ -70,22 +70,24 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   summary.stepped_s = 10;
   summary.wall_s = 2;
   summary.state_hash = 0x0123456789abcdef;
+  summary.run_hash = 0xfedcba9876543210;
   summary.metrics["position.rms_m"] = 0.25;
   summary.verdicts = {{"position.rms_m (0.250) < 1", true}};
   summary.processes = {{"pilot", "exited with code 1", 2.5}};
   const auto json = nlohmann::ordered_json::parse(summary.to_json());
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(
-      keys, testing::ElementsAre("world", "description", "seed", "steps", "sim_time_s", "wall_s", "real_time_factor",
-                                 "state_hash", "messages", "dropped_messages", "bad_messages", "quick_steps", "metrics",
-                                 "rules", "processes", "modem_dropped_messages", "serial_dropped_bytes", "judged",
-                                 "passed", "ended", "error", "exit_code", "shoal"));
+  EXPECT_THAT(keys,
+              testing::ElementsAre("world", "description", "seed", "steps", "sim_time_s", "wall_s", "real_time_factor",
+                                   "run_hash", "state_hash", "messages", "dropped_messages", "bad_messages",
+                                   "quick_steps", "metrics", "rules", "processes", "modem_dropped_messages",
+                                   "serial_dropped_bytes", "judged", "passed", "ended", "error", "exit_code", "shoal"));
   EXPECT_EQ(json["world"], "harbor");
   EXPECT_EQ(json["seed"], 3);
   EXPECT_EQ(json["steps"], 1000);
   EXPECT_EQ(json["real_time_factor"], 5);
   EXPECT_EQ(json["state_hash"], "0123456789abcdef");
+  EXPECT_EQ(json["run_hash"], "fedcba9876543210");
   EXPECT_EQ(json["metrics"]["position.rms_m"], 0.25);
   EXPECT_EQ(json["rules"][0]["passed"], true);
   EXPECT_EQ(json["processes"][0]["name"], "pilot");

@@ -57,6 +57,7 @@ std::vector<tools::StudyRun> made_up_runs(const tools::LoadedStudy& study,
     run.record->metrics["e.rms_m"] = std::isnan(value) ? std::nullopt : std::optional<double>(value);
     run.record->passed = value < 3;
     run.record->ended = "duration";
+    run.record->run_hash = "00000000000000a1";
   }
   return runs;
 }
@@ -211,9 +212,9 @@ TEST(StudyResults, JudgeStatisticsOfCases) {
   EXPECT_EQ(json["cases"][0]["figures"]["e.rms_m"]["mean"], 2);
   EXPECT_EQ(json["cases"][1]["figures"]["e.rms_m"]["std"], 0);
   EXPECT_EQ(json["passed"], false);
-  EXPECT_THAT(results.to_csv(), HasSubstr("case,seed,exit_code,passed,ended,sim_time_s,wall_s,e.rms_m\n"
-                                          "plain,1,0,1,duration,0,0.000,1\n"));
-  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,0,0,duration,0,0.000,6\n"));
+  EXPECT_THAT(results.to_csv(), HasSubstr("case,seed,exit_code,passed,ended,sim_time_s,wall_s,run_hash,e.rms_m\n"
+                                          "plain,1,0,1,duration,0,0.000,00000000000000a1,1\n"));
+  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,0,0,duration,0,0.000,00000000000000a1,6\n"));
 }
 
 TEST(StudyResults, ARuleFailsWhenARunLacksItsFigure) {
@@ -234,7 +235,7 @@ TEST(StudyResults, ARuleFailsWhenARunLacksItsFigure) {
   const auto json = nlohmann::json::parse(results.to_json(1));
   EXPECT_EQ(json["cases"][1]["figures"]["e.rms_m"]["count"], 1);
   EXPECT_TRUE(json["cases"][1]["figures"]["e.rms_m"]["std"].is_null());
-  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,0,0,duration,0,0.000,\n"));
+  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,0,0,duration,0,0.000,00000000000000a1,\n"));
 }
 
 TEST(StudyResults, CountRunsWithoutAResult) {
@@ -246,7 +247,7 @@ TEST(StudyResults, CountRunsWithoutAResult) {
   const tools::StudyResults results(study, runs);
   EXPECT_EQ(results.failed_runs(), 1u);
   EXPECT_FALSE(results.passed());
-  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,,,failed,,,\n"));
+  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,,,failed,,,,\n"));
   const ScratchFolder out;
   tools::write_study(out.file("study"), study, runs, results, 4);
   const std::string page = tools::study_report(out.file("study"));
