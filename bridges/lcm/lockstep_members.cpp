@@ -20,6 +20,12 @@ constexpr std::size_t most_ended_sessions = 1000;
 
 }  // namespace
 
+std::string LockstepService::names() const {
+  std::string names;
+  for (const auto& [name, member] : lockstep_.members()) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
 bool LockstepService::join(int line, const shoal::sim_control_request_t& request) {
   if (request.client.empty() || request.client.size() > 60)
     throw std::runtime_error("'join' needs a client name of 1 to 60 characters");

@@ -65,6 +65,8 @@ class LockstepService {
   void client_gone(const std::string& client);
   bool has(const std::string& client) const { return lockstep_.has(client); }
   bool empty() const { return lockstep_.empty(); }
+  /// Of those that take part, in order, with commas between.
+  std::string names() const;
   /// For whom the world waits: `waits 1.5 s for 'pilot'`; empty: for nobody.
   std::string waits_for();
   /// Call now and then, also while the world is paused.

@@ -116,6 +116,7 @@ class Lockstep {
   LockstepMember* find(std::string_view client);
   /// By name.
   std::map<std::string, LockstepMember, std::less<>>& members() { return members_; }
+  const std::map<std::string, LockstepMember, std::less<>>& members() const { return members_; }
   /// Some client of this line must have every message of this channel.
   bool somebody_receives(int line, std::string_view channel) const;
 

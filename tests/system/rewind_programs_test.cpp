@@ -61,12 +61,40 @@ TEST_P(ProgramsGoBack, AndTheRunEndsAsOneThatNeverWentBack) {
   const ScratchFolder folder;
   const Ended ended = run_with_two_rewinds(of.world, of.duration_s, of.times_s, folder.file("results"));
   EXPECT_EQ(ended.exit_code, straight.exit_code) << ended.output << ended.errors;
-  EXPECT_EQ(state_hash_in(ended), state_hash_in(straight));
+  EXPECT_EQ(run_hash_in(ended), run_hash_in(straight));
   EXPECT_THAT(ended.output, HasSubstr("branch 2: the run went back"));
   const auto summary = nlohmann::json::parse(text_of_file(folder.file("results/summary.json")));
   EXPECT_THAT(summary["processes"], IsEmpty()) << "a program ended before the run did";
   ASSERT_FALSE(summary["clients"].empty());
   for (const auto& client : summary["clients"]) EXPECT_EQ(client["ended"], "with the run") << client;
+}
+
+/// To a file that was written on the way: at a tick of the programs and between two.
+TEST_P(ProgramsGoBack, ToAFileOfTheirRunAsWell) {
+  const Mission& of = GetParam();
+  const Ended straight = run_shoal(mission(of.world, of.duration_s), std::chrono::minutes(3));
+  const ScratchFolder folder;
+  std::vector<std::string> arguments = mission(
+      of.world, of.duration_s, {"--paused", "--results", folder.file("results"), "--snapshots", folder.file("snaps")});
+  arguments.insert(arguments.begin(), built("shoal"));
+  Program program(arguments);
+  EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, patience));
+  const auto run_until = [](const std::string& time_s) {
+    EXPECT_TRUE(await([&] { return control({"until", "--value", time_s}).exit_code == 0; }, patience));
+    EXPECT_TRUE(await([] { return control({"where"}).output.find(", paused") != std::string::npos; }, patience));
+  };
+  run_until(of.times_s[0]);
+  EXPECT_EQ(control({"snapshot", "a"}).exit_code, 0);
+  run_until(of.times_s[2]);
+  for (int times = 0; times < 2; ++times) {
+    const Ended restored = control({"restore", "a"});
+    EXPECT_EQ(restored.exit_code, 0) << restored.errors;
+    if (times == 0) run_until(of.times_s[2]);
+  }
+  EXPECT_EQ(control({"resume"}).exit_code, 0);
+  const int exit_code = program.wait(std::chrono::minutes(3));
+  EXPECT_EQ(exit_code, straight.exit_code) << program.output() << program.errors();
+  EXPECT_EQ(run_hash_in({exit_code, program.output(), program.errors()}), run_hash_in(straight));
 }
 
 INSTANTIATE_TEST_SUITE_P(Worlds, ProgramsGoBack,

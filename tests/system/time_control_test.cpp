@@ -104,7 +104,7 @@ TEST(Snapshot, AFreshProcessGoesOnBitForBit) {
     EXPECT_THAT(checked.output, HasSubstr("restores with the same hash"));
     const Ended rest = run_shoal({"run", "--from", snapshot, "--bus", "none"});
     EXPECT_EQ(rest.exit_code, 0) << rest.errors;
-    EXPECT_EQ(state_hash_in(rest), state_hash_in(whole));
+    EXPECT_EQ(run_hash_in(rest), run_hash_in(whole));
     EXPECT_THAT(rest.output, HasSubstr("2000 steps, 20.00 s simulated"));
   }
 }
@@ -192,7 +192,7 @@ TEST(Snapshot, NoticesThatAFileOfItsWorldIsAnotherOne) {
       {"run", folder.world(), "--bus", "none", "--duration", "2", "--snapshot-at", "1", "--snapshots", snaps});
   ASSERT_EQ(whole.exit_code, 0) << whole.errors;
   const auto from = [&] { return run_shoal({"run", "--from", snapshot, "--bus", "none", "--duration", "2"}); };
-  EXPECT_EQ(state_hash_in(from()), state_hash_in(whole)) << "from another folder than its world's";
+  EXPECT_EQ(run_hash_in(from()), run_hash_in(whole)) << "from another folder than its world's";
   for (const auto& [file, text] : {std::pair("stone.obj", mesh), {"flow.csv", flow}}) {
     write_file(folder.file(file), text + (text == mesh ? "v 2 2 2\n" : "20,0,0.5,0\n20,10,0.5,0\n"));
     for (const Ended& refused : {from(), run_shoal({"snapshot", snapshot, "--check"})}) {
@@ -241,7 +241,7 @@ TEST(Rewind, RunAgainIsEqualToARunThatNeverWentBack) {
   ASSERT_EQ(live.program.wait(), 0) << live.program.errors();
   Ended ended;
   ended.output = live.program.output();
-  EXPECT_EQ(state_hash_in(ended), state_hash_in(straight));
+  EXPECT_EQ(run_hash_in(ended), run_hash_in(straight));
   EXPECT_THAT(ended.output, HasSubstr("branch 2"));
   for (const char* log : {"log.lcm", "log.branch1.lcm", "log.branch2.lcm"}) {
     const Ended replayed = run_shoal({"replay", folder.file(log)});
@@ -454,11 +454,43 @@ TEST(Restore, InTheMiddleOfALockstepMissionOnABusOfItsOwnItsRecordIsRunAgain) {
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
   EXPECT_EQ(pilot.wait(), 0) << pilot.output() << pilot.errors();
   for (const auto& [log, text] :
-       {std::pair("log.lcm", "equal for 400 steps ("), {"log.branch1.lcm", "equal for 300 steps (from step 300; "}}) {
+       {std::pair("log.lcm", "equal for 400 steps ("), {"log.branch1.lcm", "equal for 600 steps ("}}) {
     const Ended replayed = run_shoal({"replay", folder.file(log)});
     EXPECT_EQ(replayed.exit_code, 0) << log << replayed.output << replayed.errors;
     EXPECT_THAT(replayed.output, HasSubstr(text)) << log;
   }
+}
+
+/// A file has nothing of a program's memory.
+TEST(Restore, WithLockstepClientsGoesOnlyWhereTheRunHasBeenAndRemembers) {
+  const Folder folder;
+  ASSERT_EQ(run_shoal({"run", folder.world(), "--bus", "none", "--duration", "2", "--snapshot-at", "1", "--snapshots",
+                       folder.file("snaps")})
+                .exit_code,
+            0);
+  Program pilot({built("lockstep_pilot"), "--name", "pilot", "--vehicle", "r1", "--period", "0.1", "--receive",
+                 "r1.odometry", "--go-back", "--lcm-url", own_url()});
+  Live live(folder, {"--await", "pilot", "--rewind-s", "3"});
+  const auto refusal = [](const std::string& name) {
+    const Ended ended = control({"restore", name});
+    EXPECT_EQ(ended.exit_code, 1) << ended.output;
+    EXPECT_EQ(std::count(ended.errors.begin(), ended.errors.end(), '\n'), 1) << ended.errors;
+    EXPECT_THAT(ended.errors, HasSubstr("the lockstep clients (pilot) cannot go where they have not been"));
+    return ended.errors;
+  };
+  live.run_until("2");
+  EXPECT_EQ(control({"snapshot", "early"}).exit_code, 0);
+  EXPECT_THAT(refusal("branch0_step100"), HasSubstr("was not written by this run on its way to step 200, 2 s"));
+  live.run_until("4");
+  EXPECT_EQ(control({"snapshot", "later"}).exit_code, 0);
+  EXPECT_EQ(control({"rewind", "--value", "1"}).exit_code, 0);
+  EXPECT_THAT(refusal("later"), HasSubstr("was not written by this run on its way to step 300, 3 s"));
+  EXPECT_EQ(Live::where(), "step 300, 3 s, branch 1, paused");
+  EXPECT_EQ(control({"restore", "early"}).output, "step 200, 2 s, branch 2, paused\n");
+  live.run_until("12");
+  EXPECT_THAT(refusal("early"), HasSubstr("its 2 s are too early for what this run remembers, from "));
+  EXPECT_EQ(live.quit(), 0) << live.program.errors();
+  EXPECT_EQ(pilot.wait(), 0) << pilot.output() << pilot.errors();
 }
 
 TEST(Restore, OneThatDoesNotFitLeavesNoBranchBehind) {
@@ -566,7 +598,8 @@ TEST(Branch, KeepsTheResultsOfTheOneThatIsLeft) {
   EXPECT_EQ(summary_value(results, "branch"), "1");
   EXPECT_EQ(summary_value(results + "/branch0", "steps"), "600");
   EXPECT_EQ(summary_value(results + "/branch0", "ended"), "\"rewound\"");
-  EXPECT_NE(summary_value(results, "state_hash"), summary_value(results + "/branch0", "state_hash"));
+  for (const char* hash : {"state_hash", "run_hash"})
+    EXPECT_NE(summary_value(results, hash), summary_value(results + "/branch0", hash));
   const auto lines = [](const std::string& path) {
     const std::string text = text_of_file(path);
     return std::count(text.begin(), text.end(), '\n');

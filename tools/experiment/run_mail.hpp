@@ -37,6 +37,8 @@ class RunMail {
     return lockstep_.needed_from(step, most_steps);
   }
   void end_again();
+  /// Names of the lockstep clients, with commas between; empty: nobody takes part.
+  std::string clients() const { return lockstep_.names(); }
 
  private:
   struct Kept {

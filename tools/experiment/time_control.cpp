@@ -10,6 +10,7 @@
 
 #include "sim/config/message_text.hpp"
 #include "sim/state/state_archive.hpp"
+#include "sim/state_hash.hpp"
 
 namespace tools {
 
@@ -42,6 +43,12 @@ sim::Bytes joined(const sim::Bytes& state, const sim::Bytes& scores, const sim::
   const sim::Bytes sizes = trailer.take_bytes();
   all.insert(all.end(), sizes.begin(), sizes.end());
   return all;
+}
+
+std::uint64_t hash_of(const sim::Bytes& bytes) {
+  sim::StateHash hash;
+  hash.add_bytes(bytes.data(), bytes.size());
+  return hash.value();
 }
 
 /// The line where two texts part.
@@ -233,9 +240,14 @@ std::string TimeControl::rewind(double seconds, bool run_on) {
     throw std::runtime_error(fmt::format("cannot go back {:.6g} s from {:.6g} s: what is kept begins at {:.6g} s",
                                          seconds, sim::to_seconds(world_.now()), oldest_s));
   }
+  go_back(*base, target, run_on);
+  return place();
+}
+
+void TimeControl::go_back(std::int64_t base, std::int64_t target, bool run_on) {
   travel(
       [&] {
-        const sim::Bytes all = ring_.get(*base);
+        const sim::Bytes all = ring_.get(base);
         std::uint64_t sizes[3];
         std::memcpy(sizes, all.data() + all.size() - trailer_bytes, trailer_bytes);
         const auto at = [&](std::uint64_t offset) { return all.begin() + static_cast<std::ptrdiff_t>(offset); };
@@ -246,9 +258,9 @@ std::string TimeControl::rewind(double seconds, bool run_on) {
         simulate_again(target);
         ring_.forget_after(target);
         mail_.forget_from(target);
+        written_.erase(written_.upper_bound(target), written_.end());
       },
       target, run_on, true);
-  return place();
 }
 
 void TimeControl::simulate_again(std::int64_t to_step) {
@@ -365,7 +377,9 @@ std::string TimeControl::write_file(const std::string& name) {
   std::filesystem::create_directories(options_.directory, error);
   if (!options_.overwrite && std::filesystem::exists(path, error))
     throw std::runtime_error(path + ": exists already; choose another name");
-  tools::write_snapshot(path, snapshot());
+  const Snapshot written = snapshot();
+  tools::write_snapshot(path, written);
+  written_[written.step] = hash_of(written.state);
   return place() + ": " + path;
 }
 
@@ -383,6 +397,10 @@ std::string TimeControl::restore(const std::string& name, bool run_on) {
   if (snapshot.files != options_.files)
     throw std::runtime_error(
         path + ": its world used other files than this run: " + first_difference(snapshot.files, options_.files));
+  if (!mail_.clients().empty()) {
+    restore_with_clients(snapshot, path, run_on);
+    return place();
+  }
   travel(
       [&] {
         load({snapshot.state, snapshot.scores, snapshot.owners}, History::whole);
@@ -390,9 +408,32 @@ std::string TimeControl::restore(const std::string& name, bool run_on) {
         forget_all();
         after_step();
         first_step_ = std::min(first_step_, snapshot.step);
+        written_ = {{snapshot.step, hash_of(snapshot.state)}};
       },
       snapshot.step, run_on, false);
   return place();
+}
+
+/// A file holds nothing of programs: they can only go where they have been in this run.
+void TimeControl::restore_with_clients(const Snapshot& snapshot, const std::string& path, bool run_on) {
+  const auto refuse = [&](const std::string& why) {
+    throw std::runtime_error(
+        fmt::format("{}: {}, and the lockstep clients ({}) cannot go where they have not been or "
+                    "what is forgotten: use 'rewind', or go on from the file in a new run, with "
+                    "'shoal run --from'",
+                    path, why, sim::shortened(mail_.clients())));
+  };
+  const auto written = written_.find(snapshot.step);
+  if (written == written_.end() || written->second != hash_of(snapshot.state))
+    refuse("was not written by this run on its way to " + place());
+  // Unlike rewind(): from later on some client would lack reports.  At the start of the run nobody had any.
+  const std::int64_t needed = mail_.needed_from(snapshot.step, longest_lead_s * steps_per_second_);
+  const auto base = ring_.newest_until(std::max(needed, first_step_));
+  if (!base)
+    refuse(ring_.oldest() ? fmt::format("its {:.6g} s are too early for what this run remembers, from {:.6g} s on",
+                                        snapshot.time_s(), sim::to_seconds(world_.step_time() * *ring_.oldest()))
+                          : "this run remembers nothing (see --rewind-s)");
+  go_back(*base, snapshot.step, run_on);
 }
 
 }  // namespace tools

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -69,7 +70,8 @@ class TimeControl final : public bridges::TimeMachine {
   std::string write_snapshot(const std::string& name);
   /// The same for what the command line asked for, without a limit.
   std::string write_planned_snapshot();
-  /// Goes on from a file in the directory of snapshots.
+  /// Goes on from a file in the directory of snapshots.  With lockstep clients it goes back there as rewind() does, so
+  /// that they are where they were: to files that this run wrote on its way here, and while it remembers that step.
   std::string restore(const std::string& name, bool run_on);
 
   /// Begins a run with a snapshot.  Throws std::runtime_error when it does not fit.
@@ -101,6 +103,9 @@ class TimeControl final : public bridges::TimeMachine {
   /// Carries out `work`, which moves the world; puts the world back when that fails.
   void travel(const std::function<void()>& work, std::int64_t to_step, bool run_on, bool ours);
   void put_back(const Saved& before);
+  /// To a step of this branch, from the snapshot in memory of an earlier one on.
+  void go_back(std::int64_t base, std::int64_t target, bool run_on);
+  void restore_with_clients(const Snapshot& snapshot, const std::string& path, bool run_on);
   std::string what_is_kept() const;
   std::string write_file(const std::string& name);
   std::string path_of(const std::string& name) const;
@@ -117,6 +122,8 @@ class TimeControl final : public bridges::TimeMachine {
   Clock::time_point not_before_;  // the next snapshot for going back
   std::int64_t first_step_ = 0;   ///< where this run began, or an earlier file
   int files_ = 0;
+  /// Steps at which a file was written, with the hash of its state: of this branch, back to where its past is known.
+  std::map<std::int64_t, std::uint64_t> written_;
   bool moved_ = false;
   std::string broken_;
 };
