@@ -20,6 +20,7 @@
 #include "tools/experiment/line_difference.hpp"
 #include "tools/experiment/progress.hpp"
 #include "tools/experiment/replay_messages.hpp"
+#include "tools/experiment/replay_ports.hpp"
 #include "tools/experiment/run_identity.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/experiment/world_difference.hpp"
@@ -35,34 +36,6 @@ using Letter = ReplayLog::Letter;
 struct Line {
   std::unique_ptr<sim::InProcessBus> network = std::make_unique<sim::InProcessBus>();
   std::unique_ptr<sim::MailGate> gate = std::make_unique<sim::MailGate>(*network);
-};
-
-/// Ports that read what was read in the run.
-class SerialPorts {
- public:
-  void add(const Letter& letter) { mail_.add(letter.step, letter.channel, letter.payload); }
-  sim::PortOpener opener() {
-    return [this](const std::string&, const std::string& path) { return std::make_unique<Port>(*this, path); };
-  }
-  void attach(const sim::World& world) { world_ = &world; }
-
- private:
-  class Port final : public sim::BytePort {
-   public:
-    Port(SerialPorts& ports, std::string path) : ports_(ports), path_(std::move(path)) {}
-    sim::Bytes read() override {
-      return ports_.world_ != nullptr ? ports_.mail_.read(path_, ports_.world_->step_number()) : sim::Bytes{};
-    }
-    void write(std::span<const std::byte>) override {}
-    std::uint64_t dropped_bytes() const override { return 0; }
-
-   private:
-    SerialPorts& ports_;
-    std::string path_;
-  };
-
-  const sim::World* world_ = nullptr;
-  bridges::SerialMail mail_;
 };
 
 /// The world that is run: that of the log, or another one in its place.
@@ -128,6 +101,7 @@ class Replay {
       differ("the world", std::string("physics fault here: ") + error.what());
     }
     progress.clear();
+    if (!cut_ && log_.cut.empty() && world_.step_number() == log_.last_step) finish();
     messages_.finish(world_.step_number());
     outcome_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     conclude();
@@ -167,7 +141,7 @@ class Replay {
     if (log_.proven_step && *log_.proven_step <= log_.begin_step() && log_.usable_step() < log_.last_step)
       throw std::runtime_error(log_.path + ": cannot be run again from the start: " + log_.holes.front() +
                                "; the log begins later than the run");
-    if (log_.last_step == log_.begin_step() && log_.hashes.empty())
+    if (log_.last_step == log_.begin_step() && !log_.hashes.contains(log_.begin_step()))
       throw std::runtime_error(log_.path + ": ends before the first step");
   }
 
@@ -224,6 +198,14 @@ class Replay {
     }
   }
 
+  /// What was asked for after the last step.
+  void finish() {
+    hand_over(world_.step_number());
+    if (!outcome_.first) tell_first_messages();
+    const auto last = log_.hashes.find(world_.step_number());
+    if (last != log_.hashes.end() && last->second.after_letters) compare_hashes(last->second);
+  }
+
   void obey(const Letter& letter) {
     try {
       service_.obey_again(shoal::decode<shoal::sim_control_request_t>(letter.payload, shoal::Finite::any));
@@ -243,8 +225,8 @@ class Replay {
     service_.publish_step();
     if (!outcome_.first) tell_first_messages();
     while (next_hash_ != log_.hashes.end() && next_hash_->first < world_.step_number()) ++next_hash_;
-    if (next_hash_ != log_.hashes.end() && next_hash_->first == world_.step_number())
-      compare_hashes(next_hash_->second);
+    const bool due = next_hash_ != log_.hashes.end() && next_hash_->first == world_.step_number();
+    if (due && !next_hash_->second.after_letters) compare_hashes(next_hash_->second);
   }
 
   /// All that differ by now differ since this step.
@@ -260,6 +242,9 @@ class Replay {
   void compare_hashes(const ReplayLog::Hashes& logged) {
     ++outcome_.hashes;
     if (logged.whole == world_.state_hash()) {
+      if (logged.run && *logged.run != world_.run_hash() && !outcome_.first)
+        differ("the world",
+               "its run hash differs and its state hash does not: a message or a state before was another");
       if (equal_parts_.size() < logged.parts.size())
         for (const sim::PartHash& part : logged.parts) equal_parts_.insert(part.part);
       return;
@@ -369,19 +354,25 @@ class Replay {
   }
 
   void tell_of_log() {
+    if (!log_.cut.empty()) note(log_.cut);
     for (const std::string& hole : log_.holes) note(hole);
     if (!outcome_.complete && !log_.holes.empty())
       note(
           fmt::format("what came to the world after step {} is not all in the log, which goes on to step {}: nothing "
                       "after step {} can be proved",
                       log_.usable_step(), log_.last_step, log_.usable_step()));
+    const std::string wrote = log_.info.versions.substr(0, log_.info.versions.find('\n'));
+    if (wrote != "shoal " + short_version())
+      note("written by " + sim::shortened(sim::printable(wrote)) + "; this is shoal " + short_version());
     if (outcome_.interrupted) note("interrupted");
     if (log_.goes_back) note("the log holds several branches; only hashes are compared");
     if (!log_.bad_snapshot.empty()) note(log_.bad_snapshot);
     if (log_.first_step > log_.begin_step()) note(fmt::format("the log begins at step {}", log_.first_step));
     if (log_.hashes.empty()) note("the log holds no hashes: only messages are compared");
     if (outcome_.missing_messages > 0 && !(log_.own_stamps && outcome_.first))
-      note(fmt::format("{} messages that were published here are not in the log", outcome_.missing_messages));
+      note(fmt::format("{} messages that were published here are not in the log, the first at {}: {}",
+                       outcome_.missing_messages, at(messages_.first_missing()->step),
+                       messages_.first_missing()->channel));
     for (const std::string& problem : log_.problems) note("the log: " + problem);
   }
 
@@ -418,7 +409,7 @@ class Replay {
   sim::LoadedWorld loaded_;
   ReplayOutcome outcome_;
   ReplayMessages messages_;
-  SerialPorts serial_;
+  ReplayPorts serial_;
   Line main_;
   std::map<std::string, Line> others_;
   sim::RunControl control_;

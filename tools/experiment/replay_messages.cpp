@@ -195,8 +195,8 @@ void ReplayMessages::published(std::string_view name, std::span<const std::byte>
       differ(name, step, difference_of(schema, *logged, payload));
     return pop(channel);
   }
-  ++missing_;
-  if (log_.own_stamps && !at_end_) differ(name, step, "was published here and is not in the log");
+  if (++missing_ == 1) first_missing_ = Difference{step, std::string(name), "is not in the log"};
+  if (log_.own_stamps) differ(name, step, "was published here and is not in the log");
 }
 
 void ReplayMessages::differ(std::string_view channel, std::int64_t step, const std::string& what) {
@@ -246,7 +246,9 @@ void ReplayMessages::compare_states(Payload logged, Payload here, std::int64_t s
 
 void ReplayMessages::finish(std::int64_t step) {
   // In a record every message is either mail or the simulator's.
-  if (!log_.own_stamps || log_.goes_back || log_.usable_step() < log_.last_step || step < log_.last_step) return;
+  if (!log_.own_stamps || log_.goes_back || !log_.cut.empty() || log_.usable_step() < log_.last_step ||
+      step < log_.last_step)
+    return;
   for (auto& [name, channel] : channels_)
     if (!channel.published && channel.left > channel.mail.size())
       differ(name, step,

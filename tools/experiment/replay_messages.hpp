@@ -43,6 +43,8 @@ class ReplayMessages {
   std::uint64_t different() const { return different_; }
   /// Published here and not in the log.
   std::uint64_t missing() const { return missing_; }
+  /// The first of those; null: none.
+  const Difference* first_missing() const { return first_missing_ ? &*first_missing_ : nullptr; }
   /// In order of discovery; null: none.
   const Difference* first() const { return first_ ? &*first_ : nullptr; }
   /// The first on sim.state of a vehicle that is in the log as well; null: none.
@@ -89,7 +91,7 @@ class ReplayMessages {
   std::map<std::string, Channel, std::less<>> channels_;
   std::unordered_map<std::string_view, Channel*> by_name_;  // asked, never iterated
   std::uint64_t equal_ = 0, different_ = 0, missing_ = 0;
-  std::optional<Difference> first_, first_motion_;
+  std::optional<Difference> first_, first_motion_, first_missing_;
   std::map<std::string, Difference> by_channel_;
   std::map<std::string, Distance> distances_;
 };

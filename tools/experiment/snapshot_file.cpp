@@ -41,6 +41,19 @@ void visit(sim::StateArchive& archive, Snapshot& s) {
   archive.end();
 }
 
+/// The first of the content in every format: which shoal wrote it.
+std::string written_by(const sim::Bytes& bytes) {
+  std::string version;
+  try {
+    auto archive = sim::StateArchive::restorer(std::span(bytes).subspan(head_bytes));
+    archive.section("file");
+    archive(version);
+  } catch (const sim::SnapshotError&) {
+    return "";
+  }
+  return ": shoal " + sim::shortened(sim::printable(version)) + " wrote it, and only the same build can go on from it";
+}
+
 SnapshotFileError cannot(const std::string& doing, const std::string& path, int error_number) {
   return SnapshotFileError(path + ": cannot be " + doing + ": " + std::strerror(error_number));
 }
@@ -77,7 +90,7 @@ Snapshot snapshot_from_bytes(const sim::Bytes& bytes, const std::string& path) {
   if (bytes.size() < head_bytes + checksum_bytes) throw fail(fmt::format("is cut off after {} bytes", bytes.size()));
   const auto version = number_at<std::uint32_t>(bytes, sizeof magic);
   if (version != format_version)
-    throw fail(fmt::format("its format version must be {}, got {}", format_version, version));
+    throw fail(fmt::format("its format version must be {}, got {}{}", format_version, version, written_by(bytes)));
   const std::size_t content = bytes.size() - checksum_bytes;
   const auto expected = number_at<std::uint32_t>(bytes, content);
   const std::uint32_t sum = sim::crc32(std::span(bytes).first(content));

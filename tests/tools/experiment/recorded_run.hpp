@@ -69,8 +69,9 @@ class RecordedRun {
     return s;
   }
 
-  /// `clients` act before each step; then requests are obeyed.
-  void run(std::int64_t steps, const std::function<void(std::int64_t step)>& clients = {}) {
+  /// `clients` act before each step, `after` after the last; then requests are obeyed.
+  void run(std::int64_t steps, const std::function<void(std::int64_t step)>& clients = {},
+           const std::function<void()>& after = {}) {
     service.handle_requests();
     journal.start();
     service.publish_step();
@@ -86,6 +87,8 @@ class RecordedRun {
       service.publish_step();
       journal.after_step();
     }
+    if (after) after();
+    service.handle_requests();
     journal.finish();
     recorder.close();
   }

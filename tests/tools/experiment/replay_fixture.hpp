@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -41,6 +42,13 @@ class ReplayTest : public testing::Test {
       if (more) more(run, step);
     });
     state_hash = run.world.state_hash();
+  }
+
+  /// What is on the log up to a byte is another log.
+  void cut(const std::string& whole, std::uintmax_t bytes) {
+    log = folder.file("cut.lcm");
+    std::filesystem::copy_file(whole, log, std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::resize_file(log, bytes);
   }
 
   tools::ReplayOutcome again(const std::vector<std::string>& sets = {}) const {

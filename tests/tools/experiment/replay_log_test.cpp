@@ -6,6 +6,7 @@
 
 #include "bridges/lcm/recording_bus.hpp"
 #include "shoal/message_codec.hpp"
+#include "shoal/sim_hash_t.hpp"
 #include "shoal/sim_mail_t.hpp"
 #include "shoal/sim_state_t.hpp"
 #include "sim/bus/in_process_bus.hpp"
@@ -52,6 +53,14 @@ class HandMade {
     state.utime = step * step_us;
     state.step = step;
     publish("sim.state", state, step);
+  }
+  void hash(std::int32_t branch, std::int64_t step, std::int64_t mail_sequence) {
+    shoal::sim_hash_t hash{};
+    hash.utime = step * step_us;
+    hash.step = step;
+    hash.branch = branch;
+    hash.mail_sequence = mail_sequence;
+    publish("sim.hash", hash, step);
   }
   /// All pieces but those of the numbers in `lost`.
   void snapshot(std::int32_t branch, std::int64_t step, std::int64_t mail_sequence,
@@ -124,7 +133,7 @@ TEST(ReplayLog, BeginsWithTheSnapshotOfARun) {
   log.snapshot(0, 100, 1);
   log.state(100);
   log.mail(0, 110, 1);
-  log.state(120);
+  log.hash(0, 120, 2);
   const tools::ReplayLog read = log.read();
   EXPECT_EQ(read.begin_step(), 100);
   EXPECT_EQ(read.usable_step(), 120);
@@ -146,7 +155,7 @@ TEST(ReplayLog, BeginsWithTheLastSnapshotOfALogOverARestore) {
     log.snapshot(1, to, 5);
     log.state(to);
     log.mail(1, to + 10, 5);
-    log.state(to + 20);
+    log.hash(1, to + 20, 6);
     const tools::ReplayLog read = log.read();
     EXPECT_EQ(read.begin_step(), to);
     EXPECT_EQ(read.usable_step(), to + 20);
@@ -183,6 +192,44 @@ TEST(ReplayLog, GoesBackBehindItsSnapshotOnlyWithAnother) {
   EXPECT_FALSE(read.snapshot);
   EXPECT_EQ(read.bad_snapshot, "sim.snapshot: the log goes back to step 50, before its snapshot");
   EXPECT_EQ(read.usable_step(), 0);  // nobody knows what came before
+}
+
+/// Letters of a step come behind its messages.
+TEST(ReplayLog, EndsWithTheLastStepOfWhichAllIsThere) {
+  HandMade record;
+  record.info(0, 0, 0);
+  record.mail(0, 5, 0);
+  record.raw("r1.odometry", sim::Bytes(8), 40);
+  record.state(41);
+  const tools::ReplayLog read = record.read();
+  EXPECT_EQ(read.usable_step(), 40) << "in a record all of a step stands before anything of the next";
+  EXPECT_EQ(read.cut, "the log breaks off in step 41: what stands behind step 40 is left out");
+  // As lcm-logger stamps: the sim.mail of any step behind the last one may have been lost.
+  HandMade logged;
+  logged.info(0, 0, 0);
+  logged.raw("sim.state", shoal::encode([] {
+               shoal::sim_state_t state{};
+               state.utime = step_us;
+               state.step = 1;
+               return state;
+             }()),
+             2);
+  logged.mail(0, 5, 0);
+  logged.state(40);
+  logged.info(0, 60, 1);
+  logged.state(61);
+  const tools::ReplayLog other = logged.read();
+  EXPECT_FALSE(other.own_stamps);
+  EXPECT_EQ(other.usable_step(), 59) << "the letters of step 60 come behind its sim.info";
+  EXPECT_EQ(other.cut, "the log breaks off in step 61: what stands behind step 59 is left out");
+}
+
+TEST(ReplayLog, ADamagedStampAtItsEndProvesNothing) {
+  HandMade log;
+  log.info(0, 0, 0);
+  log.mail(0, 5, 0);
+  log.raw("r1.odometry", sim::Bytes(8), 1'000'000'000);
+  EXPECT_EQ(log.read().usable_step(), 5);
 }
 
 TEST(ReplayMessages, ARecordIsNotReadAheadOfTheStep) {

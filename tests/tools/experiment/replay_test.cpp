@@ -2,9 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <utility>
+#include <vector>
 
 #include "shoal/sim_mail_t.hpp"
 #include "shoal/twist_command_t.hpp"
@@ -165,10 +169,11 @@ TEST_F(ReplayTest, ALetterThatIsMissingEndsTheProof) {
   const ReplayOutcome outcome = again();
   EXPECT_EQ(outcome.exit_code(), 4);
   EXPECT_FALSE(outcome.first) << outcome.to_text();
-  // Mail 11 was admitted in the step from 110 to 111.
-  EXPECT_EQ(outcome.steps, 111);
-  EXPECT_THAT(outcome.to_text(), AllOf(HasSubstr("equal for 111 steps"), HasSubstr("sim.mail 12 to 13"),
-                                       HasSubstr("nothing after step 111 can be proved")));
+  // The client speaks every 10 steps, from step 0 on, and the record has its messages beside sim.mail.
+  EXPECT_EQ(outcome.steps, 120);
+  EXPECT_THAT(outcome.to_text(),
+              AllOf(HasSubstr("equal for 120 steps"), HasSubstr("sim.mail 12 to 13 (of steps from 120 to 130)"),
+                    HasSubstr("nothing after step 120 can be proved")));
 }
 
 TEST_F(ReplayTest, MessagesThatALoggerLostAreCountedOnly) {
@@ -287,6 +292,144 @@ TEST_F(ReplayTest, AMeshThatIsAnotherOneIsTold) {
   EXPECT_THAT(error(), HasSubstr("plate.obj: is another file than in the run"));
   std::filesystem::remove(mesh);
   EXPECT_THAT(error(), HasSubstr("plate.obj: is missing"));
+}
+
+/// At the end of events, in the middle of them, and in a log of few states: what a step left in the log before its
+/// letters came is left out.
+TEST_F(ReplayTest, ARecordIsUsedAsFarAsItGoesWhereverItIsCut) {
+  int cuts = 0, used = 0;
+  for (const char* more : {"", "state_rate_hz: 2\n", "run: {seed: 3, hash_every_steps: 0}\n"}) {
+    log = folder.file("whole" + std::to_string(cuts) + ".lcm");
+    std::string world = driven_world(more);
+    if (std::string(more).starts_with("run:"))
+      world.erase(world.find("run:"), world.find("physics:") - world.find("run:"));
+    record(world, [](RecordedRun& run, std::int64_t step) {
+      if (step == 120) run.request("spawn", "{name: guest, file: rover_small.yaml, position_m: [0, 3, 0]}");
+      if (step == 200) run.request("remove", "guest");
+    });
+    const std::string whole = log;
+    EXPECT_EQ(again().exit_code(), 0) << again().to_text();
+    EXPECT_EQ(again().steps, steps) << more;
+    std::vector<std::uintmax_t> ends;
+    bridges::EventLogReader reader(whole);
+    while (const auto event = reader.next()) ends.push_back(event->offset);
+    // Every other one in the middle of an event.
+    for (std::size_t i = 3; i < ends.size(); i += 3) {
+      const std::uintmax_t bytes = ends[i] + (i % 2 == 0 ? 17 : 0);
+      cut(whole, bytes);
+      ++cuts;
+      try {
+        const ReplayOutcome outcome = again();
+        EXPECT_EQ(outcome.exit_code(), 0) << more << "cut at byte " << bytes << ": " << outcome.to_text();
+        EXPECT_LE(outcome.steps, steps);
+        ++used;
+      } catch (const std::runtime_error& error) {
+        EXPECT_THAT(error.what(), HasSubstr("ends before the first step")) << more << "cut at byte " << bytes;
+      }
+    }
+  }
+  EXPECT_GE(cuts, 180);
+  EXPECT_GE(used, cuts * 9 / 10);
+}
+
+TEST_F(ReplayTest, WhatIsCutOffIsTold) {
+  record(driven_world());
+  const std::string whole = log;
+  bridges::EventLogReader reader(whole);
+  std::uintmax_t end = 0;
+  // The messages of step 121 tell of a letter that is not there any more; the last stamp is that of the letter itself.
+  while (const auto event = reader.next())
+    if (event->channel == "sim.mail" && event->utime == 121 * 10'000 + 1'767'225'600'000'000) end = event->offset;
+  ASSERT_GT(end, 0u);
+  cut(whole, end);
+  const ReplayOutcome outcome = again();
+  EXPECT_EQ(outcome.exit_code(), 0);
+  EXPECT_EQ(outcome.steps, 119);
+  EXPECT_THAT(outcome.to_text(),
+              HasSubstr("note: the log breaks off in step 120: what stands behind step 119 is left out"));
+}
+
+TEST_F(ReplayTest, OneLostMessageNamesItsStep) {
+  record(driven_world());
+  const std::string whole = log;
+  const std::int64_t epoch = 1'767'225'600'000'000;
+  std::map<std::string, std::vector<std::int64_t>> stamps;
+  bridges::EventLogReader reader(whole);
+  while (const auto event = reader.next()) stamps[event->channel].push_back((event->utime - epoch) / 10'000);
+  log = folder.file("lossy.lcm");
+  for (const auto& [channel, steps_of] : stamps) {
+    if (channel == "sim.info") continue;
+    for (const std::size_t number : {std::size_t{0}, steps_of.size() / 2, steps_of.size() - 1}) {
+      SCOPED_TRACE(channel + ", number " + std::to_string(number));
+      std::size_t count = 0;
+      test::copy_log(whole, log, [&](const auto& event) { return event.channel == channel && count++ == number; });
+      if (channel == "sim.mail" && number == 0) {
+        EXPECT_THAT(error(), HasSubstr("cannot be run again from the start: sim.mail 0 (of step 0) is missing"));
+        continue;
+      }
+      const ReplayOutcome outcome = again();
+      if (channel == "sim.mail") {
+        EXPECT_EQ(outcome.exit_code(), 4);
+        // Published at the end of the step that began with the letter.
+        EXPECT_THAT(outcome.to_text(),
+                    HasSubstr(fmt::format("sim.mail {} (of step {}) is missing", number, steps_of[number] - 1)));
+      } else if (channel == "sim.hash" || channel == "r1.drive.cmd") {  // nothing is lost with it: letters have it
+        EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
+      } else {
+        EXPECT_EQ(outcome.exit_code(), 1) << outcome.to_text();
+        ASSERT_TRUE(outcome.first) << outcome.to_text();
+        EXPECT_EQ(outcome.first->step, steps_of[number]);
+        EXPECT_THAT(outcome.to_text(),
+                    AllOf(HasSubstr(channel), HasSubstr(": was published here and is not in the log")));
+      }
+    }
+  }
+}
+
+/// The state does not tell on which channel a device spoke, and what a logger lost cannot be compared.
+TEST_F(ReplayTest, TheRunHashTellsOfMessagesThatTheLogLost) {
+  record(driven_world());
+  const std::string whole = log;
+  log = folder.file("lossy.lcm");
+  bool first = true;
+  test::change_log(whole, log, [&](bridges::LogEvent& event) {
+    if (std::exchange(first, false)) event.utime += 1;  // as lcm-logger stamps
+    return event.channel != "r1.odometry";
+  });
+  EXPECT_EQ(again().exit_code(), 0) << again().to_text();
+  const ReplayOutcome outcome = again({"vehicles.r1.devices.odometry.channel=r1.elsewhere"});
+  EXPECT_EQ(outcome.exit_code(), 1);
+  EXPECT_THAT(outcome.to_text(), HasSubstr("its run hash differs and its state hash does not"));
+}
+
+TEST_F(ReplayTest, WhatIsAskedForAfterTheLastStepIsDoneAgain) {
+  for (const int last : {steps, steps + 7}) {  // with a hash of its own before, and without
+    log = folder.file(std::to_string(last) + ".lcm");
+    RecordedRun run(driven_world(), log);
+    run.run(last, {}, [&] {
+      run.request("do", "{move: crate, position_m: [5, 5, 5]}");
+      run.request("do", "{publish: shore.hail, type: shoal.twist_command_t, value: {forward_mps: 1}}");
+    });
+    const ReplayOutcome outcome = again();
+    EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
+    EXPECT_EQ(outcome.steps, last);
+  }
+}
+
+TEST_F(ReplayTest, ALogOfAnotherVersionIsRefusedByItsName) {
+  record(driven_world());
+  const std::string whole = log;
+  log = folder.file("old.lcm");
+  test::change_log(whole, log, [](bridges::LogEvent& event) {
+    if (event.channel != "sim.info") return true;
+    auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
+    info.versions = "shoal 0.3.0 (abc)\nODE: old\n";
+    event.payload = shoal::encode(info);
+    event.payload[0] ^= std::byte{1};  // another fingerprint: another type
+    event.payload.resize(event.payload.size() - 20);
+    return true;
+  });
+  EXPECT_THAT(error(), HasSubstr("was written by shoal 0.3.0 (abc), whose sim.info this one, shoal "));
 }
 
 }  // namespace
