@@ -26,8 +26,6 @@ struct RunArguments {
   std::optional<double> duration_s;
 };
 
-}
-
 /// `10,20.5`: times in s.
 std::vector<double> parse_times(const std::string& text) {
   std::vector<double> times;
