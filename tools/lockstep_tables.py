@@ -5,7 +5,7 @@ usage: lockstep_tables.py hashes [--speeds 1,10,max] [--threads 1,2,8]
        lockstep_tables.py killed [--policies wait,pause,continue,end] [--client rover2]
        both: [--bin build/release/bin] [--world worlds/coop_land.yaml] [--duration 20]
 
-hashes  The state hash at each speed, with each number of threads, with the clients as they are and with some client
+hashes  The run hash at each speed, with each number of threads, with the clients as they are and with some client
         stopped for up to 20 ms, all the time.  Exit code 1 when two hashes differ.
 killed  Half way the client is killed (SIGKILL) or stalled (SIGSTOP), under each `lockstep.on_timeout`.  Where the world
         then stands, it is helped after a second: by SIGCONT, or by a request.
