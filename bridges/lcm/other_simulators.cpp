@@ -94,15 +94,15 @@ bool OtherSimulators::answer_questions(Line& line) {
 }
 
 std::optional<std::string> OtherSimulators::take(Line& line) {
-  if (is_answered(line)) return "another simulator answers on " + line.url;
+  if (is_answered(line)) return another_simulator + std::string(" answers on ") + line.url;
   for (const auto& [channel, mailbox] : {std::pair("sim.clock", line.clock.get()), {"sim.tick", line.tick.get()}})
     if (mailbox->take())
-      return "another simulator, or a player of a log, publishes " + std::string(channel) + " on " + line.url;
+      return another_simulator + std::string(", or a player of a log, publishes ") + channel + " on " + line.url;
   return std::nullopt;
 }
 
 std::optional<std::string> OtherSimulators::look(const Wait& wait) {
-  // What passed while the world was built counts, but for a last look at what has come.
+  // Time that passed while the world was built counts; one slice is kept to read what has come.
   const auto passed = std::chrono::duration_cast<milliseconds>(Clock::now() - asked_at_);
   milliseconds left = lines_.empty() ? milliseconds(0) : std::max(time_to_answer - passed, slice);
   std::optional<std::string> found;

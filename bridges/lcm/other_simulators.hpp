@@ -14,6 +14,9 @@
 
 namespace bridges {
 
+/// What look() begins with, for those who read it in the error of another process.
+inline constexpr const char* another_simulator = "another simulator";
+
 /// Looks for other simulators on the buses of a run, before it publishes anything: two on one bus would answer the same
 /// clients, and mix their reports.  The question goes out when this is made, so that the answers come while the world
 /// is built.

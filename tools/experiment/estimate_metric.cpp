@@ -93,13 +93,6 @@ class EstimateMetric final : public Metric {
   }
   const std::vector<ErrorSample>* samples() const override { return &samples_; }
   std::int64_t bad_messages() const override { return bad_messages_; }
-  std::string silence() const override {
-    if (!samples_.empty()) return {};
-    if (bad_messages_ > 0)
-      return fmt::format("none of {} messages on '{}' was usable", bad_messages_, config().channel);
-    const std::string since = config().from_s > 0 ? fmt::format(" after {} s", config().from_s) : "";
-    return fmt::format("nothing came on '{}'{}", config().channel, since);
-  }
 
   void visit_state(sim::StateArchive& archive, History history) override {
     archive(early_, bad_messages_, begun_s_);

@@ -52,7 +52,7 @@ void FirstContacts::choose_groups() {
     if (fresh) drives->second = has_wheels(vehicle->config());
     const std::int64_t who = 2 * static_cast<std::int64_t>(vehicle->number());
     put(vehicle->group(), {who, vehicle->name(), true, drives->second, false, false});
-    if (world_.step_number() > 0) since_s_.try_emplace(who, sim::to_seconds(world_.now()));
+    since_s_.try_emplace(who, sim::to_seconds(world_.now()));
     world_.physics().watch_contacts(vehicle->group());
   }
   for (const auto& [name, object] : world_.objects())
@@ -119,7 +119,8 @@ std::vector<FirstContacts::Contact> FirstContacts::all() const {
 
 void FirstContacts::visit_state(sim::StateArchive& archive) {
   archive(since_s_, standing_, contacts_);
-  if (archive.restoring()) generation_ = ~std::uint64_t{0};
+  // At once, not after the next step: a world that was built again watches no contacts yet.
+  if (archive.restoring()) choose_groups();
 }
 
 std::string contacts_text(const std::vector<FirstContacts::Contact>& contacts) {

@@ -60,8 +60,6 @@ class Metric {
   virtual std::int64_t bad_messages() const { return 0; }
   /// Why a figure is NaN, in a few words for the rule that fails by it.  `figure`: without the name of the metric.
   virtual std::string why_none(const std::string& figure) const = 0;
-  /// Why there was nothing to make figures of; empty: there was.
-  virtual std::string silence() const { return {}; }
   /// Names every member that is state, so that the metric goes back with the world; a metric without state says so.
   /// Mail that it has not read yet is thrown away when restoring.
   virtual void visit_state(sim::StateArchive& archive, History history) = 0;

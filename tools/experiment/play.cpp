@@ -40,6 +40,10 @@ ReplayLog read_record(const std::string& path) {
                    path + ": is not stamped with simulated time; --play needs a record of shoal run --record");
   if (log.goes_back)
     throw RunError(4, "record", path + ": holds several branches of a run; --play needs the record of one");
+  if (log.first_step > log.begin_step())
+    throw RunError(4, "record",
+                   fmt::format("{}: begins at step {} without a snapshot; --play needs one there, or the whole record",
+                               path, log.first_step));
   return log;
 }
 
@@ -82,7 +86,6 @@ class Player {
     lockstep_.set_posts_mail(false);
     service_.set_time_machine(&requests_);
     for (const auto& [channel, known] : answers_.channels()) mailboxes_.push_back(gate_.open_mailbox(channel));
-    while (world_.step_number() < log_.begin_step()) world_.step();
   }
 
   PlayOutcome run() {
@@ -90,6 +93,8 @@ class Player {
     if (const auto other = others_.look(wait))
       throw RunError(4, "bus",
                      *other + "; its messages and those of the record would mix: choose another port with --lcm-url");
+    // The world is empty, so this is quick; a damaged record may name a step that is far away.
+    while (world_.step_number() < log_.begin_step() && wanted()) world_.step();
     shoal::encode_into(log_.info, buffer_);
     publish("sim.info", buffer_);
     gate_.end_of_step();

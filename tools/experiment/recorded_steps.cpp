@@ -34,11 +34,17 @@ void RecordedSteps::mail_after(std::int64_t step, const Use& use) {
 
 /// A record holds mail twice: as it came, with the stamp of the step before, and in sim.mail.
 bool RecordedSteps::is_copy_of_mail() {
-  while (next_copy_ < log_.letters.size() && !is_message(log_.letters[next_copy_])) ++next_copy_;
+  const auto utime_of = [this](const ReplayLog::Letter& letter) {
+    return log_.info.epoch_utime + letter.step * log_.info.step_us;
+  };
+  // The copy of a letter whose time is over is not in the record: it begins after it.
+  while (next_copy_ < log_.letters.size() &&
+         (!is_message(log_.letters[next_copy_]) || utime_of(log_.letters[next_copy_]) < event_.utime))
+    ++next_copy_;
   if (next_copy_ == log_.letters.size()) return false;
   const ReplayLog::Letter& letter = log_.letters[next_copy_];
   const bool same =
-      letter.channel == event_.channel && event_.utime == log_.info.epoch_utime + letter.step * log_.info.step_us &&
+      letter.channel == event_.channel && event_.utime == utime_of(letter) &&
       std::equal(letter.payload.begin(), letter.payload.end(), event_.payload.begin(), event_.payload.end());
   if (same) ++next_copy_;
   return same;

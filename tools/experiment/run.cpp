@@ -1,5 +1,6 @@
 #include "tools/experiment/run.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -167,7 +168,7 @@ void Run::await(const std::vector<std::string>& clients) {
       if (Clock::now() > deadline)
         throw RunError(5, "timeout",
                        "lockstep: client '" + client + "' has not joined within " +
-                           std::to_string(loaded_.config.lockstep.join_timeout_s) + " s");
+                           fmt::format("{:g} s", loaded_.config.lockstep.join_timeout_s));
       if (!said && Clock::now() - begin > std::chrono::seconds(1)) {
         spdlog::info("waiting for '{}' to join the lockstep", client);
         said = true;

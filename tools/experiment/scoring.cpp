@@ -128,10 +128,13 @@ std::int64_t Scoring::bad_messages() const {
 }
 
 void Scoring::warn_of_silence(sim::Warnings& warnings) const {
-  for (const auto& metric : metrics_)
-    if (const std::string silence = metric->silence(); !silence.empty())
-      warnings.warn(metric->config().place, "metric '" + metric->config().name + "'",
-                    silence + ": its figures are not numbers");
+  for (const auto& metric : metrics_) {
+    const std::vector<ErrorSample>* samples = metric->samples();
+    if (samples == nullptr || !samples->empty()) continue;
+    const std::string& name = metric->config().name;
+    warnings.warn(metric->config().place, "metric '" + name + "'",
+                  why_none(name + ".samples") + ": its figures are not numbers");
+  }
 }
 
 }  // namespace tools

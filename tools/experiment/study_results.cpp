@@ -206,7 +206,7 @@ std::string StudyResults::to_text() const {
     text += fmt::format("{} of {} runs had programs that failed\n", runs_with_failed_programs(), runs_.size());
   for (const EqualCases& group : equal_cases(study_, runs_)) text += "note: " + equal_cases_text(group) + "\n";
   if (failed_runs() > 0) text += fmt::format("{} runs have no result\n", failed_runs());
-  if (config.pass.empty()) text += "not judged: the study has no rules\n";
+  if (judgement() == Judgement::not_judged) text += "not judged: the study has no rules\n";
   return text;
 }
 
@@ -222,7 +222,10 @@ std::string StudyResults::to_csv() const {
     }
     const RunRecord& record = *run.record;
     const auto passed = as_flag(record.judgement);
-    text += fmt::format(",{},{},{},{},{:.3f},{}", record.exit_code, !passed ? "" : *passed ? "1" : "0",
+    text += fmt::format(",{},{},{},{},{:.3f},{}", record.exit_code,
+                        !passed   ? ""
+                        : *passed ? "1"
+                                  : "0",
                         field(record.ended), record.sim_time_s, record.wall_s, record.run_hash);
     for (const std::string& figure : figures_) {
       const auto found = record.metrics.find(figure);

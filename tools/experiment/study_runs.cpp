@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "bridges/lcm/other_simulators.hpp"
 #include "tools/experiment/child_program.hpp"
 #include "tools/experiment/runner.hpp"
 
@@ -204,7 +205,7 @@ class StudyChildren {
       run.record.reset();
       run.failure = fmt::format("was killed by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
     }
-    const bool taken = run.failure.find("another simulator publishes") != std::string::npos;
+    const bool taken = run.failure.find(bridges::another_simulator) != std::string::npos;
     if (!run.record && taken && ended.what.attempt + 1 < most_attempts)
       return waiting_.push_front({ended.what.run, ended.what.attempt + 1});
     ++done_;

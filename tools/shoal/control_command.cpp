@@ -37,7 +37,7 @@ struct ControlArguments {
 
 const std::vector<std::string> known_requests = {"pause", "resume", "step",     "speed",   "quit",
                                                  "until", "rewind", "snapshot", "restore", "where",
-                                                 "spawn", "remove", "describe", "do"};
+                                                 "spawn", "remove", "describe", "do",      "leave"};
 
 /// `@FILE` stands for what is in the file, `-` for standard input.
 std::string text_of(const std::string& argument) {

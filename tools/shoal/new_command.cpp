@@ -63,6 +63,7 @@ int new_world(const NewArguments& arguments) {
 
 CLI::App* add_kind(CLI::App& command, const char* kind, const char* meaning, NewArguments& arguments) {
   CLI::App* of_kind = command.add_subcommand(kind, meaning);
+  add_log_level_option(*of_kind);
   of_kind->add_option("NAME", arguments.name, "name, and name of the file: NAME.yaml")
       ->required()
       ->check(CLI::Validator(check_name, ""));
@@ -77,7 +78,6 @@ CLI::App* add_kind(CLI::App& command, const char* kind, const char* meaning, New
 void add_new_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("new", "Write a commented world or vehicle file to begin with");
   command->require_subcommand(1);
-  add_log_level_option(*command);
   const auto arguments = std::make_shared<NewArguments>();
   CLI::App* world = add_kind(*command, "world", "A world of one vehicle", *arguments);
   world

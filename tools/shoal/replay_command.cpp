@@ -9,6 +9,7 @@
 #include "tools/experiment/replay.hpp"
 #include "tools/experiment/run_error.hpp"
 #include "tools/experiment/runner.hpp"
+#include "tools/experiment/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
 #include "tools/shoal/speed_option.hpp"
@@ -28,6 +29,7 @@ struct ReplayArguments {
 constexpr std::size_t most_lines = 60;
 
 int run(ReplayArguments& arguments) {
+  if (!arguments.replay.world.empty()) arguments.replay.world = world_file(arguments.replay.world);
   if (!arguments.report.empty()) check_writable(arguments.report);
   catch_signals(true);
   const ReplayOutcome outcome = replay(arguments.replay);
@@ -72,8 +74,9 @@ void add_player_options(CLI::App& command, ReplayArguments& arguments) {
   CLI::Option* play = command.add_flag("--play", arguments.play, "play the record to programs, without a world");
   PlayOptions& player = arguments.player;
   const auto of_play = [&](CLI::Option* option) { return option->needs(play); };
-  of_play(command.add_option("--await", player.await, "lockstep client to wait for; may be repeated")
-              ->type_name("NAME")
+  of_play(command.add_option("--await", player.await, "lockstep clients to wait for: NAME,NAME,...")
+              ->type_name("NAMES")
+              ->delimiter(',')
               ->type_size(1)
               ->allow_extra_args(false));
   of_play(

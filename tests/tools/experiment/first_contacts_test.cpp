@@ -124,6 +124,30 @@ TEST(FirstContacts, GoBackWithTheWorld) {
   EXPECT_EQ(watched.lines.size(), 2u) << "what was said is not said again";
 }
 
+// What a vehicle stands on is found out in its own first 0.1 s, not in those after a way back.
+TEST(FirstContacts, CountAFallThatEndsRightAfterAWayBack) {
+  std::string yaml = balls(1, 0);
+  yaml.replace(yaml.find("gravity_mps2: 0"), 15, "gravity_mps2: 9.8");
+  yaml.replace(yaml.find("bounce: 1"), 9, "bounce: 0");
+  yaml.replace(yaml.find("[-3, 0, 0]"), 10, "[0, 0, -2]");  // the ball falls 1 m, for 0.45 s
+  WatchedWorld watched(yaml);
+  watched.run_for(0.4);
+  const sim::Bytes world = watched.test.world.snapshot();
+  auto saver = sim::StateArchive::saver();
+  watched.contacts.visit_state(saver);
+  saver.end();
+  const sim::Bytes before = saver.take_bytes();
+  watched.run_for(0.5);
+  const auto straight = watched.pairs();
+  EXPECT_THAT(straight, ElementsAre("v1-rock 1"));
+  watched.test.world.restore(world);
+  auto restorer = sim::StateArchive::restorer(before);
+  watched.contacts.visit_state(restorer);
+  restorer.end();
+  watched.run_for(0.5);
+  EXPECT_EQ(watched.pairs(), straight);
+}
+
 TEST(FirstContacts, DoNotChangeTheRun) {
   const auto hash = [](bool watch) {
     test::TestWorld test(balls(3, 1.2));

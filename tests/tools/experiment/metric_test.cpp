@@ -225,11 +225,12 @@ TEST(PositionError, WarnsAtTheEndThatNothingCame) {
   };
   world.run_for(0.1);
   ASSERT_EQ(warnings().size(), 2u);
-  EXPECT_NE(warnings()[0].find("metric 'e': nothing came on 'est': its figures are not numbers"), std::string::npos);
-  EXPECT_NE(warnings()[1].find("metric 'late': nothing came on 'est' after 5 s"), std::string::npos);
+  EXPECT_NE(warnings()[0].find("metric 'e': no estimate came on 'est': its figures are not numbers"),
+            std::string::npos);
+  EXPECT_NE(warnings()[1].find("metric 'late': the run ended at 0.1 s, before from_s, 5 s"), std::string::npos);
   world.estimate({1, 0, 0}, some_covariance(), -20);
   world.run_for(0.01);
-  EXPECT_NE(warnings()[0].find("none of 1 messages on 'est' was usable"), std::string::npos);
+  EXPECT_NE(warnings()[0].find("none of 1 message on 'est' could be used"), std::string::npos);
   world.estimate({1, 0, 0}, some_covariance());
   world.run_for(0.01);
   EXPECT_EQ(warnings().size(), 1u) << "the other one still waits";
