@@ -117,7 +117,7 @@ TEST_F(Plugin, IsDescribedAndListedLikeAnyOtherDevice) {
   const Ended described = shoal({"describe", "thermometer", "--plugin", example()});
   EXPECT_EQ(described.exit_code, 0);
   EXPECT_THAT(described.output, HasSubstr("slope_degcpm"));
-  EXPECT_THAT(shoal({"list", "devices", "--plugin", example()}).output, HasSubstr("\nthermometer "));
+  EXPECT_THAT(shoal({"list", "devices", "--plugin", example()}).output, HasSubstr("\n  thermometer "));
   EXPECT_THAT(shoal({"list", "messages", "--plugin", example()}).output, HasSubstr("thermometer.temperature_t"));
   EXPECT_THAT(shoal({"describe", "--schema", "world", "--plugin", example()}).output,
               HasSubstr("\"device_thermometer\""));
@@ -148,13 +148,13 @@ TEST_F(Plugin, OfAWorldIsLoadedWithLaunch) {
 TEST_F(Plugin, IsFoundAmongTheInstalledOnes) {
   fs::create_directories(path("prefix/lib/shoal/plugins"));
   fs::copy_file(example(), path("prefix/lib/shoal/plugins/installed.so"), fs::copy_options::overwrite_existing);
-  EXPECT_THAT(shoal({"list", "devices", "--plugin", "installed.so"}).output, HasSubstr("\nthermometer "));
+  EXPECT_THAT(shoal({"list", "devices", "--plugin", "installed.so"}).output, HasSubstr("\n  thermometer "));
 }
 
 TEST_F(Plugin, IsFoundByAPathOfTheEnvironment) {
   const Ended ended = run({"env", "SHOAL_PLUGIN_PATH=/nowhere:" + path("example/build"), path("prefix/bin/shoal"),
                            "list", "devices", "--plugin", "thermometer.so"});
-  EXPECT_THAT(ended.output, HasSubstr("\nthermometer "));
+  EXPECT_THAT(ended.output, HasSubstr("\n  thermometer "));
 }
 
 TEST_F(Plugin, MayHaveMessagesThatHoldArraysAndShoalsOwn) {

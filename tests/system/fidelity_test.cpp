@@ -36,7 +36,7 @@ TEST(FidelityCommand, Is2ForWrongUsage) {
   EXPECT_THAT(run_shoal({"fidelity", "none.yaml"}).errors, HasSubstr("none.yaml: cannot read the file"));
   EXPECT_EQ(run_shoal({"fidelity", "none.yaml"}).exit_code, 2);
   const std::pair<std::vector<std::string>, const char*> wrong[] = {
-      {{"--case", "otter_flight", "--override", "x"}, "must be path=value, got 'x'"},
+      {{"--case", "otter_flight", "--override", "x"}, "must be PATH=VALUE, such as run.seed=3, got 'x'"},
       {{"--override", "bodies.hull.nothing=1"}, "body 'hull': unknown key 'nothing'"},
       {{"--step", "0"}, "--step"}};
   for (const auto& [arguments, error] : wrong) {

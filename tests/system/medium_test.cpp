@@ -67,7 +67,7 @@ TEST(Water, ThatIsMissingForCoefficientsIsWarnedOfOnce) {
     return ended.errors;
   };
   EXPECT_THAT(errors_of(""),
-              HasSubstr("vehicle 'first' (and 1 more) has hydrodynamics, but the world has no 'medium: water:'"));
+              HasSubstr("vehicle 'first' (and 1 more): it has hydrodynamics, but the world has no 'medium: water:'"));
   EXPECT_THAT(errors_of(""), Not(HasSubstr("second")));
   EXPECT_EQ(errors_of("medium: {water: {}}\n"), "");
 }

@@ -158,7 +158,7 @@ TEST(StudyResults, SayWhenCasesDoNotDifferThoughTheirSettingsDo) {
   EXPECT_THAT(tools::StudyResults(study, runs).to_text(), HasSubstr("note: " + note + "\n"));
   const auto json = nlohmann::json::parse(tools::StudyResults(study, runs).to_json(0));
   EXPECT_EQ(json["notes"], nlohmann::json::array({note}));
-  runs[3].record->state_hash = "another";
+  runs[3].record->run_hash = "another";
   EXPECT_THAT(tools::StudyResults(study, runs).to_text(), HasSubstr("every figure is the same for every seed"));
   runs[3].record->metrics["e.rms_m"] = 2.5;
   EXPECT_THAT(tools::StudyResults(study, runs).to_text(), testing::Not(HasSubstr("do not differ")));

@@ -81,7 +81,7 @@ TEST(Describe, KnowsDevicesMessagesAndFiles) {
   EXPECT_THAT(tools::describe_text("device"), testing::HasSubstr("rate_hz"));
   EXPECT_THAT(tools::describe_text("world"), testing::HasSubstr("duration_s"));
   EXPECT_THAT(tools::describe_text("vehicle"), testing::HasSubstr("bodies"));
-  std::istringstream metrics(tools::describe_text("metrics"));
+  std::istringstream metrics(tools::describe_text("metrics", 80));
   EXPECT_THAT(metrics.str(), testing::HasSubstr("  rms_m (m)\n      root mean square of the position errors\n"));
   for (std::string line; std::getline(metrics, line);) EXPECT_LE(line.size(), 80u) << line;
   EXPECT_THAT(tools::describe_text("noise"), testing::HasSubstr("gaussian_std"));
