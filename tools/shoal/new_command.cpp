@@ -88,7 +88,7 @@ void add_new_command(CLI::App& app, int& exit_code) {
   const std::vector<std::pair<int, std::string>> exit_codes = {
       {0, "written"}, {2, "wrong usage"}, {4, "the file is there already, or cannot be written"}};
   command_line::set_help_end(*world, {{"shoal new world yard", "shoal new world bay --under-water",
-                                       "shoal new vehicle digger && shoal new world pit --vehicle digger.yaml"},
+                                       "shoal new world pit --vehicle digger.yaml"},
                                       exit_codes,
                                       {}});
   world->callback([arguments, &exit_code] { exit_code = new_world(*arguments); });
