@@ -21,7 +21,8 @@ std::uint64_t serial_dropped_bytes(sim::World& world) {
 void SerialParams::read(sim::ParamReader& in) {
   in.read_choice("kind", kind, {"pty", "fifo"}, "pseudo-terminal, or a pair of FIFOs PATH.in and PATH.out");
   in.require("path");
-  in.read("path", path, "where programs find it; {vehicle}, {device} and {run} are replaced");
+  in.read_path("path", path, sim::PathUse::made,
+               "where programs find it, from the folder of the run; {vehicle}, {device} and {run} are replaced");
   if (in.has("path") && path.empty()) in.error("path", "'path' must not be empty");
 }
 

@@ -47,6 +47,17 @@ shoal::sim_vehicle_t message_of(const sim::Vehicle& vehicle) {
   return message;
 }
 
+/// Whoever asked reads where a vehicle file is wrong; whoever runs the world also what is wrong.
+sim::SpawnRequest read_request(const sim::WorldConfig& world, const std::string& text) {
+  std::vector<std::string> hidden;
+  try {
+    return sim::read_spawn_request(world, text, &hidden);
+  } catch (const sim::ConfigError&) {
+    for (const std::string& line : hidden) spdlog::warn("{}", line);
+    throw;
+  }
+}
+
 }  // namespace
 
 Visitors::Visitors(sim::World& world, sim::Bus& bus) : world_(world), bus_(bus) {
@@ -114,7 +125,7 @@ void Visitors::know_all() {
 std::string Visitors::spawn(const std::string& client, const std::string& text) {
   // A request that is refused here changes nothing and is not written down: with its file in it, a run from the
   // journal would allow more, and whoever listens would read the file.
-  const sim::SpawnRequest request = sim::read_spawn_request(world_.config(), text);
+  const sim::SpawnRequest request = read_request(world_.config(), text);
   if (journal_ != nullptr) write_down(client, "spawn", sim::self_contained_spawn(world_.config(), text));
   return add(client, request);
 }

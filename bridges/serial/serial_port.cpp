@@ -14,6 +14,7 @@
 #include <deque>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 namespace bridges {
 
@@ -27,11 +28,54 @@ constexpr std::size_t most_waiting_bytes = 1 << 16;
   throw std::runtime_error("serial port '" + path + "': " + what + ": " + std::strerror(errno));
 }
 
-void make_parent(const std::string& path) {
-  const fs::path parent = fs::path(path).parent_path();
+/// A descriptor that closes itself.
+class Descriptor {
+ public:
+  explicit Descriptor(int number = -1) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  int operator*() const { return number_; }
+
+ private:
+  int number_;
+};
+
+/// Where a port is made: a name in an open folder, so that nobody can put a link in the way in between.
+struct Place {
+  Descriptor folder;
+  std::string name;
+  std::string path;  ///< whole, for messages
+};
+
+/// Opens the folder of `path` below `folder`, and makes those that are missing.  Links below `folder` are not followed.
+Place open_place(const std::string& folder, const std::string& path) {
+  const std::string whole = (fs::path(folder) / path).string();
+  const auto fail_folder = [&](const std::string& why) {
+    throw std::runtime_error("serial port '" + whole + "': cannot make its directory: " + why);
+  };
   std::error_code error;
-  if (!parent.empty()) fs::create_directories(parent, error);
-  if (error) throw std::runtime_error("serial port '" + path + "': cannot make its directory: " + error.message());
+  fs::create_directories(folder.empty() ? "." : folder, error);
+  if (error) fail_folder(error.message());
+  Descriptor at(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (*at < 0) fail_folder(std::strerror(errno));
+  const fs::path below = fs::path(path).lexically_normal();
+  if (below.is_absolute() || !below.has_filename() || *below.begin() == ".." || *below.begin() == ".")
+    throw std::runtime_error("serial port '" + whole + "': must lie below '" + folder + "'");
+  for (const fs::path& part : below.parent_path()) {
+    mkdirat(*at, part.c_str(), 0777);
+    Descriptor next(openat(*at, part.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+    if (*next < 0)
+      fail_folder(std::string(std::strerror(errno)) +
+                  (errno == ELOOP || errno == ENOTDIR ? ": '" + part.string() + "'" : ""));
+    at = std::move(next);
+  }
+  return {std::move(at), below.filename().string(), whole};
 }
 
 /// Bytes that wait to be written to a descriptor that never blocks.
@@ -82,10 +126,16 @@ sim::Bytes read_all(int descriptor) {
 constexpr char terminals[] = "/dev/pts/";
 constexpr char own_spelling[] = "/dev/pts/./";
 
-struct flock lock_of(const std::string& path) {
+struct flock lock_of(const Place& place) {
+  struct stat folder {};
+  fstat(*place.folder, &folder);
   std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
-  for (const char c : fs::absolute(path).lexically_normal().string())
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  const auto add = [&hash](std::uint64_t byte) { hash = (hash ^ (byte & 0xff)) * 0x100000001b3u; };
+  for (int shift = 0; shift < 64; shift += 8) {
+    add(static_cast<std::uint64_t>(folder.st_ino) >> shift);
+    add(static_cast<std::uint64_t>(folder.st_dev) >> shift);
+  }
+  for (const char c : place.name) add(static_cast<unsigned char>(c));
   struct flock lock {};
   lock.l_type = F_WRLCK;
   lock.l_whence = SEEK_SET;
@@ -94,37 +144,38 @@ struct flock lock_of(const std::string& path) {
   return lock;
 }
 
+/// What a link leads to; empty: it is not a link.
+std::string target_of(const Place& place) {
+  char target[256];
+  const ssize_t size = readlinkat(*place.folder, place.name.c_str(), target, sizeof target);
+  return size < 0 ? std::string() : std::string(target, static_cast<std::size_t>(size));
+}
+
 /// Whether a run that lives made this link.
-bool is_held(const std::string& path) {
-  const int terminal = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (terminal < 0) return true;  // somebody else's, perhaps
-  struct flock lock = lock_of(path);
-  const bool held = fcntl(terminal, F_OFD_GETLK, &lock) != 0 || lock.l_type != F_UNLCK;
-  ::close(terminal);
-  return held;
+bool is_held(const Place& place) {
+  const Descriptor terminal(openat(*place.folder, place.name.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (*terminal < 0) return errno != ENOENT;  // else somebody else's, perhaps
+  struct flock lock = lock_of(place);
+  return fcntl(*terminal, F_OFD_GETLK, &lock) != 0 || lock.l_type != F_UNLCK;
 }
 
 /// Makes room for a link, or throws.
-void remove_stale_link(const std::string& path) {
-  std::error_code error;
-  if (!fs::is_symlink(path, error)) return;
-  if (fs::exists(path, error)) {
-    const bool own = fs::read_symlink(path, error).string().starts_with(own_spelling);
-    if (!own || is_held(path)) {
-      // A run that was killed leaves its link, and another program's terminal may have that number since.
-      throw std::runtime_error("serial port '" + path + "': is in use: " + std::strerror(EEXIST) +
-                               "; when no run has it, remove the link");
-    }
-  }
-  spdlog::warn("serial port '{}': replaced the link that a killed run left", path);
-  fs::remove(path, error);
+void remove_stale_link(const Place& place) {
+  const std::string target = target_of(place);
+  if (target.empty()) return;
+  // A run that was killed leaves its link, and another program's terminal may have that number since.
+  if (!target.starts_with(own_spelling) || is_held(place))
+    throw std::runtime_error("serial port '" + place.path + "': is in use: " + std::strerror(EEXIST) +
+                             "; when no run has it, remove the link");
+  spdlog::warn("serial port '{}': replaced the link that a killed run left", place.path);
+  unlinkat(*place.folder, place.name.c_str(), 0);
 }
 
 class PtyPort final : public sim::BytePort {
  public:
-  explicit PtyPort(const std::string& path) : path_(path) {
-    make_parent(path);
-    remove_stale_link(path);
+  explicit PtyPort(Place place) : place_(std::move(place)) {
+    const std::string& path = place_.path;
+    remove_stale_link(place_);
     char name[128];
     termios raw{};
     cfmakeraw(&raw);
@@ -133,11 +184,11 @@ class PtyPort final : public sim::BytePort {
     fcntl(master_, F_SETFL, O_NONBLOCK);
     fcntl(master_, F_SETFD, FD_CLOEXEC);
     fcntl(slave_, F_SETFD, FD_CLOEXEC);
-    struct flock lock = lock_of(path);
+    struct flock lock = lock_of(place_);
     fcntl(slave_, F_OFD_SETLK, &lock);
-    std::string target = name;
-    if (target.starts_with(terminals)) target.replace(0, sizeof terminals - 1, own_spelling);
-    if (symlink(target.c_str(), path.c_str()) != 0) {
+    target_ = name;
+    if (target_.starts_with(terminals)) target_.replace(0, sizeof terminals - 1, own_spelling);
+    if (symlinkat(target_.c_str(), *place_.folder, place_.name.c_str()) != 0) {
       const int reason = errno;
       close_all();
       errno = reason;
@@ -145,7 +196,7 @@ class PtyPort final : public sim::BytePort {
     }
   }
   ~PtyPort() override {
-    unlink(path_.c_str());
+    if (target_of(place_) == target_) unlinkat(*place_.folder, place_.name.c_str(), 0);  // else it is another's now
     close_all();
   }
   sim::Bytes read() override {
@@ -163,81 +214,90 @@ class PtyPort final : public sim::BytePort {
     ::close(master_);
     ::close(slave_);
   }
-  std::string path_;
+  Place place_;
+  std::string target_;  // of the link
   int master_ = -1;
   int slave_ = -1;
   Outbox out_;
 };
 
+/// A FIFO in a folder, removed when this goes.
+class Fifo {
+ public:
+  Fifo(const Place& port, const std::string& ending)
+      : folder_(fcntl(*port.folder, F_DUPFD_CLOEXEC, 0)), name_(port.name + ending), path_(port.path + ending) {
+    remove_stale();
+    if (mkfifoat(*folder_, name_.c_str(), 0600) != 0) fail("cannot make the FIFO", path_);
+    // Both ways: no end-of-file when a writer leaves, no error while nobody reads.
+    end_ = Descriptor(openat(*folder_, name_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC | O_NOFOLLOW));
+    if (*end_ < 0 || fstat(*end_, &status_) != 0 || !S_ISFIFO(status_.st_mode)) fail("cannot open the FIFO", path_);
+    fchmod(*end_, own_mode);
+  }
+  ~Fifo() {
+    if (is_own_file()) unlinkat(*folder_, name_.c_str(), 0);
+  }
+  Fifo(const Fifo&) = delete;
+  Fifo& operator=(const Fifo&) = delete;
+  int operator*() const { return *end_; }
+
+ private:
+  /// The sticky bit does nothing to a FIFO; here it says that a run made it.
+  static constexpr mode_t own_mode = S_ISVTX | 0600;
+
+  bool is_own_file() const {
+    struct stat now {};
+    return *end_ >= 0 && fstatat(*folder_, name_.c_str(), &now, AT_SYMLINK_NOFOLLOW) == 0 &&
+           now.st_ino == status_.st_ino && now.st_dev == status_.st_dev;
+  }
+  /// Removes a FIFO that a killed run left: one that nobody reads.  Throws for that of a run that lives.
+  void remove_stale() {
+    struct stat status {};
+    if (fstatat(*folder_, name_.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISFIFO(status.st_mode)) return;
+    if ((status.st_mode & 07777) != own_mode || status.st_uid != geteuid()) return;
+    if (*Descriptor(openat(*folder_, name_.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC | O_NOFOLLOW)) >= 0) {
+      errno = EEXIST;
+      fail("is in use", path_);
+    }
+    spdlog::warn("serial port '{}': replaced the FIFO that a killed run left", path_);
+    unlinkat(*folder_, name_.c_str(), 0);
+  }
+
+  Descriptor folder_;
+  std::string name_, path_;
+  Descriptor end_;
+  struct stat status_ {};
+};
+
 class FifoPort final : public sim::BytePort {
  public:
-  explicit FifoPort(const std::string& path) : in_path_(path + ".in"), out_path_(path + ".out") {
-    make_parent(path);
-    refuse_if_read(in_path_);
-    make_fifo(in_path_);
-    try {
-      make_fifo(out_path_);
-    } catch (...) {
-      unlink(in_path_.c_str());
-      throw;
-    }
-    // Both ways on both: no end-of-file when a writer leaves, no error while nobody reads.
-    in_ = ::open(in_path_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-    out_ = ::open(out_path_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-    if (in_ < 0 || out_ < 0) {
-      const int reason = errno;
-      remove_all();
-      errno = reason;
-      fail("cannot open the FIFOs", path);
-    }
-  }
-  ~FifoPort() override { remove_all(); }
+  explicit FifoPort(const Place& place) : in_(place, ".in"), out_(place, ".out") {}
   sim::Bytes read() override {
-    if (!outbox_.empty()) outbox_.flush(out_);
-    return read_all(in_);
+    if (!outbox_.empty()) outbox_.flush(*out_);
+    return read_all(*in_);
   }
   void write(std::span<const std::byte> bytes) override {
     outbox_.add(bytes);
-    outbox_.flush(out_);
+    outbox_.flush(*out_);
   }
   std::uint64_t dropped_bytes() const override { return outbox_.dropped(); }
 
  private:
-  /// A FIFO that somebody reads belongs to a run that is not dead.
-  static void refuse_if_read(const std::string& path) {
-    struct stat status {};
-    if (lstat(path.c_str(), &status) != 0 || !S_ISFIFO(status.st_mode)) return;
-    const int descriptor = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
-    if (descriptor < 0) return;
-    ::close(descriptor);
-    errno = EEXIST;
-    fail("is in use", path);
-  }
-  static void make_fifo(const std::string& path) {
-    struct stat status {};
-    if (lstat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode)) {
-      spdlog::warn("serial port '{}': replaced the FIFO that a killed run left", path);
-      unlink(path.c_str());
-    }
-    if (mkfifo(path.c_str(), 0600) != 0) fail("cannot make the FIFO", path);
-  }
-  void remove_all() {
-    if (in_ >= 0) ::close(in_);
-    if (out_ >= 0) ::close(out_);
-    unlink(in_path_.c_str());
-    unlink(out_path_.c_str());
-  }
-  std::string in_path_, out_path_;
-  int in_ = -1;
-  int out_ = -1;
+  Fifo in_, out_;
   Outbox outbox_;
 };
 
 }  // namespace
 
+std::unique_ptr<sim::BytePort> open_serial_port(const std::string& kind, const std::string& folder,
+                                                const std::string& path) {
+  Place place = open_place(folder, path);
+  if (kind == "fifo") return std::make_unique<FifoPort>(place);
+  return std::make_unique<PtyPort>(std::move(place));
+}
+
 std::unique_ptr<sim::BytePort> open_serial_port(const std::string& kind, const std::string& path) {
-  if (kind == "fifo") return std::make_unique<FifoPort>(path);
-  return std::make_unique<PtyPort>(path);
+  const fs::path whole(path);
+  return open_serial_port(kind, whole.parent_path().string(), whole.filename().string());
 }
 
 }  // namespace bridges

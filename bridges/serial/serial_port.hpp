@@ -7,9 +7,14 @@ namespace bridges {
 /// Opens a sim::BytePort for a program on this machine.
 ///   pty:  `path` becomes a symbolic link to a new pseudo-terminal in raw mode; any terminal program can open it.
 ///   fifo: `path`.in is a FIFO that programs write to, `path`.out one that they read from.
-/// Both are removed when the port closes.  What a dead run left behind (a link to a terminal that is gone or belongs to
-/// another program now, a FIFO) is replaced; anything else at the path is an error.  Throws std::runtime_error that
-/// names the path.
+/// `path` is relative to `folder` and lies below it: folders that are missing are made, links on the way are not
+/// followed.  Links and FIFOs are removed when the port closes, unless they are another's by then.  What a dead run
+/// left behind is replaced: a link in Shoal's own spelling (`/dev/pts/./7`) whose terminal no run holds, a FIFO of this
+/// user with the sticky bit set that nobody reads.  Anything else at the path is an error.  Throws std::runtime_error
+/// that names the path.
+std::unique_ptr<sim::BytePort> open_serial_port(const std::string& kind, const std::string& folder,
+                                                const std::string& path);
+/// The same for a path that is trusted, links on the way included.
 std::unique_ptr<sim::BytePort> open_serial_port(const std::string& kind, const std::string& path);
 
 }  // namespace bridges

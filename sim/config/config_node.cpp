@@ -84,6 +84,7 @@ class Substitution {
         return error(node, "parameter '" + shortened(name) + "' must be text inside of text, got " + shown(*value));
       if (!within_limits(node, *value)) return;
       result.append(text, copied, begin - copied).append(value->scalar);
+      if (value->place.origin == Origin::bus) node.place.origin = Origin::bus;  // a peer wrote a part of it
       copied = end + 1;
     }
     if (copied == 0) return;
@@ -142,6 +143,15 @@ ConfigNode scalar_node(const std::string& text, const SourcePlace& place) {
   node.scalar = text;
   node.place = place;
   return node;
+}
+
+void set_origin(ConfigNode& node, Origin origin) {
+  node.place.origin = origin;
+  for (ConfigNode& item : node.items) set_origin(item, origin);
+  for (ConfigNode::Entry& entry : node.entries) {
+    entry.place.origin = origin;
+    set_origin(entry.value, origin);
+  }
 }
 
 ConfigNode map_node(const std::string& key, const ConfigNode& value) {

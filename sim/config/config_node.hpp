@@ -33,6 +33,8 @@ struct ConfigNode::Entry {
 
 /// A plain scalar, as if it were written at `place`.
 ConfigNode scalar_node(const std::string& text, const SourcePlace& place);
+/// Says of a tree, values and keys, who wrote it.
+void set_origin(ConfigNode& node, Origin origin);
 /// A map of one key, so that a value is read with the rules and messages of a key.
 ConfigNode map_node(const std::string& key, const ConfigNode& value);
 
@@ -44,7 +46,10 @@ ConfigNode parse_config_text(const std::string& text, const std::string& file_na
 /// An included file is the base over which the including file is merged: maps key by key, lists of maps that
 /// have a `name` item by item by that name, anything else replaced.  Missing files, files over 64 MB, cyclic
 /// includes, an empty file and one that is not a map are errors.
-ConfigNode load_config_file(const std::string& path, Diagnostics& diagnostics);
+/// `named_by`: Origin::command_line for a file that is quoted in errors.  Files that it includes must be allowed by the
+/// FileAccess of the diagnostics.  Where there is one, a file that the command line does not name is quoted only when
+/// its top level has nothing but keys of worlds and vehicles; other errors say line and column.
+ConfigNode load_config_file(const std::string& path, Diagnostics& diagnostics, Origin named_by = Origin::command_line);
 
 /// Sets the value at a dotted path, such as `vehicles.rover1.devices.lidar.rate_hz`.  An item of a list is named
 /// by its `name` or its index; maps are created on the way where a key is missing.  `value` is YAML text.  Errors

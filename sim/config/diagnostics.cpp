@@ -39,13 +39,18 @@ ConfigError::ConfigError(std::vector<std::string> lines)
 
 void Diagnostics::error(const SourcePlace& place, const std::string& who, const std::string& text) {
   if (lines_.size() > max_lines) return;
+  const bool hides = hides_files_ && place.origin == Origin::file && place.file != nullptr;
   std::string line = place.text();
   for (const std::string& part : {who, text})
     if (!part.empty()) line += (line.empty() ? "" : ": ") + part;
+  if (hides) {
+    hidden_.push_back(printable(line));
+    line = place.text() + ": is wrong here (a file is not quoted to others)";
+  }
   // Names come from files: a line feed or an escape sequence in one must not reach the terminal.
   line = printable(line);
   // A mistake in a vehicle file is one mistake, however many vehicles use the file.
-  const std::string seen = printable(place.line > 0 ? place.text() + ": " + text : line);
+  const std::string seen = printable(place.line > 0 && !hides ? place.text() + ": " + text : line);
   if (!seen_.insert(seen).second) return;
   if (lines_.size() == max_lines) line = "more errors are not shown";
   lines_.push_back(std::move(line));

@@ -1,17 +1,29 @@
 #pragma once
 
+#include <memory>
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace sim {
+
+class FileAccess;
+
+/// Who wrote a value.
+enum class Origin : unsigned char {
+  file,          ///< a world, a vehicle file, or what they include
+  command_line,  ///< `--set`
+  bus            ///< a peer
+};
 
 /// Where a value was written: a file (or `--set`), a line and a column counted from 1; line 0: the whole file.
 struct SourcePlace {
   const std::string* file = nullptr;  ///< interned, lives as long as the program
   int line = 0;
   int column = 0;
+  Origin origin = Origin::file;
 
   /// `worlds/harbor.yaml:14:7`, `worlds/harbor.yaml` or `--set vehicles.auv1.file`.
   std::string text() const;
@@ -36,6 +48,10 @@ class ConfigError : public std::runtime_error {
 /// Collects errors so that all errors of a file are reported, not only the first.
 class Diagnostics {
  public:
+  Diagnostics() = default;
+  /// `files`: which files may be named in what is read with these diagnostics; null: any.
+  explicit Diagnostics(std::shared_ptr<const FileAccess> files) : files_(std::move(files)) {}
+
   /// Adds `place: who: text` (who may be empty).  The same text at the same place is kept once, whoever it is about.
   void error(const SourcePlace& place, const std::string& who, const std::string& text);
   bool ok() const { return lines_.empty(); }
@@ -43,7 +59,16 @@ class Diagnostics {
   /// Throws ConfigError when there are errors.
   void throw_if_any() const;
 
+  const std::shared_ptr<const FileAccess>& files() const { return files_; }
+  /// From now on an error in a file says no more than the place: what it quotes is not for whoever reads the errors.
+  /// Errors in what came over the bus stay as they are.  The whole lines are in hidden().
+  void hide_files() { hides_files_ = true; }
+  const std::vector<std::string>& hidden() const { return hidden_; }
+
  private:
+  std::shared_ptr<const FileAccess> files_;
+  bool hides_files_ = false;
+  std::vector<std::string> hidden_;
   std::vector<std::string> lines_;
   std::set<std::string> seen_;
 };

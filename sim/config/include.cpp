@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "sim/config/config_node.hpp"
+#include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace sim {
@@ -81,7 +82,7 @@ void forward(const Diagnostics& from, Diagnostics& to) {
 /// Reads a file and what it includes.
 class Loader {
  public:
-  explicit Loader(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
+  Loader(Diagnostics& diagnostics, Origin named_by) : diagnostics_(diagnostics), named_by_(named_by) {}
 
   /// `asked_at`: where the file was asked for; a place without a line for the first file.
   ConfigNode load(const fs::path& path, const SourcePlace& asked_at) {
@@ -92,15 +93,18 @@ class Loader {
     if (error) canonical = path;
     if (std::find(open_.begin(), open_.end(), canonical) != open_.end())
       return fail(asked_at, "'" + shortened(path.string()) + "' includes itself");
+    const auto& access = diagnostics_.files();
+    if (access != nullptr && !open_.empty() && !access->may_read(path))
+      return fail(asked_at, "'" + shortened(path.string()) + "' " + FileAccess::reading_rule());
     const std::optional<std::string> text = read_text(path, asked_at);
     if (!text) return {};
     Diagnostics own;  // a second copy of an error adds no line to diagnostics_, so its lines tell nothing
+    if (hides(path)) own.hide_files();
     ConfigNode node = parse_config_text(*text, path.string(), own);
+    if (own.ok() && node.kind != Kind::null) check_top_level(node, path, own);
     forward(own, diagnostics_);
     if (!own.ok()) return {};
     if (node.kind == Kind::null) return fail(whole_file, "the file is empty");
-    if (!open_.empty() && node.kind != Kind::map)
-      return fail(node.place, "an included file must be a map of keys, got " + shown(node));
     open_.push_back(canonical);
     node = with_includes(std::move(node), path);
     open_.pop_back();
@@ -108,6 +112,25 @@ class Loader {
   }
 
  private:
+  /// Whether a world names the file, which may be anything, and the command line does not.
+  bool hides(const fs::path& path) const {
+    const auto& access = diagnostics_.files();
+    return access != nullptr && (named_by_ != Origin::command_line || !open_.empty()) && !access->may_quote(path);
+  }
+
+  void check_top_level(const ConfigNode& node, const fs::path& path, Diagnostics& own) const {
+    if (node.kind != Kind::map) {
+      const bool included = !open_.empty();
+      own.error(node.place, "",
+                (included ? "an included file must be a map of keys, got " : "must be a map of keys and values, got ") +
+                    shown(node));
+    }
+    if (!hides(path)) return;
+    // What follows may quote the file: it is one of Shoal's, then, not the notes of whoever runs the world.
+    for (const ConfigNode::Entry& entry : node.entries)
+      if (!diagnostics_.files()->is_known_key(entry.key)) own.error(entry.place, "", "unknown key");
+  }
+
   ConfigNode fail(const SourcePlace& place, const std::string& text) {
     diagnostics_.error(place, "", text);
     return {};
@@ -168,6 +191,7 @@ class Loader {
   }
 
   Diagnostics& diagnostics_;
+  Origin named_by_;
   std::vector<fs::path> open_;
   std::size_t total_bytes_ = 0;
   int files_ = 0;
@@ -175,12 +199,9 @@ class Loader {
 
 }  // namespace
 
-ConfigNode load_config_file(const std::string& path, Diagnostics& diagnostics) {
-  Diagnostics own;
-  ConfigNode root = Loader(own).load(path, {intern_file_name(path), 0, 0});
-  // Whoever looks for a key finds none in a word or a list, and would take the file for one that says nothing.
-  if (own.ok() && root.kind != Kind::map)
-    own.error(root.place, "", "must be a map of keys and values, got " + shown(root));
+ConfigNode load_config_file(const std::string& path, Diagnostics& diagnostics, Origin named_by) {
+  Diagnostics own(diagnostics.files());
+  ConfigNode root = Loader(own, named_by).load(path, {intern_file_name(path), 0, 0});
   forward(own, diagnostics);
   return own.ok() ? root : ConfigNode{};
 }

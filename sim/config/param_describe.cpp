@@ -25,8 +25,8 @@ void ParamReader::describe_value(const char* key, ParamKind kind, const Rule& ra
   info.meaning = meaning;
   info.kind = kind;
   info.range = range;
-  info.may_be_null =
-      info.initial == "~" || kind == ParamKind::numbers || kind == ParamKind::texts || kind == ParamKind::raw;
+  info.may_be_null = info.initial == "~" || kind == ParamKind::numbers || kind == ParamKind::texts ||
+                     kind == ParamKind::paths || kind == ParamKind::raw;
   describe(std::move(info));
 }
 

@@ -55,12 +55,16 @@ std::string type_text(ParamKind kind) {
     case ParamKind::text:
     case ParamKind::name:
       return "text";
+    case ParamKind::path:
+      return "path";
     case ParamKind::vector:
       return "[x, y, z]";
     case ParamKind::numbers:
       return "list of numbers";
     case ParamKind::texts:
       return "list of text";
+    case ParamKind::paths:
+      return "list of paths";
     case ParamKind::map:
     case ParamKind::raw:
       return "map";

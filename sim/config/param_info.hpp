@@ -35,12 +35,21 @@ enum class ParamKind {
   number,
   text,
   name,  ///< text of letters, digits, '_' and '-'
+  path,  ///< text that names a file; see ParamReader::read_path
   vector,
   numbers,
   texts,
+  paths,  ///< a list of such
   map,
   maps,
   raw  ///< a map that is read elsewhere
+};
+
+/// What happens to a file that a key names.
+enum class PathUse {
+  read,       ///< relative to the file that holds the key
+  looked_up,  ///< in several folders, by whoever needs it: vehicle files, plugins
+  made        ///< a serial port, relative to the folder of the run
 };
 
 /// As tables call it: `number`, `[x, y, z]`, `list of maps`.
@@ -60,6 +69,7 @@ struct ParamInfo {
   ParamKind kind = ParamKind::any;
   Rule range = {};                        ///< of each number
   std::vector<std::string> choices = {};  ///< the only words allowed; empty: any
+  PathUse path_use = PathUse::read;       ///< of a path
   bool may_be_null = false;               ///< `key:` without a value is allowed
 };
 

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 
+#include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/yaml_writer.hpp"
 
@@ -326,6 +328,42 @@ void ParamReader::read(const char* key, std::optional<double>& value, const Rule
 void ParamReader::read(const char* key, std::string& value, const char* meaning) {
   if (describing()) return describe_value(key, ParamKind::text, {}, yaml_of(value), meaning);
   if (const ConfigNode* node = take(key)) take_text(quoted_name(key), *node, value);
+}
+
+bool ParamReader::read_path(const char* key, std::string& value, PathUse use, const char* meaning) {
+  if (describing()) {
+    describe_value(key, ParamKind::path, {}, yaml_of(value), meaning);
+    if (!table_->empty()) table_->back().path_use = use;
+    return true;
+  }
+  const ConfigNode* node = take(key);
+  if (node == nullptr) return true;
+  return take_text(quoted_name(key), *node, value) && check_path(key, value, use, node->place);
+}
+
+bool ParamReader::check_path(const char* key, const std::string& value, PathUse use, const SourcePlace& place) {
+  if (value.empty() || use == PathUse::looked_up || place.origin == Origin::command_line) return true;
+  if (place.origin == Origin::bus) {
+    error_at(place, quoted_name(key) + " cannot be used in what comes over the bus: it names a file");
+    return false;
+  }
+  const auto& files = diagnostics_->files();
+  if (files == nullptr) return true;
+  const std::filesystem::path named_in(node_->place.file != nullptr ? *node_->place.file : "");
+  const bool read = use == PathUse::read;
+  if (read ? files->may_read(named_in.parent_path() / value) : files->may_make(value)) return true;
+  error_at(place, quoted_name(key) + " " + (read ? FileAccess::reading_rule() : FileAccess::making_rule()) + ", got '" +
+                      shortened(value) + "'");
+  return false;
+}
+
+void ParamReader::read_paths(const char* key, std::vector<std::string>& value, const char* meaning) {
+  if (describing()) return describe_value(key, ParamKind::paths, {}, yaml_list(value, yaml_of), meaning);
+  const ConfigNode* node = take(key);
+  if (node == nullptr || !take_texts(key, *node, value)) return;
+  for (const ConfigNode& item : node->items)
+    if (item.place.origin == Origin::bus)
+      error_at(item.place, quoted_name(key) + " cannot be used in what comes over the bus: it names a file");
 }
 
 void ParamReader::read(const char* key, Vector3d& value, const Rule& rule, const char* meaning) {

@@ -49,6 +49,12 @@ class ParamReader {
   void read(const char* key, std::vector<std::string>& value, const char* meaning);
   /// A name, which may become part of a channel or a file name: letters, digits, '_' and '-'.
   void read_name(const char* key, std::string& value, const char* meaning);
+  /// A file.  A file that is read is relative to the file that holds this map; one that is made (a serial port) to the
+  /// folder of the run.  An error, and false, when it comes over the bus, or when the FileAccess of the diagnostics
+  /// does not allow it; what the command line sets is allowed.  The value is kept as it was written.
+  bool read_path(const char* key, std::string& value, PathUse use, const char* meaning);
+  /// Libraries, which whoever loads them looks up.
+  void read_paths(const char* key, std::vector<std::string>& value, const char* meaning);
   /// A number in degrees in the file (key ends in `_deg`), in radians in the struct; `rule` is in degrees.
   void read_deg(const char* key, double& value_rad, const Rule& rule, const char* meaning);
   /// Three angles in degrees in the file, in radians in the struct.
@@ -130,6 +136,7 @@ class ParamReader {
   bool take_text(const std::string& what, const ConfigNode& node, std::string& value);
   bool take_vector(const char* key, const ConfigNode& node, const Rule& rule, Vector3d& value);
   bool take_texts(const char* key, const ConfigNode& node, std::vector<std::string>& value);
+  bool check_path(const char* key, const std::string& value, PathUse use, const SourcePlace& place);
   void check_reference(const char* key, const char* kind, const std::string& name, const SourcePlace& place);
   std::size_t take_choice(const char* key, const std::vector<std::string>& choices, const std::string& initial,
                           const char* meaning);

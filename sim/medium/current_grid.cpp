@@ -76,7 +76,7 @@ std::vector<CsvRow> parse_rows(std::string_view text) {
       const std::string_view cell = cells[columns[i]];
       const auto [at, error] = std::from_chars(cell.data(), cell.data() + cell.size(), values[i]);
       if (error != std::errc{} || at != cell.data() + cell.size() || !std::isfinite(values[i]))
-        fail(number, "'" + shortened(std::string(cell)) + "' is no number");
+        fail(number, "'" + std::string(names[i]) + "' is not a number");
     }
     for (int i = 0; i < 2; ++i)
       if (std::abs(values[static_cast<std::size_t>(i)]) > 1e8) fail(number, "a place must be within 1e8 m");

@@ -128,9 +128,10 @@ void CurrentConfig::read(ParamReader& in) {
   in.read("peak_speed_mps", peak_speed_mps, between(-100, 100), "vortex: positive turns counter-clockwise");
   in.read("core_radius_m", core_radius_m, above_to(0, 1e7), "vortex: where it is fastest");
   in.read_choice("core", core, {"lamb_oseen", "rankine"}, "vortex: how the speed goes with the radius");
-  in.read("file", file, "grid: CSV with columns x_m, y_m, east_mps, north_mps; relative to this file");
-  in.read("east_file", east_file, "grid: ESRI ASCII grid of the velocity to the east, m/s");
-  in.read("north_file", north_file, "grid: ESRI ASCII grid of the velocity to the north, m/s");
+  in.read_path("file", file, PathUse::read,
+               "grid: CSV with columns x_m, y_m, east_mps, north_mps; relative to this file");
+  in.read_path("east_file", east_file, PathUse::read, "grid: ESRI ASCII grid of the velocity to the east, m/s");
+  in.read_path("north_file", north_file, PathUse::read, "grid: ESRI ASCII grid of the velocity to the north, m/s");
   read_pair(in, "map_origin_m", map_origin_m, "grid: where the origin of the world lies in the files");
   in.read_choice("outside", outside, {"zero", "edge"}, "grid: the current beyond its border");
   if (in.describing()) return;

@@ -18,7 +18,7 @@ constexpr double max_mesh_coordinate_m = 1e7;  // as far as a part may be
 /// Words separated by white space; knows the ends of lines.
 class Words {
  public:
-  explicit Words(std::string_view text) : text_(text) {}
+  explicit Words(std::string_view text) : whole_(text), text_(text) {}
   /// The next word of the line; empty at its end.
   std::string_view in_line() {
     while (!text_.empty() && (text_[0] == ' ' || text_[0] == '\t' || text_[0] == '\r')) text_.remove_prefix(1);
@@ -36,6 +36,10 @@ class Words {
     text_.remove_prefix(end + 1);
     return true;
   }
+  /// The number of the line of the last word.
+  std::ptrdiff_t line() const {
+    return 1 + std::count(whole_.begin(), whole_.end() - static_cast<std::ptrdiff_t>(text_.size()), '\n');
+  }
 
  private:
   static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v'; }
@@ -46,15 +50,20 @@ class Words {
     text_.remove_prefix(length);
     return word;
   }
-  std::string_view text_;
+  std::string_view whole_, text_;
 };
 
-double number_from(std::string_view word, const char* what) {
+/// A file that a world names is not quoted: the line says enough to whoever may read it.
+[[noreturn]] void fail_in_line(const Words& words, const std::string& text) {
+  throw MeshError("is not a mesh: line " + std::to_string(words.line()) + ": " + text);
+}
+
+double number_from(std::string_view word, const Words& words, const char* what = "number") {
   if (!word.empty() && word[0] == '+') word.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (word.empty() || error != std::errc{} || end != word.data() + word.size())
-    throw MeshError(std::string("is not a mesh: '") + std::string(word.substr(0, 20)) + "' is no " + what);
+    fail_in_line(words, std::string("must have a ") + what + " here");
   return value;
 }
 
@@ -114,9 +123,9 @@ Mesh parse_ascii_stl(std::string_view text) {
     if (word == "facet") {
       words.next_line();  // the normal is not used
     } else if (word == "vertex") {
-      const double x = number_from(words.any(), "number");
-      const double y = number_from(words.any(), "number");
-      const double z = number_from(words.any(), "number");
+      const double x = number_from(words.any(), words);
+      const double y = number_from(words.any(), words);
+      const double z = number_from(words.any(), words);
       corners.push_back(welder.number_of({x, y, z}));
     } else if (word == "endfacet") {
       if (corners.size() != 3) throw MeshError("has a facet without three vertices");
@@ -125,7 +134,7 @@ Mesh parse_ascii_stl(std::string_view text) {
     } else if (word == "endsolid" || word == "solid") {
       if (!words.next_line()) break;
     } else if (word != "outer" && word != "loop" && word != "endloop") {
-      throw MeshError("is not a mesh: unexpected '" + std::string(word.substr(0, 20)) + "'");
+      fail_in_line(words, "unknown word");
     }
   }
   if (!corners.empty()) throw MeshError("ends inside a facet");
@@ -145,12 +154,11 @@ Mesh not_empty(Mesh mesh) {
 }
 
 /// A corner of an OBJ face is `7`, `7/1`, `7//3` or `-1`; only the vertex counts.
-std::uint32_t obj_index(std::string_view word, std::size_t vertices) {
-  const double number = number_from(word.substr(0, word.find('/')), "index");
+std::uint32_t obj_index(std::string_view word, const Words& words, std::size_t vertices) {
+  const double number = number_from(word.substr(0, word.find('/')), words, "vertex number");
   const double index = number < 0 ? static_cast<double>(vertices) + number : number - 1;
   if (number != std::floor(number) || !(index >= 0 && index < static_cast<double>(vertices)))
-    throw MeshError("has index " + std::string(word.substr(0, 20)) + ", but " + std::to_string(vertices) +
-                    " vertices so far");
+    fail_in_line(words, "must have numbers of the " + std::to_string(vertices) + " vertices so far");
   return static_cast<std::uint32_t>(index);
 }
 
@@ -193,14 +201,14 @@ Mesh parse_obj(std::string_view text) {
   do {
     const std::string_view word = words.in_line();
     if (word == "v") {
-      const double x = number_from(words.in_line(), "number");
-      const double y = number_from(words.in_line(), "number");
-      const double z = number_from(words.in_line(), "number");
+      const double x = number_from(words.in_line(), words);
+      const double y = number_from(words.in_line(), words);
+      const double z = number_from(words.in_line(), words);
       mesh.vertices_m.push_back(checked_vertex({x, y, z}));
     } else if (word == "f") {
       std::vector<std::uint32_t> corners;
       for (auto corner = words.in_line(); !corner.empty(); corner = words.in_line())
-        corners.push_back(obj_index(corner, mesh.vertices_m.size()));
+        corners.push_back(obj_index(corner, words, mesh.vertices_m.size()));
       if (corners.size() < 3) throw MeshError("has a face with fewer than three vertices");
       for (std::size_t i = 2; i < corners.size(); ++i) add_triangle(mesh, corners[0], corners[i - 1], corners[i]);
     }

@@ -90,7 +90,7 @@ void PartConfig::read(ParamReader& in) {
   in.read("size_m", size_m, part_length(), "box: lengths along x, y and z");
   in.read("radius_m", radius_m, part_length(), "sphere, capsule, cylinder");
   in.read("length_m", length_m, part_length(), "capsule (without its caps) and cylinder: length along z");
-  in.read("mesh", mesh, "mesh: an STL or OBJ file, relative to this file");
+  in.read_path("mesh", mesh, PathUse::read, "mesh: an STL or OBJ file, relative to this file");
   in.read("scale", scale, above(0), "mesh: its numbers times this are metres");
   in.read("terrain", terrain, "terrain: its heights; see docs/terrain.md");
   in.read("position_m", position_m, any_place(), "centre of the part in the frame of the body");

@@ -25,7 +25,7 @@ void TextureConfig::read(ParamReader& in) {
   in.read_choice("pattern", pattern, {"none", "checker", "stripes", "image"}, "what is on the surface");
   in.read("colors", colors, "checker, stripes: two colors, #rrggbb");
   in.read("size_m", size_m, above(0), "length of a field, width of a stripe or of the image");
-  in.read("file", file, "image: a PNG or JPEG file, relative to this file");
+  const bool allowed = in.read_path("file", file, PathUse::read, "image: a PNG or JPEG file, relative to this file");
   if (in.describing()) return;
   for (const std::string& color : colors) check_color(in, "colors", color);
   const bool two_colors = pattern == "checker" || pattern == "stripes";
@@ -34,7 +34,7 @@ void TextureConfig::read(ParamReader& in) {
   if (pattern == "image" && file.empty()) in.error("a texture of pattern image needs the key 'file'");
   std::error_code error;
   const auto path = std::filesystem::path(directory) / file;
-  if (pattern == "image" && !file.empty() && !std::filesystem::is_regular_file(path, error))
+  if (allowed && pattern == "image" && !file.empty() && !std::filesystem::is_regular_file(path, error))
     in.error("file", "there is no file '" + path.string() + "'");
 }
 

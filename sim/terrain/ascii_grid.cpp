@@ -38,8 +38,7 @@ class Words {
     if (word[0] == '+') word.remove_prefix(1);
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc{} || end != word.data() + word.size())
-      fail(what + " is '" + shortened(std::string(word)) + "', which is no number");
+    if (error != std::errc{} || end != word.data() + word.size()) fail(what + " is not a number");
     if (!std::isfinite(value)) fail(what + " is not finite");
     return value;
   }
@@ -82,7 +81,7 @@ Header read_header(Words& words) {
   while (is_word(words.peek())) {
     const std::string key = lower_case(words.next());
     std::optional<double>* value = header.find(key);
-    if (value == nullptr) words.fail("'" + shortened(key) + "' is no key of an ESRI ASCII grid");
+    if (value == nullptr) words.fail("unknown key of an ESRI ASCII grid");
     if (*value) words.fail("'" + key + "' comes twice");
     *value = words.number(key);
   }

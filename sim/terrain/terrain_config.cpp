@@ -92,7 +92,7 @@ void TerrainConfig::read(ParamReader& in) {
                  "where heights come from: an ESRI ASCII grid, a grey PNG, or a rule");
   in.read_choice("collision", collision, {"smooth", "facets", "mesh"},
                  "what vehicles stand on: a surface without edges, or its triangles as ODE's heightfield or trimesh");
-  in.read("file", file, "ascii, png: relative to this file");
+  in.read_path("file", file, PathUse::read, "ascii, png: relative to this file");
   in.read("cell_m", cell_m, between(HeightGrid::min_cell_m, HeightGrid::max_place_m),
           "distance of neighbouring heights; ascii: the file says it");
   read_pair(in, "size_m", size_m, between(HeightGrid::min_cell_m, HeightGrid::max_place_m),

@@ -8,11 +8,14 @@
 #include <set>
 
 #include "sim/bus/bus.hpp"
+#include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/config/shipped_files.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/device/plugin.hpp"
 #include "sim/script/check_script.hpp"
 #include "sim/world/config_warnings.hpp"
+#include "sim/world/data_files.hpp"
 #include "sim/world/vehicle_loader.hpp"
 
 namespace sim {
@@ -143,6 +146,7 @@ void apply_sets(ConfigNode& root, const LoadOptions& options, Diagnostics& diagn
       continue;
     }
     ConfigNode value = parse_config_text(set.substr(equals + 1), *place.file, diagnostics);
+    set_origin(value, Origin::command_line);
     // Relative file names in the value still start at the world file.
     const std::string path = set.substr(0, equals);
     if (!set_override(root, path, value, place, diagnostics)) set_config_path(root, path, value, place, diagnostics);
@@ -176,31 +180,6 @@ bool load_plugins(ConfigNode& root, const LoadOptions& options, Diagnostics& dia
   }
   return diagnostics.lines().size() == before;
 }
-
-}  // namespace
-
-bool names_data_file(const ConfigNode& map, const std::string& map_key, const std::string& key) {
-  if (key == "mesh" || key == "east_file" || key == "north_file") return true;
-  if (key != "file") return false;
-  const ConfigNode* type = map.find("type");
-  return map_key == "terrain" || map_key == "texture" || (type != nullptr && type->scalar == "grid");
-}
-
-void make_paths_absolute(ConfigNode& node, const std::string& node_key) {
-  for (ConfigNode& item : node.items) make_paths_absolute(item);
-  for (ConfigNode::Entry& entry : node.entries) {
-    const bool path_key = names_data_file(node, node_key, entry.key);
-    if (!path_key || entry.value.scalar.empty() || entry.value.place.file == nullptr) {
-      make_paths_absolute(entry.value, entry.key);
-      continue;
-    }
-    std::error_code error;
-    const fs::path path = fs::absolute(fs::path(*entry.value.place.file).parent_path() / entry.value.scalar, error);
-    if (!error) entry.value.scalar = path.lexically_normal().string();
-  }
-}
-
-namespace {
 
 /// Says once that coefficients do nothing here.
 void warn_of_missing_water(const WorldConfig& world, Warnings& warnings) {
@@ -253,16 +232,56 @@ void check_acoustic_links(const WorldConfig& world, const ConfigNode& root, Diag
     }
 }
 
+/// The keys of the top level of world and vehicle files.
+std::set<std::string> known_keys() {
+  std::vector<ParamInfo> table;
+  ParamReader in(table);
+  WorldConfig().read(in);
+  VehicleConfig().read(in);
+  std::set<std::string> keys{"include"};
+  for (const ParamInfo& info : table) keys.insert(info.key);
+  return keys;
+}
+
+bool stays_on_machine(const std::string& url) {
+  if (url.starts_with("memq:")) return true;
+  const std::size_t ttl = url.find("ttl=");
+  // LCM takes the last of several.
+  return url.starts_with("udpm:") && (ttl == std::string::npos || (url.substr(ttl, 5) == "ttl=0" &&
+                                                                   (ttl + 5 == url.size() || url[ttl + 5] == '&') &&
+                                                                   url.find("ttl=", ttl + 1) == std::string::npos));
+}
+
+/// LCM's URLs can also write files and reach other machines.
+void check_buses(const WorldConfig& world, const ConfigNode& root, const LoadOptions& options,
+                 Diagnostics& diagnostics) {
+  const ConfigNode* list = root.find("buses");
+  for (std::size_t i = 0; list != nullptr && i < world.buses.size() && i < list->items.size(); ++i) {
+    const ConfigNode* url = list->items[i].find("lcm_url");
+    if (url == nullptr || url->place.origin == Origin::command_line) continue;
+    const std::string who = "bus '" + world.buses[i].name + "'";
+    if (url->scalar.starts_with("file:"))
+      diagnostics.error(url->place, who, "'lcm_url' must be the URL of a network, got a file");
+    else if (options.only_own_files && !options.allow_plugins && !stays_on_machine(url->scalar))
+      diagnostics.error(url->place, who,
+                        "'lcm_url' must stay on this machine (udpm:// with ttl=0, memq://); one that leaves it needs "
+                        "--launch or --set buses." +
+                            world.buses[i].name + ".lcm_url=" + shortened(url->scalar));
+  }
+}
+
 LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& options, Diagnostics& diagnostics) {
   diagnostics.throw_if_any();
   LoadedWorld loaded;
   loaded.config.encode_message = options.encode_message;
+  loaded.config.files = diagnostics.files();
   apply_sets(root, options, diagnostics);
   diagnostics.throw_if_any();
   ParamReader in(root, "", diagnostics);
   loaded.config.read(in);
   in.finish();
   check_weight_of_water(loaded.config, root, diagnostics);
+  check_buses(loaded.config, root, options, diagnostics);
   // Its devices would all be of unknown types, which would bury the mistake.
   if (!load_plugins(root, options, diagnostics)) diagnostics.throw_if_any();
   if (file.file != nullptr) loaded.config.file = *file.file;
@@ -293,20 +312,29 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
 
 }  // namespace
 
+FileAccessPointer files_of(const std::string& world_file, const LoadOptions& options) {
+  if (!options.only_own_files) return nullptr;
+  const fs::path folder = fs::path(world_file).parent_path();
+  std::vector<std::string> folders{folder.string(), (folder / ".." / "vehicles").string()};
+  if (!shipped_folder().empty())
+    for (const char* shipped : {"worlds", "vehicles"}) folders.push_back(shipped_folder() + "/" + shipped);
+  return std::make_shared<const FileAccess>(std::move(folders), options.allow_paths, known_keys());
+}
+
 LoadedWorld load_world(const std::string& path, const LoadOptions& options) {
-  Diagnostics diagnostics;
+  Diagnostics diagnostics(files_of(path, options));
   ConfigNode root = load_config_file(path, diagnostics);
   return load(std::move(root), {intern_file_name(path), 0, 0}, options, diagnostics);
 }
 
 LoadedWorld load_world_text(const std::string& text, const std::string& file_name, const LoadOptions& options) {
-  Diagnostics diagnostics;
+  Diagnostics diagnostics(files_of(file_name, options));
   ConfigNode root = parse_config_text(text, file_name, diagnostics);
   return load(std::move(root), {intern_file_name(file_name), 0, 0}, options, diagnostics);
 }
 
 LoadedWorld load_world_tree(ConfigNode root, const std::string& file_name, const LoadOptions& options) {
-  Diagnostics diagnostics;
+  Diagnostics diagnostics(files_of(file_name, options));
   return load(std::move(root), {intern_file_name(file_name), 0, 0}, options, diagnostics);
 }
 

@@ -13,7 +13,14 @@ struct LoadOptions {
   std::optional<std::int64_t> seed;   ///< instead of the file's
   bool allow_plugins = false;         ///< load the `plugins:` of the world, which then run code
   EncodeMessage encode_message = {};  ///< for events that publish messages
+  /// The world may be a stranger's: the files that it names must lie below its folder, the folder `vehicles` beside
+  /// that or the shipped ones, and its buses must stay on this machine unless `allow_plugins`.
+  bool only_own_files = false;
+  std::vector<std::string> allow_paths = {};  ///< further folders and files
 };
+
+/// Which files a world (or vehicle) in `world_file` may name; null: any.
+FileAccessPointer files_of(const std::string& world_file, const LoadOptions& options);
 
 struct LoadedWorld {
   WorldConfig config;
@@ -27,11 +34,5 @@ LoadedWorld load_world(const std::string& path, const LoadOptions& options = {})
 LoadedWorld load_world_text(const std::string& text, const std::string& file_name, const LoadOptions& options = {});
 /// The same from a tree, whose errors are at the places that its nodes know.
 LoadedWorld load_world_tree(ConfigNode root, const std::string& file_name, const LoadOptions& options = {});
-
-/// Whether a key of `map` names a file of a mesh, a terrain, a texture or a current.  `map_key`: the key that the map
-/// itself is the value of; empty: it is an item of a list.
-bool names_data_file(const ConfigNode& map, const std::string& map_key, const std::string& key);
-/// Names those files by their whole path, so that the tree may be written anywhere.
-void make_paths_absolute(ConfigNode& node, const std::string& node_key = {});
 
 }  // namespace sim

@@ -4,10 +4,11 @@
 #include <filesystem>
 #include <set>
 
+#include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/shipped_files.hpp"
 #include "sim/device/device_registry.hpp"
-#include "sim/world/load_world.hpp"
+#include "sim/world/data_files.hpp"
 
 namespace sim {
 
@@ -115,9 +116,18 @@ const ConfigNode* VehicleLoader::model_of(const VehicleEntry& entry, const std::
                            "' beside the world file, in ../vehicles or among the shipped ones");
     return nullptr;
   }
+  if (!may_read(entry, path, who)) return nullptr;
   auto [at, fresh] = files_.try_emplace(path);
-  if (fresh) at->second = load_config_file(path, diagnostics_);
+  if (fresh) at->second = load_config_file(path, diagnostics_, Origin::file);
   return at->second.kind == ConfigNode::Kind::map ? &at->second : nullptr;
+}
+
+bool VehicleLoader::may_read(const VehicleEntry& entry, const std::string& path, const std::string& who) {
+  if (entry.file_place.origin == Origin::command_line) return true;
+  if (diagnostics_.files() == nullptr || diagnostics_.files()->may_read(path)) return true;
+  diagnostics_.error(entry.place, who,
+                     "'file' " + FileAccess::reading_rule() + ", got '" + shortened(entry.file) + "'");
+  return false;
 }
 
 const ConfigNode* VehicleLoader::model_of_node(const ConfigNode& model, const std::string& who) {
@@ -190,8 +200,8 @@ Parameters VehicleLoader::parameters_of(const VehicleEntry& entry, const ConfigN
   return parameters;
 }
 
-VehicleConfig load_vehicle(const std::string& path) {
-  Diagnostics diagnostics;
+VehicleConfig load_vehicle(const std::string& path, const LoadOptions& options) {
+  Diagnostics diagnostics(files_of(path, options));
   ConfigNode tree = load_config_file(path, diagnostics);
   diagnostics.throw_if_any();
   Parameters parameters;
@@ -226,12 +236,12 @@ struct SpawnEntry {
   }
 };
 
-enum class Origin { stranger, journal };
+enum class Sender { stranger, journal };
 
-void check_spawn(const SpawnEntry& entry, Origin origin, Diagnostics& diagnostics) {
+void check_spawn(const SpawnEntry& entry, Sender sender, Diagnostics& diagnostics) {
   const VehicleEntry& vehicle = entry.vehicle;
   const std::string who = "vehicle '" + vehicle.name + "'";
-  if (origin == Origin::stranger)
+  if (sender == Sender::stranger)
     for (const ConfigNode* node : {&vehicle.model, &vehicle.parameters, &vehicle.overrides})
       check_untrusted(*node, who, diagnostics);
   if (vehicle.count != 1) diagnostics.error(vehicle.place, who, "'count' must be 1: vehicles are spawned one by one");
@@ -245,7 +255,8 @@ void check_untrusted(const ConfigNode& node, const std::string& who, Diagnostics
   for (const ConfigNode& item : node.items) check_untrusted(item, who, diagnostics);
   for (const ConfigNode::Entry& entry : node.entries) {
     const std::string key = entry.key.substr(entry.key.find_last_of("./") + 1);
-    if (key == "mesh" || key == "serial" || key == "include" || entry.key.find("serial.") != std::string::npos)
+    // Files are refused by the kind of their keys; these are more than a file.
+    if (key == "serial" || key == "include" || entry.key.find("serial.") != std::string::npos)
       diagnostics.error(entry.place, who, "'" + key + "' cannot be used in what comes over the bus");
     check_untrusted(entry.value, who, diagnostics);
   }
@@ -259,24 +270,28 @@ ConfigNode parse_untrusted(const std::string& text, const std::string& from) {
   diagnostics.throw_if_any();
   ConfigNode node = parse_config_text(text, from, diagnostics);
   diagnostics.throw_if_any();
+  set_origin(node, Origin::bus);
   return node;
 }
 
 namespace {
 
-SpawnRequest read_spawn(const WorldConfig& world, const ConfigNode& node, Origin origin) {
-  Diagnostics diagnostics;
+SpawnRequest read_spawn(const WorldConfig& world, const ConfigNode& node, Sender sender,
+                        std::vector<std::string>* hidden = nullptr) {
+  Diagnostics diagnostics(world.files);
   SpawnEntry entry;
   ParamReader in(node, "", diagnostics);
   for (const BusConfig& bus : world.buses) in.declare("bus", bus.name);
   entry.read(in);
   in.finish();
   diagnostics.throw_if_any();
-  check_spawn(entry, origin, diagnostics);
+  check_spawn(entry, sender, diagnostics);
   diagnostics.throw_if_any();
   // Vehicle files are looked up from the world's file, not from the working directory.
   entry.vehicle.beside.file = intern_file_name(world.file);
+  if (hidden != nullptr) diagnostics.hide_files();
   std::vector<VehicleInstance> instances = VehicleLoader(world, diagnostics).load(entry.vehicle);
+  if (hidden != nullptr) *hidden = diagnostics.hidden();
   diagnostics.throw_if_any();
   if (instances.empty())
     throw_config_error(entry.vehicle.place, "vehicle '" + entry.vehicle.name + "'", "has no model");
@@ -285,15 +300,16 @@ SpawnRequest read_spawn(const WorldConfig& world, const ConfigNode& node, Origin
 
 }  // namespace
 
-SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& text) {
-  return read_spawn(world, parse_untrusted(text, "spawn"), Origin::stranger);
+SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& text, std::vector<std::string>* hidden) {
+  std::vector<std::string> lines;
+  return read_spawn(world, parse_untrusted(text, "spawn"), Sender::stranger, hidden != nullptr ? hidden : &lines);
 }
 
 SpawnRequest read_journalled_spawn(const WorldConfig& world, const std::string& text) {
   Diagnostics diagnostics;
   const ConfigNode node = parse_config_text(text, "spawn", diagnostics);
   diagnostics.throw_if_any();
-  return read_spawn(world, node, Origin::journal);
+  return read_spawn(world, node, Sender::journal);
 }
 
 std::string self_contained_spawn(const WorldConfig& world, const std::string& text) {
@@ -303,8 +319,8 @@ std::string self_contained_spawn(const WorldConfig& world, const std::string& te
       if (entry.key != "file" || entry.value.scalar.find('/') != std::string::npos) continue;
       const std::string path = find_file(entry.value.scalar, {intern_file_name(world.file), 0, 0});
       if (path.empty()) return text;
-      Diagnostics diagnostics;
-      ConfigNode model = load_config_file(path, diagnostics);
+      Diagnostics diagnostics(world.files);
+      ConfigNode model = load_config_file(path, diagnostics, Origin::file);
       diagnostics.throw_if_any();
       make_paths_absolute(model);
       entry.key = "model";

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/world/load_world.hpp"
 #include "sim/world/world_config.hpp"
 
 namespace sim {
@@ -23,6 +24,7 @@ class VehicleLoader {
 
  private:
   const ConfigNode* model_of(const VehicleEntry& entry, const std::string& who);
+  bool may_read(const VehicleEntry& entry, const std::string& path, const std::string& who);
   const ConfigNode* model_of_node(const ConfigNode& model, const std::string& who);
   std::shared_ptr<const VehicleConfig> instance(const VehicleEntry& entry, const ConfigNode& model,
                                                 const std::string& name, int index);
@@ -35,8 +37,8 @@ class VehicleLoader {
   std::map<std::string, ConfigNode> files_;
 };
 
-/// Reads and checks a vehicle file by itself, with its default parameters.
-VehicleConfig load_vehicle(const std::string& path);
+/// Reads and checks a vehicle file by itself, with its default parameters.  Of the options the rule about files counts.
+VehicleConfig load_vehicle(const std::string& path, const LoadOptions& options = {});
 
 /// A vehicle that a client brings while the world runs: an entry of `vehicles:`, and who it belongs to.
 struct SpawnRequest {
@@ -47,15 +49,18 @@ struct SpawnRequest {
 
 /// Reads a spawn request.  The text comes over the network and is not trusted: it can use vehicle files that lie
 /// beside the world file, in ../vehicles or among the shipped ones by their bare names, but no other file, and no
-/// serial port.  Throws ConfigError, with places such as `spawn:3:7`.
-SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& text);
+/// serial port.  Throws ConfigError, with places such as `spawn:3:7`; of an error in a vehicle file it says the place
+/// alone, for whoever asked may not read the file.  `hidden`: gets those errors in full.
+SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& text,
+                                std::vector<std::string>* hidden = nullptr);
 /// The same for what self_contained_spawn() made of a request that was checked then.
 SpawnRequest read_journalled_spawn(const WorldConfig& world, const std::string& text);
 /// The request with its vehicle file in it, so that it can be carried out where that file is not.  As it is when the
 /// file cannot be read or the request is wrong.
 std::string self_contained_spawn(const WorldConfig& world, const std::string& text);
 
-/// A stranger may not reach for files or ports: reports keys such as `mesh` and `serial`.
+/// A stranger may not reach for ports and included files: reports the keys `serial` and `include`.  Keys of files are
+/// refused by their kind (ParamReader::read_path).
 void check_untrusted(const ConfigNode& node, const std::string& who, Diagnostics& diagnostics);
 /// YAML that comes over the bus, at most 1 MiB.  Throws ConfigError, with places such as `spawn:3:7`.
 ConfigNode parse_untrusted(const std::string& text, const std::string& from);

@@ -325,7 +325,7 @@ const std::map<std::string, ZoneRecord>& World::zone_records() const {
 }
 
 void World::run_action(const ConfigNode& action) {
-  Diagnostics diagnostics;
+  Diagnostics diagnostics(config().files);
   script_->run_now(action, diagnostics);
   diagnostics.throw_if_any();
 }

@@ -67,7 +67,9 @@ void VehicleEntry::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "name of the vehicle, unique in the world; part of its channels");
   refuse_reserved(in, name);
-  in.read("file", file, "vehicle file, beside the world file, in ../vehicles or shipped (shoal list)");
+  in.read_path("file", file, PathUse::looked_up,
+               "vehicle file, beside the world file, in ../vehicles or shipped (shoal list)");
+  if (in.has("file")) file_place = in.child("file")->place;
   in.read_raw("model", model, "the vehicle itself, as in a vehicle file, instead of a file");
   in.read("position_m", position_m, any_place(), "place of the vehicle frame in the world");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
@@ -198,7 +200,8 @@ void WorldConfig::read(ParamReader& in) {
   in.read("channels", channels, "names of the channels");
   in.read("run", run, "how a run goes when the command line says nothing else");
   in.read("state_rate_hz", state_rate_hz, between(0, 1e6), "of sim.state and sim.clock; 0: never");
-  in.read("plugins", plugins, "libraries with devices, beside this file or installed; only with --launch or --plugin");
+  in.read_paths("plugins", plugins,
+                "libraries with devices, beside this file or installed; only with --launch or --plugin");
   in.read_list("objects", objects, "object", "things without devices");
   for (const ObjectConfig& object : objects) in.declare("object", object.name);
   in.read_list("buses", buses, "bus", "buses beside the world's, for vehicles that hear each other by modem only");

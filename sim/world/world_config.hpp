@@ -8,6 +8,7 @@
 
 #include "sim/acoustics/acoustics_config.hpp"
 #include "sim/camera/light.hpp"
+#include "sim/config/file_access.hpp"
 #include "sim/config/param_reader.hpp"
 #include "sim/geodesy.hpp"
 #include "sim/medium/medium_config.hpp"
@@ -73,7 +74,8 @@ struct VehicleEntry {
   ConfigNode overrides;   ///< dotted path: value
   std::string bus;        ///< of `buses:`; empty: the world's
   SourcePlace place;
-  SourcePlace beside;  ///< the file that vehicle files lie beside; unset: `place`
+  SourcePlace file_place;  ///< of `file`
+  SourcePlace beside;      ///< the file that vehicle files lie beside; unset: `place`
   void read(ParamReader& in);
 };
 
@@ -123,7 +125,8 @@ struct LimitsConfig {
 
 /// Everything a world file says.
 struct WorldConfig {
-  std::string file;  ///< where it was read
+  std::string file;         ///< where it was read
+  FileAccessPointer files;  ///< those that may be named, also by what comes later; null: any
   int shoal = 1;
   std::string name;
   std::string description;

@@ -7,7 +7,7 @@
 #include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/transducer.hpp"
 #include "sim/config/diagnostics.hpp"
-#include "sim/world/load_world.hpp"
+#include "sim/world/data_files.hpp"
 #include "sim/world/vehicle_loader.hpp"
 #include "sim/world/world.hpp"
 

@@ -79,7 +79,7 @@ void WorldJournal::apply(const Entry& entry) {
     case Kind::object_went:
       return world_.take_apart(world_.object_named(entry.name));
     case Kind::device_changed: {
-      Diagnostics diagnostics;
+      Diagnostics diagnostics(world_.config().files);
       const ConfigNode values = parse_config_text(entry.values, "snapshot", diagnostics);
       diagnostics.throw_if_any();
       world_.apply_change(entry.name, values, diagnostics);
@@ -173,7 +173,7 @@ const ConfigNode& WorldJournal::parsed(std::int64_t text_number) {
   if (text == texts_.end()) throw SnapshotError("the snapshot tells of a vehicle or object without its YAML");
   const auto [found, fresh] = parsed_.try_emplace(text_number);
   if (fresh) {
-    Diagnostics diagnostics;
+    Diagnostics diagnostics(world_.config().files);
     found->second = parse_config_text(text->second.text, "snapshot", diagnostics);
     diagnostics.throw_if_any();
   }
@@ -188,7 +188,7 @@ std::shared_ptr<const VehicleConfig> WorldJournal::vehicle_config(const Entry& e
   }
   const auto [found, fresh] = vehicles_.try_emplace(entry.text_number);
   if (fresh) {
-    Diagnostics diagnostics;
+    Diagnostics diagnostics(world_.config().files);
     found->second =
         VehicleLoader(world_.config(), diagnostics).read(parsed(entry.text_number), "vehicle '" + entry.name + "'");
     diagnostics.throw_if_any();
@@ -197,7 +197,7 @@ std::shared_ptr<const VehicleConfig> WorldJournal::vehicle_config(const Entry& e
 }
 
 ObjectConfig WorldJournal::object_config(const Entry& entry) {
-  Diagnostics diagnostics;
+  Diagnostics diagnostics(world_.config().files);
   ParamReader in(parsed(entry.text_number), "object '" + entry.name + "'", diagnostics);
   declare_surfaces(in, world_.config());
   ObjectConfig config;

@@ -56,6 +56,7 @@ sim::LoadedWorld load_empty_world(const ReplayLog& log) {
   empty.config.epoch_us = log.info.epoch_utime;
   try {
     sim::LoadOptions load;
+    load.only_own_files = true;
     load.encode_message = shoal::encode_own_message;
     empty.config.lockstep = sim::load_world_text(log.info.resolved_config, log.path, load).config.lockstep;
   } catch (const std::exception&) {

@@ -40,8 +40,7 @@ struct Line {
 
 /// The world that is run: that of the log, or another one in its place.
 sim::LoadedWorld load(const ReplayLog& log, const ReplayOptions& options) {
-  sim::LoadOptions load;
-  load.sets = options.sets;
+  sim::LoadOptions load = options.load;
   load.encode_message = shoal::encode_own_message;
   if (!options.world.empty()) {
     sim::LoadedWorld loaded = sim::load_world(options.world, load);
@@ -55,6 +54,7 @@ sim::LoadedWorld load(const ReplayLog& log, const ReplayOptions& options) {
     for (const std::string& file : changed) text += "\n  " + sim::printable(file);
     throw std::runtime_error(text);
   }
+  allow_files(log.info.files, load);
   sim::LoadedWorld loaded = sim::load_world_text(log.info.resolved_config, log.path + ": sim.info", load);
   loaded.config.name = log.info.world;
   return loaded;
@@ -159,7 +159,7 @@ class Replay {
     } catch (const sim::SnapshotError& error) {
       throw std::runtime_error(who + ": " + error.what());
     }
-    if (world_.state_hash() != log_.snapshot->state_hash && options_.sets.empty() && options_.world.empty())
+    if (world_.state_hash() != log_.snapshot->state_hash && options_.load.sets.empty() && options_.world.empty())
       throw std::runtime_error(who + ": restored here it has another state hash than where it was written");
   }
 
@@ -321,7 +321,7 @@ class Replay {
     if (outcome_.hashes + outcome_.messages == 0 && !outcome_.first)
       throw std::runtime_error(log_.path + ": holds neither hashes nor messages to compare with");
     tell_of_log();
-    if (!options_.world.empty() || !options_.sets.empty()) compare_worlds();
+    if (!options_.world.empty() || !options_.load.sets.empty()) compare_worlds();
     if (outcome_.first) outcome_.motion = motion();
     if (outcome_.first) write_report();
   }
@@ -330,7 +330,9 @@ class Replay {
     constexpr std::size_t most_lines = 12;
     std::vector<std::string>& world = outcome_.world;
     try {
-      sim::LoadOptions load;
+      sim::LoadOptions load = options_.load;
+      load.sets.clear();
+      allow_files(log_.info.files, load);
       load.encode_message = shoal::encode_own_message;
       const sim::WorldConfig logged =
           sim::load_world_text(log_.info.resolved_config, log_.path + ": sim.info", load).config;

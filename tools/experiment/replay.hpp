@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/world/load_world.hpp"
 #include "tools/experiment/replay_log.hpp"
 
 namespace tools {
@@ -12,7 +13,7 @@ namespace tools {
 struct ReplayOptions {
   std::string log;
   std::string world;              ///< another world file; empty: the world in the log
-  std::vector<std::string> sets;  ///< `path=value`, applied to it
+  sim::LoadOptions load;          ///< `sets` are applied to it
   std::optional<double> until_s;  ///< simulated time; without it to the end of the log
   int threads = 0;                ///< that follow rays; 0: one for each processor
   bool quiet = false;             ///< no progress

@@ -8,23 +8,16 @@
 #include <thread>
 
 #include "bridges/lcm/bus_error.hpp"
-#include "bridges/serial/serial_port.hpp"
 #include "tools/experiment/results_world.hpp"
 #include "tools/experiment/run_error.hpp"
 #include "tools/experiment/run_identity.hpp"
-#include "tools/experiment/run_name.hpp"
+#include "tools/experiment/run_ports.hpp"
 
 namespace tools {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-sim::PortOpener port_opener(const std::string& run_name) {
-  return [run_name](const std::string& kind, const std::string& path) {
-    return bridges::open_serial_port(kind, with_run_name(path, run_name));
-  };
-}
 
 }  // namespace
 
@@ -36,7 +29,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       others_(buses_.networks(), options.lcm_shared),
       journal_(buses_.outer()),
       world_(loaded.config, buses_.outer(),
-             options.serial_ports ? journal_.wrap(port_opener(options.name)) : sim::PortOpener(),
+             options.serial_ports ? journal_.wrap(serial_ports_of(loaded.config, options)) : sim::PortOpener(),
              [this](const std::string& name) -> sim::Bus& { return buses_.of(name); }),
       lockstep_(world_, control_),
       service_(buses_.outer(), buses_.network(), world_, control_, lockstep_,

@@ -4,12 +4,13 @@
 #include <spdlog/fmt/fmt.h>
 #include <sys/utsname.h>
 
+#include <filesystem>
 #include <fstream>
 #include <set>
 #include <sstream>
 
 #include "sim/state_hash.hpp"
-#include "sim/world/load_world.hpp"
+#include "sim/world/data_files.hpp"
 
 namespace tools {
 
@@ -30,7 +31,10 @@ std::string processor_class() {
 #endif
 }
 
+/// `path` may come from a stranger's record: a pipe or a device would be read for ever.
 std::string hash_of_file(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return no_hash;
   std::ifstream in(path, std::ios::binary);
   if (!in) return no_hash;
   sim::StateHash hash;
@@ -38,17 +42,6 @@ std::string hash_of_file(const std::string& path) {
   while (in.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) || in.gcount() > 0)
     hash.add_bytes(buffer.data(), static_cast<std::size_t>(in.gcount()));
   return in.bad() ? no_hash : fmt::format("{:016x}", hash.value());
-}
-
-void find_files(const sim::ConfigNode& node, const std::string& node_key, std::set<std::string>& paths) {
-  for (const sim::ConfigNode& item : node.items) find_files(item, "", paths);
-  for (const sim::ConfigNode::Entry& entry : node.entries) {
-    const bool names_file = sim::names_data_file(node, node_key, entry.key);
-    if (names_file && entry.value.scalar.find('/') != std::string::npos)
-      paths.insert(entry.value.scalar);
-    else
-      find_files(entry.value, entry.key, paths);
-  }
 }
 
 }  // namespace
@@ -59,7 +52,10 @@ std::string build_text() {
 
 std::string files_text(const sim::ConfigNode& resolved) {
   std::set<std::string> paths;
-  find_files(resolved, "", paths);
+  sim::ConfigNode tree = resolved;
+  sim::visit_data_files(tree, [&](const std::string& path, const std::string*) {
+    if (path.find('/') != std::string::npos) paths.insert(path);
+  });
   std::string text;
   for (const std::string& path : paths) text += hash_of_file(path) + " " + path + "\n";
   return text;
@@ -79,6 +75,15 @@ std::vector<std::string> changed_files(const std::string& text) {
       changes.push_back(path + ": is another file than in the run");
   }
   return changes;
+}
+
+void allow_files(const std::string& text, sim::LoadOptions& load) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.size() < 18 || line[16] != ' ') continue;
+    const std::string hash = line.substr(0, 16), path = line.substr(17);
+    if (hash != no_hash && hash_of_file(path) == hash) load.allow_paths.push_back(path);
+  }
 }
 
 }  // namespace tools

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/config/config_node.hpp"
+#include "sim/world/load_world.hpp"
 
 namespace tools {
 
@@ -17,5 +18,9 @@ std::string files_text(const sim::ConfigNode& resolved);
 
 /// A line for each file of `text` (from files_text) that is not there now, or is another one.
 std::vector<std::string> changed_files(const std::string& text);
+
+/// Lets a world of a record or snapshot name the files of such a list that are as they were: whoever wrote the list
+/// knew what is in them.
+void allow_files(const std::string& text, sim::LoadOptions& load);
 
 }  // namespace tools

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "shoal/message_writer.hpp"
+#include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/yaml_writer.hpp"
 
@@ -283,6 +284,21 @@ std::vector<std::int64_t> parse_seeds(const std::string& text) {
   return seeds;
 }
 
+namespace {
+
+/// The world of a study lies with it or in the folder above: an error of it quotes it.
+void check_world_file(const std::string& world, const std::string& study, const sim::ConfigNode& root,
+                      const sim::LoadOptions& load) {
+  const fs::path folder = fs::path(study).parent_path();
+  const sim::FileAccess access({folder.string(), (folder / "..").string()}, load.allow_paths, {});
+  if (!load.only_own_files || access.may_read(world)) return;
+  sim::throw_config_error(root.find("world")->place, "",
+                          "'world' must lie below the folder of the study or the one above it, or below a folder "
+                          "given with --allow-path");
+}
+
+}  // namespace
+
 LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
   LoadedStudy study;
   sim::Diagnostics diagnostics;
@@ -297,8 +313,9 @@ LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
   if (changes.duration_s) study.config.duration_s = changes.duration_s;
   const fs::path world_file = fs::path(path).parent_path() / study.config.world;
   study.config.world = world_file.lexically_normal().string();
+  check_world_file(study.config.world, path, root, changes.load);
   for (const StudyCase& each : study.config.cases) {
-    sim::LoadOptions options;
+    sim::LoadOptions options = changes.load;
     options.sets = each.sets();
     options.allow_plugins = study.config.launch;
     options.encode_message = shoal::encode_own_message;
@@ -319,6 +336,7 @@ std::optional<SharedPort> find_shared_port(const LoadedStudy& study) {
         const sim::ConfigNode* const serial = device.source ? device.source->find("serial") : nullptr;
         const sim::ConfigNode* const path = serial != nullptr ? serial->find("path") : nullptr;
         if (path == nullptr || path->scalar.find("{run}") != std::string::npos) continue;
+        if (fs::path(path->scalar).is_relative()) continue;  // below the results of each run
         return SharedPort{path->place, "vehicle '" + vehicle.name + "': device '" + device.name + "'",
                           sim::channel_name(path->scalar, vehicle.name, device.name)};
       }

@@ -71,6 +71,7 @@ struct LoadedStudy {
 struct StudyChanges {
   std::vector<std::int64_t> seeds;  ///< empty: those of the file
   std::optional<double> duration_s;
+  sim::LoadOptions load;  ///< which files its worlds may name
 };
 
 /// Seeds as a command line gives them: `7`, `1-10` or `1-3,8`.  Throws std::invalid_argument with the rule.

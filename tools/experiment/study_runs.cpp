@@ -143,6 +143,7 @@ class StudyChildren {
       arguments.push_back(value);
     };
     for (const std::string& set : config.cases[run.in_case].sets()) add("--set", set);
+    for (const std::string& path : options_.allow_paths) add("--allow-path", path);
     if (config.duration_s) add("--duration", fmt::format("{}", *config.duration_s));
     if (!config.launch) {
       add("--bus", "none");

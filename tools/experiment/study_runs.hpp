@@ -15,6 +15,7 @@ struct StudyOptions {
   int jobs = 1;        ///< runs at the same time
   bool fresh = false;  ///< runs that are done are done again
   bool quiet = false;
+  std::vector<std::string> allow_paths = {};  ///< of the runs
 };
 
 /// One run of a study.

@@ -331,6 +331,7 @@ void add_options(CLI::App& command, AcousticsArguments& arguments) {
   command.add_option("--picture", arguments.picture, "PNG file: signal-to-noise ratio and delivery over range")
       ->type_name("FILE");
   add_set_option(command, arguments.load.sets);
+  add_allow_path_option(command, arguments.load);
   command
       .add_option("--closed-forms", arguments.closed_forms,
                   "compare a CSV file of closed forms with what Shoal computes")

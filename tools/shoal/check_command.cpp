@@ -34,7 +34,7 @@ void check_textures(const sim::WorldConfig& world) {
 
 void check(const std::string& path, const sim::LoadOptions& options) {
   if (is_vehicle_file(path)) {
-    const sim::VehicleConfig vehicle = sim::load_vehicle(path);
+    const sim::VehicleConfig vehicle = sim::load_vehicle(path, options);
     std::cout << path << ": vehicle '" << vehicle.vehicle << "': " << vehicle.bodies.size() << " bodies, "
               << vehicle.joints.size() << " joints, " << vehicle.devices.size() << " devices\n";
     return;
@@ -63,6 +63,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
   add_log_level_option(*command);
   command->add_option("FILE", *path, "world or vehicle file, or the name of a shipped one")->required();
   add_set_option(*command, options->sets);
+  add_allow_path_option(*command, *options);
   add_plugin_option(*command);
   command_line::set_help_end(*command,
                              {{"shoal check worlds/coop_land.yaml --set run.seed=3"},

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "sim/world/load_world.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/command_line/help.hpp"
 
@@ -32,6 +33,9 @@ CLI::Option* add_log_level_option(CLI::App& command, const std::string& usual = 
 
 /// Adds `--set PATH=VALUE`.
 void add_set_option(CLI::App& command, std::vector<std::string>& sets);
+
+/// Adds `--allow-path PATH`.  From then on a world may name files of its own folders only, and those.
+void add_allow_path_option(CLI::App& command, sim::LoadOptions& load);
 
 /// Adds `--lcm-url URL`.
 CLI::Option* add_lcm_url_option(CLI::App& command, std::string& url);

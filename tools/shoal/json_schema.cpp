@@ -149,6 +149,7 @@ class SchemaWriter {
       case ParamKind::numbers:
         return list_of(number_schema("number", info.range));
       case ParamKind::texts:
+      case ParamKind::paths:
         return list_of(text());
       case ParamKind::map:
         return map_of(info);

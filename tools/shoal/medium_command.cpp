@@ -150,6 +150,7 @@ void add_medium_command(CLI::App& app, int& exit_code) {
       ->check(number_from(1, 1e5))
       ->excludes(profile);
   add_set_option(*command, arguments->load.sets);
+  add_allow_path_option(*command, arguments->load);
   add_plugin_option(*command);
   command_line::set_help_end(
       *command,

@@ -99,7 +99,8 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   CLI::Option* log_level = add_log_level_option(*command, "error");
   command->add_option("LOG", arguments->replay.log, "of shoal run --record, or of lcm-logger")->required();
   command->add_option("--world", arguments->replay.world, "a world file instead of the log's world")->type_name("FILE");
-  add_set_option(*command, arguments->replay.sets);
+  add_set_option(*command, arguments->replay.load.sets);
+  add_allow_path_option(*command, arguments->replay.load);
   command->add_option("--until", arguments->replay.until_s, "simulated seconds; without it to the end of the log")
       ->type_name("S")
       ->check(number_from(0, 1e9));

@@ -7,6 +7,7 @@
 
 #include "shoal/message_writer.hpp"
 #include "tools/experiment/bug_report.hpp"
+#include "tools/experiment/run_identity.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/experiment/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
@@ -47,6 +48,7 @@ sim::LoadedWorld load_from(RunArguments& arguments) {
   arguments.run.from_file = arguments.from;
   check_version(*arguments.run.from, arguments.from, short_version());
   check_files(*arguments.run.from, arguments.from);
+  allow_files(arguments.run.from->files, arguments.load);
   return sim::load_world_text(arguments.run.from->resolved_world, arguments.from, arguments.load);
 }
 
@@ -162,6 +164,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->type_name("N")
       ->check(command_line::seed());
   add_set_option(*command, arguments->load.sets);
+  add_allow_path_option(*command, arguments->load);
   command->add_flag("--paused", arguments->run.paused, "wait for a resume on sim.control");
   command->add_flag_callback(
       "--no-keys", [arguments] { arguments->run.keys = false; }, "ignore the keys of the terminal");

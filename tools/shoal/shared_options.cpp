@@ -25,6 +25,17 @@ void add_set_option(CLI::App& command, std::vector<std::string>& sets) {
       ->check(command_line::setting());
 }
 
+void add_allow_path_option(CLI::App& command, sim::LoadOptions& load) {
+  load.only_own_files = true;
+  command
+      .add_option("--allow-path", load.allow_paths,
+                  "folder or file outside of the world's folder that the world may name, and where it may make serial "
+                  "ports")
+      ->type_name("PATH")
+      ->type_size(1)
+      ->allow_extra_args(false);
+}
+
 CLI::Option* add_lcm_url_option(CLI::App& command, std::string& url) {
   return command.add_option("--lcm-url", url, "instead of LCM_DEFAULT_URL and the default")->type_name("URL");
 }

@@ -285,6 +285,7 @@ void add_snap_command(CLI::App& app, int& exit_code) {
       ->type_name("N")
       ->check(command_line::seed());
   add_set_option(*command, arguments->load.sets);
+  add_allow_path_option(*command, arguments->load);
   add_plugin_option(*command);
   command_line::set_help_end(
       *command, {{"shoal snap worlds/coop_land.yaml --out coop_land.png",

@@ -6,6 +6,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/world/load_world.hpp"
 #include "sim/world/world.hpp"
+#include "tools/experiment/run_identity.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/experiment/snapshot_file.hpp"
 #include "tools/shoal/commands.hpp"
@@ -25,6 +26,8 @@ bool restores(const Snapshot& snapshot, const std::string& path) {
   check_version(snapshot, path, short_version());
   check_files(snapshot, path);
   sim::LoadOptions load;
+  load.only_own_files = true;
+  allow_files(snapshot.files, load);
   load.encode_message = shoal::encode_own_message;
   const sim::LoadedWorld loaded = sim::load_world_text(snapshot.resolved_world, path, load);
   sim::InProcessBus bus;

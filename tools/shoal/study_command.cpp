@@ -35,6 +35,7 @@ int study(const std::string& path, const StudyChanges& changes, StudyOptions opt
   // A first look does not overwrite the runs of the whole study.
   const std::string look = changes.duration_s ? fmt::format("_{:g}s", *changes.duration_s) : "";
   if (options.output.empty()) options.output = "results/" + loaded.config.name + look;
+  options.allow_paths = changes.load.allow_paths;
   choose_jobs(loaded, options);
   catch_signals(true);
   try {
@@ -84,6 +85,7 @@ void add_study_command(CLI::App& app, int& exit_code) {
       ->type_name("DIR");
   command->add_flag("--fresh", arguments->options.fresh, "repeat runs that are complete");
   command->add_flag("--quiet", arguments->options.quiet, "no progress");
+  add_allow_path_option(*command, arguments->changes.load);
   add_plugin_option(*command);
   command_line::set_help_end(*command, {{"shoal study worlds/studies/coop_land.yaml --jobs 2",
                                          "shoal study worlds/studies/coop_underwater.yaml --seeds 1-2 --duration 60",

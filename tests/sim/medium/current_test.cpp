@@ -179,8 +179,8 @@ TEST(Current, BadGridsAreRefusedWithTheLine) {
   };
   const std::string header = "x_m,y_m,east_mps,north_mps\n";
   EXPECT_THAT(error("x,y,u,v\n"), HasSubstr("line 1: the header must name"));
-  EXPECT_THAT(error(header + "0,0,a,1\n"), HasSubstr("line 2: 'a' is no number"));
-  EXPECT_THAT(error(header + "0,0,nan,1\n"), HasSubstr("line 2: 'nan' is no number"));
+  EXPECT_THAT(error(header + "0,0,a,1\n"), HasSubstr("line 2: 'east_mps' is not a number"));
+  EXPECT_THAT(error(header + "0,0,nan,1\n"), HasSubstr("line 2: 'east_mps' is not a number"));
   EXPECT_THAT(error(header + "0,0,1\n"), HasSubstr("line 2: 'north_mps' is missing"));
   EXPECT_THAT(error(header + "0,0,1,1\n0,1,1,1\n1,0,1,1\n"), HasSubstr("one row for each of 2 x 2 points, has 3"));
   EXPECT_THAT(error(header + "0,0,1,1\n0,1,1,1\n1,0,1,1\n1,0,1,1\n"), HasSubstr("has the point 1, 0 twice"));

@@ -131,9 +131,9 @@ TEST(Mesh, ErrorsSayWhatIsWrong) {
             "says it has 4294967295 triangles, but there is room for 2");
   EXPECT_EQ(error_of([] { sim::parse_stl(std::string(84, '\0')); }), "has no triangles");
   EXPECT_EQ(error_of([] { sim::parse_stl("solid x\nendsolid x\n"); }), "has no triangles");
-  EXPECT_EQ(error_of([] { sim::parse_stl("solid gold\nis heavy\n"); }), "is not a mesh: unexpected 'is'");
+  EXPECT_EQ(error_of([] { sim::parse_stl("solid gold\nis heavy\n"); }), "is not a mesh: line 2: unknown word");
   EXPECT_EQ(error_of([] { sim::parse_stl("solid x\nfacet normal 0 0 1\nouter loop\nvertex 1 2 pi\n"); }),
-            "is not a mesh: 'pi' is no number");
+            "is not a mesh: line 4: must have a number here");
   EXPECT_EQ(error_of([] { sim::parse_stl("solid x\nfacet normal 0 0 1\nouter loop\nvertex 1 2 nan\n"); }),
             "has a vertex that is not finite");
   EXPECT_EQ(error_of([] { sim::parse_stl("solid x\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3\n"); }),
@@ -149,11 +149,13 @@ TEST(Mesh, ErrorsSayWhatIsWrong) {
             }),
             "says it has 12 triangles, but there is room for 11");
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"); }), "has no triangle with an area");
-  EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0\n"); }), "is not a mesh: '' is no number");
+  EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0\n"); }), "is not a mesh: line 1: must have a number here");
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"); }),
-            "has index 4, but 3 vertices so far");
-  EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nf 0 1 1\n"); }), "has index 0, but 1 vertices so far");
-  EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nf 1e99 1 1\n"); }), "has index 1e99, but 1 vertices so far");
+            "is not a mesh: line 4: must have numbers of the 3 vertices so far");
+  EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nf 0 1 1\n"); }),
+            "is not a mesh: line 2: must have numbers of the 1 vertices so far");
+  EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nf 1e99 1 1\n"); }),
+            "is not a mesh: line 2: must have numbers of the 1 vertices so far");
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 inf\n"); }), "has a vertex that is not finite");
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\n"); }), "has no triangles");
   EXPECT_EQ(error_of([] { sim::parse_obj(""); }), "has no triangles");

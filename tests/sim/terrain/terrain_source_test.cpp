@@ -75,9 +75,9 @@ TEST(AsciiGrid, HolesAreAnErrorOrFilled) {
 
 TEST(AsciiGrid, ErrorsSayTheLineAndWhatIsWrong) {
   EXPECT_EQ(error_of_ascii(""), "line 1: is no ESRI ASCII grid: 'ncols' is missing before the heights");
-  EXPECT_EQ(error_of_ascii("solid hill\n"), "line 1: 'solid' is no key of an ESRI ASCII grid");
+  EXPECT_EQ(error_of_ascii("solid hill\n"), "line 1: unknown key of an ESRI ASCII grid");
   EXPECT_EQ(error_of_ascii("ncols 3\nncols 3\n"), "line 2: 'ncols' comes twice");
-  EXPECT_EQ(error_of_ascii("ncols three\n"), "line 1: ncols is 'three', which is no number");
+  EXPECT_EQ(error_of_ascii("ncols three\n"), "line 1: ncols is not a number");
   EXPECT_EQ(error_of_ascii("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize -10\n1 2 3 4 5 6"),
             "line 5: cellsize must be > 0, got -10");
   EXPECT_EQ(error_of_ascii("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1e-300\n1 2 3 4 5 6"),
@@ -91,7 +91,7 @@ TEST(AsciiGrid, ErrorsSayTheLineAndWhatIsWrong) {
   EXPECT_EQ(error_of_ascii(header + "1 2 3\n4 5\n"), "line 8: the file ends before height 3 of row 2");
   EXPECT_EQ(error_of_ascii(header + "1 2 3\n4 5 6 7\n"), "line 7: there are more heights than ncols times nrows");
   EXPECT_EQ(error_of_ascii(header + "1 2 3\n4 nan 6\n"), "line 7: height 2 of row 2 is not finite");
-  EXPECT_EQ(error_of_ascii(header + "1 2 3\n4 1,5 6\n"), "line 7: height 2 of row 2 is '1,5', which is no number");
+  EXPECT_EQ(error_of_ascii(header + "1 2 3\n4 1,5 6\n"), "line 7: height 2 of row 2 is not a number");
 }
 
 struct PictureExtra {

@@ -54,7 +54,7 @@ class ReplayTest : public testing::Test {
   tools::ReplayOutcome again(const std::vector<std::string>& sets = {}) const {
     tools::ReplayOptions options;
     options.log = log;
-    options.sets = sets;
+    options.load.sets = sets;
     options.quiet = true;
     options.threads = 1;
     return tools::replay(options);
