@@ -9,8 +9,9 @@ namespace bridges {
 namespace {
 
 /// The handshake, and what tells of it: no tick names them, and handlers are called when they come.
-constexpr std::string_view unnamed_channels[] = {"sim.ack",  "sim.control", "sim.control.reply", "sim.hash", "sim.info",
-                                                 "sim.mail", "sim.resend",  "sim.resent",        "sim.tick"};
+constexpr std::string_view unnamed_channels[] = {"sim.ack",    "sim.control", "sim.control.reply", "sim.hash",
+                                                 "sim.info",   "sim.mail",    "sim.notice",        "sim.resend",
+                                                 "sim.resent", "sim.tick"};
 
 constexpr std::size_t most_recent = 8192;
 constexpr std::size_t most_held = 100'000;

@@ -55,6 +55,7 @@ LockstepClient::LockstepClient(const std::string& url, std::string name)
       session_(random_session()),
       outbox_(name_, [this](std::string_view channel, std::span<const std::byte> payload) { send(channel, payload); }) {
   for (const char* channel : {tick_channel, reply_channel, question_channel, bundle_channel}) lcm_.listen(channel);
+  if (const auto key = run_key_from_environment()) signer_.emplace(*key, name_);
   // A program that was started again must not take the answer to its predecessor for its own.
   request_id_ = static_cast<std::int32_t>(std::random_device()() >> 2);
 }
@@ -70,6 +71,11 @@ void LockstepClient::subscribe(const std::string& channel, Handler handler) {
 }
 
 void LockstepClient::send(std::string_view channel, std::span<const std::byte> payload) {
+  sim::Bytes signed_payload;
+  if (signer_ && is_control_channel(channel)) {
+    signed_payload = signer_->sign(channel, payload);
+    payload = signed_payload;
+  }
   if (!lcm_.publish(channel, payload))
     throw BusError("cannot publish " + std::to_string(payload.size()) + " bytes on '" + std::string(channel) + "'");
 }

@@ -14,6 +14,7 @@
 #include "bridges/lcm/client_inbox.hpp"
 #include "bridges/lcm/client_outbox.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
+#include "bridges/lcm/signed_message.hpp"
 #include "bridges/lcm/wait_notice.hpp"
 #include "shoal/sim_tick_t.hpp"
 
@@ -52,7 +53,8 @@ class LockstepClient {
   };
   using Counts = ClientInbox::Counts;
 
-  /// Throws BusError when LCM cannot be used.
+  /// Signs what controls the run when SHOAL_RUN_KEY has its key.  Throws BusError when LCM cannot be used, or when that
+  /// variable has something else.
   LockstepClient(const std::string& url, std::string name);
 
   /// Also from a handler, which then sees the messages after its own.
@@ -131,6 +133,7 @@ class LockstepClient {
 
   LcmListener lcm_;
   std::string name_;
+  std::optional<MessageSigner> signer_;  ///< unset: nothing is signed
   std::int64_t session_;
   double period_s_ = 0;
   JoinOptions options_;

@@ -196,6 +196,7 @@ void LockstepService::forget(const std::string& client, const std::string& why) 
   asked_.erase(client);
   join_ids_.erase(client);
   challenges_.erase(client);
+  answers_.erase(client);
   summary_of(client).ended = why;
   watch_gates();
 }

@@ -1,8 +1,11 @@
+#include <spdlog/spdlog.h>
+
 #include "bridges/lcm/lockstep_line.hpp"
 #include "bridges/lcm/resend.hpp"
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_resend_t.hpp"
 #include "shoal/sim_tick_t.hpp"
+#include "sim/config/message_text.hpp"
 
 // The messages of the lockstep: ticks, acknowledgements, and what is asked for and sent again.
 
@@ -22,6 +25,11 @@ void take_up_to(int most, sim::Mailbox& mailbox, Take&& take) {
     if (!message) return;
     take(*message);
   }
+}
+
+void check_permission(const std::string& client, const char* does, const ControlGuard::Opened& opened) {
+  if (!opened.refusal.empty())
+    throw std::runtime_error("client '" + client + "' " + does + ", which is refused: " + opened.refusal);
 }
 
 shoal::sim_due_t due_of(const sim::LockstepMember& member) {
@@ -139,8 +147,10 @@ void LockstepService::check_line(int line, const std::string& client, const char
 void LockstepService::take_ack(int line_index, const sim::Message& message) {
   std::string who;
   try {
-    const auto ack = shoal::decode<shoal::sim_ack_t>(message.payload, shoal::Finite::any);
+    const ControlGuard::Opened opened = guard_.open(message.channel, message.payload);
+    const auto ack = shoal::decode<shoal::sim_ack_t>(opened.content, shoal::Finite::any);
     who = ack.client.substr(0, 60);
+    check_permission(ack.client, "acknowledges a tick", opened);
     if (ack.channel.size() > sim::most_named_messages)
       throw std::runtime_error("client '" + ack.client + "' names " + std::to_string(ack.channel.size()) +
                                " messages; at most " + std::to_string(sim::most_named_messages) + " are allowed");
@@ -159,6 +169,7 @@ void LockstepService::take_ack(int line_index, const sim::Message& message) {
     if (heard_ && line_index == 0) heard_(ack.client);
     if (const auto challenge = challenges_.find(ack.client); challenge != challenges_.end())
       challenge->second.lives = true;
+    compare_answers(ack, opened.signer);
     if (verdict == sim::Lockstep::Verdict::repeated) return;
     sim::LockstepMember& member = *lockstep_.find(ack.client);
     Line& line = line_of(member.line);
@@ -189,12 +200,27 @@ void LockstepService::take_ack(int line_index, const sim::Message& message) {
   }
 }
 
+/// Not only the first answer counts: the one that was forged may have come before that of the client.
+void LockstepService::compare_answers(const shoal::sim_ack_t& ack, const std::string& signer) {
+  const auto difference = answers_[ack.client].add(ack);
+  if (!difference) return;
+  LockstepSummary& summary = summary_of(ack.client);
+  const std::string text = "client '" + ack.client + "' gave two different answers to the tick of step " +
+                           std::to_string(ack.step) + ": " + *difference;
+  if (++summary.contradictions == 1)
+    spdlog::warn("lockstep: {}; another program answers in its name (the first answer counts; more are only counted)",
+                 sim::shortened(sim::printable(text), 300));
+  if (contradiction_) contradiction_(ack.client, signer, text);
+}
+
 void LockstepService::take_question(int line_index, const sim::Message& message) {
   std::string who;
   try {
-    const auto question = shoal::decode<shoal::sim_resend_t>(message.payload, shoal::Finite::any);
+    const ControlGuard::Opened opened = guard_.open(message.channel, message.payload);
+    const auto question = shoal::decode<shoal::sim_resend_t>(opened.content, shoal::Finite::any);
     if (question.of_client) return;  // our own
     who = question.client.substr(0, 60);
+    check_permission(question.client, "asks for messages", opened);
     check_line(line_index, question.client, "asks for messages");
     const sim::LockstepMember* member = lockstep_.find(question.client);
     if (is_over(question.client, question.session)) return;
@@ -237,9 +263,11 @@ void LockstepService::send_again(const sim::LockstepMember& member, std::int32_t
 void LockstepService::take_bundle(int line_index, const sim::Message& message) {
   std::string who;
   try {
-    const auto bundle = shoal::decode<shoal::sim_resent_t>(message.payload, shoal::Finite::any);
+    const ControlGuard::Opened opened = guard_.open(message.channel, message.payload);
+    const auto bundle = shoal::decode<shoal::sim_resent_t>(opened.content, shoal::Finite::any);
     if (!bundle.of_client) return;  // our own
     who = bundle.client.substr(0, 60);
+    check_permission(bundle.client, "sends messages again", opened);
     check_line(line_index, bundle.client, "sends messages again");
     const sim::LockstepMember* member = lockstep_.find(bundle.client);
     if (is_over(bundle.client, bundle.session)) return;

@@ -113,6 +113,7 @@ void LockstepService::set_branch(std::int32_t branch) {
   lockstep_.rewound(world_.step_number());
   for (const auto& line : lines_) line->mail.clear();
   asked_.clear();
+  for (auto& [client, answers] : answers_) answers.set_branch();
   paused_here_ = false;
 }
 

@@ -15,7 +15,10 @@
 #include <utility>
 #include <vector>
 
+#include "bridges/lcm/answer_history.hpp"
+#include "bridges/lcm/control_guard.hpp"
 #include "bridges/lcm/lockstep_summary.hpp"
+#include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/bus/mail_gate.hpp"
@@ -63,6 +66,13 @@ class LockstepService {
   }
   /// Called with the name of each client that answers on the world's bus.
   void set_on_heard(std::function<void(const std::string&)> heard) { heard_ = std::move(heard); }
+
+  /// What comes for the lockstep goes through it, and so should all else that controls the run.
+  ControlGuard& guard() { return guard_; }
+  /// Called when a second answer of a client to one tick is not its first: with its name, who signed the second, and a
+  /// text that says what differs.
+  using Contradiction = std::function<void(const std::string& client, const std::string& signer, const std::string&)>;
+  void set_on_contradiction(Contradiction contradiction) { contradiction_ = std::move(contradiction); }
 
   /// False: not decided yet, and not to be answered; the client asks again.  Throws std::runtime_error that says why
   /// it is refused.
@@ -173,6 +183,7 @@ class LockstepService {
   void take_ack(int line, const sim::Message& message);
   void take_question(int line, const sim::Message& message);
   void take_bundle(int line, const sim::Message& message);
+  void compare_answers(const shoal::sim_ack_t& ack, const std::string& signer);
   void send_again(const sim::LockstepMember& member, std::int32_t first);
   void complain(const std::string& client, const std::string& text);
   void watch_gates();
@@ -199,6 +210,9 @@ class LockstepService {
   std::map<std::string, LockstepSummary, std::less<>> summaries_;
   std::set<std::string, std::less<>> told_;  // whose bad messages were told of
   std::function<void(const std::string&)> heard_;
+  ControlGuard guard_;
+  std::map<std::string, AnswerHistory, std::less<>> answers_;  // of those that take part
+  Contradiction contradiction_;
   bool paused_here_ = false;
   std::int64_t pause_requests_ = 0;  // as they were then
   bool suspended_ = false;

@@ -14,7 +14,8 @@ struct LockstepSummary {
   std::int64_t messages_asked_for = 0;   ///< of the client, as they had not come here
   std::int64_t messages_repeated = 0;    ///< dropped, as they equal one of the client's that came before
   std::int64_t timeouts = 0;
-  std::string ended;  ///< empty: it took part until the end
+  std::int64_t contradictions = 0;  ///< answers that differ from its first answer to the same tick
+  std::string ended;                ///< empty: it took part until the end
 };
 
 }  // namespace bridges

@@ -21,6 +21,7 @@
 
 #include "bridges/lcm/lcm_connection.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
+#include "bridges/lcm/reach_check.hpp"
 
 namespace bridges {
 namespace {
@@ -329,6 +330,7 @@ std::vector<Finding> check_network(const std::string& url, std::chrono::millisec
     findings.push_back(check_buffers());
     findings.push_back(check_port(endpoint));
   }
+  if (endpoint.kind != "memq") findings.push_back(check_reach(resolved));
   findings.push_back(check_round_trip(resolved, time_limit));
   // With no route the way to mend it is known; repeat it where the symptom is.
   for (const Finding& finding : findings)

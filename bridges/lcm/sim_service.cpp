@@ -1,8 +1,10 @@
 #include "bridges/lcm/sim_service.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -30,8 +32,14 @@ SimService::SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim:
       control_(control),
       lockstep_(lockstep),
       info_(std::move(info)),
-      visitors_(world, bus) {
+      visitors_(world, bus),
+      notices_(bus, world),
+      spawns_("spawn requests", "spawns_per_client", world.config().limits.spawns_per_client),
+      rewinds_("rewind and restore requests", "rewinds_per_client", world.config().limits.rewinds_per_client) {
   serve_vehicles(network);
+  lockstep.set_on_contradiction([this](const std::string& client, const std::string& signer, const std::string& text) {
+    notices_.add({0, "contradiction", client, signer, text}, lockstep_.branch());
+  });
   lockstep.set_on_heard([this](const std::string& client) { visitors_.heard_of(client); });
 }
 
@@ -161,20 +169,48 @@ void SimService::warn_of_another(const Line& line, const char* how) {
 
 void SimService::handle_request(Line& line, const sim::Message& message) {
   try {
-    const auto request = shoal::decode<shoal::sim_control_request_t>(message.payload, shoal::Finite::any);
+    const ControlGuard::Opened opened = lockstep_.guard().open(message.channel, message.payload);
+    const auto request = shoal::decode<shoal::sim_control_request_t>(opened.content, shoal::Finite::any);
     if (others_ != nullptr && is_own_question(line, request)) return;
-    answer(line, request);
+    // A run that starts has no key of ours, and changes nothing.
+    const bool is_question = others_ != nullptr && others_->who_asks(request) != OtherSimulators::Asker::nobody;
+    if (!opened.refusal.empty() && !is_question) return refuse(line, request, opened.refusal);
+    answer(line, request, opened.signer);
   } catch (const shoal::MessageError& error) {
     complain(std::string("sim.control: ") + error.what());
   }
 }
 
-void SimService::answer(Line& line, const shoal::sim_control_request_t& request) {
+/// Who is refused gets to know the rule, but a flood of such requests is not answered by a flood.
+void SimService::refuse(Line& line, const shoal::sim_control_request_t& request, const std::string& why) {
+  constexpr int max_answers_per_s = 10;
+  constexpr std::size_t max_told = 100;
+  ++refused_requests_;
+  ++bad_messages_;
+  if (told_refused_.size() < max_told && told_refused_.insert(sim::shortened(request.client)).second)
+    spdlog::warn("sim.control: '{}' of client '{}' is refused: {} (more of this client are only counted)",
+                 sim::shortened(sim::printable(request.command)), sim::shortened(sim::printable(request.client)), why);
+  const auto now = std::chrono::steady_clock::now();
+  if (now - refusals_since_ > std::chrono::seconds(1)) {
+    refusals_since_ = now;
+    refusals_answered_ = 0;
+  }
+  if (++refusals_answered_ <= max_answers_per_s) reply(line, request, false, why);
+}
+
+void SimService::reply(Line& line, const shoal::sim_control_request_t& request, bool ok, const std::string& text) {
   shoal::sim_control_reply_t reply;
   reply.id = request.id;
   reply.client = request.client;
   reply.session = sim::session_in(request.text, request.command);
-  reply.ok = true;
+  reply.ok = ok;
+  reply.text = ok ? text : sim::shortened(text, 4000);
+  reply.utime = world_.epoch_us() + world_.now().count();  // after a rewind the new time
+  publish(*line.network, "sim.control.reply", reply);
+  line.network->end_of_step();
+}
+
+void SimService::answer(Line& line, const shoal::sim_control_request_t& request, const std::string& signer) {
   const bool on_own_bus = &line != &lines_.front();
   if (!on_own_bus) visitors_.heard_of(request.client);  // vehicles are brought on the world's bus
   try {
@@ -182,18 +218,40 @@ void SimService::answer(Line& line, const shoal::sim_control_request_t& request)
                              request.command == "follow";
     if (on_own_bus && !of_lockstep)
       throw std::runtime_error("only alive, follow, join and leave are served on a vehicle's bus");
+    ClientAccounts* account = account_for(request.command);
+    if (account != nullptr) account->check(request.client);
+    const bool lets_go = request.command == "leave" && lets_go_of_another(request);
     const std::optional<std::string> text = obey(line, request);
     if (!text) return;
-    reply.text = *text;
+    if (account != nullptr) account->use(request.client);
+    if (lets_go || request.command != "leave") note(request, signer);
+    reply(line, request, true, *text);
   } catch (const std::exception& error) {  // whatever it is, it is the request's fault, and the run goes on
-    reply.ok = false;
-    reply.text = sim::shortened(error.what(), 4000);
     complain((on_own_bus ? "sim.control of " + lockstep_.called(number_of(line)) : "sim.control") + ": client '" +
              sim::shortened(request.client) + "': " + error.what());
+    reply(line, request, false, error.what());
   }
-  reply.utime = world_.epoch_us() + world_.now().count();  // after a rewind the new time
-  publish(*line.network, "sim.control.reply", reply);
-  line.network->end_of_step();
+}
+
+ClientAccounts* SimService::account_for(const std::string& command) {
+  if (command == "spawn") return &spawns_;
+  return command == "rewind" || command == "restore" ? &rewinds_ : nullptr;
+}
+
+/// A program that leaves names its session, which it alone knows by heart; who lets go of a hanging one does not.
+bool SimService::lets_go_of_another(const shoal::sim_control_request_t& request) const {
+  return lockstep_.has(request.client) && sim::session_in(request.text, request.command) == 0;
+}
+
+void SimService::note(const shoal::sim_control_request_t& request, const std::string& signer) {
+  static constexpr std::array<std::string_view, 5> noted{"leave", "quit", "remove", "restore", "rewind"};
+  if (std::find(noted.begin(), noted.end(), request.command) == noted.end()) return;
+  const std::string what = request.command == "rewind"  ? fmt::format("{:g} s", request.value)
+                           : request.command == "leave" ? "without its session"
+                                                        : request.text;
+  spdlog::info("{} requests '{}{}{}'", who_asked(request.client, signer), request.command, what.empty() ? "" : " ",
+               sim::shortened(sim::printable(what)));
+  notices_.add({0, request.command, request.client, signer, what}, lockstep_.branch());
 }
 
 std::optional<std::string> SimService::obey(Line& line, const shoal::sim_control_request_t& request) {
@@ -202,7 +260,6 @@ std::optional<std::string> SimService::obey(Line& line, const shoal::sim_control
   if (time_machine_ != nullptr)
     if (auto text = time_machine_->obey(command, request.text, request.value)) return text;
   if (command == "quit") {
-    spdlog::info("'{}' asks the run to quit", sim::shortened(sim::printable(request.client)));
     control_.quit = true;
   } else if (command == "join") {
     if (!lockstep_.join(number, request)) return std::nullopt;
@@ -213,11 +270,11 @@ std::optional<std::string> SimService::obey(Line& line, const shoal::sim_control
   } else if (command == "spawn") {
     return visitors_.spawn(request.client, request.text);
   } else if (command == "remove") {
-    visitors_.remove(request.text);
+    visitors_.remove(request.client, request.text);
   } else if (command == "describe") {
-    return visitors_.describe(request.text);
+    return visitors_.describe(request.client, request.text);
   } else if (command == "do") {
-    visitors_.act(request.text);
+    visitors_.act(request.client, request.text);
   } else if (command != "alive") {
     throw std::runtime_error("unknown command '" + sim::shortened(sim::printable(command)) +
                              "'; known commands: alive, describe, do, follow, join, leave, pause, quit, "
@@ -239,11 +296,11 @@ void SimService::obey_again(const shoal::sim_control_request_t& request) {
   if (command == "spawn")
     visitors_.spawn_again(request.client, request.text);
   else if (command == "remove")
-    visitors_.remove(request.text);
+    visitors_.remove(request.client, request.text);
   else if (command == "describe")
-    visitors_.describe(request.text);
+    visitors_.describe(request.client, request.text);
   else if (command == "do")
-    visitors_.act(request.text);
+    visitors_.act(request.client, request.text);
   else
     throw std::runtime_error("'" + sim::shortened(sim::printable(command)) + "' does not change a world");
 }

@@ -4,11 +4,14 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "bridges/lcm/client_accounts.hpp"
 #include "bridges/lcm/lockstep_service.hpp"
 #include "bridges/lcm/other_simulators.hpp"
+#include "bridges/lcm/run_notices.hpp"
 #include "bridges/lcm/time_machine.hpp"
 #include "bridges/lcm/visitors.hpp"
 #include "shoal/sim_control_request_t.hpp"
@@ -64,6 +67,10 @@ class SimService {
   std::string waits_for() { return lockstep_.waits_for(); }
   /// Bad requests so far.
   std::int64_t bad_messages() const { return bad_messages_; }
+  /// Requests so far that were refused as they were not signed with the key of the run.
+  std::int64_t refused_requests() const { return refused_requests_; }
+  /// Who made the run end, go back, or lose something.
+  const RunNotices& notices() const { return notices_; }
 
  private:
   /// Where clients may be.
@@ -75,10 +82,16 @@ class SimService {
 
   void publish_state();
   void handle_request(Line& line, const sim::Message& message);
-  void answer(Line& line, const shoal::sim_control_request_t& request);
+  void refuse(Line& line, const shoal::sim_control_request_t& request, const std::string& why);
+  void answer(Line& line, const shoal::sim_control_request_t& request, const std::string& signer);
+  void reply(Line& line, const shoal::sim_control_request_t& request, bool ok, const std::string& text);
   /// What came of it; nothing: it is not decided yet, and not answered.  Throws std::runtime_error that says why it was
   /// refused.
   std::optional<std::string> obey(Line& line, const shoal::sim_control_request_t& request);
+  /// What limits how often a client may request this; null: nothing does.
+  ClientAccounts* account_for(const std::string& command);
+  bool lets_go_of_another(const shoal::sim_control_request_t& request) const;
+  void note(const shoal::sim_control_request_t& request, const std::string& signer);
   int number_of(const Line& line) const { return static_cast<int>(&line - lines_.data()); }
   bool is_own_question(Line& line, const shoal::sim_control_request_t& request);
   void warn_of_another(const Line& line, const char* how);
@@ -102,6 +115,12 @@ class SimService {
   const OtherSimulators* others_ = nullptr;
   bool warned_of_another_ = false;
   std::vector<Line> lines_;  // the world's first
+  RunNotices notices_;
+  ClientAccounts spawns_, rewinds_;
+  std::set<std::string, std::less<>> told_refused_;  // clients
+  std::int64_t refused_requests_ = 0;
+  std::chrono::steady_clock::time_point refusals_since_;
+  int refusals_answered_ = 0;  // since then
   sim::Bytes buffer_;
   std::int64_t bad_messages_ = 0;
 };

@@ -150,16 +150,16 @@ std::string Visitors::add(const std::string& client, const sim::SpawnRequest& re
   return in_words(known_.at(vehicle.name()));
 }
 
-void Visitors::remove(const std::string& name) {
-  write_down("", "remove", name);
+void Visitors::remove(const std::string& client, const std::string& name) {
+  write_down(client, "remove", name);
   const sim::Vehicle* vehicle = world_.find_vehicle(name);
   if (vehicle == nullptr) return world_.remove_object(name);
   world_.remove_vehicle(std::string(vehicle->name()));
   tell_changes();
 }
 
-std::string Visitors::describe(const std::string& name) {
-  write_down("", "describe", name);
+std::string Visitors::describe(const std::string& client, const std::string& name) {
+  write_down(client, "describe", name);
   const sim::Vehicle* vehicle = world_.find_vehicle(name);
   if (vehicle == nullptr) throw sim::WorldError("there is no vehicle '" + sim::shortened(sim::printable(name)) + "'");
   tell_changes();
@@ -168,8 +168,8 @@ std::string Visitors::describe(const std::string& name) {
   return in_words(message);
 }
 
-void Visitors::act(const std::string& text) {
-  write_down("", "do", text);
+void Visitors::act(const std::string& client, const std::string& text) {
+  write_down(client, "do", text);
   const sim::ConfigNode action = sim::parse_untrusted(text, "do");
   sim::Diagnostics diagnostics;
   sim::check_untrusted(action, "", diagnostics);
@@ -201,7 +201,7 @@ void Visitors::remove_those_of(const std::string& client) {
     if (owner.with_client && owner.client == client) going.push_back(vehicle);
   for (const std::string& vehicle : going) {
     try {
-      if (world_.find_vehicle(vehicle) != nullptr) remove(vehicle);  // else an event removed it
+      if (world_.find_vehicle(vehicle) != nullptr) remove(client, vehicle);  // else an event removed it
     } catch (const std::runtime_error& error) {
       spdlog::warn("{}", error.what());
     }

@@ -29,11 +29,11 @@ class Visitors {
   /// The same with a text that a journal wrote down.
   std::string spawn_again(const std::string& client, const std::string& text);
   /// A vehicle or an object.  Throws sim::WorldError.
-  void remove(const std::string& name);
+  void remove(const std::string& client, const std::string& name);
   /// Says the same as spawn() did.  Throws sim::WorldError.
-  std::string describe(const std::string& vehicle);
+  std::string describe(const std::string& client, const std::string& vehicle);
   /// An action as in `events:`, in YAML.  Throws sim::ConfigError.
-  void act(const std::string& text);
+  void act(const std::string& client, const std::string& text);
 
   /// Tells of the vehicles that came or went since the last call.
   void tell_changes();

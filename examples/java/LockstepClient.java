@@ -5,9 +5,13 @@
 //     javac -cp lcm.jar:types examples/java/LockstepClient.java -d .
 //     java -cp lcm.jar:types:. LockstepClient
 import java.io.IOException;
+import java.nio.charset.StandardCharsets;
+import java.security.GeneralSecurityException;
+import java.security.SecureRandom;
 import java.util.ArrayDeque;
 import java.util.ArrayList;
 import java.util.HashMap;
+import java.util.HexFormat;
 import java.util.List;
 import java.util.Map;
 import java.util.concurrent.LinkedBlockingQueue;
@@ -15,6 +19,8 @@ import java.util.concurrent.TimeUnit;
 import java.util.function.Consumer;
 import java.util.function.LongConsumer;
 import java.util.zip.CRC32;
+import javax.crypto.Mac;
+import javax.crypto.spec.SecretKeySpec;
 import lcm.lcm.LCM;
 import lcm.lcm.LCMDataInputStream;
 import lcm.lcm.LCMEncodable;
@@ -28,6 +34,7 @@ import shoal.sim_due_t;
 import shoal.sim_payload_t;
 import shoal.sim_resend_t;
 import shoal.sim_resent_t;
+import shoal.sim_signed_t;
 import shoal.sim_tick_t;
 import shoal.twist_command_t;
 
@@ -36,7 +43,44 @@ public class LockstepClient implements LCMSubscriber {
 
   private static final long SILENCE_S = 600;
 
+  /// Signs what controls a run, when SHOAL_RUN_KEY has its key: docs/control.md.
+  static class Signer {
+    private final String name;
+    private final String key = System.getenv().getOrDefault("SHOAL_RUN_KEY", "");
+    private final long session = new SecureRandom().nextLong() >>> 1;
+    private long counter = 1000 * System.currentTimeMillis();
+
+    Signer(String name) {
+      this.name = name;
+    }
+
+    /// The payload to publish instead of `data`.
+    byte[] sign(String channel, byte[] data) throws IOException {
+      if (key.isEmpty()) return data;
+      sim_signed_t signed = new sim_signed_t();
+      signed.session = session;
+      signed.sender = name;
+      signed.counter = ++counter;
+      signed.size = data.length;
+      signed.content = data;
+      signed.mac = new byte[32];
+      byte[] payload = bytesOf(signed);
+      int before = payload.length - 32;
+      try {
+        Mac mac = Mac.getInstance("HmacSHA256");
+        mac.init(new SecretKeySpec(HexFormat.of().parseHex(key), "HmacSHA256"));
+        mac.update((channel + "\0").getBytes(StandardCharsets.UTF_8));
+        mac.update(payload, 0, before);
+        mac.doFinal(payload, before);
+      } catch (GeneralSecurityException error) {
+        throw new IOException(error);
+      }
+      return payload;
+    }
+  }
+
   private final LCM lcm = new LCM();
+  private final Signer signer;
   private final String name;
   private final long session = 1 + (long) (Math.random() * (1L << 52));
   private final int id = (int) (session & 0x7fffffff); // of the request
@@ -55,6 +99,7 @@ public class LockstepClient implements LCMSubscriber {
 
   public LockstepClient(String name) throws IOException {
     this.name = name;
+    signer = new Signer(name);
     ack.client = name;
     ack.session = session;
     ack.listed = true;
@@ -89,6 +134,11 @@ public class LockstepClient implements LCMSubscriber {
     lcm.publish(channel, data, 0, data.length);
   }
 
+  private void send(String channel, LCMEncodable message) throws IOException {
+    byte[] data = signer.sign(channel, bytesOf(message));
+    lcm.publish(channel, data, 0, data.length);
+  }
+
   /// Joins, and calls `decide` with the time at each tick, after the handlers of all messages.
   public void run(double periodS, LongConsumer decide) throws IOException, InterruptedException {
     while (!joined) { // the simulator may start later than we
@@ -98,7 +148,7 @@ public class LockstepClient implements LCMSubscriber {
       request.command = "join";
       request.value = periodS;
       request.text = "{session: " + session + ", receives: ['" + String.join("', '", receives) + "']}";
-      lcm.publish("sim.control", request);
+      send("sim.control", request);
       long again = System.nanoTime() + 200_000_000;
       for (long left = 200_000_000; !joined && left > 0; left = again - System.nanoTime())
         take(arrived.poll(left, TimeUnit.NANOSECONDS));
@@ -159,7 +209,7 @@ public class LockstepClient implements LCMSubscriber {
     for (sim_due_t each : next.client) {
       if (!each.name.equals(name) || each.session != session) continue;
       if (each.sequence == sequence) {
-        lcm.publish("sim.ack", ack); // ours was lost, or somebody asks whether we live
+        send("sim.ack", ack); // ours was lost, or somebody asks whether we live
       } else if (each.sequence > (tick == null ? sequence : due.sequence)) { // takes the place of an older one
         if (next.branch != branch && sequence > 0) throw new IllegalStateException("the world went back in time");
         for (int channel : each.channel)
@@ -196,7 +246,7 @@ public class LockstepClient implements LCMSubscriber {
     question.session = session;
     question.sequence = due.sequence;
     while (messages[question.first] != null) ++question.first;
-    lcm.publish("sim.resend", question);
+    send("sim.resend", question);
   }
 
   private void onResent(sim_resent_t bundle) {
@@ -223,7 +273,7 @@ public class LockstepClient implements LCMSubscriber {
     ack.count = published.size();
     ack.channel = published.stream().map(Message::channel).toArray(String[]::new);
     ack.crc = published.stream().mapToLong(each -> crcOf(each.data())).toArray();
-    lcm.publish("sim.ack", ack);
+    send("sim.ack", ack);
   }
 
   private void onResend(sim_resend_t question) throws IOException {
@@ -241,7 +291,7 @@ public class LockstepClient implements LCMSubscriber {
       bundle.first = i;
       bundle.count = 1;
       bundle.message = new sim_payload_t[] {message};
-      lcm.publish("sim.resent", bundle);
+      send("sim.resent", bundle);
     }
   }
 

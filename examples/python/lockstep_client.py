@@ -5,6 +5,10 @@
 drives rover1 of worlds/minimal.yaml towards the wall, and stops before it.
 """
 import binascii
+import hashlib
+import hmac
+import itertools
+import os
 import random
 import struct
 import sys
@@ -16,12 +20,31 @@ import shoal
 SILENCE_S = 600
 
 
+class Signer:
+    """Signs what controls a run, when SHOAL_RUN_KEY has its key: docs/control.md."""
+
+    def __init__(self, name):
+        self.key, self.name = bytes.fromhex(os.environ.get("SHOAL_RUN_KEY", "")), name
+        self.session = random.SystemRandom().randrange(1 << 63)
+        self.counter = itertools.count(time.time_ns() // 1000)
+
+    def __call__(self, channel, data):
+        """The payload to publish instead of `data`."""
+        if not self.key:
+            return data
+        signed = shoal.sim_signed_t()
+        signed.session, signed.sender, signed.counter = self.session, self.name, next(self.counter)
+        signed.size, signed.content, signed.mac = len(data), data, bytes(32)
+        before = signed.encode()[:-32]
+        return before + hmac.new(self.key, channel.encode() + b"\0" + before, hashlib.sha256).digest()
+
+
 class LockstepClient:
     """Subscribe, then run(): it joins, and calls decide(utime) at each tick, when all messages were handled."""
 
     def __init__(self, name, period_s, terms=""):
         """`terms`: more of what it joins with, such as `, on_timeout: pause, timeout_s: 2`."""
-        self.lc = lcm.LCM()
+        self.lc, self.sign = lcm.LCM(), Signer(name)
         self.name, self.period_s, self.terms = name, period_s, terms
         self.session = random.SystemRandom().randrange(1, 1 << 53)
         self.id = self.session & 0x7fffffff
@@ -44,7 +67,8 @@ class LockstepClient:
         """Anybody may publish anything: what is no message of its type is as if it had not come."""
         def handle(channel, data):
             try:
-                handler(channel, data)
+                if shoal.sim_signed_t._get_packed_fingerprint() != data[:8]:  # that is from another client
+                    handler(channel, data)
             except (ValueError, struct.error, IndexError) as error:
                 print(f"{channel}: {error!r} (ignored)", file=sys.stderr)
         return handle
@@ -64,13 +88,16 @@ class LockstepClient:
         self.published.append((channel, binascii.crc32(data), data))
         self.lc.publish(channel, data)
 
+    def send(self, channel, message):
+        self.lc.publish(channel, self.sign(channel, message.encode()))
+
     def run(self):
         while not self.joined:  # the simulator may start later than we
             request = shoal.sim_control_request_t()
             request.id, request.client, request.command = self.id, self.name, "join"
             request.value = self.period_s
             request.text = f"{{session: {self.session}, receives: {self.receives}{self.terms}}}"
-            self.lc.publish("sim.control", request.encode())
+            self.send("sim.control", request)
             again = time.monotonic() + 0.2
             while not self.joined and time.monotonic() < again:
                 self.lc.handle_timeout(max(1, round(1000 * (again - time.monotonic()))))
@@ -103,7 +130,7 @@ class LockstepClient:
         if not mine:
             return  # also a last one: the end of somebody else's run
         if mine[0].sequence == self.sequence:
-            self.lc.publish("sim.ack", self.ack.encode())  # ours was lost, or somebody asks whether we live
+            self.send("sim.ack", self.ack)  # ours was lost, or somebody asks whether we live
         elif mine[0].sequence > (self.due.sequence if self.tick else self.sequence):  # takes the place of an older one
             if tick.branch != self.branch and self.sequence > 0:
                 raise SystemExit("the world went back in time")
@@ -125,7 +152,7 @@ class LockstepClient:
         question = shoal.sim_resend_t()
         question.client, question.session, question.sequence = self.name, self.session, self.due.sequence
         question.of_client, question.first = False, self.messages.index(None)
-        self.lc.publish("sim.resend", question.encode())
+        self.send("sim.resend", question)
 
     def on_resent(self, channel, data):
         bundle = shoal.sim_resent_t.decode(data)
@@ -152,7 +179,7 @@ class LockstepClient:
         self.ack.count = len(self.published)
         self.ack.channel = [channel for channel, _, _ in self.published]
         self.ack.crc = [crc for _, crc, _ in self.published]
-        self.lc.publish("sim.ack", self.ack.encode())
+        self.send("sim.ack", self.ack)
 
     def on_resend(self, channel, data):
         question = shoal.sim_resend_t.decode(data)
@@ -165,7 +192,7 @@ class LockstepClient:
             message.channel, _, message.data = self.published[place]
             message.size = len(message.data)
             bundle.message = [message]
-            self.lc.publish("sim.resent", bundle.encode())
+            self.send("sim.resent", bundle)
 
 
 class Pilot:

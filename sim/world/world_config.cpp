@@ -123,6 +123,10 @@ void LimitsConfig::read(ParamReader& in) {
   in.read("bodies_per_vehicle", bodies_per_vehicle, between(1, 100000), "of a vehicle that a client brings");
   in.read("devices_per_vehicle", devices_per_vehicle, between(0, 100000), "of a vehicle that a client brings");
   in.read("parts", parts, between(1, 100000), "of one vehicle or object that comes while the world runs");
+  in.read("spawns_per_client", spawns_per_client, between(0, 100000000),
+          "spawn requests of one client in a run; of all clients together ten times as many");
+  in.read("rewinds_per_client", rewinds_per_client, between(0, 100000000),
+          "rewind and restore requests of one client in a run; of all clients together ten times as many");
 }
 
 namespace {

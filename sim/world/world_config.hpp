@@ -119,7 +119,9 @@ struct LimitsConfig {
   int objects = 20000;
   int bodies_per_vehicle = 100;
   int devices_per_vehicle = 100;
-  int parts = 200;  ///< of one vehicle or object
+  int parts = 200;                ///< of one vehicle or object
+  int spawns_per_client = 10000;  ///< requests over the whole run; all clients together: ten times as many
+  int rewinds_per_client = 1000;  ///< the same, `restore` included
   void read(ParamReader& in);
 };
 

@@ -3,6 +3,7 @@
     python3 python_example_test.py BINARIES LCM_GEN
 """
 import glob
+import json
 import os
 import random
 import shutil
@@ -10,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.join(HERE, "..", "..")
@@ -55,6 +57,34 @@ class Example(unittest.TestCase):
         lose(lossy.client.lc)
         self.run_world(lossy.client, "minimal.yaml", "--await", "pilot", "--duration", "15", "--speed", "max")
         self.assertEqual(lossy.ahead_m, undisturbed)
+
+    def test_signs_where_a_run_is_controlled_with_its_key(self):
+        import lockstep_client
+        pilot = lockstep_client.Pilot("rover1")
+        options = ["minimal.yaml", "--await", "pilot", "--duration", "15", "--speed", "max"]
+        self.run_world(pilot.client, *options)
+        with tempfile.TemporaryDirectory() as results:
+            key_file = os.path.join(results, "run.key")
+
+            def keyed_pilot():
+                with open(key_file, encoding="ascii") as file, mock.patch.dict(
+                        os.environ, {"SHOAL_RUN_KEY": file.read().strip()}):
+                    return lockstep_client.Pilot("rover1")
+
+            keyed = self.run_world(keyed_pilot, *options, "--control-key", "--results", results, "--no-pictures",
+                                   wait_for=key_file)
+            with open(os.path.join(results, "summary.json"), encoding="utf-8") as file:
+                control = json.load(file)["control"]
+            self.assertFalse(os.path.exists(key_file))
+        self.assertEqual(keyed.ahead_m, pilot.ahead_m)
+        self.assertTrue(control["needs_key"])
+        self.assertEqual(control["refused_requests"], 0)
+
+    def test_is_refused_where_it_has_no_key(self):
+        import lockstep_client
+        pilot = lockstep_client.Pilot("rover1")
+        with self.assertRaisesRegex(SystemExit, "is controlled with its key only"):
+            self.run_world(pilot.client, "minimal.yaml", "--await", "pilot", "--control-key")
 
     @unittest.skipUnless(shutil.which("javac"), "there is no Java compiler")
     def test_java_client_compiles(self):
@@ -112,11 +142,18 @@ class Example(unittest.TestCase):
         for channel, handler in client.protocol.items():
             client.only_valid(handler)(channel, b"no message")
 
-    def run_world(self, client, world, *options):
+    def run_world(self, client, world, *options, wait_for=None):
+        """`client`, or a function that makes its pilot once the file `wait_for` is there."""
         with tempfile.TemporaryFile("w+") as log:
             run = subprocess.Popen([os.path.join(BINARIES, "shoal"), "run", os.path.join(ROOT, "worlds", world),
                                     *options], stdout=log, stderr=subprocess.STDOUT)
+            pilot = None
             try:
+                while wait_for and not (os.path.exists(wait_for) and os.path.getsize(wait_for)):
+                    self.assertIsNone(run.poll())
+                if wait_for:
+                    pilot = client()
+                    client = pilot.client
                 client.run()
                 exit_code = run.wait(60)
             finally:
@@ -124,6 +161,7 @@ class Example(unittest.TestCase):
                 run.wait()
             log.seek(0)
             self.assertEqual(exit_code, 0, log.read())
+        return pilot
 
 
 def lose(lc):

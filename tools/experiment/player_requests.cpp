@@ -8,6 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "bridges/lcm/signed_message.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "sim/config/message_text.hpp"
@@ -48,7 +49,8 @@ void PlayerRequests::check_channels(const std::string& text) const {
 void PlayerRequests::look_at_joins() {
   while (const auto message = joins_->take()) {
     try {
-      const auto request = shoal::decode<shoal::sim_control_request_t>(message->payload, shoal::Finite::any);
+      const auto request =
+          shoal::decode<shoal::sim_control_request_t>(bridges::content_of(message->payload), shoal::Finite::any);
       if (request.command != "join") continue;
       const sim::LockstepTerms terms = sim::read_lockstep_terms(request.text, {});
       for (const std::string& channel : terms.receives)

@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "bridges/lcm/run_key.hpp"
 #include "tools/experiment/child_program.hpp"
 
 namespace tools {
@@ -34,10 +35,14 @@ std::string find_program(const std::string& name) {
   return !error && fs::exists(beside, error) ? beside.string() : name;
 }
 
-std::vector<std::string> environment_with(const std::string& lcm_url) {
+std::vector<std::string> environment_with(const std::string& lcm_url, const std::string& run_key) {
+  const std::string key_entry = std::string(bridges::run_key_variable) + "=";
   std::vector<std::string> environment = own_environment();
-  std::erase_if(environment, [](const std::string& entry) { return entry.starts_with("LCM_DEFAULT_URL="); });
+  std::erase_if(environment, [&](const std::string& entry) {
+    return entry.starts_with("LCM_DEFAULT_URL=") || entry.starts_with(key_entry);
+  });
   environment.push_back("LCM_DEFAULT_URL=" + lcm_url);
+  if (!run_key.empty()) environment.push_back(key_entry + run_key);
   return environment;
 }
 
@@ -76,7 +81,7 @@ void ProcessGroup::start(const sim::ProcessConfig& config, const std::string& lc
       argument.replace(at, 9, lcm_url);
   const std::string log = log_directory.empty() ? "" : log_directory + "/" + config.name + ".log";
   pid_t pid = 0;
-  const int error = start_child({arguments[0], arguments, environment_with(lcm_url), log}, pid);
+  const int error = start_child({arguments[0], arguments, environment_with(lcm_url, run_key_), log}, pid);
   if (error != 0)
     throw std::runtime_error("process '" + config.name + "': cannot start '" + arguments[0] +
                              "': " + std::strerror(error));

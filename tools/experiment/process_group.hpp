@@ -32,6 +32,8 @@ class ProcessGroup {
   /// `{lcm_url}` in the arguments is replaced, and LCM_DEFAULT_URL is set.  A program without a slash is looked up
   /// beside the running program, then in PATH.  Throws std::runtime_error when it cannot be started.
   void start(const sim::ProcessConfig& config, const std::string& lcm_url, const std::string& log_directory);
+  /// What programs that start from now on get as SHOAL_RUN_KEY; empty: they get none, also not ours.
+  void set_run_key(const std::string& text) { run_key_ = text; }
   /// Programs that ended since the last call.
   std::vector<Exit> reap();
   /// Lets those that take part in the lockstep end by themselves, for up to 2 s: they were told that the run is over.
@@ -48,6 +50,7 @@ class ProcessGroup {
   };
   void signal_all(int signal) const;
 
+  std::string run_key_;
   std::vector<Running> running_;
   std::vector<pid_t> left_behind_;  ///< process groups that outlive their programs
 };

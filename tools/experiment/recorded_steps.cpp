@@ -17,9 +17,9 @@ bool is_message(const ReplayLog::Letter& letter) {
 }  // namespace
 
 bool is_of_the_handshake(std::string_view channel) {
-  static constexpr std::array<std::string_view, 9> names{"sim.ack",    "sim.control",  "sim.control.reply",
-                                                         "sim.hash",   "sim.mail",     "sim.resend",
-                                                         "sim.resent", "sim.snapshot", "sim.tick"};
+  static constexpr std::array<std::string_view, 10> names{
+      "sim.ack",    "sim.control", "sim.control.reply", "sim.hash",     "sim.mail",
+      "sim.notice", "sim.resend",  "sim.resent",        "sim.snapshot", "sim.tick"};
   return std::find(names.begin(), names.end(), channel) != names.end();
 }
 

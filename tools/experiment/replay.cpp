@@ -376,6 +376,7 @@ class Replay {
                        outcome_.missing_messages, at(messages_.first_missing()->step),
                        messages_.first_missing()->channel));
     for (const std::string& problem : log_.problems) note("the log: " + problem);
+    for (const std::string& notice : log_.notices) note("in the run: " + notice);
   }
 
   std::string at(std::int64_t step) const {

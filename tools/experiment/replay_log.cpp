@@ -15,12 +15,15 @@
 
 #include "bridges/lcm/event_log.hpp"
 #include "bridges/lcm/run_journal.hpp"
+#include "bridges/lcm/run_notices.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_hash_t.hpp"
 #include "shoal/sim_mail_t.hpp"
+#include "shoal/sim_notice_t.hpp"
 #include "shoal/sim_snapshot_t.hpp"
 #include "shoal/sim_state_t.hpp"
 #include "sim/config/message_text.hpp"
+#include "tools/experiment/notice_text.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/experiment/snapshot_pieces.hpp"
 
@@ -208,6 +211,15 @@ class Reader {
     if (event.channel == "sim.hash") return take_hash(event);
     if (event.channel == "sim.snapshot") return take_snapshot(event);
     if (event.channel == "sim.state") take_state(event);
+    if (event.channel == "sim.notice") take_notice(event);
+  }
+
+  void take_notice(const bridges::LogEventView& event) {
+    if (log_.notices.size() >= bridges::RunNotices::max_kept) return;
+    const auto notice = shoal::decode<shoal::sim_notice_t>(event.payload, shoal::Finite::any);
+    const double time_s = informed_ ? static_cast<double>(notice.utime - log_.info.epoch_utime) * 1e-6 : 0;
+    log_.notices.push_back(sim::shortened(
+        sim::printable(notice_text({time_s, notice.kind, notice.client, notice.signer, notice.text})), 300));
   }
 
   void take_state(const bridges::LogEventView& event) {

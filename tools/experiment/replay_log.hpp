@@ -39,6 +39,7 @@ struct ReplayLog {
   std::string cut;                          ///< what stands behind last_step and is left out, in words; empty: nothing
   std::optional<std::int64_t> proven_step;  ///< up to which all letters are there; unset: all of them are
   std::vector<std::string> holes;           ///< letters that are missing, in words
+  std::vector<std::string> notices;         ///< what sim.notice says, in words: the first ones
   std::vector<std::string> problems;        ///< damage, and messages that cannot be read
   std::map<std::string, std::uint64_t> events;  ///< by channel
   bool own_stamps = true;                       ///< stamped with simulated time: a record, in which nothing is lost

@@ -26,9 +26,9 @@ constexpr std::int64_t steps_ahead = 2;
 /// Those of the run itself: another run has others.
 bool is_of_the_run(std::string_view channel) {
   if (!channel.starts_with("sim.")) return false;
-  static constexpr std::array<std::string_view, 10> names{
-      "sim.ack",  "sim.control", "sim.control.reply", "sim.hash",     "sim.info",
-      "sim.mail", "sim.resend",  "sim.resent",        "sim.snapshot", "sim.tick"};
+  static constexpr std::array<std::string_view, 11> names{
+      "sim.ack",    "sim.control", "sim.control.reply", "sim.hash",     "sim.info", "sim.mail",
+      "sim.notice", "sim.resend",  "sim.resent",        "sim.snapshot", "sim.tick"};
   return std::find(names.begin(), names.end(), channel) != names.end();
 }
 

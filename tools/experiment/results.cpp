@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "tools/experiment/gnuplot.hpp"
+#include "tools/experiment/notice_text.hpp"
 #include "tools/experiment/results_world.hpp"
 #include "tools/experiment/run_pictures.hpp"
 
@@ -82,6 +83,16 @@ void Summary::judge_processes() {
            false});
 }
 
+void Summary::judge_clients() {
+  for (const bridges::LockstepSummary& client : clients)
+    if (client.contradictions > 0)
+      verdicts.push_back(
+          {fmt::format("client '{}' must give one answer to each tick; another program gave {} different "
+                       "one{} in its name",
+                       client.client, client.contradictions, client.contradictions == 1 ? "" : "s"),
+           false});
+}
+
 void Summary::fail(int code, const std::string& how_ended, const std::string& why) {
   exit_code = code;
   ended = how_ended;
@@ -140,7 +151,10 @@ std::string Summary::to_json() const {
                                {"messages_asked_for", client.messages_asked_for},
                                {"messages_repeated", client.messages_repeated},
                                {"timeouts", client.timeouts},
+                               {"contradictions", client.contradictions},
                                {"ended", client.ended.empty() ? "with the run" : client.ended}});
+  json["control"] = {{"needs_key", needs_key}, {"refused_requests", refused_requests}, {"notice_count", notice_count}};
+  json["control"]["notices"] = notices_json(notices);
   for (const auto& [vehicle, record] : zones) {
     auto& entry = json["zones"][vehicle];
     entry["finish_s"] = record.finish_s ? nlohmann::ordered_json(*record.finish_s) : nlohmann::ordered_json();
@@ -166,7 +180,8 @@ std::string Summary::to_json() const {
   if (branch > 0) json["branch"] = branch;
   if (!snapshot.empty()) json["snapshot"] = snapshot;
   if (!snapshot.empty()) json["metrics_from_s"] = from_s;
-  return json.dump(2) + "\n";
+  // A client may call itself anything: what is not UTF-8 in its name must not cost the summary.
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string Summary::to_text() const {
@@ -199,6 +214,9 @@ std::string Summary::to_text() const {
     text += fmt::format("  {}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.rule);
   for (const Process& process : processes)
     text += fmt::format("  process '{}' {} at {:.2f} s\n", process.name, process.how, process.sim_time_s);
+  for (const bridges::RunNotice& notice : notices) text += "  " + notice_text(notice) + "\n";
+  if (refused_requests > 0)
+    text += fmt::format("  {} requests without the key of the run were refused\n", refused_requests);
   for (const auto& [vehicle, record] : zones) {
     if (record.finish_s) text += fmt::format("  {} finished at {:.2f} s\n", vehicle, *record.finish_s);
     if (record.speeding_s > 0) text += fmt::format("  {} was too fast for {:.2f} s\n", vehicle, record.speeding_s);

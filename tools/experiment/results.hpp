@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bridges/lcm/lockstep_summary.hpp"
+#include "bridges/lcm/run_notices.hpp"
 #include "sim/config/config_node.hpp"
 #include "sim/script/script.hpp"
 #include "sim/world/world.hpp"
@@ -47,6 +48,10 @@ struct Summary {
   std::vector<Process> processes;
   std::vector<FirstContacts::Contact> contacts;   ///< of vehicles with each other and with objects
   std::vector<bridges::LockstepSummary> clients;  ///< that took part in the lockstep, by name
+  bool needs_key = false;                         ///< control of the run needed its key
+  std::int64_t refused_requests = 0;              ///< for want of the key
+  std::vector<bridges::RunNotice> notices;        ///< who made it quit, go back, ...: the first ones
+  std::int64_t notice_count = 0;                  ///< of all
   std::map<std::string, sim::ZoneRecord> zones;   ///< by vehicle, when the world has zones with rules
   std::optional<LinkCounts> acoustics;            ///< of all modems under water, when there are any
   std::int64_t modem_dropped_messages = 0;        ///< that waited in queues of modems that were full
@@ -73,6 +78,8 @@ struct Summary {
   bool ended_by_hand() const { return ended == "quit" || ended == "signal" || ended == "rewound"; }
   /// Each program that failed is a rule that failed.
   void judge_processes();
+  /// Each client in whose name two different answers came to one tick is a rule that failed.
+  void judge_clients();
   void fail(int code, const std::string& how_ended, const std::string& why);
   std::string to_json() const;
   /// The end summary on a terminal.

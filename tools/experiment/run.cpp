@@ -68,6 +68,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
     results_ = std::make_unique<Results>(options.results, world_, options.pictures);
     write_results_world(options.results, loaded.resolved);
   }
+  make_key();
   if (!options.quiet) scoring_.contacts().set_say([this](const std::string& line) { progress_.say(line); });
   progress_.restart(world_.now());
   plan_snapshots();
@@ -77,6 +78,17 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
         [this](const std::string& text) { progress_.ask(text); });
     progress_.say(RunKeys::help());
   }
+}
+
+void Run::make_key() {
+  const bool from_elsewhere = buses_.over_lcm() && buses_.leave_machine();
+  if (from_elsewhere && options_.open_control)
+    spdlog::warn("--open-control: whoever reaches the network of this run may control it");
+  if (!buses_.over_lcm() || options_.open_control || (!from_elsewhere && !options_.control_key)) return;
+  key_file_ = std::make_unique<RunKeyFile>(options_.results);
+  lockstep_.guard().require(key_file_->key());
+  programs_.set_run_key(key_file_->key().text());
+  spdlog::info("control of this run needs its key: shoal control --run {}, or SHOAL_RUN_KEY", key_file_->folder());
 }
 
 TimeControl::Options Run::time_options() const {

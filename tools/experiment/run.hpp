@@ -14,6 +14,7 @@
 #include "tools/experiment/progress.hpp"
 #include "tools/experiment/results.hpp"
 #include "tools/experiment/run_buses.hpp"
+#include "tools/experiment/run_key_file.hpp"
 #include "tools/experiment/run_keys.hpp"
 #include "tools/experiment/run_mail.hpp"
 #include "tools/experiment/run_programs.hpp"
@@ -32,6 +33,8 @@ class Run {
   Summary go();
 
  private:
+  /// Makes the key of the run when control of it needs one.
+  void make_key();
   void start_clients();
   void await(const std::vector<std::string>& clients);
   void loop();
@@ -84,8 +87,9 @@ class Run {
   Progress progress_;
   Pacer pacer_;
   RunPrograms programs_;
-  bool synchronized_ = true;  ///< the clients have answered the present step
-  bool alone_ = true;         ///< no other simulator was found at the start
+  bool synchronized_ = true;              ///< the clients have answered the present step
+  bool alone_ = true;                     ///< no other simulator was found at the start
+  std::unique_ptr<RunKeyFile> key_file_;  ///< null: control needs no key
   std::unique_ptr<Results> results_;
   std::unique_ptr<RunKeys> keys_;          ///< null: no terminal
   std::int64_t steps_taken_ = 0;           ///< in this process

@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "bridges/lcm/bus_error.hpp"
+#include "bridges/lcm/bus_reach.hpp"
 #include "sim/bus/in_process_bus.hpp"
 
 namespace tools {
@@ -46,6 +47,12 @@ RunBuses::Line RunBuses::open(const std::string& url, const RunOptions& options)
 std::string RunBuses::url(const std::string& name) const {
   const Line& line = name.empty() ? main_ : others_.at(name);
   return line.lcm ? line.lcm->url() : "";
+}
+
+bool RunBuses::leave_machine() const {
+  bool leave = false;
+  for_each([&](const Line& line) { leave = leave || (line.lcm && bridges::leaves_machine(line.lcm->url())); });
+  return leave;
 }
 
 std::vector<bridges::OtherSimulators::BusToAsk> RunBuses::networks() const {

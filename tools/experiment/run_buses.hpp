@@ -40,6 +40,8 @@ class RunBuses {
   void admit(const Admitted& admitted);
 
   bool over_lcm() const { return main_.lcm != nullptr; }
+  /// Whether other machines can be heard on any of them.
+  bool leave_machine() const;
   /// LCM URL of a bus; empty when it is none.
   std::string url(const std::string& name) const;
   /// Those over LCM, without record and gate.

@@ -18,6 +18,8 @@ class RunPrograms {
   /// All must outlive this.
   RunPrograms(const sim::WorldConfig& config, const RunOptions& options, RunBuses& buses);
 
+  /// What the programs get as SHOAL_RUN_KEY; empty: none.
+  void set_run_key(const std::string& text) { processes_.set_run_key(text); }
   /// Starts the programs when the options say so.  Returns the lockstep clients to wait for.  Throws RunError.
   std::vector<std::string> start();
   /// What the lockstep knows of its clients, by name.

@@ -72,6 +72,10 @@ void Run::add_figures(Summary& summary) {
   summary.verdicts = scoring_.verdicts();
   summary.processes = programs_.ended();
   summary.clients = lockstep_.summaries();
+  summary.needs_key = lockstep_.guard().requires_key();
+  summary.refused_requests = service_.refused_requests();
+  summary.notices = service_.notices().all();
+  summary.notice_count = service_.notices().count();
   summary.event = world_.ended();
   for (const auto& [vehicle, record] : world_.zone_records()) summary.zones[vehicle] = record;
   // Without the programs that a world names there is nothing to judge.
@@ -82,6 +86,7 @@ void Run::add_figures(Summary& summary) {
   const auto rules = static_cast<std::ptrdiff_t>(summary.verdicts.size());
   summary.contacts = scoring_.contacts().all();
   summary.judge_processes();
+  summary.judge_clients();
   // A rule is about the whole run; a program that failed has failed.
   if (summary.ended_by_hand()) summary.verdicts.erase(summary.verdicts.begin(), summary.verdicts.begin() + rules);
 }

@@ -18,6 +18,8 @@ struct RunOptions {
   std::string bus = "lcm";           ///< lcm, none
   std::string lcm_url;               ///< empty: LCM_DEFAULT_URL, then the default
   bool lcm_shared = false;           ///< other simulators may be on the same buses
+  bool control_key = false;          ///< control needs the run's key, also on a bus of this machine
+  bool open_control = false;         ///< control needs no key, also on a bus that leaves this machine
   std::string record;                ///< file for the LCM event log; empty: none
   bool overwrite = false;            ///< of the record
   std::string results;               ///< directory; empty: none

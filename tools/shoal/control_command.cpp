@@ -6,10 +6,12 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <thread>
 
 #include "bridges/lcm/lcm_listener.hpp"
+#include "bridges/lcm/signed_message.hpp"
 #include "bridges/lcm/wait_notice.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_control_reply_t.hpp"
@@ -31,6 +33,7 @@ struct ControlArguments {
   double value = 0;
   std::string client = "shoal-control-" + std::to_string(getpid());
   std::string lcm_url;
+  std::string run;
   double timeout_s = 5;
   bool stay = false;
 };
@@ -67,6 +70,8 @@ class Session {
  public:
   explicit Session(const ControlArguments& arguments) : arguments_(arguments), lcm_(arguments.lcm_url) {
     lcm_.listen("sim.control.reply");
+    const auto key = arguments.run.empty() ? bridges::run_key_from_environment() : bridges::read_run_key(arguments.run);
+    if (key) signer_.emplace(*key, arguments.client);
   }
 
   /// The reply; nothing when none came in time.
@@ -79,7 +84,8 @@ class Session {
     request.value = value;
     const Clock::time_point deadline =
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(arguments_.timeout_s));
-    lcm_.publish("sim.control", shoal::encode(request));
+    const sim::Bytes payload = shoal::encode(request);
+    lcm_.publish("sim.control", signer_ ? signer_->sign("sim.control", payload) : payload);
     bridges::WaitNotice notice("shoal control: waiting for a simulator to answer on 'sim.control.reply', at " +
                                lcm_.url());
     while (Clock::now() < deadline && caught_signal() == 0) {
@@ -101,6 +107,7 @@ class Session {
  private:
   const ControlArguments& arguments_;
   bridges::LcmListener lcm_;
+  std::optional<bridges::MessageSigner> signer_;  // unset: there is no key
   std::int32_t id_ = static_cast<std::int32_t>(getpid()) * 1000;
 };
 
@@ -147,6 +154,10 @@ void add_control_command(CLI::App& app, int& exit_code) {
       ->check(number_from(-1e12, 1e12).description(""));
   command->add_option("--client", arguments->client, "name of who requests; without it shoal-control-PID")
       ->type_name("NAME");
+  command
+      ->add_option("--run", arguments->run,
+                   "folder of the run, with its key in run.key; without it the key in SHOAL_RUN_KEY, if set")
+      ->type_name("DIR");
   command->add_option("--timeout", arguments->timeout_s, "wall seconds to wait for the answer")
       ->type_name("S")
       ->check(number_from(0.01, 1e6))
@@ -160,8 +171,8 @@ void add_control_command(CLI::App& app, int& exit_code) {
                   "shoal control rewind run --value 30  # goes on at once", "shoal control snapshot before_dive",
                   "shoal control restore before_dive",
                   "shoal control spawn '{name: rover7, file: rover.yaml, position_m: [2, 0, 0]}'",
-                  "shoal control spawn @my_robot.yaml", "shoal control remove rover7",
-                  "shoal control do '{fault: rover1/lidar, kind: stuck}'"},
+                  "shoal control spawn @my_robot.yaml", "shoal control quit --run results/dive1",
+                  "shoal control remove rover7", "shoal control do '{fault: rover1/lidar, kind: stuck}'"},
                  {{0, "obeyed"},
                   {1, "refused; the reason is on stderr"},
                   {2, "wrong usage"},

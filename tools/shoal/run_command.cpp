@@ -119,6 +119,12 @@ void add_bus_options(CLI::App& command, RunArguments& arguments) {
   add_lcm_url_option(command, arguments.run.lcm_url);
   command.add_flag("--lcm-shared", arguments.run.lcm_shared,
                    "start though another simulator is on the bus; without it the exit code is then 4");
+  auto* key = command.add_flag("--control-key", arguments.run.control_key,
+                               "control needs the key of the run, also when its bus does not leave this machine");
+  command
+      .add_flag("--open-control", arguments.run.open_control,
+                "control needs no key, also when a bus leaves this machine: for a network that is trusted")
+      ->excludes(key);
   command.add_flag("--launch", arguments.run.launch, "start the programs that the world names");
   command.add_option("--await", arguments.run.await, "lockstep clients to wait for, started by hand: NAME,NAME,...")
       ->type_name("NAMES")

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <list>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "bridges/lcm/run_key.hpp"
+#include "sim/bus/bus.hpp"
+
+namespace bridges {
+
+/// How a message is refused that must be signed and is not.
+inline constexpr const char* needs_key_text =
+    "this run is controlled with its key only: use --run DIR, or set SHOAL_RUN_KEY; see docs/control.md";
+
+/// Stands where the simulator takes what controls a run from the buses: takes signed messages out of their envelopes,
+/// and when the run has a key, checks who sent them.  One for all buses of a run: what was sent on one is refused on
+/// another.  Not part of the state of the world: a rewind must not make a captured message valid again.
+class ControlGuard {
+ public:
+  struct Opened {
+    sim::Bytes content;   ///< the message itself
+    std::string signer;   ///< who sent it, with the key of the run; empty: not signed, or not checked
+    std::string refusal;  ///< why it must not be obeyed; empty: it may
+  };
+  /// Senders whose counters are kept; the one that was heard the longest time ago makes room.
+  static constexpr std::size_t max_senders = 10'000;
+
+  /// From now on only messages that are signed with this key are to be obeyed.
+  void require(const RunKey& key) { key_ = key; }
+  bool requires_key() const { return key_.has_value(); }
+
+  /// Throws shoal::MessageError when the envelope cannot be read.
+  Opened open(std::string_view channel, std::span<const std::byte> payload);
+
+ private:
+  using Name = std::pair<std::string, std::int64_t>;  // sender and session
+  struct Sender {
+    std::map<std::string, std::int64_t, std::less<>> counters;  // the last, by channel
+    std::list<Name>::iterator place;
+  };
+
+  /// Why it is refused; empty: it is new.  Notes the counter.
+  std::string refusal_of(const std::string& name, std::int64_t session, std::int64_t counter, std::string_view channel);
+  void make_room();
+
+  std::optional<RunKey> key_;
+  std::map<Name, Sender> senders_;
+  std::list<Name> by_age_;  // heard the longest time ago first
+  std::int64_t floor_ = 0;  // no sender that made room had a greater counter
+};
+
+}  // namespace bridges
