@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Kills recorded runs (SIGKILL) at random moments: each record must be readable, and lose at most a second.
 
-Each run is started with --record, at the world's full speed, at real time or at a tenth of it, and killed after a
-random time.  Then its record is read three times:
+Each run is started with --record, at the world's full speed, at real time or at a tenth of it, and killed a random
+time after its record was made.  Then its record is read three times:
 
   shoal log info       whole events up to the end; at most one event that was cut off
   liblcm               the same number of events by lcm_eventlog_read_next_event()
@@ -31,7 +31,7 @@ import sys
 import tempfile
 import time
 
-WORLDS = ["minimal", "coop_land", "coop_underwater", "segway"]
+WORLDS = ["minimal", "coop_land", "coop_underwater", "segway"]  # shipped
 SPEEDS = {"full speed": "max", "real time": "1", "a tenth of it": "0.1"}
 LIMIT_S = 1.0
 SYNC = 0xEDA1DA01
@@ -92,11 +92,10 @@ def kill_one(shoal, library, folder, number, seed, keep):
     command = [shoal, "run", world, "--bus", "none", "--no-serial-ports", "--duration", "0", "--speed", SPEEDS[kind],
                "--record", record, "--no-keys", "--quiet", "--log-level", "off"]
     process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
-    made_at, kill_at = None, time.time() + after_s
-    while time.time() < kill_at:
-        if made_at is None and os.path.exists(record):
-            made_at = time.time()
-        time.sleep(min(0.002 if made_at is None else 0.05, max(0, kill_at - time.time())))
+    while not os.path.exists(record) and process.poll() is None:
+        time.sleep(0.001)
+    made_at = time.time()
+    time.sleep(after_s)
     killed_at = time.time()
     process.send_signal(signal.SIGKILL)
     code = process.wait()
@@ -104,8 +103,6 @@ def kill_one(shoal, library, folder, number, seed, keep):
     if code != -signal.SIGKILL:
         result["problems"].append(f"ended by itself with {code}")
         return result
-    if not os.path.exists(record):
-        return result  # it was killed while it read its world
     status = os.stat(record)
     # The clock of files ticks every few milliseconds, so that a write may seem earlier, never later.
     result["loss_s"] = killed_at - status.st_mtime
@@ -113,7 +110,7 @@ def kill_one(shoal, library, folder, number, seed, keep):
         try:
             count, first, last, rest = read_events(record)
             result.update(events=count, rest=rest)
-            if kind != "full speed" and count > 0 and made_at is not None:
+            if kind != "full speed" and count > 0:
                 shown_s = (last - first) / 1e6 / float(SPEEDS[kind])
                 result["paced_s"] = killed_at - made_at - shown_s
             if (by_lcm := count_by_lcm(library, record)) != count:
@@ -147,14 +144,14 @@ def main():
         with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
             results = list(pool.map(lambda number: kill_one(os.path.abspath(given.shoal), library, folder, number,
                                                             given.seed, given.keep), range(given.kills)))
-    print("| speed | kills | with a record | events | cut off | longest loss: since the last write | of paced time | bad |")
+    print("| speed | kills | empty records | events | cut off | longest loss: since the last write | of paced time | bad |")
     print("|---|---|---|---|---|---|---|---|")
     for kind in SPEEDS:
         those = [result for result in results if result["kind"] == kind]
         made = [result for result in those if result["loss_s"] is not None]
         longest = max((result["loss_s"] for result in made), default=0)
         paced = max((result["paced_s"] for result in made if "paced_s" in result), default=None)
-        print(f"| {kind} | {len(those)} | {len(made)} | {sum(result['events'] for result in made)} | "
+        print(f"| {kind} | {len(those)} | {sum(1 for result in made if not result['events'])} | {sum(result['events'] for result in made)} | "
               f"{sum(1 for result in made if result.get('rest'))} | {longest:.3f} s | "
               f"{'' if paced is None else f'{paced:.3f} s'} | {sum(1 for result in those if result['problems'])} |")
     bad = [result for result in results if result["problems"]]

@@ -10,6 +10,7 @@ examples:
   tests/campaigns/soak.py --shoal build/release/bin/shoal                      24 hours of each default world
   tests/campaigns/soak.py --hours 1 --world coop_land --out /tmp/soak          another world, for an hour
   tests/campaigns/soak.py --hours 24 --jobs 2                                  two runs at a time
+  tests/campaigns/soak.py -- --set 'metrics=[]' --set 'pass=[]'                without scores, which keep every estimate
 
 The exit code is 1 when something grew or differs, 2 when a run did not come to its end.
 """
@@ -68,13 +69,14 @@ def sample(pid):
     return (int(resident[0].split()[1]), descriptors) if resident else None
 
 
-def run(shoal, world, hours, folder, interval_s, extra):
+def run(shoal, world, hours, folder, interval_s, alone, extra):
     """One run; gives the samples by process, and the summary."""
     results = os.path.join(folder, "results")
     os.makedirs(folder, exist_ok=True)
     url = f"udpm://239.255.76.67:{free_port()}?ttl=0"
-    command = [shoal, "run", world, "--launch", "--duration", str(hours * 3600), "--speed", "0", "--no-keys", "--quiet",
-               "--no-serial-ports", "--no-pictures", "--lcm-url", url, "--results", results, *extra]
+    command = [shoal, "run", world, "--duration", str(hours * 3600), "--speed", "0", "--no-keys", "--quiet",
+               "--no-serial-ports", "--no-pictures", "--results", results, *extra]
+    command += ["--bus", "none"] if alone else ["--launch", "--lcm-url", url]
     samples = {}
     started = time.monotonic()
     with open(os.path.join(folder, "output.txt"), "w") as output:
@@ -143,6 +145,7 @@ def main():
     parser.add_argument("--world", action="append", help=f"repeatable (default {', '.join(WORLDS)})")
     parser.add_argument("--out", default="build/soak", help="folder for results and samples (default %(default)s)")
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time (default 1)")
+    parser.add_argument("--alone", action="store_true", help="without a bus and the programs of the world: faster")
     parser.add_argument("--interval-s", type=float, default=2, help="wall time between two samples (default 2)")
     parser.add_argument("--limit-mb", type=float, default=1, help="that memory may grow by after it settled (default 1)")
     parser.add_argument("extra", nargs="*", help="further options of shoal run, after --")
@@ -154,7 +157,7 @@ def main():
         world, number = job
         name = os.path.splitext(os.path.basename(world))[0]
         return run(shoal, world, given.hours, os.path.join(given.out, f"{name}_{number}"), given.interval_s,
-                   given.extra)
+                   given.alone, given.extra)
 
     jobs = [(world, number) for world in worlds for number in (1, 2)]
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
