@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -29,6 +31,11 @@ void encode_jpeg(const Image8& image, int quality, Bytes& out);
 Image8 decode_image(std::span<const std::byte> bytes);
 /// A grey PNG of 16 bits.
 Image16 decode_png16(std::span<const std::byte> bytes);
+/// The levels of a plain grey PNG of 1 to 16 bits as they were written, without gamma, widened to 0 .. 65535.
+/// `check_size` throws what it likes for a size that is not wanted; it is called with width and height before memory is
+/// taken for them.  Throws ImageError for damage, colors and transparency.
+Image16 decode_png_levels(std::span<const std::byte> bytes,
+                          const std::function<void(std::uint64_t width, std::uint64_t height)>& check_size);
 
 /// By the ending of the name: .png, .jpg, .jpeg.  Throws ImageError.
 void write_image(const std::string& path, const Image8& image, int jpeg_quality = 90);

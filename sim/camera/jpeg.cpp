@@ -65,9 +65,14 @@ class JpegReader {
     info.out_color_space = JCS_RGB;
     return true;
   }
-  bool read(unsigned char* rgb) {
+  bool read(unsigned char* rgb, unsigned width, unsigned height) {
     if (setjmp(errors.jump) != 0) return false;
     jpeg_start_decompress(&info);
+    // What libjpeg will write is its own answer, not what was asked for.
+    if (info.output_width != width || info.output_height != height || info.output_components != 3) {
+      std::snprintf(errors.message, sizeof errors.message, "rows of another size");
+      return false;
+    }
     while (info.output_scanline < info.output_height) {
       JSAMPROW row = rgb + std::size_t(info.output_scanline) * info.output_width * 3;
       jpeg_read_scanlines(&info, &row, 1);
@@ -136,7 +141,7 @@ Image8 decode_jpeg(std::span<const std::byte> bytes) {
   if (!reader.open(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size())) fail(reader.errors);
   check_image_size(reader.info.image_width, reader.info.image_height);
   Image8 image(static_cast<int>(reader.info.image_width), static_cast<int>(reader.info.image_height), 3);
-  if (!reader.read(image.data.data())) fail(reader.errors);
+  if (!reader.read(image.data.data(), reader.info.image_width, reader.info.image_height)) fail(reader.errors);
   return image;
 }
 

@@ -43,7 +43,7 @@ ConfigNode parse_config_text(const std::string& text, const std::string& file_na
 /// Reads a file and the files its `include:` key names (a file name or a list of them, relative to the file).
 /// An included file is the base over which the including file is merged: maps key by key, lists of maps that
 /// have a `name` item by item by that name, anything else replaced.  Missing files, files over 64 MB, cyclic
-/// includes and an empty file are errors.
+/// includes, an empty file and one that is not a map are errors.
 ConfigNode load_config_file(const std::string& path, Diagnostics& diagnostics);
 
 /// Sets the value at a dotted path, such as `vehicles.rover1.devices.lidar.rate_hz`.  An item of a list is named

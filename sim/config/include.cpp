@@ -178,6 +178,9 @@ class Loader {
 ConfigNode load_config_file(const std::string& path, Diagnostics& diagnostics) {
   Diagnostics own;
   ConfigNode root = Loader(own).load(path, {intern_file_name(path), 0, 0});
+  // Whoever looks for a key finds none in a word or a list, and would take the file for one that says nothing.
+  if (own.ok() && root.kind != Kind::map)
+    own.error(root.place, "", "must be a map of keys and values, got " + shown(root));
   forward(own, diagnostics);
   return own.ok() ? root : ConfigNode{};
 }

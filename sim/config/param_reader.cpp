@@ -411,7 +411,11 @@ void ParamReader::read_references(const char* key, std::vector<std::string>& val
 
 void ParamReader::read_raw(const char* key, ConfigNode& value, const char* meaning) {
   if (describing()) return describe_value(key, ParamKind::raw, {}, "{}", meaning);
-  if (const ConfigNode* node = take(key)) value = *node;
+  const ConfigNode* node = take(key);
+  if (node == nullptr) return;
+  if (node->kind != Kind::map && node->kind != Kind::null)
+    return error_at(node->place, quoted_name(key) + " must be a map, got " + shown(*node));
+  value = *node;
 }
 
 // Maps in maps

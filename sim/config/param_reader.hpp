@@ -64,7 +64,7 @@ class ParamReader {
   void read_references(const char* key, std::vector<std::string>& value, const char* kind, const char* meaning);
   /// The next read of `key` must find it: `missing key 'file'`.
   void require(const char* key);
-  /// A subtree that is read elsewhere (overrides, a process's environment): kept as it is.
+  /// A map that is read elsewhere (overrides, a process's environment): kept as it is.
   void read_raw(const char* key, ConfigNode& value, const char* meaning);
 
   // A key without a value (`parts:` and nothing after it) is an empty map or list, or an unset optional.

@@ -12,10 +12,7 @@ HeightGrid read_grid(const TerrainConfig& config) {
   if (config.source != "ascii" && config.source != "png") return generate_grid(config);
   const std::string path = (std::filesystem::path(config.directory) / config.file).string();
   try {
-    if (config.source == "png") {
-      if (std::error_code error; !std::filesystem::is_regular_file(path, error)) throw TerrainError("does not exist");
-      return read_png_grid(path, config.cell_m, config.height_min_m, config.height_max_m);
-    }
+    if (config.source == "png") return read_png_grid(path, config.cell_m, config.height_min_m, config.height_max_m);
     const Holes holes = config.holes == "error"     ? Holes::error
                         : config.holes == "nearest" ? Holes::nearest
                                                     : Holes::linear;

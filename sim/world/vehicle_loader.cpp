@@ -278,6 +278,8 @@ SpawnRequest read_spawn(const WorldConfig& world, const ConfigNode& node, Origin
   entry.vehicle.beside.file = intern_file_name(world.file);
   std::vector<VehicleInstance> instances = VehicleLoader(world, diagnostics).load(entry.vehicle);
   diagnostics.throw_if_any();
+  if (instances.empty())
+    throw_config_error(entry.vehicle.place, "vehicle '" + entry.vehicle.name + "'", "has no model");
   return {std::move(instances.front()), entry.with_client, entry.alive_timeout_s};
 }
 

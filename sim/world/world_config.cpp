@@ -77,9 +77,6 @@ void VehicleEntry::read(ParamReader& in) {
   in.read_reference("bus", bus, "bus", "bus of its own, named in `buses`; unset: the world's");
   in.read_raw("overrides", overrides,
               "dotted path: value, such as devices.lidar.rate_hz: 5; NAME3/devices.lidar.rate_hz: one of a count");
-  for (const char* key : {"parameters", "overrides"})
-    if (in.has(key) && in.child(key)->kind != ConfigNode::Kind::map && in.child(key)->kind != ConfigNode::Kind::null)
-      in.error(key, std::string("'") + key + "' must be a map, got " + shown(*in.child(key)));
   if (!in.describing() && in.has("file") == in.has("model"))
     in.error(in.has("file") ? "needs either 'file' or 'model', not both" : "needs either 'file' or 'model'");
 }

@@ -186,8 +186,6 @@ void StudyCase::read(sim::ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "name of the case");
   in.read_raw("set", changes, "dotted path: value, as with --set");
-  if (in.has("set") && changes.kind != sim::ConfigNode::Kind::map && changes.kind != sim::ConfigNode::Kind::null)
-    in.error("set", "'set' must be a map of paths and values, got " + sim::shown(changes));
 }
 
 std::vector<std::string> StudyCase::sets() const {

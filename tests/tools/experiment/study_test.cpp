@@ -215,7 +215,7 @@ TEST(StudyConfig, TellsWhatIsWrong) {
   EXPECT_THAT(error("sedes: 3\n"), HasSubstr("unknown key 'sedes'"));
   EXPECT_THAT(error("cases: [{name: a}, {name: a}]\n"), HasSubstr("duplicate case 'a'"));
   EXPECT_THAT(error("cases: [{name: ../a}]\n"), HasSubstr("a name must be made of"));
-  EXPECT_THAT(error("cases: [{name: a, set: 3}]\n"), HasSubstr("'set' must be a map of paths and values, got '3'"));
+  EXPECT_THAT(error("cases: [{name: a, set: 3}]\n"), HasSubstr("'set' must be a map, got '3'"));
   EXPECT_THAT(error("cases: [{name: a, set: {vehicles.r9.name: x}}]\n"), HasSubstr("r9"));
   EXPECT_THAT(error("cases: [{name: a, set: {physics.step_s: -1}}]\n"), HasSubstr("'step_s' must be"));
   EXPECT_THAT(error("cases: [{name: a, set: {run.duration_s: 0}}]\n"),

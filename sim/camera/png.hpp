@@ -1,0 +1,12 @@
+#pragma once
+
+#include <span>
+
+#include "sim/camera/image_file.hpp"
+
+namespace sim {
+
+/// As RGB, transparent pixels over black.  Throws ImageError.
+Image8 decode_png(std::span<const std::byte> bytes);
+
+}  // namespace sim
