@@ -5,7 +5,7 @@ namespace devices {
 // Data sheets give the standard deviation of one ping for the horizontal velocity; along a beam it is sqrt(2) sin(beam
 // angle) times that.  The long-term accuracy, such as 0.2 % +- 1 mm/s, is read as one standard deviation of scale and
 // bias.  The sheets were not at hand: no figure is checked but those marked so.
-constexpr DvlPreset presets[] = {
+const DvlPreset presets[] = {
     // Teledyne RD Instruments, Workhorse Navigator: 600 kHz; 30 deg and four beams checked (its FAQ).  0.2 % +- 1 mm/s,
     // 3 mm/s at 1 m/s and 4 mm/s at 3 m/s, 0.7 to 90 m, 7 Hz.
     {"workhorse_600", 30, 0.7, 90, 1.77e-3, 3.54e-4, 0.002, 0.001, 7},

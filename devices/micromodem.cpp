@@ -35,7 +35,7 @@ struct Micromodem::Addresses {
   std::map<std::pair<std::string, int>, std::vector<std::string>> names;
 };
 
-void Micromodem::BeaconParams::read(sim::ParamReader& in) {
+void MicromodemBeaconParams::read(sim::ParamReader& in) {
   in.read("network", network, "of the transponders");
   in.read("transponders", transponders, "up to four that are told apart: vehicle, or vehicle/device");
   in.read("turnaround_s", turnaround_s, sim::between(0, 10), "of the transponders; it is taken off the travel times");
@@ -200,7 +200,7 @@ MicromodemSide::Sound Micromodem::transmit(const MicromodemPacket& packet, sim::
 }
 
 MicromodemSide::Sound Micromodem::ask_beacons(sim::Time at, bool on_the_second) {
-  const BeaconParams beacons = params_.lbl.value_or(BeaconParams{});
+  const MicromodemBeaconParams beacons = params_.lbl.value_or(MicromodemBeaconParams{});
   sim::Signal signal;
   signal.kind = sim::Signal::Kind::ping;
   signal.source_level = sim::Decibels{params_.source_level_dB};

@@ -13,21 +13,22 @@
 
 namespace devices {
 
+/// The transponders that $CCPDT, $CCPNT and $CCPGT ask.
+struct MicromodemBeaconParams {
+  std::string network = "usbl";
+  std::vector<std::string> transponders;
+  double turnaround_s = 0.02;
+  double ping_s = 0.005;
+  double frequency_Hz = 26000;
+  double bandwidth_Hz = 1000;
+  void read(sim::ParamReader& in);
+};
+
 /// Acoustic modem of the WHOI Micro-Modem class: its NMEA sentences through a pseudo-terminal and through the bus, its
 /// packets through the water.  What it says and when is MicromodemProtocol's.
 class Micromodem final : public sim::Sensor, private sim::AcousticListener, private MicromodemSide {
  public:
   static constexpr const char* meaning = "Acoustic modem of the WHOI Micro-Modem class, with its NMEA sentences.";
-  /// The transponders that $CCPDT, $CCPNT and $CCPGT ask.
-  struct BeaconParams {
-    std::string network = "usbl";
-    std::vector<std::string> transponders;
-    double turnaround_s = 0.02;
-    double ping_s = 0.005;
-    double frequency_Hz = 26000;
-    double bandwidth_Hz = 1000;
-    void read(sim::ParamReader& in);
-  };
   struct Params {
     int address = 0;
     bool psk = true;
@@ -39,7 +40,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
     double coding_gain_dB = 0;
     double transmit_power_W = 0;
     sim::ReceiverConfig receiver;
-    std::optional<BeaconParams> lbl;
+    std::optional<MicromodemBeaconParams> lbl;
     std::optional<SerialParams> serial;
     void read(sim::ParamReader& in);
   };

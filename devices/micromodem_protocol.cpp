@@ -350,7 +350,7 @@ void MicromodemProtocol::visit_state(sim::StateArchive& archive) {
   archive.unhashed(errors_);
 }
 
-void MicromodemProtocol::Cycle::visit_state(sim::StateArchive& archive) {
+void MicromodemPending::Cycle::visit_state(sim::StateArchive& archive) {
   archive(source, destination, rate, frames, ack, announced, gathered, deadline);
   const bool known = rate >= 0 && static_cast<std::size_t>(rate) < micromodem_rates().size();
   if (archive.restoring() && !known) archive.fail("no modem has the rate " + std::to_string(rate));

@@ -51,37 +51,8 @@ struct MicromodemArrival {
   bool good = true;  ///< false: it was noticed, but not understood
 };
 
-/// What a Micro-Modem says and sends: sentences and packets in, sentences and packets out, no physics.
-class MicromodemProtocol {
- public:
-  struct Config {
-    int address = 0;
-    bool psk = true;           ///< has the co-processor for rates 1 to 6
-    bool synchronous = false;  ///< SNV is on at the start, and the clock is good
-    std::string revision = "0.93.0.48";
-    double frequency_Hz = 25000;
-    double beacon_turnaround_s = 0.02;
-  };
-
-  MicromodemProtocol(const Config& config, MicromodemSide& side);
-
-  /// A line from the host, whatever it holds.
-  void take_line(const NmeaLines::Line& line, sim::Time now);
-  void tick(sim::Time now);
-  /// Forgets what it was about, and says hello anew at `up`.  Settings stay; the time that the host set does not.
-  void restart(sim::Time up);
-  void heard(const MicromodemPacket& packet, const MicromodemArrival& arrival);
-  /// A transponder (0: the first) answered.
-  void beacon_answered(int beacon, sim::Time begun);
-
-  int address() const { return settings_.get("SRC"); }
-  const MicromodemSettings& settings() const { return settings_; }
-  /// Sentences that were answered by an error.
-  std::int64_t errors() const { return errors_; }
-  void visit_state(sim::StateArchive& archive);
-
- private:
-  using Command = void (MicromodemProtocol::*)(const NmeaSentence&, sim::Time);
+/// What is in progress.  Outside of the class that uses it: clang takes no optional of a class that is not complete.
+struct MicromodemPending {
   /// A cycle whose data it gathers from the host.
   struct Cycle {
     int source = 0, destination = 0, rate = 0, frames = 0;
@@ -121,6 +92,39 @@ class MicromodemProtocol {
     std::string body;
     void visit_state(sim::StateArchive& archive) { archive(at, body); }
   };
+};
+
+/// What a Micro-Modem says and sends: sentences and packets in, sentences and packets out, no physics.
+class MicromodemProtocol : private MicromodemPending {
+ public:
+  struct Config {
+    int address = 0;
+    bool psk = true;           ///< has the co-processor for rates 1 to 6
+    bool synchronous = false;  ///< SNV is on at the start, and the clock is good
+    std::string revision = "0.93.0.48";
+    double frequency_Hz = 25000;
+    double beacon_turnaround_s = 0.02;
+  };
+
+  MicromodemProtocol(const Config& config, MicromodemSide& side);
+
+  /// A line from the host, whatever it holds.
+  void take_line(const NmeaLines::Line& line, sim::Time now);
+  void tick(sim::Time now);
+  /// Forgets what it was about, and says hello anew at `up`.  Settings stay; the time that the host set does not.
+  void restart(sim::Time up);
+  void heard(const MicromodemPacket& packet, const MicromodemArrival& arrival);
+  /// A transponder (0: the first) answered.
+  void beacon_answered(int beacon, sim::Time begun);
+
+  int address() const { return settings_.get("SRC"); }
+  const MicromodemSettings& settings() const { return settings_; }
+  /// Sentences that were answered by an error.
+  std::int64_t errors() const { return errors_; }
+  void visit_state(sim::StateArchive& archive);
+
+ private:
+  using Command = void (MicromodemProtocol::*)(const NmeaSentence&, sim::Time);
 
   // micromodem_commands.cpp
   void configure(const NmeaSentence& in, sim::Time now);

@@ -19,6 +19,7 @@ namespace {
 constexpr std::uint64_t event_head_bytes = 28;
 constexpr std::size_t copied_at_once = std::size_t{1} << 20;
 constexpr std::chrono::milliseconds shortest_pause{50};
+constexpr std::chrono::milliseconds max_buffered{250};
 
 std::unique_ptr<EventLogWriter> create(const std::string& path, Existing existing) {
   // O_EXCL decides and creates in one go; a device such as /dev/full is never "made".
@@ -77,11 +78,21 @@ void RecordingBus::record(std::string_view channel, std::span<const std::byte> p
   }
 }
 
+void RecordingBus::end_of_step() {
+  inner_.end_of_step();
+  // A simulated second may last minutes: in a slow run, or in a world that is large.
+  if (!first_) hand_over_after(max_buffered);
+}
+
 void RecordingBus::hand_over() {
   if (first_) return first_->hand_over();
+  hand_over_after(shortest_pause);
+}
+
+void RecordingBus::hand_over_after(std::chrono::milliseconds pause) {
   if (!log_ || error_) return;
   const auto now = std::chrono::steady_clock::now();
-  if (now - handed_over_ < shortest_pause) return;
+  if (now - handed_over_ < pause) return;
   handed_over_ = now;
   if (!log_->hand_over()) fail(errno);
 }

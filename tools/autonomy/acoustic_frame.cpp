@@ -192,6 +192,7 @@ std::optional<AcousticState> decode(std::span<const std::uint8_t> bytes, std::in
   if (time_of_week_ms >= week_ms || state.east_std_m <= 0 || state.north_std_m <= 0 ||
       std::abs(state.correlation) > 1 || (*kind == obeying_state_kind && state.order == 0))
     return std::nullopt;
+  if (!fits(state)) return std::nullopt;
   state.utime = full_utime(time_of_week_ms, near_utime);
   return state;
 }
@@ -223,7 +224,7 @@ std::optional<AcousticOrder> decode_order(std::span<const std::uint8_t> bytes, s
   order.north_m = 0.01 * static_cast<double>(in.signed_number(4));
   order.depth_m = 0.01 * static_cast<double>(in.unsigned_number(3));
   order.speed_mps = 0.01 * static_cast<double>(in.unsigned_number(2));
-  if (time_of_week_ms >= week_ms || order.number == 0 || order.speed_mps <= 0) return std::nullopt;
+  if (time_of_week_ms >= week_ms || !fits(order)) return std::nullopt;
   order.utime = full_utime(time_of_week_ms, near_utime);
   return order;
 }

@@ -260,6 +260,7 @@ void Run::pace() {
   for (auto wait = pacer_.until(next, control_); wait.count() > 0 && wanted() && control_.may_step();
        wait = pacer_.until(next, control_)) {
     if (wait > std::chrono::milliseconds(2)) {
+      buses_.hand_over_record();
       const auto nap = std::chrono::duration_cast<std::chrono::milliseconds>(wait) - std::chrono::milliseconds(1);
       buses_.wait(std::min(nap, std::chrono::milliseconds(20)));
     } else {

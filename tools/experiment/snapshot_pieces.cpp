@@ -63,6 +63,9 @@ std::optional<sim::Bytes> SnapshotPieces::add(const shoal::sim_snapshot_t& piece
   if (bytes_.size() > static_cast<std::uint64_t>(piece.bytes))
     throw shoal::MessageError(fmt::format("the pieces of a snapshot are more than its {} bytes", piece.bytes));
   if (next_ < piece.pieces) return std::nullopt;
+  if (bytes_.size() < static_cast<std::uint64_t>(piece.bytes))
+    throw shoal::MessageError(
+        fmt::format("the pieces of a snapshot are {} bytes instead of {}", bytes_.size(), piece.bytes));
   return std::move(bytes_);
 }
 

@@ -98,6 +98,10 @@ sim::Mesh unpacked(const std::string& bytes) {
   std::memcpy(static_cast<void*>(mesh.vertices_m.data()), bytes.data() + head, vertices * vertex_bytes);
   std::memcpy(mesh.triangles.data(), bytes.data() + head + vertices * vertex_bytes,
               mesh.triangles.size() * triangle_bytes);
+  // A damaged file may have made the child write anything.
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t corner : triangle)
+      if (corner >= vertices) throw ChildError("failed on this file");
   return mesh;
 }
 

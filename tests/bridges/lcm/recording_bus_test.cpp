@@ -107,6 +107,25 @@ TEST(RecordingBus, StampsEpochPlusSimulatedTimeAndNeverGoesBack) {
   EXPECT_TRUE(reader.problems().empty());
 }
 
+TEST(RecordingBus, IsWrittenWhileASimulatedSecondLasts) {
+  const ScratchFolder folder;
+  ScriptedBus inner;
+  RecordingBus bus(inner, folder.file("log"), epoch);
+  bus.publish("a", bytes_of("1"), sim::Time(0));
+  bus.end_of_step();
+  bus.publish("a", bytes_of("2"), sim::Time(1000));
+  // A run at a thousandth of real time: nothing more comes for a long while of wall time.
+  constexpr std::size_t event_bytes = 28 + 1 + 1;
+  const auto size = [&] { return std::filesystem::file_size(folder.file("log")); };
+  EXPECT_TRUE(await(
+      [&] {
+        bus.end_of_step();
+        return size() == 2 * event_bytes;
+      },
+      5s))
+      << size() << " bytes were written";
+}
+
 TEST(RecordingBus, LcmReadsTheLog) {
   const ScratchFolder folder;
   ScriptedBus inner;

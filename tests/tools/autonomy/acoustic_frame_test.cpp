@@ -292,6 +292,26 @@ TEST(AcousticFrame, OrderThatDoesNotFitIsNotSent) {
   EXPECT_TRUE(refused([&](AcousticOrder& o) { o.speed_mps = nan; }));
 }
 
+TEST(AcousticFrame, WhatWouldNotBeSentIsNotReceived) {
+  sim::Random random(17, "frame");
+  random.begin_step(0);
+  const AcousticState state = some_state(random);
+  const AcousticOrder order = some_order(random);
+  const auto signed_again = [](frame::Bytes bytes) {
+    const std::uint16_t sum = frame::checksum(std::span(bytes).first(bytes.size() - 2));
+    bytes[bytes.size() - 2] = static_cast<std::uint8_t>(sum >> 8);
+    bytes[bytes.size() - 1] = static_cast<std::uint8_t>(sum);
+    return bytes;
+  };
+  // East of a state is in bytes 6 to 9, of an order in 8 to 11: 0x7fffffff cm are 21 475 km, and the limit is 21 000.
+  frame::Bytes far_state = *frame::encode(state), far_order = *frame::encode(order);
+  far_state[6] = far_order[8] = 0x7f;
+  std::fill_n(far_state.begin() + 7, 3, 0xff);
+  std::fill_n(far_order.begin() + 9, 3, 0xff);
+  EXPECT_FALSE(frame::decode(signed_again(far_state), state.utime));
+  EXPECT_FALSE(frame::decode_order(signed_again(far_order), order.utime));
+}
+
 TEST(AcousticFrame, TimeIsRightAcrossTheEndOfTheWeek) {
   AcousticState state;
   state.east_std_m = state.north_std_m = 1;

@@ -1,0 +1,26 @@
+#include "bridges/lcm/event_log.hpp"
+#include "tests/fuzz/memory_file.hpp"
+#include "tools/experiment/recorded_steps.hpp"
+#include "tools/experiment/replay_log.hpp"
+
+// An LCM event log, as any reader takes it and as a run to repeat.
+
+SHOAL_FUZZ_TARGET(log) {
+  const fuzz::MemoryFile file(input);
+  fuzz::allow<bridges::BusError>([&] {
+    bridges::EventLogReader reader(file.path());
+    std::uint64_t bytes = 0;
+    bridges::LogEventView event;
+    while (reader.next(event)) bytes += 28 + event.channel.size() + event.payload.size();
+    fuzz::require(bytes <= input.size(), "events do not overlap");
+  });
+  fuzz::allow<std::runtime_error>([&] {
+    const tools::ReplayLog log = tools::read_replay_log(file.path());
+    tools::RecordedSteps steps(log);
+    const auto use = [](std::string_view, std::span<const std::byte>) {};
+    for (std::int64_t step = log.begin_step(); step <= log.last_step && step < log.begin_step() + 100; ++step) {
+      steps.mail_after(step, use);
+      steps.published_at(step, use);
+    }
+  });
+}

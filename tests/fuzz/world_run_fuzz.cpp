@@ -1,0 +1,56 @@
+#include <set>
+
+#include "shoal/message_writer.hpp"
+#include "sim/bus/in_process_bus.hpp"
+#include "sim/world/load_world.hpp"
+#include "sim/world/vehicle_config.hpp"
+#include "sim/world/world.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
+
+// A small world from a stranger: built, run for some steps, saved and restored.
+
+namespace {
+
+bool has_ground(const std::vector<sim::PartConfig>& parts) {
+  for (const sim::PartConfig& part : parts)
+    if (part.terrain) return true;
+  return false;
+}
+
+/// Much of anything is slow for a good reason.
+bool is_small(const sim::WorldConfig& world) {
+  constexpr int max_things = 12;
+  static const std::set<std::string> rays{"camera",    "lidar",     "lidar3d", "imaging_sonar",
+                                          "side_scan", "multibeam", "sonar",   "range_beacon"};
+  int things = static_cast<int>(world.vehicles.size());
+  for (const sim::ObjectConfig& object : world.objects) {
+    if (has_ground(object.parts)) return false;
+    things += object.count > max_things ? max_things + 1 : object.count;
+  }
+  for (const sim::VehicleInstance& vehicle : world.vehicles)
+    for (const sim::DeviceConfig& device : vehicle.config->devices)
+      if (rays.contains(device.type)) return false;
+  return things <= max_things;
+}
+
+}  // namespace
+
+SHOAL_FUZZ_TARGET(world_run) {
+  constexpr std::size_t max_bytes = 3000;
+  if (input.size() > max_bytes) return;
+  sim::LoadOptions options;
+  options.encode_message = shoal::encode_own_message;
+  fuzz::allow<sim::ConfigError, sim::PhysicsFault>([&] {
+    const auto loaded = sim::load_world_text(std::string(fuzz::text_of(input)), "worlds/fuzz.yaml", options);
+    if (!is_small(loaded.config)) return;
+    sim::InProcessBus bus;
+    sim::World world(loaded.config, bus);
+    for (int step = 0; step < 5; ++step) world.step();
+    const sim::Bytes snapshot = world.snapshot();
+    world.step();
+    const std::uint64_t hash = world.state_hash();
+    world.restore(snapshot);
+    world.step();
+    fuzz::require(world.state_hash() == hash, "a restored world goes on as before");
+  });
+}
