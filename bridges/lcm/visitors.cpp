@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
+#include <regex>
 #include <vector>
 
 #include "bridges/lcm/run_journal.hpp"
@@ -56,6 +57,19 @@ sim::SpawnRequest read_request(const sim::WorldConfig& world, const std::string&
     for (const std::string& line : hidden) spdlog::warn("{}", line);
     throw;
   }
+}
+
+/// What the building of a vehicle threw, for whoever asked: of an error in a file the place alone.
+[[noreturn]] void throw_without_files(const sim::ConfigError& error) {
+  static const std::regex place_in_a_file(R"(^(.+:[0-9]+:[0-9]+): .*)");
+  std::vector<std::string> lines;
+  for (const std::string& line : error.lines()) {
+    std::smatch place;
+    const bool of_a_file = !line.starts_with("spawn:") && std::regex_match(line, place, place_in_a_file);
+    if (of_a_file) spdlog::warn("{}", line);
+    lines.push_back(of_a_file ? place[1].str() + ": is wrong here; the file is not quoted" : line);
+  }
+  throw sim::ConfigError(lines);
 }
 
 }  // namespace
@@ -127,7 +141,11 @@ std::string Visitors::spawn(const std::string& client, const std::string& text) 
   // journal would allow more, and whoever listens would read the file.
   const sim::SpawnRequest request = read_request(world_.config(), text);
   if (journal_ != nullptr) write_down(client, "spawn", sim::self_contained_spawn(world_.config(), text));
-  return add(client, request);
+  try {
+    return add(client, request);
+  } catch (const sim::ConfigError& error) {
+    throw_without_files(error);
+  }
 }
 
 std::string Visitors::spawn_again(const std::string& client, const std::string& text) {

@@ -19,6 +19,11 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
+/// Words of the YAML parser about what it found, of which only the one about anchors has some of the file in it.
+bool is_free_of_quotes(const std::string& text) {
+  return text.starts_with("not valid YAML: ") && text.find("anchor") == std::string::npos;
+}
+
 }  // namespace
 
 std::string SourcePlace::text() const {
@@ -39,13 +44,13 @@ ConfigError::ConfigError(std::vector<std::string> lines)
 
 void Diagnostics::error(const SourcePlace& place, const std::string& who, const std::string& text) {
   if (lines_.size() > max_lines) return;
-  const bool hides = hides_files_ && place.origin == Origin::file && place.file != nullptr;
+  const bool hides = hides_files_ && place.origin == Origin::file && place.file != nullptr && !is_free_of_quotes(text);
   std::string line = place.text();
   for (const std::string& part : {who, text})
     if (!part.empty()) line += (line.empty() ? "" : ": ") + part;
   if (hides) {
     hidden_.push_back(printable(line));
-    line = place.text() + ": is wrong here (a file is not quoted to others)";
+    line = place.text() + ": is wrong here; the file is not quoted, for the command line does not name it";
   }
   // Names come from files: a line feed or an escape sequence in one must not reach the terminal.
   line = printable(line);

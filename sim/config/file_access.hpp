@@ -17,6 +17,9 @@ class FileAccess {
   /// of a world or vehicle file; see may_quote().
   FileAccess(std::vector<std::string> folders, std::vector<std::string> allowed, std::set<std::string> known_keys);
 
+  /// No serial port is opened: their paths do not matter.
+  void ignore_ports() { ignores_ports_ = true; }
+
   bool may_read(const std::string& path) const;
   /// A serial port: a relative path without `..`, which is made below the folder of the run, or one below what the
   /// command line names.
@@ -35,6 +38,7 @@ class FileAccess {
  private:
   std::vector<std::filesystem::path> folders_, allowed_;
   std::set<std::string> known_keys_;
+  bool ignores_ports_ = false;
 };
 
 /// Null: any file.

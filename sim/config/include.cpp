@@ -143,6 +143,11 @@ class Loader {
       fail(asked_at, "cannot read " + subject + ": it is a directory");
       return std::nullopt;
     }
+    // A pipe or a device may never end.  What the command line names may be one.
+    if (asked_at.line > 0 && fs::exists(path, status_error) && !fs::is_regular_file(path, status_error)) {
+      fail(asked_at, "cannot read " + subject + ": it is not a regular file");
+      return std::nullopt;
+    }
     errno = 0;
     std::ifstream stream(path, std::ios::binary);
     std::string text;

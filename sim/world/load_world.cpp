@@ -318,7 +318,9 @@ FileAccessPointer files_of(const std::string& world_file, const LoadOptions& opt
   std::vector<std::string> folders{folder.string(), (folder / ".." / "vehicles").string()};
   if (!shipped_folder().empty())
     for (const char* shipped : {"worlds", "vehicles"}) folders.push_back(shipped_folder() + "/" + shipped);
-  return std::make_shared<const FileAccess>(std::move(folders), options.allow_paths, known_keys());
+  auto files = std::make_shared<FileAccess>(std::move(folders), options.allow_paths, known_keys());
+  if (!options.serial_ports) files->ignore_ports();
+  return files;
 }
 
 LoadedWorld load_world(const std::string& path, const LoadOptions& options) {

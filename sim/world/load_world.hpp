@@ -17,6 +17,7 @@ struct LoadOptions {
   /// that or the shipped ones, and its buses must stay on this machine unless `allow_plugins`.
   bool only_own_files = false;
   std::vector<std::string> allow_paths = {};  ///< further folders and files
+  bool serial_ports = true;                   ///< they are opened: their paths count
 };
 
 /// Which files a world (or vehicle) in `world_file` may name; null: any.

@@ -57,6 +57,7 @@ sim::LoadedWorld load_empty_world(const ReplayLog& log) {
   try {
     sim::LoadOptions load;
     load.only_own_files = true;
+    load.serial_ports = false;
     load.encode_message = shoal::encode_own_message;
     empty.config.lockstep = sim::load_world_text(log.info.resolved_config, log.path, load).config.lockstep;
   } catch (const std::exception&) {

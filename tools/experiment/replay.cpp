@@ -41,6 +41,7 @@ struct Line {
 /// The world that is run: that of the log, or another one in its place.
 sim::LoadedWorld load(const ReplayLog& log, const ReplayOptions& options) {
   sim::LoadOptions load = options.load;
+  load.serial_ports = false;
   load.encode_message = shoal::encode_own_message;
   if (!options.world.empty()) {
     sim::LoadedWorld loaded = sim::load_world(options.world, load);
@@ -332,6 +333,7 @@ class Replay {
     try {
       sim::LoadOptions load = options_.load;
       load.sets.clear();
+      load.serial_ports = false;
       allow_files(log_.info.files, load);
       load.encode_message = shoal::encode_own_message;
       const sim::WorldConfig logged =

@@ -317,7 +317,7 @@ LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
   for (const StudyCase& each : study.config.cases) {
     sim::LoadOptions options = changes.load;
     options.sets = each.sets();
-    options.allow_plugins = study.config.launch;
+    options.allow_plugins = options.serial_ports = study.config.launch;
     options.encode_message = shoal::encode_own_message;
     const sim::LoadedWorld& world = study.worlds.emplace_back(sim::load_world(study.config.world, options));
     if (!study.config.duration_s && world.config.run.duration_s == 0)

@@ -15,8 +15,8 @@ namespace tools {
 
 namespace {
 
-bool is_vehicle_file(const std::string& path) {
-  sim::Diagnostics ignored;
+bool is_vehicle_file(const std::string& path, const sim::LoadOptions& options) {
+  sim::Diagnostics ignored(sim::files_of(path, options));
   const sim::ConfigNode node = sim::load_config_file(path, ignored);
   return node.find("vehicle") != nullptr || (node.find("bodies") != nullptr && node.find("vehicles") == nullptr);
 }
@@ -33,7 +33,7 @@ void check_textures(const sim::WorldConfig& world) {
 }
 
 void check(const std::string& path, const sim::LoadOptions& options) {
-  if (is_vehicle_file(path)) {
+  if (is_vehicle_file(path, options)) {
     const sim::VehicleConfig vehicle = sim::load_vehicle(path, options);
     std::cout << path << ": vehicle '" << vehicle.vehicle << "': " << vehicle.bodies.size() << " bodies, "
               << vehicle.joints.size() << " joints, " << vehicle.devices.size() << " devices\n";

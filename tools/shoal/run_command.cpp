@@ -54,6 +54,7 @@ sim::LoadedWorld load_from(RunArguments& arguments) {
 
 int run(RunArguments& arguments) {
   arguments.load.allow_plugins = arguments.run.launch;
+  arguments.load.serial_ports = arguments.run.serial_ports;
   arguments.run.speed = parse_speed(arguments.speed);
   arguments.run.duration_s = arguments.duration_s;
   arguments.load.encode_message = shoal::encode_own_message;

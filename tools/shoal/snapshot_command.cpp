@@ -27,6 +27,7 @@ bool restores(const Snapshot& snapshot, const std::string& path) {
   check_files(snapshot, path);
   sim::LoadOptions load;
   load.only_own_files = true;
+  load.serial_ports = false;
   allow_files(snapshot.files, load);
   load.encode_message = shoal::encode_own_message;
   const sim::LoadedWorld loaded = sim::load_world_text(snapshot.resolved_world, path, load);

@@ -128,13 +128,15 @@ TEST(SerialPort, MakesTheDirectory) {
 
 TEST(SerialPort, ReplacesWhatADeadRunLeft) {
   const ScratchFolder folder;
-  fs::create_symlink("/dev/pts/no-such-terminal", folder.file("modem"));
+  fs::create_symlink("/dev/pts/./99999", folder.file("modem"));
   const auto pty = open_serial_port("pty", folder.file("modem"));
   Program(folder.file("modem"), O_RDWR).write("x");
   EXPECT_EQ(read_from(*pty, 1), "x");
 
-  ASSERT_EQ(mkfifo(folder.file("fifo.in").c_str(), 0600), 0);
-  ASSERT_EQ(mkfifo(folder.file("fifo.out").c_str(), 0600), 0);
+  for (const char* name : {"fifo.in", "fifo.out"}) {
+    ASSERT_EQ(mkfifo(folder.file(name).c_str(), 0600), 0);
+    ASSERT_EQ(chmod(folder.file(name).c_str(), S_ISVTX | 0600), 0);  // the mark of a run
+  }
   const auto fifo = open_serial_port("fifo", folder.file("fifo"));
   Program(folder.file("fifo.in"), O_WRONLY).write("x");
   EXPECT_EQ(read_from(*fifo, 1), "x");
@@ -143,7 +145,7 @@ TEST(SerialPort, ReplacesWhatADeadRunLeft) {
 TEST(SerialPort, SaysThatItReplacedALinkOfADeadRun) {
   const ScratchFolder folder;
   const test_support::LogCapture log;
-  fs::create_symlink("/dev/pts/no-such-terminal", folder.file("modem"));
+  fs::create_symlink("/dev/pts/./99999", folder.file("modem"));
   const auto pty = open_serial_port("pty", folder.file("modem"));
   EXPECT_THAT(log.text(), testing::HasSubstr("serial port '" + folder.file("modem") +
                                              "': replaced the link that a killed run left"));
@@ -192,6 +194,48 @@ TEST(SerialPort, RefusesToReplaceAnyOtherFile) {
             "serial port '" + folder.file("fifo2.out") + "': cannot make the FIFO: File exists");
   EXPECT_FALSE(fs::exists(folder.file("fifo2.in")));  // nothing half made is left
   EXPECT_EQ(fs::file_size(folder.file("modem")), 8u);
+}
+
+/// Before: dangling links and FIFOs of anybody were removed.
+TEST(SerialPort, LeavesWhatOthersMade) {
+  const ScratchFolder folder;
+  for (const char* target : {"/dev/pts/no-such-terminal", "/nowhere/at/all", "gone"}) {
+    fs::remove(folder.file("modem"));
+    fs::create_symlink(target, folder.file("modem"));
+    EXPECT_THAT(error_of("pty", folder.file("modem")), testing::HasSubstr("is in use")) << target;
+    EXPECT_EQ(fs::read_symlink(folder.file("modem")), target);
+  }
+  ASSERT_EQ(mkfifo(folder.file("fifo.in").c_str(), 0600), 0);
+  EXPECT_EQ(error_of("fifo", folder.file("fifo")),
+            "serial port '" + folder.file("fifo.in") + "': cannot make the FIFO: File exists");
+  EXPECT_TRUE(fs::is_fifo(folder.file("fifo.in")));
+}
+
+TEST(SerialPort, RemovesOnlyWhatIsItsOwn) {
+  const ScratchFolder folder;
+  {
+    const auto pty = open_serial_port("pty", folder.file("modem"));
+    const auto fifo = open_serial_port("fifo", folder.file("fifo"));
+    for (const char* name : {"modem", "fifo.in"}) {
+      fs::remove(folder.file(name));
+      std::ofstream(folder.file(name)) << "precious";
+    }
+  }
+  EXPECT_EQ(fs::file_size(folder.file("modem")), 8u);
+  EXPECT_EQ(fs::file_size(folder.file("fifo.in")), 8u);
+  EXPECT_FALSE(fs::exists(folder.file("fifo.out")));
+}
+
+TEST(SerialPort, FollowsNoLinkBelowItsFolder) {
+  const ScratchFolder folder, home;
+  fs::create_directory_symlink(home.file(""), folder.file("way"));
+  for (const char* kind : {"pty", "fifo"})
+    for (const char* path : {"way/modem", "../modem", "a/../../modem", "/tmp/modem", "..", ".", ""}) {
+      EXPECT_THROW(bridges::open_serial_port(kind, folder.file(""), path), std::runtime_error) << path;
+      EXPECT_TRUE(fs::is_empty(home.file(""))) << path;
+    }
+  const auto port = bridges::open_serial_port("pty", folder.file(""), "a/b/modem");
+  EXPECT_TRUE(fs::is_symlink(folder.file("a/b/modem")));
 }
 
 TEST(SerialPort, RefusesThePortOfARunningProgram) {

@@ -57,7 +57,7 @@ TEST_F(FileAccessTest, TheCommandLineAllowsFoldersAndFiles) {
 TEST_F(FileAccessTest, APortIsMadeBelowTheRunOrWhereTheCommandLineAllowsIt) {
   EXPECT_TRUE(access().may_make("{vehicle}.modem"));
   EXPECT_TRUE(access().may_make("ports/a.modem"));
-  for (const std::string path : {"../a.modem", "ports/../../a", at("world/a.modem"), std::string("/tmp/x")})
+  for (const std::string& path : std::vector<std::string>{"../a.modem", "ports/../../a", at("world/a.modem"), "/tmp/x"})
     EXPECT_FALSE(access().may_make(path)) << path;
   EXPECT_TRUE(access({at("other")}).may_make(at("other/deep/{vehicle}.modem")));
   EXPECT_FALSE(access({at("other")}).may_make(at("other/../world/a.modem")));

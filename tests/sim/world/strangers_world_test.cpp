@@ -77,9 +77,9 @@ TEST_F(StrangersWorld, NamesFilesOfItsFolderItsSisterAndTheShippedOnes) {
 TEST_F(StrangersWorld, NamesNoOtherFiles) {
   fs::create_symlink(at("home/stone.obj"), at("world/link.obj"));
   fs::create_symlink(at("home/auv.yaml"), at("world/link.yaml"));
-  for (const std::string mesh : {std::string("../home/stone.obj"), at("home/stone.obj"), std::string("link.obj")})
+  for (const std::string& mesh : {std::string("../home/stone.obj"), at("home/stone.obj"), std::string("link.obj")})
     EXPECT_THAT(error_of(object(mesh)), HasSubstr("'mesh' " + rule)) << mesh;
-  for (const std::string file : {std::string("../home/auv.yaml"), at("home/auv.yaml"), std::string("link.yaml")})
+  for (const std::string& file : {std::string("../home/auv.yaml"), at("home/auv.yaml"), std::string("link.yaml")})
     EXPECT_THAT(error_of(entry(file)), HasSubstr("'file' " + rule)) << file;
   EXPECT_THAT(error_of("include: ../home/base.yaml\n"), HasSubstr(rule));
   EXPECT_THAT(error_of("materials: [{name: m, texture: {pattern: image, file: /etc/passwd}}]\n"),
@@ -88,7 +88,7 @@ TEST_F(StrangersWorld, NamesNoOtherFiles) {
               HasSubstr("'file' " + rule));
   // By way of a vehicle file, an override and a parameter.
   write("vehicles/thief.yaml", vehicle("../home/stone.obj"));
-  write("vehicles/open.yaml", "parameters: {mesh: stone.obj}\n" + vehicle("${mesh}"));
+  write("vehicles/open.yaml", "parameters: {mesh: stone.obj}\n" + vehicle("'${mesh}'"));
   EXPECT_THAT(error_of(entry("thief.yaml")), HasSubstr("'mesh' " + rule));
   EXPECT_THAT(
       error_of("vehicles: [{name: a, file: sister.yaml, overrides: {bodies.hull.parts.1.mesh: /etc/passwd}}]\n"),
@@ -106,7 +106,7 @@ TEST_F(StrangersWorld, NamesMoreWhenTheCommandLineAllowsIt) {
 }
 
 TEST_F(StrangersWorld, FilesBehindParametersAndOverridesAreMadeAbsoluteToo) {
-  write("vehicles/open.yaml", "parameters: {mesh: stone.obj}\n" + vehicle("${mesh}"));
+  write("vehicles/open.yaml", "parameters: {mesh: stone.obj}\n" + vehicle("'${mesh}'"));
   write("vehicles/other.obj", stone);
   ASSERT_EQ(error_of("vehicles: [{name: a, file: open.yaml, parameters: {mesh: other.obj}}]\n"), "");
   EXPECT_THAT(sim::to_yaml(loaded_.resolved), HasSubstr("mesh: " + at("vehicles/other.obj")));
@@ -116,12 +116,13 @@ TEST_F(StrangersWorld, FilesBehindParametersAndOverridesAreMadeAbsoluteToo) {
 }
 
 TEST_F(StrangersWorld, AFileThatItNamesIsNotQuoted) {
-  for (const std::string text : {secret + "\n", secret + ": 1\n", "[" + secret + "]\n",
-                                 secret + ": 1\n" + secret + ": 2\n", "!" + secret + " x\n", "\"" + secret}) {
+  for (const std::string& text :
+       std::vector<std::string>{secret + "\n", secret + ": 1\n", "[" + secret + "]\n",
+                                secret + ": 1\n" + secret + ": 2\n", "!" + secret + " x\n", "\"" + secret}) {
     write("world/notes.yaml", text);
-    for (const std::string world : {entry("notes.yaml"), std::string("include: notes.yaml\n")}) {
+    for (const std::string& world : {entry("notes.yaml"), std::string("include: notes.yaml\n")}) {
       const std::string error = error_of(world);
-      EXPECT_THAT(error, HasSubstr("notes.yaml:1:")) << text;
+      EXPECT_THAT(error, HasSubstr("notes.yaml:")) << text;
       EXPECT_THAT(error, Not(HasSubstr(secret))) << text;
     }
   }
@@ -132,7 +133,8 @@ TEST_F(StrangersWorld, AFileThatItNamesIsNotQuoted) {
   const std::string terrain =
       "objects: [{name: o, fixed: true, parts: [{shape: terrain, terrain: {source: ascii, file: notes.txt}}]}]\n";
   const std::string current = "medium: {water: {}, current: [{type: grid, file: notes.txt}]}\n";
-  for (const std::string& text : {terrain, current, object("notes.obj"), object("bad.obj"), object("bad.stl")}) {
+  for (const std::string& text :
+       std::vector<std::string>{terrain, current, object("notes.obj"), object("bad.obj"), object("bad.stl")}) {
     std::string error = error_of(text);
     if (error.empty()) {
       sim::InProcessBus bus;
@@ -148,6 +150,8 @@ TEST_F(StrangersWorld, AFileThatItNamesIsNotQuoted) {
 }
 
 TEST_F(StrangersWorld, AVehicleFileIsQuotedWhenItIsOne) {
+  write("vehicles/syntax.yaml", "shoal: 1\nbodies: [\n");
+  EXPECT_THAT(error_of(entry("syntax.yaml")), HasSubstr("not valid YAML: "));
   write("vehicles/broken.yaml", "shoal: 1\nbodies: heavy\n");
   EXPECT_THAT(error_of(entry("broken.yaml")), HasSubstr("'bodies' must be a list of maps, got 'heavy'"));
 }
@@ -160,7 +164,8 @@ TEST_F(StrangersWorld, MakesSerialPortsBelowTheRunOnly) {
            path + "\"}}]}}]\n";
   };
   EXPECT_EQ(error_of(modem("{vehicle}.modem")), "");
-  for (const std::string path : {std::string("/tmp/x"), std::string("../x"), at("world/x"), std::string("~/../../x")})
+  for (const std::string& path :
+       std::vector<std::string>{std::string("/tmp/x"), std::string("../x"), at("world/x"), std::string("~/../../x")})
     EXPECT_THAT(error_of(modem(path)), HasSubstr("'path' must be relative to the folder of the run")) << path;
   EXPECT_EQ(error_of(modem(at("home/x")), {at("home")}), "");
 }
@@ -169,7 +174,8 @@ TEST_F(StrangersWorld, ItsBusesStayOnTheMachine) {
   const auto bus = [](const std::string& url) { return "buses: [{name: b, lcm_url: \"" + url + "\"}]\n"; };
   EXPECT_EQ(error_of(bus("udpm://239.255.76.67:7668?ttl=0")), "");
   EXPECT_EQ(error_of(bus("udpm://239.255.76.67:7668")), "");
-  for (const std::string url : {"udpm://239.255.76.67:7668?ttl=1", "udpm://239.255.76.67:7668?ttl=01",
+  for (const std::string& url :
+       std::vector<std::string>{"udpm://239.255.76.67:7668?ttl=1", "udpm://239.255.76.67:7668?ttl=01",
                                 "tcpq://1.2.3.4:7700", "udpm://239.255.76.67:7668?ttl=0&ttl=2"}) {
     EXPECT_THAT(error_of(bus(url)), HasSubstr("'lcm_url' must stay on this machine")) << url;
     EXPECT_EQ(error_of(bus("udpm://239.255.76.67:7668"), {}, {"buses.b.lcm_url=" + url}), "") << url;
@@ -179,7 +185,7 @@ TEST_F(StrangersWorld, ItsBusesStayOnTheMachine) {
 
 /// Before: terrain.file and texture.file were opened, and the answer held the first word.
 TEST_F(StrangersWorld, APeerNamesNoFiles) {
-  write("vehicles/open.yaml", "parameters: {mesh: stone.obj, part: stone}\n" + vehicle("${part}.obj"));
+  write("vehicles/open.yaml", "parameters: {mesh: stone.obj, part: stone}\n" + vehicle("'${part}.obj'"));
   ASSERT_EQ(error_of(""), "");
   const auto refused = [&](const std::string& request) {
     try {
@@ -207,8 +213,9 @@ TEST_F(StrangersWorld, APeerNamesNoFiles) {
 
 TEST_F(StrangersWorld, APeerReadsNoFileInAnAnswer) {
   ASSERT_EQ(error_of(""), "");
-  for (const std::string text : {secret + ": 1\n", secret + "\n", "shoal: 1\nbodies: " + secret + "\n",
-                                 "shoal: 1\nbodies: [{name: " + secret + "}]\n"}) {
+  for (const std::string& text :
+       std::vector<std::string>{secret + ": 1\n", secret + "\n", "shoal: 1\nbodies: " + secret + "\n",
+                                "shoal: 1\nbodies: [{name: b, parts: " + secret + "}]\n"}) {
     write("world/notes.yaml", text);
     std::vector<std::string> hidden;
     try {
