@@ -26,6 +26,7 @@ ControlGuard::Opened ControlGuard::open(std::string_view channel, std::span<cons
   opened.signer = message.sender;
   if (const std::string why = refusal_of(message.sender, message.session, message.counter, channel); !why.empty())
     opened.refusal = called + why;
+  opened.came_before = !opened.refusal.empty();
   return opened;
 }
 

@@ -23,9 +23,10 @@ inline constexpr const char* needs_key_text =
 class ControlGuard {
  public:
   struct Opened {
-    sim::Bytes content;   ///< the message itself
-    std::string signer;   ///< who sent it, with the key of the run; empty: not signed, or not checked
-    std::string refusal;  ///< why it must not be obeyed; empty: it may
+    sim::Bytes content;        ///< the message itself
+    std::string signer;        ///< who sent it, with the key of the run; empty: not signed, or not checked
+    std::string refusal;       ///< why it must not be obeyed; empty: it may
+    bool came_before = false;  ///< refused as one that was sent again, by somebody or by the network
   };
   /// Senders whose counters are kept; the one that was heard the longest time ago makes room.
   static constexpr std::size_t max_senders = 10'000;

@@ -148,6 +148,7 @@ void LockstepService::take_ack(int line_index, const sim::Message& message) {
   std::string who;
   try {
     const ControlGuard::Opened opened = guard_.open(message.channel, message.payload);
+    if (opened.came_before) return;  // the network repeats messages as well
     const auto ack = shoal::decode<shoal::sim_ack_t>(opened.content, shoal::Finite::any);
     who = ack.client.substr(0, 60);
     check_permission(ack.client, "acknowledges a tick", opened);
@@ -217,6 +218,7 @@ void LockstepService::take_question(int line_index, const sim::Message& message)
   std::string who;
   try {
     const ControlGuard::Opened opened = guard_.open(message.channel, message.payload);
+    if (opened.came_before) return;  // the network repeats messages as well
     const auto question = shoal::decode<shoal::sim_resend_t>(opened.content, shoal::Finite::any);
     if (question.of_client) return;  // our own
     who = question.client.substr(0, 60);
@@ -264,6 +266,7 @@ void LockstepService::take_bundle(int line_index, const sim::Message& message) {
   std::string who;
   try {
     const ControlGuard::Opened opened = guard_.open(message.channel, message.payload);
+    if (opened.came_before) return;  // the network repeats messages as well
     const auto bundle = shoal::decode<shoal::sim_resent_t>(opened.content, shoal::Finite::any);
     if (!bundle.of_client) return;  // our own
     who = bundle.client.substr(0, 60);

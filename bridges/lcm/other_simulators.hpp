@@ -36,6 +36,8 @@ class OtherSimulators {
   /// nobody.  The buses are left alone after that.
   std::optional<std::string> look(const Wait& wait);
 
+  /// The run knows that it may not be alone.
+  bool shared() const { return shared_; }
   /// Whose question a request is: of another run that starts.
   enum class Asker { nobody, this_run, another_run, another_run_that_shares };
   Asker who_asks(const shoal::sim_control_request_t& request) const;

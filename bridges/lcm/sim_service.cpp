@@ -44,7 +44,7 @@ SimService::SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim:
 }
 
 void SimService::serve_vehicles(sim::Bus& network) {
-  lines_.push_back({&network, network.open_mailbox("sim.control"), nullptr});
+  lines_.push_back({&network, network.open_mailbox("sim.control"), network.open_mailbox("sim.info")});
 }
 
 void SimService::use_journal(RunJournal& journal) {
@@ -145,18 +145,15 @@ void SimService::handle_requests() {
       handle_request(line, *message);
     }
   for (Line& line : lines_)
-    while (line.infos) {
-      const auto info = line.infos->take();
-      if (!info) break;
-      if (info->from_outside) warn_of_another(line, "publishes");
-    }
+    while (const auto info = line.infos->take())
+      // Who shares the bus on purpose knows of the other.
+      if (info->from_outside && others_ != nullptr && !others_->shared()) warn_of_another(line, "publishes");
 }
 
 /// Of a run that starts, for other simulators.  Another one's is answered, and that run then refuses to start; one that
 /// starts all the same is warned of.
 bool SimService::is_own_question(Line& line, const shoal::sim_control_request_t& request) {
   const OtherSimulators::Asker asker = others_->who_asks(request);
-  if (asker == OtherSimulators::Asker::another_run && !line.infos) line.infos = line.network->open_mailbox("sim.info");
   if (asker == OtherSimulators::Asker::another_run_that_shares) warn_of_another(line, "was started with --lcm-shared");
   return asker == OtherSimulators::Asker::this_run;
 }
@@ -174,35 +171,40 @@ void SimService::handle_request(Line& line, const sim::Message& message) {
     if (others_ != nullptr && is_own_question(line, request)) return;
     // A run that starts has no key of ours, and changes nothing.
     const bool is_question = others_ != nullptr && others_->who_asks(request) != OtherSimulators::Asker::nobody;
-    if (!opened.refusal.empty() && !is_question) return refuse(line, request, opened.refusal);
+    if (!opened.refusal.empty() && !is_question) return refuse(line, request, opened);
     answer(line, request, opened.signer);
   } catch (const shoal::MessageError& error) {
     complain(std::string("sim.control: ") + error.what());
   }
 }
 
-/// Who is refused gets to know the rule, but a flood of such requests is not answered by a flood.
-void SimService::refuse(Line& line, const shoal::sim_control_request_t& request, const std::string& why) {
+/// Who is refused gets to know the rule, but a flood of such requests is not answered by a flood, and what came before
+/// was answered then: its sender must not take this for the answer.
+void SimService::refuse(Line& line, const shoal::sim_control_request_t& request, const ControlGuard::Opened& opened) {
   constexpr int max_answers_per_s = 10;
   constexpr std::size_t max_told = 100;
   ++refused_requests_;
   ++bad_messages_;
   if (told_refused_.size() < max_told && told_refused_.insert(sim::shortened(request.client)).second)
     spdlog::warn("sim.control: '{}' of client '{}' is refused: {} (more of this client are only counted)",
-                 sim::shortened(sim::printable(request.command)), sim::shortened(sim::printable(request.client)), why);
+                 sim::shortened(sim::printable(request.command)), sim::shortened(sim::printable(request.client)),
+                 opened.refusal);
   const auto now = std::chrono::steady_clock::now();
   if (now - refusals_since_ > std::chrono::seconds(1)) {
     refusals_since_ = now;
     refusals_answered_ = 0;
   }
-  if (++refusals_answered_ <= max_answers_per_s) reply(line, request, false, why);
+  if (opened.came_before || ++refusals_answered_ > max_answers_per_s) return;
+  // Without its session: a client that has joined must not be made to believe that it was dropped.
+  reply(line, request, 0, false, opened.refusal);
 }
 
-void SimService::reply(Line& line, const shoal::sim_control_request_t& request, bool ok, const std::string& text) {
+void SimService::reply(Line& line, const shoal::sim_control_request_t& request, std::int64_t session, bool ok,
+                       const std::string& text) {
   shoal::sim_control_reply_t reply;
   reply.id = request.id;
   reply.client = request.client;
-  reply.session = sim::session_in(request.text, request.command);
+  reply.session = session;
   reply.ok = ok;
   reply.text = ok ? text : sim::shortened(text, 4000);
   reply.utime = world_.epoch_us() + world_.now().count();  // after a rewind the new time
@@ -212,6 +214,7 @@ void SimService::reply(Line& line, const shoal::sim_control_request_t& request, 
 
 void SimService::answer(Line& line, const shoal::sim_control_request_t& request, const std::string& signer) {
   const bool on_own_bus = &line != &lines_.front();
+  const std::int64_t session = sim::session_in(request.text, request.command);
   if (!on_own_bus) visitors_.heard_of(request.client);  // vehicles are brought on the world's bus
   try {
     const bool of_lockstep = request.command == "join" || request.command == "leave" || request.command == "alive" ||
@@ -225,11 +228,11 @@ void SimService::answer(Line& line, const shoal::sim_control_request_t& request,
     if (!text) return;
     if (account != nullptr) account->use(request.client);
     if (lets_go || request.command != "leave") note(request, signer);
-    reply(line, request, true, *text);
+    reply(line, request, session, true, *text);
   } catch (const std::exception& error) {  // whatever it is, it is the request's fault, and the run goes on
     complain((on_own_bus ? "sim.control of " + lockstep_.called(number_of(line)) : "sim.control") + ": client '" +
              sim::shortened(request.client) + "': " + error.what());
-    reply(line, request, false, error.what());
+    reply(line, request, session, false, error.what());
   }
 }
 

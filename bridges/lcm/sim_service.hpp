@@ -77,14 +77,15 @@ class SimService {
   struct Line {
     sim::Bus* network;
     std::unique_ptr<sim::Mailbox> requests;
-    std::unique_ptr<sim::Mailbox> infos;  ///< of another simulator, once one has asked; null: none has
+    std::unique_ptr<sim::Mailbox> infos;  ///< of another simulator that was not found at the start
   };
 
   void publish_state();
   void handle_request(Line& line, const sim::Message& message);
-  void refuse(Line& line, const shoal::sim_control_request_t& request, const std::string& why);
+  void refuse(Line& line, const shoal::sim_control_request_t& request, const ControlGuard::Opened& opened);
   void answer(Line& line, const shoal::sim_control_request_t& request, const std::string& signer);
-  void reply(Line& line, const shoal::sim_control_request_t& request, bool ok, const std::string& text);
+  void reply(Line& line, const shoal::sim_control_request_t& request, std::int64_t session, bool ok,
+             const std::string& text);
   /// What came of it; nothing: it is not decided yet, and not answered.  Throws std::runtime_error that says why it was
   /// refused.
   std::optional<std::string> obey(Line& line, const shoal::sim_control_request_t& request);

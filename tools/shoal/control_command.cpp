@@ -130,7 +130,8 @@ int control(const ControlArguments& arguments) {
   if (!reply->ok) return exit_failed;
   if (leaves_paused(arguments.command, reply->text))
     std::cerr << "paused; go on with `shoal control resume"
-              << (arguments.lcm_url.empty() ? "" : " --lcm-url '" + arguments.lcm_url + "'") << "`\n";
+              << (arguments.lcm_url.empty() ? "" : " --lcm-url '" + arguments.lcm_url + "'")
+              << (arguments.run.empty() ? "" : " --run '" + arguments.run + "'") << "`\n";
   // A vehicle that goes with its client stays as long as we say that we live.
   while (arguments.stay && caught_signal() == 0) {
     if (!session.ask("alive", "", 0) && caught_signal() == 0) return exit_timeout;

@@ -131,6 +131,31 @@ TEST(OtherSimulators, OneThatAskedAndStartsAllTheSameIsWarnedOf) {
   EXPECT_THAT(said, testing::HasSubstr("another simulator publishes on the world's bus of this run"));
 }
 
+TEST(OtherSimulators, OneThatWasTooBusyToAnswerIsWarnedOfWhenItPublishes) {
+  test::TestWorld test(world);
+  bridges::LcmBus bus(lcm_test::own_url(3)), others_bus(lcm_test::own_url(3));
+  sim::MailGate gate(bus);
+  sim::RunControl control;
+  bridges::LockstepService lockstep(test.world, control);
+  lockstep.add_line(bus, gate);
+  bridges::SimService service(bus, bus, test.world, control, lockstep, {"{}", "test"});
+  OtherSimulators own({{"here", &bus}}, false);
+  EXPECT_FALSE(own.look([&](milliseconds time) { bus.wait_for_message(time); }));  // the other one is silent
+  service.use_others(own);
+  testing::internal::CaptureStdout();
+  others_bus.publish("sim.info", shoal::encode(shoal::sim_info_t{}), sim::Time(0));
+  others_bus.end_of_step();
+  std::string said;
+  EXPECT_TRUE(lcm_test::await([&] {
+    service.handle_requests();
+    said += testing::internal::GetCapturedStdout();
+    testing::internal::CaptureStdout();
+    return !said.empty();
+  }));
+  testing::internal::GetCapturedStdout();
+  EXPECT_THAT(said, testing::HasSubstr("another simulator publishes on the world's bus of this run"));
+}
+
 TEST(OtherSimulators, OneThatSharesDoesNotLookAndSaysSo) {
   lcm_test::ServedWorld first(world);
   OtherSimulators own({}, false);
