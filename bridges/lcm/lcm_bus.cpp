@@ -1,6 +1,5 @@
 #include "bridges/lcm/lcm_bus.hpp"
 
-#include <lcm/lcm.h>
 #include <spdlog/spdlog.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -24,8 +23,8 @@
 namespace bridges {
 namespace {
 
-/// Messages that are received before a thread that waits looks at its mailboxes.
-constexpr int most_at_once = 100;
+/// Calls of LcmConnection::handle() before a thread that waits looks at its mailboxes.
+constexpr int max_calls_at_once = 4;
 constexpr std::size_t max_echoes = 4096;
 
 class ChannelMailbox;
@@ -47,7 +46,7 @@ struct Channel {
   const std::string name;
   const std::function<void()> arrived;
   const std::function<void(Channel&)> unused;
-  lcm_subscription_t* subscription = nullptr;
+  LcmSubscription* subscription = nullptr;
   std::mutex mutex;  // also guards what is in the mailboxes
   std::vector<ChannelMailbox*> mailboxes;
   std::deque<std::size_t> echoes;  // hashes of what we sent and may hear again
@@ -150,8 +149,8 @@ void Channel::give_out(sim::Message message) {
   mailboxes.back()->add(std::move(message));
 }
 
-void on_message(const lcm_recv_buf_t* buffer, const char*, void* user) {
-  static_cast<Channel*>(user)->deliver({static_cast<const std::byte*>(buffer->data), buffer->data_size});
+void on_message(const LcmMessage& message, void* user) {
+  static_cast<Channel*>(user)->deliver(message.payload);
 }
 
 }  // namespace
@@ -207,7 +206,7 @@ struct LcmBus::Threads final : Arrivals::Port {
           [this](Channel& unused) { close_channel(unused); });
     if (channel->subscription == nullptr) {
       const std::lock_guard transmit(transmit_mutex);
-      channel->subscription = connection.subscribe(literal_channel_pattern(name), on_message, channel.get());
+      channel->subscription = connection.subscribe(name, on_message, channel.get());
     }
     return *channel;
   }
@@ -237,10 +236,10 @@ struct LcmBus::Threads final : Arrivals::Port {
 
   bool receive() override {
     const std::lock_guard lock(receive_mutex);
-    for (int i = 0; connected && i < most_at_once; ++i) {
-      // Another thread may have been faster.
-      if (!wait_readable(connection.fd(), -1, std::chrono::milliseconds(0))) break;
-      if (connection.handle()) continue;
+    auto handled = LcmConnection::Handled::more;
+    for (int i = 0; connected && handled == LcmConnection::Handled::more && i < max_calls_at_once; ++i)
+      handled = connection.handle();
+    if (connected && handled == LcmConnection::Handled::lost) {
       connected = false;
       spdlog::warn("the connection to {} is lost; messages are dropped from now on", connection.url());
     }

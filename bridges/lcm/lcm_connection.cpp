@@ -1,152 +1,33 @@
 #include "bridges/lcm/lcm_connection.hpp"
 
-#include <arpa/inet.h>
 #include <lcm/lcm.h>
-#include <netdb.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <array>
-#include <cerrno>
-#include <charconv>
-#include <cstdlib>
 #include <cstring>
-#include <optional>
-#include <string_view>
-#include <vector>
+#include <functional>
+#include <map>
+#include <mutex>
+
+#include "bridges/lcm/udp_inbox.hpp"
 
 namespace bridges {
 namespace {
+
+using namespace std::chrono_literals;
+
+// Every LCM program says this to itself when it starts.
+constexpr const char* self_test_channel = "LCM_SELF_TEST";
+constexpr std::chrono::seconds self_test_limit{10};
+constexpr int max_liblcm_batch = 25;
 
 [[noreturn]] void fail(const std::string& url, const std::string& what) {
   throw BusError("LCM URL '" + url + "': " + what);
 }
 
-struct UrlParts {
-  std::string kind;
-  std::string network;
-  std::vector<std::pair<std::string, std::string>> options;
-};
-
-UrlParts split_url(const std::string& url) {
-  const auto colon = url.find("://");
-  if (colon == std::string::npos) fail(url, "must look like udpm://239.255.76.67:7667?ttl=0");
-  UrlParts parts;
-  parts.kind = url.substr(0, colon);
-  std::string rest = url.substr(colon + 3);
-  std::string options;
-  if (const auto question = rest.find('?'); question != std::string::npos) {
-    options = rest.substr(question + 1);
-    rest.resize(question);
-  }
-  parts.network = rest;
-  while (!options.empty()) {
-    const auto end = options.find_first_of("&,");
-    const std::string option = options.substr(0, end);
-    options = end == std::string::npos ? "" : options.substr(end + 1);
-    const auto equals = option.find('=');
-    parts.options.emplace_back(option.substr(0, equals), equals == std::string::npos ? "" : option.substr(equals + 1));
-  }
-  return parts;
-}
-
-std::optional<int> whole_number(std::string_view text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-LcmEndpoint endpoint_of(const std::string& url, const UrlParts& parts) {
-  LcmEndpoint endpoint;
-  endpoint.kind = parts.kind;
-  if (parts.kind == "memq") return endpoint;
-  const bool tcp = parts.kind == "tcpq";
-  endpoint.address = tcp ? "127.0.0.1" : "239.255.76.67";
-  endpoint.port = tcp ? 7700 : 7667;
-  const auto colon = parts.network.find(':');
-  if (colon != 0 && !parts.network.empty()) endpoint.address = parts.network.substr(0, colon);
-  if (colon != std::string::npos) {
-    const auto port = whole_number(std::string_view(parts.network).substr(colon + 1));
-    if (!port || *port < 1 || *port > 65535)
-      fail(url, "the port must be 1 to 65535, got '" + parts.network.substr(colon + 1) + "'");
-    endpoint.port = *port;
-  }
-  in_addr address{};
-  if (!tcp && (inet_pton(AF_INET, endpoint.address.c_str(), &address) != 1 || !IN_MULTICAST(ntohl(address.s_addr))))
-    fail(url, "'" + endpoint.address + "' is no multicast address (224.0.0.0 to 239.255.255.255)");
-  return endpoint;
-}
-
-void check_options(const std::string& url, const UrlParts& parts) {
-  const bool multicast = parts.kind == "udpm" || parts.kind == "mpudpm";
-  for (const auto& [key, value] : parts.options) {
-    // mpudpm has options of its own, which liblcm checks.
-    if (parts.kind != "mpudpm" && !(multicast && (key == "ttl" || key == "recv_buf_size")))
-      fail(url, "unknown option '" + key + "'" + (multicast ? "; known options: recv_buf_size, ttl" : ""));
-    const auto number = whole_number(value);
-    if (key == "ttl" && (!number || *number < 0 || *number > 255))
-      fail(url, "ttl must be 0 to 255, got '" + value + "'");
-    if (key == "recv_buf_size" && (!number || *number < 1))
-      fail(url, "recv_buf_size must be a number of bytes, got '" + value + "'");
-  }
-}
-
-/// liblcm retries for ever, and then aborts, when nobody listens; so knock first.
-void require_tcp_server(const std::string& url, const LcmEndpoint& endpoint) {
-  addrinfo hints{};
-  hints.ai_family = AF_INET;
-  hints.ai_socktype = SOCK_STREAM;
-  addrinfo* found = nullptr;
-  const std::string port = std::to_string(endpoint.port);
-  if (const int error = getaddrinfo(endpoint.address.c_str(), port.c_str(), &hints, &found); error != 0)
-    fail(url, "host '" + endpoint.address + "': " + gai_strerror(error));
-  const int fd = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  int error = fd < 0 ? errno : 0;
-  if (error == 0 && connect(fd, found->ai_addr, found->ai_addrlen) != 0) {
-    error = errno;
-    if (error == EINPROGRESS) {
-      pollfd waiting{fd, POLLOUT, 0};
-      socklen_t size = sizeof(error);
-      if (poll(&waiting, 1, 2000) != 1)
-        error = ETIMEDOUT;
-      else
-        getsockopt(fd, SOL_SOCKET, SO_ERROR, &error, &size);
-    }
-  }
-  freeaddrinfo(found);
-  if (fd >= 0) close(fd);
-  if (error != 0)
-    fail(url, "no LCM server at " + endpoint.address + ":" + port + " (" + std::strerror(error) +
-                  "); start one (java lcm.lcm.TCPService, package liblcm-java) or use udpm://");
-}
-
-void ignore_message(const lcm_recv_buf_t*, const char*, void*) {}
-
-}  // namespace
-
-std::string resolve_lcm_url(const std::string& url) {
-  std::string chosen = url;
-  if (chosen.empty())
-    if (const char* variable = std::getenv("LCM_DEFAULT_URL")) chosen = variable;
-  if (chosen.empty()) chosen = default_lcm_url;
-  const UrlParts parts = split_url(chosen);
-  if (parts.kind == "file") fail(chosen, "the simulator writes logs with --record; lcm-logplayer plays them");
-  if (parts.kind != "udpm" && parts.kind != "mpudpm" && parts.kind != "tcpq" && parts.kind != "memq")
-    fail(chosen, "unknown kind '" + parts.kind + "'; known kinds: memq, mpudpm, tcpq, udpm");
-  check_options(chosen, parts);
-  endpoint_of(chosen, parts);
-  if (parts.kind != "udpm") return chosen;
-  for (const auto& [key, value] : parts.options)
-    if (key == "recv_buf_size") return chosen;
-  return chosen + (chosen.find('?') == std::string::npos ? "?" : "&") + "recv_buf_size=4194304";
-}
-
-LcmEndpoint lcm_endpoint(const std::string& resolved_url) {
-  return endpoint_of(resolved_url, split_url(resolved_url));
-}
-
+/// The regular expression that matches this channel only.
 std::string literal_channel_pattern(const std::string& channel) {
   std::string pattern;
   for (const char c : channel) {
@@ -156,48 +37,147 @@ std::string literal_channel_pattern(const std::string& channel) {
   return pattern;
 }
 
-LcmConnection::LcmConnection(const std::string& url) : url_(resolve_lcm_url(url)) {
+void ignore_message(const lcm_recv_buf_t*, const char*, void*) {}
+
+}  // namespace
+
+struct LcmSubscription {
+  UdpInbox::Subscription wish;
+  lcm_subscription_t* of_liblcm = nullptr;
+};
+
+namespace {
+
+void from_liblcm(const lcm_recv_buf_t* buffer, const char* channel, void* user) {
+  const auto& wish = static_cast<const LcmSubscription*>(user)->wish;
+  wish.handler({channel, {static_cast<const std::byte*>(buffer->data), buffer->data_size}, buffer->recv_utime},
+               wish.user);
+}
+
+}  // namespace
+
+struct LcmConnection::Subscriptions {
+  std::mutex mutex;
+  std::map<LcmSubscription*, std::unique_ptr<LcmSubscription>> all;
+};
+
+void LcmConnection::LcmDeleter::operator()(lcm_t* lcm) const {
+  lcm_destroy(lcm);
+}
+
+LcmConnection::LcmConnection(const std::string& url)
+    : url_(resolve_lcm_url(url)), subscriptions_(std::make_unique<Subscriptions>()) {
   const LcmEndpoint endpoint = lcm_endpoint(url_);
   is_tcp_ = endpoint.kind == "tcpq";
   if (is_tcp_) require_tcp_server(url_, endpoint);
-  lcm_ = lcm_create(url_.c_str());
-  if (lcm_ == nullptr)
-    fail(url_, "LCM cannot be used: no route for multicast, or the port is taken; run `shoal doctor`");
-  // The first subscription starts liblcm's receiver, which sends itself a message.
-  lcm_subscription_t* probe = lcm_subscribe(lcm_, "shoal\\.probe", ignore_message, nullptr);
-  fd_ = probe == nullptr ? -1 : lcm_get_fileno(lcm_);
-  if (fd_ < 0) {
-    lcm_destroy(lcm_);
-    fail(url_,
-         "LCM cannot receive its own messages (a firewall, or an interface without multicast); run `shoal "
-         "doctor`");
+  lcm_.reset(lcm_create(url_.c_str()));
+  if (!lcm_) fail(url_, "LCM cannot be used: no route for multicast, or the port is taken; run `shoal doctor`");
+  if (endpoint.kind == "udpm")
+    open_udp(endpoint);
+  else
+    open_liblcm_receiver();
+}
+
+LcmConnection::~LcmConnection() = default;
+
+void LcmConnection::open_udp(const LcmEndpoint& endpoint) {
+  try {
+    udp_ = std::make_unique<UdpInbox>(UdpReceiver::Options{.group = endpoint.address,
+                                                           .port = endpoint.port,
+                                                           .buffer_bytes = endpoint.recv_buf_bytes,
+                                                           .this_machine_only = endpoint.ttl == 0});
+  } catch (const BusError& error) {
+    fail(url_, std::string("LCM cannot receive: ") + error.what() + "; run `shoal doctor`");
   }
-  lcm_unsubscribe(lcm_, probe);
+  fd_ = udp_->fd();
+  test_itself();
 }
 
-LcmConnection::~LcmConnection() {
-  lcm_destroy(lcm_);
+void LcmConnection::test_itself() {
+  struct Test {
+    std::string said = "shoal " + std::to_string(getpid()) + " " +
+                       std::to_string(std::chrono::steady_clock::now().time_since_epoch().count());
+    bool heard = false;
+  } test;
+  LcmSubscription* own = subscribe(
+      self_test_channel,
+      [](const LcmMessage& message, void* user) {
+        auto& waiting = *static_cast<Test*>(user);
+        const std::string_view text(reinterpret_cast<const char*>(message.payload.data()), message.payload.size());
+        waiting.heard |= text == waiting.said;
+      },
+      &test);
+  const auto deadline = std::chrono::steady_clock::now() + self_test_limit;
+  while (!test.heard && std::chrono::steady_clock::now() < deadline) {
+    publish(self_test_channel, std::as_bytes(std::span(test.said)));
+    // It may be lost among others that come.
+    const auto again = std::chrono::steady_clock::now() + 100ms;
+    while (!test.heard && std::chrono::steady_clock::now() < again)
+      if (wait_readable(fd_, -1, 100ms)) handle();
+  }
+  unsubscribe(own);
+  if (!test.heard)
+    fail(url_,
+         "LCM cannot receive its own messages (a firewall, or an interface without multicast); run `shoal doctor`");
 }
 
-lcm_subscription_t* LcmConnection::subscribe(const std::string& pattern, Handler handler, void* user) {
-  lcm_subscription_t* subscription = lcm_subscribe(lcm_, pattern.c_str(), handler, user);
-  if (subscription == nullptr)
+void LcmConnection::open_liblcm_receiver() {
+  // The first subscription starts liblcm's receiver.
+  lcm_subscription_t* probe = lcm_subscribe(lcm_.get(), "shoal\\.probe", ignore_message, nullptr);
+  fd_ = probe == nullptr ? -1 : lcm_get_fileno(lcm_.get());
+  if (fd_ < 0) fail(url_, "LCM cannot receive; run `shoal doctor`");
+  lcm_unsubscribe(lcm_.get(), probe);
+}
+
+LcmSubscription* LcmConnection::subscribe(const std::string& channel, Handler handler, void* user) {
+  if (channel.empty()) throw BusError("LCM cannot subscribe to a channel without a name");
+  return add(channel, handler, user);
+}
+
+LcmSubscription* LcmConnection::subscribe_to_all(Handler handler, void* user) {
+  return add({}, handler, user);
+}
+
+LcmSubscription* LcmConnection::add(const std::string& channel, Handler handler, void* user) {
+  auto subscription = std::make_unique<LcmSubscription>();
+  subscription->wish = {channel, handler, user};
+  LcmSubscription* added = subscription.get();
+  {
+    const std::lock_guard lock(subscriptions_->mutex);
+    subscriptions_->all.emplace(added, std::move(subscription));
+  }
+  if (udp_) {
+    udp_->add(added->wish);
+    return added;
+  }
+  const std::string pattern = channel.empty() ? ".*" : literal_channel_pattern(channel);
+  added->of_liblcm = lcm_subscribe(lcm_.get(), pattern.c_str(), from_liblcm, added);
+  if (added->of_liblcm == nullptr)
     throw BusError("LCM cannot subscribe to '" + pattern + "' on " + url_ + "; run `shoal doctor`");
-  lcm_subscription_set_queue_capacity(subscription, 0);
-  return subscription;
+  lcm_subscription_set_queue_capacity(added->of_liblcm, 0);
+  return added;
 }
 
-void LcmConnection::unsubscribe(lcm_subscription_t* subscription) {
-  lcm_unsubscribe(lcm_, subscription);
+void LcmConnection::unsubscribe(LcmSubscription* subscription) {
+  // liblcm's thread may still use it, so that it stays.
+  if (!udp_) return static_cast<void>(lcm_unsubscribe(lcm_.get(), subscription->of_liblcm));
+  udp_->remove(subscription->wish);
+  const std::lock_guard lock(subscriptions_->mutex);
+  subscriptions_->all.erase(subscription);
 }
 
 bool LcmConnection::publish(const char* channel, std::span<const std::byte> payload) {
-  return lcm_publish(lcm_, channel, payload.data(), static_cast<unsigned>(payload.size())) == 0;
+  return lcm_publish(lcm_.get(), channel, payload.data(), static_cast<unsigned>(payload.size())) == 0;
 }
 
-bool LcmConnection::handle() {
-  const int result = lcm_handle(lcm_);
-  return result == 0 || lcm_get_fileno(lcm_) >= 0;
+LcmConnection::Handled LcmConnection::handle() {
+  if (udp_) return udp_->handle() ? Handled::more : Handled::all;
+  for (int i = 0; i < max_liblcm_batch; ++i) {
+    // liblcm would wait for a message; another thread may have been faster.
+    if (!wait_readable(fd_, -1, 0ms)) return Handled::all;
+    if (lcm_handle(lcm_.get()) != 0 && lcm_get_fileno(lcm_.get()) < 0) return Handled::lost;
+  }
+  return Handled::more;
 }
 
 void LcmConnection::shut_down() {

@@ -2,43 +2,43 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "bridges/lcm/bus_error.hpp"
+#include "bridges/lcm/lcm_url.hpp"
 
-// LCM's own types; its header stays out of ours.
+// LCM's own type; its header stays out of ours.
 struct _lcm_t;
-struct _lcm_subscription_t;
-struct _lcm_recv_buf_t;
 
 namespace bridges {
 
-/// ttl=0: messages stay on this machine.  The kernel's default buffer holds some 160 small messages only.
-inline constexpr const char* default_lcm_url = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304";
-/// LCM 1.3.1 never delivers larger messages.
-inline constexpr std::size_t max_lcm_message_bytes = std::size_t{16} << 20;
-
-/// The URL that is used: `url`, or LCM_DEFAULT_URL, or the default; recv_buf_size is added to a udpm URL
-/// without. Throws BusError on a URL that LCM would misunderstand.
-std::string resolve_lcm_url(const std::string& url);
-
-/// The regular expression that matches this channel only.
-std::string literal_channel_pattern(const std::string& channel);
-
-/// A multicast address and port, "239.255.76.67" and 7667.  Host and port of the server for tcpq.
-struct LcmEndpoint {
-  std::string kind;  ///< "udpm", "mpudpm", "tcpq", "memq"
-  std::string address;
-  int port = 0;
+/// A message as a handler gets it; valid until the handler returns.
+struct LcmMessage {
+  std::string_view channel;
+  std::span<const std::byte> payload;
+  std::int64_t wall_utime = 0;  ///< when it arrived, by the wall clock
 };
-LcmEndpoint lcm_endpoint(const std::string& resolved_url);
 
-/// An lcm_t that works.  liblcm 1.3.1 aborts or spins on one that does not, so the constructor tries
+struct LcmSubscription;
+class UdpInbox;
+
+/// A connection to LCM that works.  liblcm 1.3.1 aborts or spins on one that does not, so the constructor tries
 /// everything first and throws BusError.  A group that a firewall drops takes it ten seconds to notice.
+///
+/// liblcm sends, and receives over tcpq and memq.  Over udpm UdpReceiver receives: with ttl=0 what processes of this
+/// machine send to the multicast group, with a larger ttl what anybody sends to it.
 class LcmConnection {
  public:
-  using Handler = void (*)(const _lcm_recv_buf_t* buffer, const char* channel, void* user);
+  using Handler = void (*)(const LcmMessage& message, void* user);
+  enum class Handled {
+    all,   ///< nothing more has come
+    more,  ///< something more may have come
+    lost,  ///< the connection is lost
+  };
 
   explicit LcmConnection(const std::string& url = {});
   ~LcmConnection();
@@ -48,24 +48,37 @@ class LcmConnection {
   const std::string& url() const { return url_; }
   /// Readable when handle() has a message.
   int fd() const { return fd_; }
-  /// `pattern`: an anchored regular expression.  The queue inside liblcm is made unlimited.
-  _lcm_subscription_t* subscribe(const std::string& pattern, Handler handler, void* user);
+  /// What comes waits for handle(): over udpm in the kernel's buffer, else in liblcm without limit.  From any thread.
+  /// Throws BusError.
+  LcmSubscription* subscribe(const std::string& channel, Handler handler, void* user);
+  LcmSubscription* subscribe_to_all(Handler handler, void* user);
   /// The handler may be at work for a last time while this returns.
-  void unsubscribe(_lcm_subscription_t* subscription);
+  void unsubscribe(LcmSubscription* subscription);
   /// False when LCM refused it.
   bool publish(const char* channel, std::span<const std::byte> payload);
-  /// Calls the handlers for one message.  Only after fd() became readable.  False when the connection is
-  /// lost.
-  bool handle();
+  /// Calls the handlers for what has come, a few messages at most, without waiting.  By one thread at a time.
+  Handled handle();
   /// publish() and handle() may wait for another program: tcpq.
   bool may_block() const { return is_tcp_; }
   /// Makes a blocked publish() return, for good.
   void shut_down();
 
  private:
+  struct Subscriptions;
+  struct LcmDeleter {
+    void operator()(_lcm_t* lcm) const;
+  };
+  LcmSubscription* add(const std::string& channel, Handler handler, void* user);
+  void open_udp(const LcmEndpoint& endpoint);
+  void open_liblcm_receiver();
+  /// Throws BusError when what is sent does not come back.
+  void test_itself();
+
   std::string url_;
   bool is_tcp_ = false;
-  _lcm_t* lcm_ = nullptr;
+  std::unique_ptr<Subscriptions> subscriptions_;  // outlives liblcm's handlers
+  std::unique_ptr<_lcm_t, LcmDeleter> lcm_;
+  std::unique_ptr<UdpInbox> udp_;
   int fd_ = -1;
 };
 

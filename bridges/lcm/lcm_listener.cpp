@@ -1,46 +1,129 @@
 #include "bridges/lcm/lcm_listener.hpp"
 
-#include <lcm/lcm.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
 
 #include <algorithm>
 
 namespace bridges {
 namespace {
 
+using namespace std::chrono_literals;
+
 // Every LCM program says this to itself when it starts.
 constexpr std::string_view self_test_channel = "LCM_SELF_TEST";
+/// The listener's thread lets so much time pass from one look to the next: the kernel's buffer holds more.
+constexpr std::chrono::milliseconds between_looks{2};
+/// Then the one that waits has its turn.
+constexpr int max_batches = 64;
+constexpr std::size_t overhead_bytes = sizeof(Received) + 64;
 
-void keep(const lcm_recv_buf_t* buffer, const char* channel, void* user) {
-  if (channel == self_test_channel) return;
-  const auto* data = static_cast<const std::byte*>(buffer->data);
-  static_cast<std::deque<Received>*>(user)->push_back(
-      {channel, sim::Bytes(data, data + buffer->data_size), buffer->recv_utime});
+void raise(const FileDescriptor& event) {
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const auto written = write(event.number(), &one, sizeof one);
 }
 
 }  // namespace
 
-LcmListener::LcmListener(const std::string& url) : connection_(url) {}
+LcmListener::LcmListener(const std::string& url)
+    : connection_(url), wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)), stop_(eventfd(0, EFD_CLOEXEC)) {
+  if (wake_.number() < 0 || stop_.number() < 0) throw BusError("no file descriptor is left for the bus");
+  // Before the thread: of the two the first wakes.
+  readable_.add(connection_.fd(), &connection_);
+  readable_.add(wake_.number(), nullptr);
+  if (lcm_endpoint(connection_.url()).kind != "udpm") return;
+  readable_by_thread_.add(connection_.fd(), &connection_);
+  readable_by_thread_.add(stop_.number(), nullptr);
+  thread_ = std::thread([this] { receive_while_nobody_waits(); });
+}
+
+LcmListener::~LcmListener() {
+  raise(stop_);
+  if (thread_.joinable()) thread_.join();
+}
+
+void LcmListener::keep(const LcmMessage& message, void* listener) {
+  if (message.channel == self_test_channel) return;
+  auto& self = *static_cast<LcmListener*>(listener);
+  Received received{std::string(message.channel), {message.payload.begin(), message.payload.end()}, message.wall_utime};
+  bool waiting = false;
+  {
+    const std::lock_guard lock(self.mutex_);
+    self.arrived_bytes_ += received.payload.size() + overhead_bytes;
+    self.arrived_.push_back(std::move(received));
+    while (self.arrived_bytes_ > max_waiting_bytes && self.arrived_.size() > 1) {
+      self.arrived_bytes_ -= self.arrived_.front().payload.size() + overhead_bytes;
+      self.arrived_.pop_front();
+    }
+    waiting = std::exchange(self.waiting_, false);
+  }
+  if (waiting) raise(self.wake_);
+}
 
 void LcmListener::listen(const std::string& channel) {
-  connection_.subscribe(literal_channel_pattern(channel), keep, &arrived_);
+  connection_.subscribe(channel, keep, this);
 }
 
 void LcmListener::listen_to_all() {
-  connection_.subscribe(".*", keep, &arrived_);
+  connection_.subscribe_to_all(keep, this);
+}
+
+std::optional<Received> LcmListener::take() {
+  const std::lock_guard lock(mutex_);
+  waiting_ = arrived_.empty();
+  if (arrived_.empty()) return std::nullopt;
+  Received message = std::move(arrived_.front());
+  arrived_.pop_front();
+  arrived_bytes_ -= message.payload.size() + overhead_bytes;
+  return message;
 }
 
 std::optional<Received> LcmListener::next(std::chrono::milliseconds timeout) {
   using std::chrono::steady_clock;
   const auto deadline = steady_clock::now() + timeout;
   std::chrono::milliseconds left = timeout;
-  while (arrived_.empty() && wait_readable(connection_.fd(), -1, left)) {
-    if (!connection_.handle()) throw BusError("the connection to " + url() + " is lost");
+  while (true) {
+    if (auto message = take()) return message;
+    const PollSet::Readable readable = readable_.wait(left);
+    if (readable.count == 0) break;
+    for (std::size_t i = 0; i < readable.count; ++i) {
+      if (readable.tags[i] == nullptr) {
+        std::uint64_t times = 0;
+        [[maybe_unused]] const auto got = read(wake_.number(), &times, sizeof times);
+      } else {
+        {
+          const std::lock_guard lock(mutex_);
+          waiting_ = false;  // this thread is awake
+        }
+        receive();
+      }
+    }
     left = std::max(std::chrono::ceil<std::chrono::milliseconds>(deadline - steady_clock::now()), left * 0);
   }
-  if (arrived_.empty()) return std::nullopt;
-  Received message = std::move(arrived_.front());
-  arrived_.pop_front();
+  auto message = take();
+  const std::lock_guard lock(mutex_);
+  waiting_ = false;
   return message;
+}
+
+void LcmListener::receive() {
+  const std::lock_guard lock(receive_mutex_);
+  if (connection_.handle() == LcmConnection::Handled::lost) throw BusError("the connection to " + url() + " is lost");
+}
+
+void LcmListener::receive_while_nobody_waits() {
+  const auto stopped = [](const PollSet::Readable& readable) {
+    return std::any_of(readable.tags.begin(), readable.tags.begin() + readable.count,
+                       [](const void* tag) { return tag == nullptr; });
+  };
+  while (!stopped(readable_by_thread_.wait(std::chrono::milliseconds(-1)))) {
+    {
+      const std::lock_guard lock(receive_mutex_);
+      for (int i = 0; i < max_batches && connection_.handle() == LcmConnection::Handled::more; ++i) {
+      }
+    }
+    if (wait_readable(stop_.number(), -1, between_looks)) return;
+  }
 }
 
 bool LcmListener::publish(std::string_view channel, std::span<const std::byte> payload) {

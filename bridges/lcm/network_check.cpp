@@ -324,7 +324,7 @@ std::vector<Finding> check_network(const std::string& url, std::chrono::millisec
     return {{"LCM URL", Verdict::bad, error.what(), {}}};
   }
   std::vector<Finding> findings{{"LCM URL", Verdict::ok, resolved, {}}};
-  if (endpoint.kind == "udpm" || endpoint.kind == "mpudpm") {
+  if (endpoint.kind == "udpm") {
     findings.push_back(check_route(endpoint));
     findings.push_back(check_buffers());
     findings.push_back(check_port(endpoint));

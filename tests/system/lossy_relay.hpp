@@ -1,7 +1,5 @@
 #pragma once
 
-#include <lcm/lcm.h>
-
 #include <atomic>
 #include <map>
 #include <optional>
@@ -26,7 +24,7 @@ class LossyRelay {
     other_.twin = &one_;
     for (Side* side : {&one_, &other_}) {
       side->relay = this;
-      side->lcm.subscribe(".*", on_message, side);
+      side->lcm.subscribe_to_all(on_message, side);
     }
     thread_ = std::thread([this] { run(); });
   }
@@ -52,10 +50,9 @@ class LossyRelay {
     std::optional<std::pair<std::string, sim::Bytes>> held;
   };
 
-  static void on_message(const lcm_recv_buf_t* buffer, const char* channel, void* user) {
+  static void on_message(const bridges::LcmMessage& message, void* user) {
     auto& side = *static_cast<Side*>(user);
-    const auto* data = static_cast<const std::byte*>(buffer->data);
-    side.relay->pass(side, channel, {data, data + buffer->data_size});
+    side.relay->pass(side, std::string(message.channel), {message.payload.begin(), message.payload.end()});
   }
 
   bool happens(double probability) { return std::uniform_real_distribution<>(0, 1)(random_) < probability; }

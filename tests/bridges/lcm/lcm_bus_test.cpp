@@ -60,13 +60,17 @@ TEST(LcmUrl, HasTheLargeBufferUnlessTheUserChoseOne) {
 
 TEST(LcmUrl, ErrorsSayWhatIsWrong) {
   EXPECT_EQ(url_error("7667"), "LCM URL '7667': must look like udpm://239.255.76.67:7667?ttl=0");
-  EXPECT_EQ(url_error("upd://"), "LCM URL 'upd://': unknown kind 'upd'; known kinds: memq, mpudpm, tcpq, udpm");
+  EXPECT_EQ(url_error("upd://"), "LCM URL 'upd://': unknown kind 'upd'; known kinds: memq, tcpq, udpm");
+  EXPECT_EQ(url_error("mpudpm://"),
+            "LCM URL 'mpudpm://': mpudpm is not supported: one datagram of anybody can crash liblcm's receiver; use "
+            "udpm or tcpq");
   EXPECT_EQ(url_error("udpm://10.0.0.1:7667"),
             "LCM URL 'udpm://10.0.0.1:7667': '10.0.0.1' is no multicast address (224.0.0.0 to 239.255.255.255)");
   EXPECT_EQ(url_error("udpm://239.1.1.1:70000"),
             "LCM URL 'udpm://239.1.1.1:70000': the port must be 1 to 65535, got '70000'");
   EXPECT_EQ(url_error("udpm://?tll=1"),
             "LCM URL 'udpm://?tll=1': unknown option 'tll'; known options: recv_buf_size, ttl");
+  EXPECT_EQ(url_error("udpm://?ttl=0&ttl=1"), "LCM URL 'udpm://?ttl=0&ttl=1': option 'ttl' is given twice");
   EXPECT_EQ(url_error("udpm://?ttl=x"), "LCM URL 'udpm://?ttl=x': ttl must be 0 to 255, got 'x'");
 }
 

@@ -15,10 +15,13 @@
 
 #include "bridges/lcm/lcm_bus.hpp"
 #include "lcm_test_support.hpp"
+#include "own_network.hpp"
 
 namespace bridges {
 namespace {
 
+using lcm_test::in_own_network;
+using lcm_test::not_permitted;
 using lcm_test::own_url;
 using Verdict = Finding::Verdict;
 
@@ -30,38 +33,6 @@ const Finding& named(const std::vector<Finding>& findings, const std::string& na
 
 bool has_command(const Finding& finding, const std::string& command) {
   return std::find(finding.commands.begin(), finding.commands.end(), command) != finding.commands.end();
-}
-
-bool write_file(const char* path, const std::string& text) {
-  return !!(std::ofstream(path) << text << std::flush);
-}
-
-/// As `unshare -rn`: a network of its own, with nothing but a loopback interface that is down, and its root.
-bool enter_own_network() {
-  const std::string uid = std::to_string(getuid()), gid = std::to_string(getgid());
-  if (unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) return false;
-  return write_file("/proc/self/setgroups", "deny") && write_file("/proc/self/uid_map", "0 " + uid + " 1") &&
-         write_file("/proc/self/gid_map", "0 " + gid + " 1");
-}
-
-constexpr int not_permitted = 77;
-
-/// The answer of `judge`, called in a child process in a network of its own: 0 yes, 1 no, or not_permitted.
-int in_own_network(const std::function<bool()>& judge) {
-  const pid_t child = fork();
-  if (child == 0) {
-    if (!enter_own_network()) _exit(not_permitted);
-    bool good = false;
-    try {
-      good = judge();
-    } catch (const std::exception& error) {
-      std::fprintf(stderr, "%s\n", error.what());
-    }
-    _exit(good ? 0 : 1);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 TEST(NetworkCheck, FindsNothingWrongWhereTheTestsRun) {

@@ -1,0 +1,154 @@
+#include "bridges/lcm/lcm_url.hpp"
+
+#include <arpa/inet.h>
+#include <netdb.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace bridges {
+namespace {
+
+[[noreturn]] void fail(const std::string& url, const std::string& what) {
+  throw BusError("LCM URL '" + url + "': " + what);
+}
+
+struct UrlParts {
+  std::string kind;
+  std::string network;
+  std::vector<std::pair<std::string, std::string>> options;
+};
+
+UrlParts split_url(const std::string& url) {
+  const auto colon = url.find("://");
+  if (colon == std::string::npos) fail(url, "must look like udpm://239.255.76.67:7667?ttl=0");
+  UrlParts parts;
+  parts.kind = url.substr(0, colon);
+  std::string rest = url.substr(colon + 3);
+  std::string options;
+  if (const auto question = rest.find('?'); question != std::string::npos) {
+    options = rest.substr(question + 1);
+    rest.resize(question);
+  }
+  parts.network = rest;
+  while (!options.empty()) {
+    const auto end = options.find_first_of("&,");
+    const std::string option = options.substr(0, end);
+    options = end == std::string::npos ? "" : options.substr(end + 1);
+    const auto equals = option.find('=');
+    parts.options.emplace_back(option.substr(0, equals), equals == std::string::npos ? "" : option.substr(equals + 1));
+  }
+  return parts;
+}
+
+std::optional<int> whole_number(std::string_view text) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+LcmEndpoint endpoint_of(const std::string& url, const UrlParts& parts) {
+  LcmEndpoint endpoint;
+  endpoint.kind = parts.kind;
+  if (parts.kind == "memq") return endpoint;
+  const bool tcp = parts.kind == "tcpq";
+  endpoint.address = tcp ? "127.0.0.1" : "239.255.76.67";
+  endpoint.port = tcp ? 7700 : 7667;
+  const auto colon = parts.network.find(':');
+  if (colon != 0 && !parts.network.empty()) endpoint.address = parts.network.substr(0, colon);
+  if (colon != std::string::npos) {
+    const auto port = whole_number(std::string_view(parts.network).substr(colon + 1));
+    if (!port || *port < 1 || *port > 65535)
+      fail(url, "the port must be 1 to 65535, got '" + parts.network.substr(colon + 1) + "'");
+    endpoint.port = *port;
+  }
+  in_addr address{};
+  if (!tcp && (inet_pton(AF_INET, endpoint.address.c_str(), &address) != 1 || !IN_MULTICAST(ntohl(address.s_addr))))
+    fail(url, "'" + endpoint.address + "' is no multicast address (224.0.0.0 to 239.255.255.255)");
+  for (const auto& [key, value] : parts.options) {
+    if (key == "ttl") endpoint.ttl = whole_number(value).value_or(0);
+    if (key == "recv_buf_size") endpoint.recv_buf_bytes = whole_number(value).value_or(0);
+  }
+  return endpoint;
+}
+
+void check_options(const std::string& url, const UrlParts& parts) {
+  const bool multicast = parts.kind == "udpm";
+  std::set<std::string> seen;
+  for (const auto& [key, value] : parts.options) {
+    if (!multicast || (key != "ttl" && key != "recv_buf_size"))
+      fail(url, "unknown option '" + key + "'" + (multicast ? "; known options: recv_buf_size, ttl" : ""));
+    if (!seen.insert(key).second) fail(url, "option '" + key + "' is given twice");
+    const auto number = whole_number(value);
+    if (key == "ttl" && (!number || *number < 0 || *number > 255))
+      fail(url, "ttl must be 0 to 255, got '" + value + "'");
+    if (key == "recv_buf_size" && (!number || *number < 1))
+      fail(url, "recv_buf_size must be a number of bytes, got '" + value + "'");
+  }
+}
+
+}  // namespace
+
+std::string resolve_lcm_url(const std::string& url) {
+  std::string chosen = url;
+  if (chosen.empty())
+    if (const char* variable = std::getenv("LCM_DEFAULT_URL")) chosen = variable;
+  if (chosen.empty()) chosen = default_lcm_url;
+  const UrlParts parts = split_url(chosen);
+  if (parts.kind == "file") fail(chosen, "the simulator writes logs with --record; lcm-logplayer plays them");
+  if (parts.kind == "mpudpm")
+    fail(chosen, "mpudpm is not supported: one datagram of anybody can crash liblcm's receiver; use udpm or tcpq");
+  if (parts.kind != "udpm" && parts.kind != "tcpq" && parts.kind != "memq")
+    fail(chosen, "unknown kind '" + parts.kind + "'; known kinds: memq, tcpq, udpm");
+  check_options(chosen, parts);
+  endpoint_of(chosen, parts);
+  if (parts.kind != "udpm") return chosen;
+  for (const auto& [key, value] : parts.options)
+    if (key == "recv_buf_size") return chosen;
+  return chosen + (chosen.find('?') == std::string::npos ? "?" : "&") + "recv_buf_size=4194304";
+}
+
+LcmEndpoint lcm_endpoint(const std::string& resolved_url) {
+  return endpoint_of(resolved_url, split_url(resolved_url));
+}
+
+void require_tcp_server(const std::string& url, const LcmEndpoint& endpoint) {
+  addrinfo hints{};
+  hints.ai_family = AF_INET;
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  const std::string port = std::to_string(endpoint.port);
+  if (const int error = getaddrinfo(endpoint.address.c_str(), port.c_str(), &hints, &found); error != 0)
+    fail(url, "host '" + endpoint.address + "': " + gai_strerror(error));
+  const int fd = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  int error = fd < 0 ? errno : 0;
+  if (error == 0 && connect(fd, found->ai_addr, found->ai_addrlen) != 0) {
+    error = errno;
+    if (error == EINPROGRESS) {
+      pollfd waiting{fd, POLLOUT, 0};
+      socklen_t size = sizeof(error);
+      if (poll(&waiting, 1, 2000) != 1)
+        error = ETIMEDOUT;
+      else
+        getsockopt(fd, SOL_SOCKET, SO_ERROR, &error, &size);
+    }
+  }
+  freeaddrinfo(found);
+  if (fd >= 0) close(fd);
+  if (error != 0)
+    fail(url, "no LCM server at " + endpoint.address + ":" + port + " (" + std::strerror(error) +
+                  "); start one (java lcm.lcm.TCPService, package liblcm-java) or use udpm://");
+}
+
+}  // namespace bridges

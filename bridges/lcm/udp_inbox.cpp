@@ -1,0 +1,88 @@
+#include "bridges/lcm/udp_inbox.hpp"
+
+#include <linux/filter.h>
+
+#include <algorithm>
+
+#include "bridges/lcm/channel_filter.hpp"
+
+namespace bridges {
+namespace {
+
+/// Unwanted messages, since the subscriptions changed, that are worth a filter.
+constexpr std::uint64_t unwanted_worth_a_filter = 64;
+/// While vehicles come and go the filter would be made again and again.
+constexpr std::chrono::milliseconds quiet_before_filter{100};
+
+}  // namespace
+
+void UdpInbox::add(const Subscription& subscription) {
+  const std::lock_guard lock(mutex_);
+  (subscription.channel.empty() ? to_all_ : by_channel_[subscription.channel])
+      .push_back({&subscription, subscription.handler, subscription.user});
+  subscriptions_changed();
+}
+
+void UdpInbox::remove(const Subscription& subscription) {
+  const std::lock_guard lock(mutex_);
+  const auto is_it = [&](const Call& each) { return each.of == &subscription; };
+  if (subscription.channel.empty()) {
+    std::erase_if(to_all_, is_it);
+  } else if (const auto channel = by_channel_.find(subscription.channel); channel != by_channel_.end()) {
+    std::erase_if(channel->second, is_it);
+    if (channel->second.empty()) by_channel_.erase(channel);
+  }
+  subscriptions_changed();
+}
+
+void UdpInbox::subscriptions_changed() {
+  // At once: a filter that is too old would drop what is wanted now.
+  if (filtering_) receiver_.set_filter({});
+  filtering_ = filter_refused_ = false;
+  changed_at_ = Clock::now();
+}
+
+bool UdpInbox::handle() {
+  const bool more = receiver_.receive(
+      [this](std::string_view channel) {
+        const bool is_wanted = wanted(channel);
+        if (!is_wanted) ++unwanted_;
+        return is_wanted;
+      },
+      [this](const LcmReassembly::Message& message, std::int64_t at_us) { deliver(message, at_us); });
+  if (unwanted_ - unwanted_before_ >= unwanted_worth_a_filter) filter_when_it_pays();
+  return more;
+}
+
+bool UdpInbox::wanted(std::string_view channel) const {
+  const std::lock_guard lock(mutex_);
+  return !to_all_.empty() || by_channel_.contains(channel);
+}
+
+void UdpInbox::deliver(const LcmReassembly::Message& message, std::int64_t received_at_us) {
+  called_.clear();
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto channel = by_channel_.find(message.channel); channel != by_channel_.end()) called_ = channel->second;
+    called_.insert(called_.end(), to_all_.begin(), to_all_.end());
+  }
+  if (called_.empty()) ++unwanted_;
+  for (const Call& each : called_) each.handler({message.channel, message.payload, received_at_us}, each.user);
+}
+
+void UdpInbox::filter_when_it_pays() {
+  const std::lock_guard lock(mutex_);
+  if (filtering_ || filter_refused_ || !to_all_.empty() || Clock::now() - changed_at_ < quiet_before_filter) return;
+  unwanted_before_ = unwanted_;
+  std::vector<std::string> channels;
+  for (const auto& [channel, subscriptions] : by_channel_) channels.push_back(channel);
+  auto program = channel_filter(channels);
+  filtering_ = !program.empty() && receiver_.set_filter(std::move(program));
+  filter_refused_ = !filtering_;
+}
+
+UdpInbox::Counts UdpInbox::counts() const {
+  return {receiver_.counts().datagrams, receiver_.counts().foreign, receiver_.reassembly_counts().bad, unwanted_};
+}
+
+}  // namespace bridges
