@@ -120,6 +120,12 @@ class Loader {
       fail(asked_at, "cannot read " + subject + ": it is a directory");
       return std::nullopt;
     }
+    // A pipe without a writer would never end, a terminal would wait for a world to be typed.
+    if (fs::exists(path, status_error) && !fs::is_regular_file(path, status_error)) {
+      fail(asked_at, "cannot read " + subject + ": it is a pipe or a device" +
+                         (asked_at.line > 0 ? "" : "; 'shoal run --special-files' allows that"));
+      return std::nullopt;
+    }
     errno = 0;
     std::ifstream stream(path, std::ios::binary);
     std::string text;

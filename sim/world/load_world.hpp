@@ -13,6 +13,8 @@ struct LoadOptions {
   std::optional<std::int64_t> seed;   ///< instead of the file's
   bool allow_plugins = false;         ///< load the `plugins:` of the world, which then run code
   EncodeMessage encode_message = {};  ///< for events that publish messages
+  bool special_files = false;         ///< the world may come from a pipe or a device; it cannot include others then
+  bool resolve = true;                ///< put the vehicle files into LoadedWorld::resolved
 };
 
 struct LoadedWorld {

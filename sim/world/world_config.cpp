@@ -124,6 +124,8 @@ void LimitsConfig::read(ParamReader& in) {
   in.read("bodies_per_vehicle", bodies_per_vehicle, between(1, 100000), "of a vehicle that a client brings");
   in.read("devices_per_vehicle", devices_per_vehicle, between(0, 100000), "of a vehicle that a client brings");
   in.read("parts", parts, between(1, 100000), "of one vehicle or object that comes while the world runs");
+  in.read("step_cpu_s", step_cpu_s, between(0, 1e6),
+          "CPU time of a step, of the thread that simulates: the run ends after a step that took longer; 0: no limit");
 }
 
 namespace {

@@ -117,7 +117,8 @@ struct LimitsConfig {
   int objects = 20000;
   int bodies_per_vehicle = 100;
   int devices_per_vehicle = 100;
-  int parts = 200;  ///< of one vehicle or object
+  int parts = 200;        ///< of one vehicle or object
+  double step_cpu_s = 0;  ///< CPU time of a step of the world; a longer one ends the run.  0: none
   void read(ParamReader& in);
 };
 
@@ -152,6 +153,8 @@ struct WorldConfig {
   std::vector<ZoneConfig> zones;
   std::vector<ActorConfig> actors;
   std::vector<EventConfig> events;
+  /// For checks of a file: of very many vehicles of one kind only the first ones get their devices.
+  bool few_devices_per_kind = false;
   EncodeMessage encode_message;  ///< for actions that publish; empty: they cannot
   double state_rate_hz = 10;     ///< of sim.state and sim.clock
 

@@ -20,6 +20,7 @@ struct RunOptions {
   bool lcm_shared = false;           ///< other simulators may be on the same buses
   std::string record;                ///< file for the LCM event log; empty: none
   bool overwrite = false;            ///< of the record
+  bool special_files = false;        ///< the record may be a pipe or a device
   std::string results;               ///< directory; empty: none
   std::string name = "run";          ///< what {run} stands for in paths of serial ports and in commands of processes
   bool pictures = true;              ///< in the results
