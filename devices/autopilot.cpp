@@ -266,8 +266,8 @@ bool Autopilot::needs_bottom() const {
 }
 
 void Autopilot::Reading::visit_state(sim::StateArchive& archive) {
-  archive(mode, speed_mps, heading_rad, depth_m, altitude_m, speed_error_mps, heading_error_rad, depth_error_m,
-          altitude_error_m, cross_track_m, distance_m, saturated);
+  archive.not_only_finite(mode, speed_mps, heading_rad, depth_m, altitude_m, speed_error_mps, heading_error_rad,
+                          depth_error_m, altitude_error_m, cross_track_m, distance_m, saturated);
 }
 
 void Autopilot::visit_state(sim::StateArchive& archive) {

@@ -21,7 +21,8 @@ class Clock final : public sim::Sensor {
     double error_s = 0;
     double rate_error = 0;  ///< mean since the last sample
     void visit_state(sim::StateArchive& archive) {
-      archive(disciplined, since_fix_s, estimated_std_s, error_s, rate_error);
+      archive(disciplined, since_fix_s, estimated_std_s);
+      archive.not_only_finite(error_s, rate_error);
     }
   };
 

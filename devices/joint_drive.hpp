@@ -55,7 +55,10 @@ class JointDrive final : public sim::Actuator {
     double velocity = 0, max_force = 0;
     double low_stop = -std::numeric_limits<double>::infinity(), high_stop = std::numeric_limits<double>::infinity();
     bool has_stops = true;
-    void visit_state(sim::StateArchive& archive) { archive(velocity, max_force, low_stop, high_stop); }
+    void visit_state(sim::StateArchive& archive) {
+      archive(velocity, max_force);
+      archive.not_only_finite(low_stop, high_stop);
+    }
   };
   Axis with(Axis axis, const Settings& settings) const;
   void check_stops(const Axis& axis, const Settings& settings) const;

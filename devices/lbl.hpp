@@ -28,7 +28,10 @@ class Lbl final : public sim::Sensor {
   struct Range {
     std::string transponder;
     double travel_time_s = 0, range_m = 0;  ///< NaN: no answer
-    void visit_state(sim::StateArchive& archive) { archive(transponder, travel_time_s, range_m); }
+    void visit_state(sim::StateArchive& archive) {
+      archive(transponder);
+      archive.not_only_finite(travel_time_s, range_m);
+    }
   };
 
   Lbl(const Params& params, const sim::DeviceContext& context);

@@ -189,8 +189,9 @@ void NaiveDrive::set_controls(double thrust, double rudder, double elevator) {
 }
 
 void NaiveDrive::visit_state(sim::StateArchive& archive) {
-  archive(speed_mps_, turn_radps_, climb_mps_, yaw_rad_, pitch_rad_, p_WB_, X_WB_, speed_target_mps_,
-          heading_target_rad_, depth_target_m_, rudder_, elevator_, left_the_current_);
+  archive(speed_mps_, turn_radps_, climb_mps_, yaw_rad_, pitch_rad_, p_WB_, X_WB_, speed_target_mps_);
+  archive.not_only_finite(heading_target_rad_, depth_target_m_);
+  archive(rudder_, elevator_, left_the_current_);
 }
 
 void NaiveDriveController::receive(sim::Time, std::span<const std::byte> payload) {

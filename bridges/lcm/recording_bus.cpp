@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bridges/lcm/event_log.hpp"
+#include "bridges/lcm/file_lock.hpp"
 
 namespace bridges {
 namespace {
@@ -23,11 +24,15 @@ constexpr std::chrono::milliseconds max_buffered{250};
 
 std::unique_ptr<EventLogWriter> create(const std::string& path, Existing existing) {
   // O_EXCL decides and creates in one go; a device such as /dev/full is never "made".
-  const int flags = O_WRONLY | O_CREAT | O_CLOEXEC | (existing == Existing::refuse ? O_EXCL : O_TRUNC);
+  const int flags = O_WRONLY | O_CREAT | O_CLOEXEC | (existing == Existing::refuse ? O_EXCL : 0);
   FileDescriptor file(open(path.c_str(), flags, 0666));
   if (file.number() < 0 && errno == EEXIST)
     throw BusError(path + ": exists already; choose another name or pass --overwrite");
   if (file.number() < 0) throw BusError(path + ": " + std::strerror(errno));
+  if (const auto owner = lock_against_others(file.number()))
+    throw BusError(path + ": " + *owner + " is recording into it; choose another name");
+  // Only now: what another run records stays.  A device has no length.
+  if (ftruncate(file.number(), 0) != 0 && errno != EINVAL) throw BusError(path + ": " + std::strerror(errno));
   return std::make_unique<EventLogWriter>(std::move(file));
 }
 

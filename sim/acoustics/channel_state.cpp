@@ -64,8 +64,9 @@ void AcousticChannel::visit_state(StateArchive& archive) {
     if (archive.restoring()) set_receiver(flights_[i], to);
   }
   if (archive.restoring()) ++looks_;
-  archive.unhashed(free_sendings_, free_flights_, flights_made_, step_end_, neighbours_, neighbours_age_, lowest_m_,
-                   messages_, watching_, gone_);
+  archive.unhashed(free_sendings_, free_flights_, flights_made_, step_end_, neighbours_, neighbours_age_);
+  if (!archive.hashing()) archive.not_only_finite(lowest_m_);  // infinity: of nobody
+  archive.unhashed(messages_, watching_, gone_);
   if (archive.restoring()) check_numbers(archive);
 }
 

@@ -37,7 +37,7 @@ class Decibels {
   friend constexpr auto operator<=>(Decibels a, Decibels b) = default;
   template <typename Archive>
   void visit_state(Archive& archive) {
-    archive(dB_);
+    archive.not_only_finite(dB_);  // -infinity: silence
     if (archive.restoring() && !(dB_ <= most_dB)) archive.fail("a level above all that there is");
   }
 

@@ -14,9 +14,15 @@ void Neighbourhood::build(std::span<const Member> members, double reach_m) {
   cell_m_ = std::max(reach_m / 2, 1.0);
   entries_.clear();
   for (const Member& member : members) entries_.push_back({cell(member.p_W.y()), cell(member.p_W.x()), member.number});
-  std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
-    return std::tie(a.row, a.column, a.number) < std::tie(b.row, b.column, b.number);
-  });
+  std::sort(entries_.begin(), entries_.end(), comes_before);
+}
+
+bool Neighbourhood::comes_before(const Entry& a, const Entry& b) {
+  return std::tie(a.row, a.column, a.number) < std::tie(b.row, b.column, b.number);
+}
+
+bool Neighbourhood::in_order() const {
+  return std::is_sorted(entries_.begin(), entries_.end(), comes_before);
 }
 
 bool Neighbourhood::numbers_are_below(std::size_t count) const {

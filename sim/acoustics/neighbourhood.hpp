@@ -20,7 +20,11 @@ class Neighbourhood {
   void build(std::span<const Member> members, double reach_m);
   /// Numbers of all members no farther from the place than this in the plane, in rising order; perhaps some more.
   void near(const Vector3d& p_W, double reach_m, std::vector<int>& numbers) const;
-  void visit_state(StateArchive& archive) { archive(cell_m_, entries_); }
+  void visit_state(StateArchive& archive) {
+    archive(cell_m_, entries_);
+    archive.require(cell_m_, 1.0, StateArchive::max_number, "a grid of transducers with cells of a size");
+    if (archive.restoring() && !in_order()) archive.fail("the snapshot has transducers in an order that cannot be");
+  }
   /// All members have numbers from 0 to below this.
   bool numbers_are_below(std::size_t count) const;
 
@@ -31,6 +35,8 @@ class Neighbourhood {
     void visit_state(StateArchive& archive) { archive(row, column, number); }
   };
   std::int64_t cell(double coordinate_m) const;
+  static bool comes_before(const Entry& a, const Entry& b);
+  bool in_order() const;
 
   double cell_m_ = 1;
   std::vector<Entry> entries_;  // by row, column, number

@@ -81,7 +81,9 @@ class SignalReceiver {
     double log_success = 0, log_success_alone = 0;
     PowerRatio worst_sinr{0};
     void visit_state(StateArchive& archive) {
-      archive(signal, counted_until, log_success, log_success_alone, worst_sinr);
+      archive(signal, counted_until);
+      archive.not_only_finite(log_success, log_success_alone);  // -infinity: no bit is left
+      archive(worst_sinr);
     }
   };
 

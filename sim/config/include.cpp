@@ -143,9 +143,10 @@ class Loader {
       fail(asked_at, "cannot read " + subject + ": it is a directory");
       return std::nullopt;
     }
-    // A pipe or a device may never end.  What the command line names may be one.
-    if (asked_at.line > 0 && fs::exists(path, status_error) && !fs::is_regular_file(path, status_error)) {
-      fail(asked_at, "cannot read " + subject + ": it is not a regular file");
+    // A pipe without a writer would never end, a terminal would wait for a world to be typed.
+    if (fs::exists(path, status_error) && !fs::is_regular_file(path, status_error)) {
+      fail(asked_at, "cannot read " + subject + ": it is not a regular file" +
+                         (asked_at.line > 0 ? "" : "; 'shoal run --special-files' allows that"));
       return std::nullopt;
     }
     errno = 0;

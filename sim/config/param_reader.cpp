@@ -185,6 +185,9 @@ void ParamReader::check_reference(const char* key, const char* kind, const std::
 
 // Values
 
+// Squares and cubes of what is larger are not finite, and nothing real is.
+constexpr double max_magnitude = 1e30;
+
 bool ParamReader::take_number(const std::string& what, const ConfigNode& node, const Rule& rule, double& value) {
   double number = 0;
   const NumberText found =
@@ -195,6 +198,8 @@ bool ParamReader::take_number(const std::string& what, const ConfigNode& node, c
     error_at(node.place, what + " must be finite, got " + shown(node));
   else if (!rule.allows(number))
     error_at(node.place, what + " must be " + rule.text() + ", got " + shortened(node.scalar));
+  else if (std::abs(number) > max_magnitude)
+    error_at(node.place, what + " must be between -1e30 and 1e30, got " + shortened(node.scalar));
   else {
     value = number;
     return true;

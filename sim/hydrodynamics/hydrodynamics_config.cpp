@@ -162,7 +162,7 @@ void HydrodynamicsConfig::read(ParamReader& in) {
                  "coefficients: as published for this vehicle; none: water does nothing to this body");
   in.read_choice("frame", frame, {"flu", "frd"}, "axes of the numbers: frd as papers print them, flu as bodies have");
   if (model == "coefficients") in.require("mass_kg");
-  in.read("mass_kg", mass_kg, above(0), "of the body, instead of that of its parts");
+  in.read("mass_kg", mass_kg, between(1e-9, 1e12), "of the body, instead of that of its parts");
   in.read("center_of_mass_m", center_of_mass_m, between(-1000, 1000), "in the body's frame");
   if (model == "coefficients") in.require("inertia_kgm2");
   read_matrix<3>(in, "inertia_kgm2", inertia_kgm2,

@@ -20,7 +20,10 @@ struct LocalWater {
   double density_kgpm3 = 0;                    ///< of the water; 0 in a world without
   Vector3d velocity_W = Vector3d::Zero();      ///< current and waves, m/s
   Vector3d acceleration_W = Vector3d::Zero();  ///< of the water in waves, m/s^2; a current's is left out
-  void visit_state(StateArchive& archive) { archive(surface_m, density_kgpm3, velocity_W, acceleration_W); }
+  void visit_state(StateArchive& archive) {
+    archive.not_only_finite(surface_m);  // -infinity: there is no water
+    archive(density_kgpm3, velocity_W, acceleration_W);
+  }
 };
 
 /// What surrounds the bodies of a world: water below the surface, air over it.  World frame, east-north-up.  The models

@@ -371,7 +371,7 @@ void Joint::visit_state(StateArchive& archive) {
 void Joint::visit_stops(StateArchive& archive, int axis) {
   OdeStops stops = stops_of(axis);
   if (stops_were_set_) {
-    archive(stops.low, stops.high);
+    archive.not_only_finite(stops.low, stops.high);
     if (std::isnan(stops.low) || std::isnan(stops.high))
       archive.fail("joint '" + name_ + "' has a stop that is not a number");
   } else if (archive.restoring()) {

@@ -95,8 +95,8 @@ void PartConfig::read(ParamReader& in) {
   in.read("terrain", terrain, "terrain: its heights; see docs/terrain.md");
   in.read("position_m", position_m, any_place(), "centre of the part in the frame of the body");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch and yaw of the part in the frame of the body");
-  in.read("mass_kg", mass_kg, above(0), "mass; a part with neither mass nor density weighs nothing");
-  in.read("density_kgpm3", density_kgpm3, above(0), "density, instead of a mass");
+  in.read("mass_kg", mass_kg, between(1e-9, 1e12), "mass; a part with neither mass nor density weighs nothing");
+  in.read("density_kgpm3", density_kgpm3, between(1e-6, 1e9), "density, instead of a mass");
   in.read_reference("material", material, "material", "decides friction and bounce, see contacts of the world");
   in.read_reference("category", category, "category", "what others see in the part: whether it collides, stops rays");
   in.read_references("collides_with", collides_with, "category",

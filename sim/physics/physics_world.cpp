@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <mutex>
 #include <utility>
 
+#include "sim/config/message_text.hpp"
 #include "sim/physics/ode_math.hpp"
 #include "sim/physics/physics_world_impl.hpp"
 #include "sim/state/state_archive.hpp"
@@ -142,7 +144,8 @@ void PhysicsWorld::step(std::int64_t step_number) {
     impl_->broken = true;
     for (const Body* body : impl_->moving)
       if (impl_->out_of_bounds(*body)) impl_->fault(*body, step_number);
-    throw PhysicsFault(std::string(error.what()) + " at step " + std::to_string(step_number));
+    throw PhysicsFault(impl_->suspects() + "the solver failed at step " + std::to_string(step_number) + " (" +
+                       error.what() + ")");
   }
   ++impl_->moves.moving;
   impl_->finish(step_number);
@@ -234,6 +237,29 @@ void PhysicsWorld::Impl::fault(const Body& body, std::int64_t step_number) const
   throw PhysicsFault("body '" + body.name() + "': " + text + " at step " + std::to_string(step_number));
 }
 
+/// The lightest and the heaviest body of the island where they differ most: what a solver that fails fails for, unless
+/// something is not finite.  With the words around them, or empty.
+std::string PhysicsWorld::Impl::suspects() {
+  std::map<int, std::pair<const Body*, const Body*>> islands_by_first;  // lightest, heaviest
+  for (const Body* body : moving) {
+    if (!body->free()) continue;
+    auto& [lightest, heaviest] = islands_by_first[islands.first_of(body->number_)];
+    if (lightest == nullptr || body->mass_kg_ < lightest->mass_kg_) lightest = body;
+    if (heaviest == nullptr || body->mass_kg_ > heaviest->mass_kg_) heaviest = body;
+  }
+  const auto ratio = [](const auto& island) {
+    return island.second.second->mass_kg_ / island.second.first->mass_kg_;
+  };
+  const auto worst = std::max_element(islands_by_first.begin(), islands_by_first.end(),
+                                      [&](const auto& a, const auto& b) { return ratio(a) < ratio(b); });
+  if (worst == islands_by_first.end()) return "";
+  const auto [lightest, heaviest] = worst->second;
+  if (lightest == heaviest) return "body '" + lightest->name() + "': ";
+  return "body '" + lightest->name() + "' of " + number_text(lightest->mass_kg_) +
+         " kg, in contact or joined with body '" + heaviest->name() + "' of " + number_text(heaviest->mass_kg_) +
+         " kg: ";
+}
+
 std::pair<std::string, double> PhysicsWorld::deepest_overlap(int group) const {
   const Collider::Overlap overlap = impl_->collider.deepest_overlap(group);
   return {overlap.group < 0 ? "" : group_name(overlap.group), overlap.depth_m};
@@ -279,6 +305,21 @@ const std::string& PhysicsWorld::group_name(int group) const {
 }
 const StepCounts& PhysicsWorld::last_step() const {
   return impl_->counts;
+}
+IslandInfo PhysicsWorld::largest_island() const {
+  constexpr std::size_t most_names = 1000;
+  IslandInfo found;
+  int first = -1;
+  for (const Body* body : impl_->moving) {
+    const int rows = impl_->islands.rows_of(body->number_);
+    if (rows > found.rows) found.rows = rows, first = impl_->islands.first_of(body->number_);
+  }
+  for (const auto& body : impl_->bodies) {
+    if (first < 0 || !body || body->fixed() || impl_->islands.first_of(body->number_) != first) continue;
+    ++found.body_count;
+    if (found.bodies.size() < most_names) found.bodies.push_back(body->name());
+  }
+  return found;
 }
 std::int64_t PhysicsWorld::quick_steps() const {
   return impl_->quick_steps;

@@ -71,6 +71,13 @@ struct StepCounts {
   }
 };
 
+/// Bodies that were solved together.
+struct IslandInfo {
+  int rows = 0;                     ///< of constraints
+  std::vector<std::string> bodies;  ///< by number; of very many the first 1000
+  std::size_t body_count = 0;
+};
+
 /// Rigid bodies, joints and contacts, stepped by ODE.  Knows no vehicle and no device: a vehicle or an object is a
 /// group, whose parts share one collision space.
 ///
@@ -161,6 +168,9 @@ class PhysicsWorld {
   /// Empty when the group was removed.
   const std::string& group_name(int group) const;
   const StepCounts& last_step() const;
+  /// The island (bodies connected by joints and contacts) with the most constraint rows in the last step, which takes
+  /// the most time.  Looks at each body.
+  IslandInfo largest_island() const;
   /// Steps in which QuickStep stood in for WorldStep because an island was too large.
   std::int64_t quick_steps() const;
   /// Bit of a category name.  Throws std::out_of_range.

@@ -78,6 +78,7 @@ struct PhysicsWorld::Impl {
   void collide();
   void solve(std::int64_t step_number);
   void step_islands_by_size();
+  std::string suspects();
   void finish(std::int64_t step_number);
   bool out_of_bounds(const Body& body) const;
   [[noreturn]] void fault(const Body& body, std::int64_t step_number) const;

@@ -31,7 +31,10 @@ class Random {
   std::uint32_t integer_below(std::uint32_t n);
 
   /// Where it is within a step.  Who begins a step before each draw need not visit it.
-  void visit_state(StateArchive& archive) { archive(counter_, block_, used_); }
+  void visit_state(StateArchive& archive) {
+    archive(counter_, block_, used_);
+    archive.require(used_, 0, 2, "a place in a block of random numbers");
+  }
 
  private:
   void refill();

@@ -40,7 +40,8 @@ struct RayHit {
   bool hit() const { return part >= 0; }
   template <typename Archive>
   void visit_state(Archive& archive) {
-    archive(range_m, normal_W, part, material);
+    archive.not_only_finite(range_m);  // infinity: nothing was hit
+    archive(normal_W, part, material);
   }
 };
 

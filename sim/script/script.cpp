@@ -111,6 +111,11 @@ int Script::due_times(EventState& event, Time now) {
   while (event.next && *event.next <= now) {
     ++count;
     ++event.planned;
+    // More than may fire in a step: a restored count, or one of another interval.  The rest is passed over at once.
+    if (count > most_firings_per_step && event.config.every_s > 0) {
+      const double passed = (to_seconds(now) - event.config.from_s) / event.config.every_s;
+      event.planned = std::max(event.planned, static_cast<std::int64_t>(passed));
+    }
     plan_next(event);
   }
   return count;
@@ -191,7 +196,9 @@ void Script::run_now(const ConfigNode& action, Diagnostics& diagnostics) {
 void Script::EventState::visit_state(StateArchive& archive) {
   archive(fired, planned);
   archive.unhashed(next, random, random_step, told_of_cut);
-  if (archive.restoring() && (fired < 0 || planned < 0)) archive.fail("an event that fired less often than never");
+  constexpr std::int64_t most = std::int64_t{1} << 53;
+  archive.require(fired, 0, most, "a count of firings");
+  archive.require(planned, 0, most, "a count of firings");
 }
 
 void Script::visit_state(StateArchive& archive) {

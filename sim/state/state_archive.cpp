@@ -67,6 +67,14 @@ void StateArchive::fail_short(std::size_t wanted) const {
   fail("the snapshot ends where " + std::to_string(wanted) + " bytes should follow");
 }
 
+void StateArchive::fail_number(double value) const {
+  fail("the snapshot has the number " + number_text(value) + ", which cannot be");
+}
+
+void StateArchive::fail_range(std::string_view what) const {
+  fail("the snapshot has " + std::string(what) + " that cannot be");
+}
+
 void StateArchive::expect_count(std::size_t size, std::string_view of) {
   std::uint64_t there = size;
   scalar(there);

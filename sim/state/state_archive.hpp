@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -19,6 +20,7 @@
 #include <vector>
 
 #include "sim/math.hpp"
+#include "sim/state/enum_values.hpp"
 #include "sim/state_hash.hpp"
 
 namespace sim {
@@ -44,6 +46,10 @@ struct PartHash {
 /// archive(...) takes numbers, enumerations, texts, durations, Eigen's fixed-size types, the containers below of what
 /// it takes, and every class with visit_state().  What follows from other state is worked out again when
 /// archive.restoring().  Hashing and saving change nothing.
+///
+/// What is restored is not trusted.  The archive itself refuses values that no enumeration has, numbers that are not
+/// finite or beyond max_number, and times more than max_time from the start.  What else must hold - an index, a count,
+/// a time that something is planned from - visit_state() checks with require() when archive.restoring().
 class StateArchive {
  public:
   /// Hashes; result in hash() and parts().
@@ -79,10 +85,29 @@ class StateArchive {
   void end();
   /// Throws SnapshotError with the name of the part: for state that is well-formed and cannot be.
   [[noreturn]] void fail(const std::string& what) const;
+  /// Throws SnapshotError with the name of the part when a restored value is outside of [low, high]; `what` names it.
+  /// Does nothing while hashing and saving.
+  template <typename T>
+  void require(const T& value, const std::type_identity_t<T>& low, const std::type_identity_t<T>& high,
+               std::string_view what) const {
+    if (restoring() && !(value >= low && value <= high)) fail_range(what);
+  }
+
+  /// Largest magnitude of a restored number: far beyond anything physical, far from where squares overflow.
+  static constexpr double max_number = 1e100;
+  /// Largest magnitude of a restored time or duration: 31 years.
+  static constexpr std::chrono::microseconds max_time{1'000'000'000'000'000};
 
   template <typename... Values>
   void operator()(Values&... values) {
     (visit(values), ...);
+  }
+  /// The same for values in which NaN and infinity mean something, such as a target that is not set.
+  template <typename... Values>
+  void not_only_finite(Values&... values) {
+    const bool before = std::exchange(finite_only_, false);
+    (visit(values), ...);
+    finite_only_ = before;
   }
   /// What is saved and restored but not hashed: it changes nothing that happens, such as counts for a summary.
   template <typename... Values>
@@ -130,6 +155,8 @@ class StateArchive {
 
   template <typename T>
   static constexpr bool is_plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+  template <typename T>
+  static constexpr bool has_names = std::is_enum_v<T> && !std::is_same_v<T, std::byte>;
 
   template <typename T>
   void visit(T& value) {
@@ -152,12 +179,28 @@ class StateArchive {
     }
     if (purpose_ != Purpose::hash) {
       raw(&value, sizeof value);
+      if (restoring()) check_scalar(value);
       return;
     }
     if constexpr (std::is_floating_point_v<T>)
       part_hash_.add(static_cast<double>(value));
     else
       part_hash_.add(static_cast<std::uint64_t>(value));
+  }
+  /// Of what was restored.
+  template <typename T>
+  void check_scalar(const T& value) const {
+    if constexpr (std::is_floating_point_v<T>) {
+      const bool finite = std::abs(value) <= max_number;
+      if (!finite && (finite_only_ || std::isfinite(value))) fail_number(static_cast<double>(value));
+    } else if constexpr (has_names<T>) {
+      if (!detail::is_enumerator(value)) fail("a value that is none of those it can have");
+    }
+  }
+  template <typename T>
+  void check_scalars(const T* values, std::size_t size) const {
+    if constexpr (std::is_floating_point_v<T> || has_names<T>)
+      for (std::size_t i = 0; restoring() && i < size; ++i) check_scalar(values[i]);
   }
   template <typename T>
   requires requires(T& value, StateArchive& archive) { value.visit_state(archive); }
@@ -167,11 +210,13 @@ class StateArchive {
     Rep count = value.count();
     scalar(count);
     value = std::chrono::duration<Rep, Period>(count);
+    if (restoring() && (value > max_time || value < -max_time)) fail_range("a time");
   }
   template <typename Scalar, int Rows, int Columns, int Options, int MaxRows, int MaxColumns>
   requires(Rows != Eigen::Dynamic && Columns != Eigen::Dynamic) void visit_class(
       Eigen::Matrix<Scalar, Rows, Columns, Options, MaxRows, MaxColumns>& value) {
     raw(value.data(), sizeof(Scalar) * static_cast<std::size_t>(value.size()));
+    check_scalars(value.data(), static_cast<std::size_t>(value.size()));
   }
   template <typename Scalar, int Options>
   void visit_class(Eigen::Quaternion<Scalar, Options>& value) {
@@ -193,6 +238,7 @@ class StateArchive {
       const std::size_t size = count(values.size(), sizeof(T));
       if (restoring()) values.resize(size);
       raw(values.data(), size * sizeof(T));
+      check_scalars(values.data(), size);
     } else {
       sequence(values);
     }
@@ -270,11 +316,14 @@ class StateArchive {
   /// How many follow.  Restoring throws when so many elements of at least `bytes_each` cannot be there.
   std::size_t count(std::size_t size, std::size_t bytes_each);
   [[noreturn]] void fail_short(std::size_t wanted) const;
+  [[noreturn]] void fail_number(double value) const;
+  [[noreturn]] void fail_range(std::string_view what) const;
   /// Bytes of this part, or of the snapshot outside of parts.
   std::size_t left() const { return (in_part_ ? part_end_ : input_.size()) - at_; }
   void end_part();
 
   Purpose purpose_;
+  bool finite_only_ = true;
   StateHash total_, part_hash_;
   bool keeps_parts_ = true;
   bool had_parts_ = false;

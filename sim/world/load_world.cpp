@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "sim/bus/bus.hpp"
@@ -300,7 +301,7 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   Warnings warnings;
   warn_of_missing_water(loaded.config, warnings);
   warn_of_config(loaded.config, root, warnings);
-  vehicles.resolve(root);
+  if (options.resolve) vehicles.resolve(root);
   make_paths_absolute(root);
   if (options.seed) {
     const SourcePlace place{intern_file_name("--seed"), 0, 0};
@@ -323,8 +324,31 @@ FileAccessPointer files_of(const std::string& world_file, const LoadOptions& opt
   return files;
 }
 
+namespace {
+
+/// All that a pipe or device gives.
+std::string text_of(const std::string& path) {
+  constexpr std::size_t max_bytes = std::size_t{64} << 20;
+  const SourcePlace place{intern_file_name(path), 0, 0};
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw_config_error(place, "", "cannot read the file");
+  std::string text;
+  char block[1 << 16];
+  while (in && text.size() <= max_bytes) {
+    in.read(block, sizeof block);
+    text.append(block, static_cast<std::size_t>(in.gcount()));
+  }
+  if (text.size() > max_bytes) throw_config_error(place, "", "the file is larger than 64 MB");
+  return text;
+}
+
+}  // namespace
+
 LoadedWorld load_world(const std::string& path, const LoadOptions& options) {
   Diagnostics diagnostics(files_of(path, options));
+  std::error_code ignored;
+  if (options.special_files && !fs::is_regular_file(path, ignored) && !fs::is_directory(path, ignored))
+    return load_world_text(text_of(path), path, options);
   ConfigNode root = load_config_file(path, diagnostics);
   return load(std::move(root), {intern_file_name(path), 0, 0}, options, diagnostics);
 }

@@ -18,6 +18,8 @@ struct LoadOptions {
   bool only_own_files = false;
   std::vector<std::string> allow_paths = {};  ///< further folders and files
   bool serial_ports = true;                   ///< they are opened: their paths count
+  bool special_files = false;  ///< the world may come from a pipe or a device; it cannot include others then
+  bool resolve = true;         ///< put the vehicle files into LoadedWorld::resolved
 };
 
 /// Which files a world (or vehicle) in `world_file` may name; null: any.

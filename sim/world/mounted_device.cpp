@@ -128,16 +128,28 @@ void MountedDevice::plan_next_sample() {
   // samples never share a step, and none is before the first step.
   const std::int64_t earliest = samples_planned_ == 0 ? 1 : next_sample_step_ + 1;
   const auto step_us = static_cast<double>(host_.step.count());
-  const auto step_of = [&](std::int64_t sample) {
-    const double due_us = phase_us_ + static_cast<double>(sample) * period_us_;
-    return static_cast<std::int64_t>(std::ceil(due_us / step_us - 1e-9));
-  };
   // Where many samples fall into one step, all but one are skipped at once.
   const double skip = (static_cast<double>(earliest - 1) * step_us - phase_us_) / period_us_;
   std::int64_t sample = std::max(samples_planned_, static_cast<std::int64_t>(std::floor(skip)));
-  while (step_of(sample) < earliest) ++sample;
+  while (step_of_sample(sample) < earliest) ++sample;
   samples_planned_ = sample + 1;
-  next_sample_step_ = step_of(sample);
+  next_sample_step_ = step_of_sample(sample);
+}
+
+/// The first step at or after its due time.
+std::int64_t MountedDevice::step_of_sample(std::int64_t sample) const {
+  constexpr double beyond_all_runs_us = 1e18;
+  const auto step_us = static_cast<double>(host_.step.count());
+  const double due_us = phase_us_ + static_cast<double>(sample) * period_us_;
+  return static_cast<std::int64_t>(std::ceil(std::min(due_us, beyond_all_runs_us) / step_us - 1e-9));
+}
+
+/// The next sample was planned from the last one: whatever else a snapshot says would be made up for sample by sample.
+void MountedDevice::check_schedule(const StateArchive& archive) const {
+  if (!senses()) return;
+  const bool fits = config_.rate_hz > 0 ? next_sample_step_ == step_of_sample(samples_planned_ - 1)
+                                        : next_sample_step_ > 0 && next_sample_step_ <= world_.step_number() + 1;
+  if (samples_planned_ <= 0 || !fits) archive.fail("the snapshot has a next sample that cannot be");
 }
 
 Time MountedDevice::next_latency() {
@@ -305,6 +317,9 @@ void MountedDevice::visit_state(StateArchive& archive) {
   if (archive.restoring()) {
     // The world that is restored may give the device another rate.
     if (period_us != period_us_ || phase_us != phase_us_) plan_again(world_.now());
+    check_schedule(archive);
+    archive.require(last_sample_, Time{-1}, world_.now(), "the time of a last sample");
+    archive.require(acting_->last_command, Time{-1}, world_.now(), "the time of a last command");
     acting_->effectiveness = faults_.effectiveness();
     acting_->stuck = faults_.stuck();
   }

@@ -110,6 +110,8 @@ class MountedDevice {
   void plan_schedule();
   void plan_again(Time now);
   void plan_next_sample();
+  std::int64_t step_of_sample(std::int64_t sample) const;
+  void check_schedule(const StateArchive& archive) const;
 
   DeviceConfig config_;
   const World& world_;

@@ -246,6 +246,15 @@ void VehicleClock::visit_state(StateArchive& archive) {
   if (archive.restoring() && (s.nodes.empty() || (s.forgot_steers && s.steers.empty())))
     archive.fail("a clock without its past");
   if (!archive.restoring()) return;
+  const auto usable = [](Time at, double number) {
+    return at <= StateArchive::max_time && at >= -StateArchive::max_time && std::abs(number) < 1e30;
+  };
+  const bool nodes_fit =
+      std::all_of(s.nodes.begin(), s.nodes.end(), [&](const State::Node& n) { return usable(n.at, n.wander_s); });
+  const bool steers_fit = std::all_of(s.steers.begin(), s.steers.end(), [&](const State::Steer& steer) {
+    return usable(steer.after, steer.offset_s) && std::abs(steer.rate) < 1e30;
+  });
+  if (!nodes_fit || !steers_fit) archive.fail("the snapshot has an error of a clock that cannot be");
   const bool in_order = std::is_sorted(s.nodes.begin(), s.nodes.end(),
                                        [](const State::Node& a, const State::Node& b) { return a.at < b.at; });
   if (s.now < Time{0} || !in_order || (s.config.wanders() && s.nodes.back().at <= s.now + look_ahead))

@@ -1,6 +1,7 @@
 #include "sim/world/vehicle_loader.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <set>
 
@@ -65,6 +66,12 @@ std::set<std::string, std::less<>> single_vehicles(const VehicleEntry& entry, co
   return names;
 }
 
+/// Equal for entries whose vehicles are equal but for name and place.
+std::string what_is_said(const VehicleEntry& entry, const ConfigNode& model) {
+  return std::to_string(reinterpret_cast<std::uintptr_t>(&model)) + "\n" + to_yaml(entry.parameters) + "\n" +
+         to_yaml(entry.overrides);
+}
+
 }  // namespace
 
 std::vector<VehicleInstance> VehicleLoader::load(const VehicleEntry& entry) {
@@ -77,10 +84,15 @@ std::vector<VehicleInstance> VehicleLoader::load(const VehicleEntry& entry) {
                                       : place_instances(entry.placement, entry.count, X_WE,
                                                         static_cast<std::uint64_t>(world_.run.seed), entry.name);
   const auto singles = single_vehicles(entry, who, diagnostics_);
-  const bool alike = !mentions(*model, "${index}") && !mentions(entry.parameters, "${index}") &&
-                     !mentions(entry.overrides, "${index}");
+  const auto none_mentions = [&](std::string_view text) {
+    return !mentions(*model, text) && !mentions(entry.parameters, text) && !mentions(entry.overrides, text);
+  };
+  const bool alike = none_mentions("${index}");
   std::vector<VehicleInstance> instances;
-  std::shared_ptr<const VehicleConfig> shared;
+  std::shared_ptr<const VehicleConfig> of_this_entry;
+  const bool as_in_other_entries = alike && !entry.file.empty() && singles.empty() && none_mentions("${name}");
+  std::shared_ptr<const VehicleConfig>& shared =
+      as_in_other_entries ? shared_[what_is_said(entry, *model)] : of_this_entry;
   for (int i = 0; i < entry.count; ++i) {
     const std::string name = instance_name(entry, i + 1);
     const Pose& X_WV = poses[static_cast<std::size_t>(i)];

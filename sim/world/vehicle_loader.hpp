@@ -35,6 +35,8 @@ class VehicleLoader {
   const WorldConfig& world_;
   Diagnostics& diagnostics_;
   std::map<std::string, ConfigNode> files_;
+  /// By file, parameters and overrides: entries that say the same share one.
+  std::map<std::string, std::shared_ptr<const VehicleConfig>> shared_;
 };
 
 /// Reads and checks a vehicle file by itself, with its default parameters.  Of the options the rule about files counts.

@@ -140,6 +140,9 @@ void World::build_parts_of(Vehicle& vehicle, const VehicleInstance& instance) {
         joint.name, physics_->add_joint(vehicle.group(), joint, vehicle.body(joint.bodies[0]), second, instance.X_WV));
   }
   physics_->close_group(vehicle.group());
+  constexpr int max_of_kind_with_devices = 100;
+  const bool few_devices = config_.few_devices_per_kind && config_.events.empty();
+  if (few_devices && ++built_of_kind_[&config] > max_of_kind_with_devices) return;
   std::vector<std::string> errors;
   for (const DeviceConfig& device : config.devices) {
     try {

@@ -127,6 +127,8 @@ void LimitsConfig::read(ParamReader& in) {
           "spawn requests of one client in a run; of all clients together ten times as many");
   in.read("rewinds_per_client", rewinds_per_client, between(0, 100000000),
           "rewind and restore requests of one client in a run; of all clients together ten times as many");
+  in.read("step_cpu_s", step_cpu_s, between(0, 1e6),
+          "CPU time of a step, of the thread that simulates: the run ends after a step that took longer; 0: no limit");
 }
 
 namespace {

@@ -122,6 +122,7 @@ struct LimitsConfig {
   int parts = 200;                ///< of one vehicle or object
   int spawns_per_client = 10000;  ///< requests over the whole run; all clients together: ten times as many
   int rewinds_per_client = 1000;  ///< the same, `restore` included
+  double step_cpu_s = 0;          ///< CPU time of a step of the world; a longer one ends the run.  0: none
   void read(ParamReader& in);
 };
 
@@ -157,6 +158,8 @@ struct WorldConfig {
   std::vector<ZoneConfig> zones;
   std::vector<ActorConfig> actors;
   std::vector<EventConfig> events;
+  /// For checks of a file: of very many vehicles of one kind only the first ones get their devices.
+  bool few_devices_per_kind = false;
   EncodeMessage encode_message;  ///< for actions that publish; empty: they cannot
   double state_rate_hz = 10;     ///< of sim.state and sim.clock
 

@@ -176,6 +176,8 @@ void World::restore_state(std::span<const std::byte> snapshot) {
     archive.fail("it is of another world: seed " + std::to_string(head.seed) + ", step " +
                  std::to_string(head.step_us) + " us; this one has seed " + std::to_string(seed()) + ", step " +
                  std::to_string(step_us_) + " us");
+  if (head.step < 0 || head.step > StateArchive::max_time.count() / step_us_)
+    archive.fail("its step " + std::to_string(head.step) + " cannot be");
   const bool same_make = head.journal == journal_->bytes() && journal_->gap().empty();
   if (!same_make || !script_ || in_step_) {
     build_again();

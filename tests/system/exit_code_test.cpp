@@ -166,7 +166,7 @@ TEST(ExitCode, Is4ForARecordThatCannotBeWritten) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_shoal(arguments);
   };
-  const Ended full = with({"/dev/full", "--overwrite"});
+  const Ended full = with({"/dev/full", "--overwrite", "--special-files"});
   EXPECT_EQ(full.exit_code, 4);
   EXPECT_THAT(full.errors, HasSubstr("/dev/full"));
   EXPECT_THAT(full.errors, HasSubstr("No space left on device"));

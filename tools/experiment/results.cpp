@@ -229,6 +229,23 @@ std::string Summary::to_text() const {
   return text;
 }
 
+namespace {
+
+/// Rules and metrics come in dozens, zones and contacts with vehicles.
+std::size_t room_for_summary(const sim::World& world) {
+  return (std::size_t{256} << 10) + 512 * world.vehicles().size();
+}
+
+/// The folder, made where it is not there.
+std::string made(const std::string& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) throw cannot_write(directory, error.message());
+  return directory;
+}
+
+}  // namespace
+
 void write_summary(const std::string& directory, const Summary& summary) {
   const std::string path = directory + "/summary.json";
   std::error_code error;
@@ -253,9 +270,11 @@ void write_results_world(const std::string& directory, const sim::ConfigNode& re
 }
 
 Results::Results(const std::string& directory, const sim::World& world, bool pictures)
-    : directory_(directory), world_(world), pictures_(pictures) {
+    : directory_(made(directory)),
+      summary_file_(directory, room_for_summary(world)),
+      world_(world),
+      pictures_(pictures) {
   std::error_code error;
-  std::filesystem::create_directories(directory, error);
   const std::string path = directory + "/tracks.csv";
   tracks_ = error ? nullptr : std::fopen(path.c_str(), "w");
   if (tracks_ == nullptr) throw cannot_write(path, error ? error.message() : std::strerror(errno));
@@ -375,7 +394,7 @@ void Results::finish(const Summary& summary, const Scoring& scoring, const sim::
       if (!first_error) first_error = error.what();
     }
   };
-  attempt([&] { write_summary(directory_, summary); });
+  attempt([&] { summary_file_.write(summary.to_json()); });
   attempt([&] { close_tracks(); });
   attempt([&] { write_metrics(directory_, summary); });
   attempt([&] { write_errors(directory_, scoring); });

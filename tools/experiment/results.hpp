@@ -16,6 +16,7 @@
 #include "tools/experiment/judgement.hpp"
 #include "tools/experiment/link_counts.hpp"
 #include "tools/experiment/scoring.hpp"
+#include "tools/experiment/summary_file.hpp"
 
 namespace tools {
 
@@ -111,6 +112,8 @@ class Results {
   /// It has gone back: drops what the tracks know of later.  `ours`: it has been there in this run; else the tracks
   /// begin anew, for what they hold is of another branch.  Throws std::runtime_error.
   void begin_branch(sim::Time back_to, bool ours);
+  /// summary.json once more, where something else could not be written.  Throws std::runtime_error.
+  void write_summary_again(const Summary& summary) { summary_file_.write(summary.to_json()); }
   /// summary.json, metrics.csv, errors.csv, world.yaml and the pictures.  Plotting ends once `give_up` says so.
   /// What cannot be written does not keep the rest from being written.  Throws std::runtime_error about the first.
   void finish(const Summary& summary, const Scoring& scoring, const sim::ConfigNode& resolved,
@@ -125,6 +128,7 @@ class Results {
   void write(const std::string& file, const std::string& text) const;
 
   std::string directory_;
+  SummaryFile summary_file_;
   const sim::World& world_;
   bool pictures_;
   std::FILE* tracks_ = nullptr;

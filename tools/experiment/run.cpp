@@ -209,10 +209,13 @@ void Run::loop() {
 
 void Run::step() {
   admit_mail();
+  watch_.begin();
   world_.step();
+  watch_.end();
   ++steps_taken_;
   control_.step_taken();
   end_of_step();
+  check_step_time();
   if (const auto error = buses_.record_error()) throw RunError(4, "bus", *error);
   if (results_)
     if (const auto error = results_->error()) throw RunError(4, "bus", *error);
@@ -220,6 +223,14 @@ void Run::step() {
   // Looking for dead children costs a system call; ten times a simulated second will do.
   if (world_.step_number() % 10 == 0) check_programs();
   progress_.update(world_.now(), messages(), control_, false);
+}
+
+void Run::check_step_time() {
+  if (const auto warning = watch_.take_warning()) {
+    progress_.clear();
+    spdlog::warn("{}", *warning);
+  }
+  if (const auto why = watch_.beyond_limit()) throw RunError(5, "limit", *why);
 }
 
 void Run::admit_mail() {

@@ -20,6 +20,7 @@
 #include "tools/experiment/run_programs.hpp"
 #include "tools/experiment/runner.hpp"
 #include "tools/experiment/scoring.hpp"
+#include "tools/experiment/step_watch.hpp"
 #include "tools/experiment/time_control.hpp"
 
 namespace tools {
@@ -59,6 +60,8 @@ class Run {
   /// Waits until the next step is due, answering requests meanwhile.
   void pace();
   void check_bus() const;
+  /// Reports steps that take very long.  Throws RunError for one beyond the limit of the world.
+  void check_step_time();
   /// `goes_on`: requests may still change the world.
   RunPrograms::Clients clients(bool goes_on);
   void check_programs();
@@ -87,6 +90,7 @@ class Run {
   Progress progress_;
   Pacer pacer_;
   RunPrograms programs_;
+  StepWatch watch_{world_};
   bool synchronized_ = true;              ///< the clients have answered the present step
   bool alone_ = true;                     ///< no other simulator was found at the start
   std::unique_ptr<RunKeyFile> key_file_;  ///< null: control needs no key

@@ -1,5 +1,6 @@
 #include "tools/experiment/run_buses.hpp"
 
+#include <filesystem>
 #include <thread>
 
 #include "bridges/lcm/bus_error.hpp"
@@ -8,8 +9,23 @@
 
 namespace tools {
 
+namespace {
+
+/// A pipe without a reader would stop the run for good, a terminal or a disk would get a log that nobody wants there.
+void check_record(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return;
+  const bool folder = std::filesystem::is_directory(status);
+  throw bridges::BusError(path + ": cannot record: it is " +
+                          (folder ? "a folder" : "not a regular file; --special-files allows pipes and devices"));
+}
+
+}  // namespace
+
 RunBuses::RunBuses(const sim::WorldConfig& world, const RunOptions& options) {
   main_ = open(options.lcm_url, options);
+  if (!options.record.empty() && !options.special_files) check_record(options.record);
   if (!options.record.empty())
     main_.recorder = std::make_unique<bridges::RecordingBus>(
         *main_.network, options.record, world.epoch_us,

@@ -23,6 +23,7 @@ bool programs_take_part(const sim::WorldConfig& world, const RunOptions& options
 }  // namespace
 
 void Run::finish(Summary& summary) {
+  const OrderlyEnd orderly;
   programs_.note_last(world_.now(), clients(false));
   if (alone_) {    // else the bus is another simulator's
     admit_mail();  // what came after the last step is in the log: the journal says that it came from outside
@@ -100,7 +101,12 @@ void Run::write_results(Summary& summary) {
     if (summary.exit_code <= 1 && summary.error.empty()) summary.fail(4, "bus", error.what());
   }
   note_signal(summary);
-  if (summary.exit_code != exit_code) try_to_write_summary(options_.results, summary);
+  if (summary.exit_code == exit_code) return;
+  try {
+    results_->write_summary_again(summary);
+  } catch (const std::exception& error) {
+    spdlog::debug("{}", error.what());
+  }
 }
 
 }  // namespace tools

@@ -1,9 +1,11 @@
 #include "tools/experiment/runner.hpp"
 
 #include <filesystem>
+#include <optional>
 
 #include "sim/config/diagnostics.hpp"
 #include "tools/experiment/process_check.hpp"
+#include "tools/experiment/results_lock.hpp"
 #include "tools/experiment/run.hpp"
 #include "tools/experiment/run_error.hpp"
 
@@ -18,6 +20,13 @@ Summary run_world(const sim::LoadedWorld& loaded, const RunOptions& options) {
     summary.fail(exit_code, ended, error);
     if (!options.results.empty()) try_to_write_summary(options.results, summary);
   };
+  std::optional<ResultsLock> lock;
+  try {
+    if (!options.results.empty()) lock.emplace(options.results);
+  } catch (const RunError& error) {  // nothing in there is touched: it is another's
+    summary.fail(error.exit_code, error.ended, error.what());
+    return summary;
+  }
   // An old summary would be taken for this run's if this one were killed.
   std::error_code ignored;
   if (!options.results.empty()) std::filesystem::remove(options.results + "/summary.json", ignored);

@@ -22,6 +22,7 @@ struct RunOptions {
   bool open_control = false;         ///< control needs no key, also on a bus that leaves this machine
   std::string record;                ///< file for the LCM event log; empty: none
   bool overwrite = false;            ///< of the record
+  bool special_files = false;        ///< the record may be a pipe or a device
   std::string results;               ///< directory; empty: none
   std::string name = "run";          ///< what {run} stands for in paths of serial ports and in commands of processes
   bool pictures = true;              ///< in the results

@@ -92,6 +92,10 @@ TerminalKeys::~TerminalKeys() {
   use_before();
 }
 
+void TerminalKeys::put_back() {
+  if (active) use_before();
+}
+
 std::optional<char> TerminalKeys::next() {
   if (!active) return std::nullopt;
   // A shell gives the terminal to a job that comes to the foreground, with settings of its own, and need not say so.

@@ -16,6 +16,8 @@ class TerminalKeys {
 
   TerminalKeys();
   ~TerminalKeys();
+  /// The settings as they were, if they were changed; for signal handlers.
+  static void put_back();
   TerminalKeys(const TerminalKeys&) = delete;
   TerminalKeys& operator=(const TerminalKeys&) = delete;
 

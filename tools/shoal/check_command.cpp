@@ -32,6 +32,12 @@ void check_textures(const sim::WorldConfig& world) {
   for (const sim::VehicleInstance& vehicle : world.vehicles) check_all(vehicle.config->materials);
 }
 
+std::size_t device_count(const sim::WorldConfig& world) {
+  std::size_t count = 0;
+  for (const sim::VehicleInstance& vehicle : world.vehicles) count += vehicle.config->devices.size();
+  return count;
+}
+
 void check(const std::string& path, const sim::LoadOptions& options) {
   if (is_vehicle_file(path, options)) {
     const sim::VehicleConfig vehicle = sim::load_vehicle(path, options);
@@ -41,7 +47,9 @@ void check(const std::string& path, const sim::LoadOptions& options) {
   }
   sim::LoadOptions with_messages = options;
   with_messages.encode_message = shoal::encode_own_message;
-  const sim::LoadedWorld loaded = sim::load_world(path, with_messages);
+  with_messages.resolve = false;
+  sim::LoadedWorld loaded = sim::load_world(path, with_messages);
+  loaded.config.few_devices_per_kind = true;
   // Building finds what reading cannot: mesh files, bodies without mass.
   sim::InProcessBus bus;
   const sim::World world(loaded.config, bus);
@@ -50,7 +58,7 @@ void check(const std::string& path, const sim::LoadOptions& options) {
   warn_of_processes(loaded, warnings);
   warn_of_missing_programs(loaded, warnings);
   std::cout << path << ": world '" << loaded.config.name << "': " << world.vehicles().size() << " vehicles, "
-            << loaded.config.objects.size() << " objects, " << world.devices().size() << " devices, "
+            << loaded.config.objects.size() << " objects, " << device_count(loaded.config) << " devices, "
             << world.physics().bodies().size() << " bodies\n";
 }
 

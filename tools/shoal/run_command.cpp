@@ -1,6 +1,7 @@
 #include <spdlog/spdlog.h>
 
 #include <charconv>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <sstream>
@@ -58,6 +59,7 @@ int run(RunArguments& arguments) {
   arguments.run.speed = parse_speed(arguments.speed);
   arguments.run.duration_s = arguments.duration_s;
   arguments.load.encode_message = shoal::encode_own_message;
+  arguments.load.special_files = arguments.run.special_files;
   if (arguments.world.empty() == arguments.from.empty())
     throw command_line::UsageError("needs either a WORLD or --from FILE");
   if (!arguments.run.await.empty() && arguments.run.bus == "none")
@@ -71,8 +73,13 @@ int run(RunArguments& arguments) {
   catch_signals(true);
   const Summary summary = run_world(loaded, arguments.run);
   if (!summary.error.empty()) std::cerr << "shoal: " << summary.error << '\n';
-  if (summary.steps > 0 && !arguments.run.quiet) std::cout << summary.to_text();
-  if (summary.steps > 0 && !arguments.run.results.empty() && !arguments.run.quiet)
+  // What could not be saved is printed all the same: on stderr where stdout leads to the same full disk.
+  std::error_code ignored;
+  const bool saved = arguments.run.results.empty() ||
+                     std::filesystem::is_regular_file(arguments.run.results + "/summary.json", ignored);
+  if (summary.steps > 0 && (!arguments.run.quiet || !saved)) std::cout << summary.to_text() << std::flush;
+  if (summary.steps > 0 && !std::cout && !saved) std::cerr << summary.to_text();
+  if (summary.steps > 0 && !arguments.run.results.empty() && !arguments.run.quiet && saved)
     std::cout << "  results in " << arguments.run.results << "/ (summary.json, tracks.png)\n";
   if (summary.ended == "fault" || summary.ended == "error")
     std::cerr << bug_hint(arguments.run.results, arguments.run.record) << '\n';
@@ -106,6 +113,8 @@ void add_output_options(CLI::App& command, RunArguments& arguments) {
   command.add_option("--record", arguments.run.record, "write an LCM event log, stamped with simulated time")
       ->type_name("FILE");
   command.add_flag("--overwrite", arguments.run.overwrite, "the record may replace a file");
+  command.add_flag("--special-files", arguments.run.special_files,
+                   "the world and the record may be pipes and devices, such as /dev/stdin");
   command.add_option("--results", arguments.run.results, "directory for summary.json, CSV files and plots")
       ->type_name("DIR");
   command.add_flag_callback(
@@ -191,7 +200,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
                   {2, "wrong usage, or a mistake in the world"},
                   {3, "physics fault"},
                   {4, "bus or file trouble"},
-                  {5, "a lockstep client did not join or answer in time"},
+                  {5, "a lockstep client did not join or answer in time, or a step took longer than 'limits' allows"},
                   {129, "ended by SIGHUP; 130 by SIGINT; 143 by SIGTERM"}},
                  {}});
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

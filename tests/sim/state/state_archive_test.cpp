@@ -288,4 +288,51 @@ TEST(StateArchive, AListIsNotLongerThanWhatWasRead) {
   EXPECT_EQ(Counted::made, 101);
 }
 
+enum class Mode { off, on, automatic };
+
+/// What a value of another type says when it is restored as T.
+template <typename T, typename Bits>
+std::string error_of_restoring(Bits bits) {
+  StateArchive saver = StateArchive::saver();
+  saver.raw(&bits, sizeof bits);
+  const std::vector<std::byte> bytes = saver.take_bytes();
+  StateArchive restorer = StateArchive::restorer(bytes);
+  T value{};
+  try {
+    restorer(value);
+    return "";
+  } catch (const SnapshotError& error) {
+    return error.what();
+  }
+}
+
+TEST(StateArchive, RestoresNoValueThatAnEnumerationDoesNotHave) {
+  EXPECT_EQ(error_of_restoring<Mode>(2), "");
+  for (const int number : {3, 31, 32, 1 << 20, -1})
+    EXPECT_EQ(error_of_restoring<Mode>(number), "snapshot: the begin: a value that is none of those it can have")
+        << number;
+}
+
+TEST(StateArchive, RestoresNoNumberThatIsNotFiniteUnlessItMeansSomething) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(error_of_restoring<double>(1e100), "");
+  EXPECT_EQ(error_of_restoring<double>(-1e300), "snapshot: the begin: the snapshot has the number -1e+300, which cannot be");
+  EXPECT_NE(error_of_restoring<double>(infinity), "");
+  EXPECT_NE(error_of_restoring<sim::Vector3d>(std::array{0.0, std::nan(""), 0.0}), "");
+  struct Target {
+    double heading_rad = std::nan(""), limit = infinity;
+    void visit_state(StateArchive& archive) { archive.not_only_finite(heading_rad, limit); }
+  };
+  EXPECT_EQ(error_of_restoring<Target>(std::array{std::nan(""), infinity}), "");
+  EXPECT_NE(error_of_restoring<Target>(std::array{1e300, 0.0}), "");
+}
+
+TEST(StateArchive, RestoresNoTimeThatIsFurtherThanARunCanBe) {
+  const std::int64_t most_us = StateArchive::max_time.count();
+  EXPECT_EQ(error_of_restoring<std::chrono::microseconds>(most_us), "");
+  EXPECT_EQ(error_of_restoring<std::chrono::microseconds>(-most_us), "");
+  EXPECT_EQ(error_of_restoring<std::chrono::microseconds>(most_us + 1), "snapshot: the begin: the snapshot has a time that cannot be");
+  EXPECT_NE(error_of_restoring<std::chrono::microseconds>(std::numeric_limits<std::int64_t>::min()), "");
+}
+
 }  // namespace

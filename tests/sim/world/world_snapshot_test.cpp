@@ -447,7 +447,37 @@ TEST_F(ForgedSnapshot, WithAnEventThatFiredLessThanNeverIsRefused) {
   // Behind the length of the part come the actor (two of 8 bytes, 4, 1, a pose) and how often the event has fired.
   const std::size_t script = behind(bad, std::string("script")) + 8;
   put(bad, script + 2 * 8 + 4 + 1 + 16 * 8 + 8, std::int64_t{-1});
-  EXPECT_THAT(error_of(world(), bad), HasSubstr("script: an event that fired less often than never"));
+  EXPECT_THAT(error_of(world(), bad), HasSubstr("script: the snapshot has a count of firings that cannot be"));
+}
+
+/// The next sample was looked for step by step from wherever a snapshot said, for years.
+TEST(WorldSnapshot, WithANextSampleFarAwayIsRefused) {
+  TappedWorld test(
+      "shoal: 1\nphysics: {step_s: 0.01}\nvehicles: [{name: v, model: {shoal: 1, bodies: [{name: b, kinematic: true, "
+      "parts: [{shape: sphere, mass_kg: 1}]}], devices: [{name: imu, type: imu, rate_hz: 10, phase_s: 0.05}]}}]\n");
+  for (int i = 0; i < 100; ++i) test.world.step();
+  const sim::Bytes good = test.world.snapshot();
+  // Sample k is at 0.05 s + k / 10 Hz: 10 were taken by step 100, the next is number 10, at step 105.
+  const std::array<std::int64_t, 2> planned{11, 105};
+  const auto key = std::as_bytes(std::span(planned));
+  const auto found = std::search(good.begin(), good.end(), key.begin(), key.end());
+  ASSERT_NE(found, good.end());
+  const auto at = static_cast<std::size_t>(found - good.begin());
+  constexpr std::int64_t far = std::int64_t{1} << 62;
+  for (const auto& [samples, next] : {std::pair<std::int64_t, std::int64_t>{11, far},
+                                      {far, 105},
+                                      {far, far},
+                                      {-far, 105},
+                                      {0, 105},
+                                      {11, 106},
+                                      {11, -far}}) {
+    sim::Bytes bad = good;
+    std::memcpy(&bad[at], &samples, sizeof samples);
+    std::memcpy(&bad[at + 8], &next, sizeof next);
+    EXPECT_THAT(error_of(test.world, bad), HasSubstr("v/imu: the snapshot has a next sample that cannot be"))
+        << samples << " " << next;
+    EXPECT_EQ(test.world.snapshot(), good);
+  }
 }
 
 TEST_F(ForgedSnapshot, WithAHistoryAfterItsEndIsRefused) {

@@ -1,0 +1,198 @@
+// Runs that meet a full disk, another run, a pipe, a step that does not end, or physics that nearly stands still.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/system/shoal_program.hpp"
+
+namespace {
+
+using namespace system_test;
+using testing::HasSubstr;
+
+const char* const endless =
+    "shoal: 1\nrun: {duration_s: 0, speed: 1}\nobjects: [{name: ground, fixed: true, parts: [{shape: plane}]}]\n";
+
+/// Cubes of 0.5 m, all within the same cubic metre: nearly all of them overlap.
+std::string heap_of(int boxes) {
+  std::string world = "shoal: 1\nrun: {duration_s: 1, speed: 0}\nobjects:\n";
+  for (int i = 0; i < boxes; ++i) {
+    const auto at = [&](int step) { return std::to_string(0.001 * (i * step % 1000)); };
+    world += "  - {name: box" + std::to_string(i) + ", position_m: [" + at(37) + ", " + at(101) + ", " + at(211) +
+             "], parts: [{shape: box, size_m: [0.5, 0.5, 0.5], mass_kg: 1}]}\n";
+  }
+  return world;
+}
+
+/// Runs a command in a name space of its own, where `folder` is a disk of so many bytes.
+std::vector<std::string> on_small_disk(const std::string& folder, int bytes, const std::string& command) {
+  return {"unshare", "-rm", "sh", "-c",
+          "mount -t tmpfs -o size=" + std::to_string(bytes) + " none " + folder + " && " + command};
+}
+
+bool can_mount() {
+  const ScratchFolder folder;
+  return Program(on_small_disk(folder.path(), 1 << 20, "true")).wait() == 0;
+}
+
+TEST(FullDisk, LosesNeitherScoreNorHash) {
+  if (!can_mount()) GTEST_SKIP() << "mounts in a name space are not permitted here";
+  const ScratchFolder folder;
+  const std::string disk = folder.file("disk");
+  std::filesystem::create_directory(disk);
+  const std::string run = built("shoal") + " run " + source("worlds/minimal.yaml") +
+                          " --duration 30 --bus none --speed max --no-pictures --quiet";
+  Program reference({"sh", "-c", run + " --results " + folder.file("reference")});
+  ASSERT_EQ(reference.wait(), 0) << reference.errors();
+  const auto expected = nlohmann::json::parse(text_of_file(folder.file("reference") + "/summary.json"));
+  // The rest of the disk is filled as soon as the run has begun: tracks.csv is there.
+  Program program(on_small_disk(
+      disk, 3 << 20,
+      "{ (while [ ! -s " + disk + "/r/outlines.dat ]; do :; done; cat /dev/zero > " + disk + "/filler 2>/dev/null; echo full > " +
+          folder.file("full") + ") & } ; " + run + " --results " + disk + "/r; code=$?; wait; cp " + disk + "/r/summary.json " +
+          folder.file("saved.json") + "; exit $code"));
+  const int code = program.wait();
+  EXPECT_TRUE(code == 4 || code == 0) << code;  // tracks.csv may have had the last blocks
+  const auto saved = nlohmann::json::parse(text_of_file(folder.file("saved.json")));
+  EXPECT_EQ(saved["exit_code"], code);
+  EXPECT_EQ(saved["run_hash"].get<std::string>().size(), 16u);
+  if (saved["steps"] == expected["steps"]) EXPECT_EQ(saved["run_hash"], expected["run_hash"]);
+  if (code == 4) EXPECT_THAT(program.errors(), HasSubstr("No space left on device"));
+}
+
+TEST(FullDisk, PrintsTheSummaryThatCannotBeSaved) {
+  const ScratchFolder folder;
+  const std::string results = folder.file("results");
+  std::filesystem::create_directories(results + "/summary.json/in_the_way");
+  Program program({built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "1", "--bus", "none", "--speed",
+                   "max", "--no-pictures", "--quiet", "--results", results});
+  EXPECT_EQ(program.wait(), 4);
+  EXPECT_THAT(program.errors(), HasSubstr("summary.json"));
+  EXPECT_THAT(program.output(), HasSubstr("run hash"));
+}
+
+TEST(TwoRuns, CannotShareAResultsFolder) {
+  const ScratchFolder folder;
+  write_file(folder.file("world.yaml"), endless);
+  const std::vector<std::string> run = {built("shoal"), "run",   folder.file("world.yaml"), "--bus",
+                                        "none",         "--results", folder.file("results")};
+  Program first(run);
+  ASSERT_TRUE(await([&] { return std::filesystem::exists(folder.file("results") + "/tracks.csv"); }));
+  Program second(run);
+  EXPECT_EQ(second.wait(), 4);
+  EXPECT_THAT(second.errors(), HasSubstr("cannot write results to '" + folder.file("results") + "': process " +
+                                         std::to_string(first.pid())));
+  EXPECT_THAT(second.errors(), HasSubstr("is writing there"));
+  first.send_signal(SIGKILL);
+  first.wait();
+  Program third(run);  // a dead run is no owner
+  ASSERT_TRUE(await([&] { return std::filesystem::file_size(folder.file("results") + "/world.yaml") > 0; }));
+  third.send_signal(SIGTERM);
+  EXPECT_EQ(third.wait(), 128 + SIGTERM) << third.errors();
+  EXPECT_TRUE(std::filesystem::exists(folder.file("results") + "/summary.json"));
+}
+
+TEST(TwoRuns, CannotShareARecord) {
+  const ScratchFolder folder;
+  write_file(folder.file("world.yaml"), endless);
+  const std::vector<std::string> run = {built("shoal"), "run",      folder.file("world.yaml"), "--bus",
+                                        "none",         "--record", folder.file("run.lcm"),    "--overwrite"};
+  Program first(run);
+  const auto recorded = [&] {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(folder.file("run.lcm"), error);
+    return !error && size > 0;
+  };
+  ASSERT_TRUE(await(recorded));
+  Program second(run);
+  EXPECT_EQ(second.wait(), 4);
+  EXPECT_THAT(second.errors(), HasSubstr("run.lcm: process " + std::to_string(first.pid())));
+  EXPECT_TRUE(recorded());
+  first.send_signal(SIGTERM);
+  EXPECT_EQ(first.wait(), 128 + SIGTERM);
+}
+
+TEST(SpecialFiles, AreRefusedUnlessAskedFor) {
+  const ScratchFolder folder;
+  const std::string pipe = folder.file("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  Program world({built("shoal"), "run", pipe, "--bus", "none"});
+  EXPECT_EQ(world.wait(), 2);
+  EXPECT_THAT(world.errors(), HasSubstr("it is a pipe or a device; 'shoal run --special-files' allows that"));
+  Program check({built("shoal"), "check", pipe});
+  EXPECT_EQ(check.wait(), 2);
+  const std::string minimal = source("worlds/minimal.yaml");
+  for (const std::string& record : {pipe, std::string("/dev/null"), folder.path()}) {
+    Program program({built("shoal"), "run", minimal, "--bus", "none", "--duration", "1", "--record", record, "--overwrite"});
+    EXPECT_EQ(program.wait(), 4) << record;
+    EXPECT_THAT(program.errors(), HasSubstr(record + ": cannot record: it is"));
+  }
+  Program asked({"sh", "-c", "printf 'shoal: 1\\n' | " + built("shoal") +
+                                 " run /dev/stdin --special-files --bus none --duration 1 --speed max --record "
+                                 "/dev/null --overwrite"});
+  EXPECT_EQ(asked.wait(), 0) << asked.errors();
+}
+
+/// A second signal ends what does not look at the first.
+TEST(Signals, ASecondOneEndsAStepThatDoesNotEnd) {
+  const ScratchFolder folder;
+  write_file(folder.file("heap.yaml"), heap_of(1500));
+  Program shoal({built("shoal"), "run", folder.file("heap.yaml"), "--bus", "none", "--set", "physics.solver=step",
+                 "--log-level", "error"});
+  std::this_thread::sleep_for(std::chrono::seconds(3));  // it is in its first step, for minutes
+  ASSERT_TRUE(shoal.running()) << shoal.errors();
+  shoal.send_signal(SIGTERM);
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  ASSERT_TRUE(shoal.running());
+  shoal.send_signal(SIGTERM);
+  EXPECT_EQ(shoal.wait(std::chrono::seconds(5)), 128 + SIGTERM);
+  EXPECT_THAT(shoal.errors(), HasSubstr("ended at once by another signal"));
+}
+
+TEST(SlowPhysics, IsReportedWithTheBodiesThatCauseIt) {
+  const ScratchFolder folder;
+  write_file(folder.file("heap.yaml"), heap_of(200));
+  Program shoal({built("shoal"), "run", folder.file("heap.yaml"), "--bus", "none", "--duration", "0.1"});
+  EXPECT_EQ(shoal.wait(), 0);
+  EXPECT_THAT(shoal.errors(), HasSubstr("times as long as it simulates: 200 bodies touch or are joined"));
+  EXPECT_THAT(shoal.errors(), HasSubstr("'box0/body', 'box1/body', 'box2/body', ..."));
+}
+
+TEST(SlowPhysics, EndsARunWithItsResultWhenThereIsALimit) {
+  const ScratchFolder folder;
+  write_file(folder.file("heap.yaml"), heap_of(200) + "limits: {step_cpu_s: 0.005}\n");
+  Program shoal({built("shoal"), "run", folder.file("heap.yaml"), "--bus", "none", "--results", folder.file("results")});
+  EXPECT_EQ(shoal.wait(), 5);
+  EXPECT_THAT(shoal.errors(), HasSubstr("more than 'limits: step_cpu_s' 0.005 allows: 200 bodies"));
+  const auto summary = nlohmann::json::parse(text_of_file(folder.file("results") + "/summary.json"));
+  EXPECT_EQ(summary["ended"], "limit");
+  EXPECT_EQ(summary["exit_code"], 5);
+  EXPECT_GE(summary["steps"], 1);
+  EXPECT_EQ(summary["passed"], false);
+}
+
+TEST(Check, TakesLittleMemoryForEachFurtherVehicleOfAKind) {
+  const auto peak_kB = [](int vehicles) {
+    const ScratchFolder folder;
+    std::string world = "shoal: 1\nvehicles:\n";
+    for (int i = 0; i < vehicles; ++i)
+      world += "  - {name: r" + std::to_string(i) + ", file: pioneer.yaml, position_m: [" + std::to_string(2 * (i % 100)) +
+               ", " + std::to_string(2 * (i / 100)) + ", 0]}\n";
+    write_file(folder.file("world.yaml"), world);
+    Program program({"sh", "-c", built("shoal") + " check " + folder.file("world.yaml") +
+                                     " & pid=$!; peak=0; while kill -0 $pid 2>/dev/null; do now=$(grep VmHWM /proc/$pid/status "
+                                     "2>/dev/null | tr -dc 0-9); [ -n \"$now\" ] && peak=$now; done; wait $pid; echo $peak"});
+    EXPECT_EQ(program.wait(), 0) << program.errors();
+    const std::string output = program.output();
+    EXPECT_THAT(output, HasSubstr(std::to_string(6 * vehicles) + " devices"));
+    return std::stod(output.substr(output.rfind('\n', output.size() - 2) + 1));
+  };
+  const double few = peak_kB(1000), many = peak_kB(4000);
+  EXPECT_LT((many - few) / 3000, 20) << "kB for each further Pioneer";
+}
+
+}  // namespace
