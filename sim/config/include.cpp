@@ -119,16 +119,17 @@ class Loader {
   }
 
   void check_top_level(const ConfigNode& node, const fs::path& path, Diagnostics& own) const {
+    const bool hidden = hides(path);
     if (node.kind != Kind::map) {
-      const bool included = !open_.empty();
-      own.error(node.place, "",
-                (included ? "an included file must be a map of keys, got " : "must be a map of keys and values, got ") +
-                    shown(node));
+      const std::string rule =
+          !hidden && !open_.empty() ? "an included file must be a map of keys" : "must be a map of keys and values";
+      return own.error(node.place, "", hidden ? rule : rule + ", got " + shown(node));
     }
-    if (!hides(path)) return;
+    if (!hidden) return;
     // What follows may quote the file: it is one of Shoal's, then, not the notes of whoever runs the world.
     for (const ConfigNode::Entry& entry : node.entries)
-      if (!diagnostics_.files()->is_known_key(entry.key)) own.error(entry.place, "", "unknown key");
+      if (!diagnostics_.files()->is_known_key(entry.key))
+        own.error(entry.place, "", "unknown key of a world or vehicle file");
   }
 
   ConfigNode fail(const SourcePlace& place, const std::string& text) {

@@ -229,7 +229,7 @@ TEST(ExitCode, Is128PlusTheSignal) {
     bridges::LcmListener listener(own_url());
     listener.listen("sim.clock");
     Program shoal({built("shoal"), "run", folder.file("world.yaml"), "--launch", "--lcm-url", own_url(), "--record",
-                   folder.file("run.lcm")});
+                   folder.file("run.lcm"), "--allow-path", folder.file("")});
     ASSERT_TRUE(listener.next(patience));
     EXPECT_TRUE(std::filesystem::is_symlink(folder.file("port")));
     const auto children = shoal.children();

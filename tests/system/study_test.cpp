@@ -31,7 +31,8 @@ struct StudyFolder {
     write_file(folder.file("study.yaml"), "shoal: 1\nstudy: tiny\nworld: world.yaml\n" + more);
   }
   Ended run(std::vector<std::string> more = {}) const {
-    std::vector<std::string> arguments{"study", folder.file("study.yaml"), "--output", folder.file("out")};
+    std::vector<std::string> arguments{
+        "study", folder.file("study.yaml"), "--output", folder.file("out"), "--allow-path", folder.file("")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_shoal(arguments);
   }

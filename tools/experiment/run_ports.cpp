@@ -34,7 +34,7 @@ PortPlace place_of(const std::string& path, const sim::FileAccessPointer& files,
                    const std::string& world_name) {
   const fs::path whole(path);
   if (whole.is_relative()) {
-    if (!results.empty()) return {results + "/serial", path};
+    if (!results.empty()) return {results, "serial/" + path};
     const PortFolder temporary = temporary_port_folder(world_name);
     return {temporary.folder, temporary.world + "/" + path};
   }

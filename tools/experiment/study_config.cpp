@@ -10,6 +10,7 @@
 #include "shoal/message_writer.hpp"
 #include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/config/shipped_files.hpp"
 #include "sim/config/yaml_writer.hpp"
 
 namespace tools {
@@ -290,11 +291,13 @@ namespace {
 void check_world_file(const std::string& world, const std::string& study, const sim::ConfigNode& root,
                       const sim::LoadOptions& load) {
   const fs::path folder = fs::path(study).parent_path();
-  const sim::FileAccess access({folder.string(), (folder / "..").string()}, load.allow_paths, {});
+  std::vector<std::string> folders{folder.string(), (folder / "..").string()};
+  if (!sim::shipped_folder().empty()) folders.push_back(sim::shipped_folder() + "/worlds");
+  const sim::FileAccess access(std::move(folders), load.allow_paths, {});
   if (!load.only_own_files || access.may_read(world)) return;
   sim::throw_config_error(root.find("world")->place, "",
-                          "'world' must lie below the folder of the study or the one above it, or below a folder "
-                          "given with --allow-path");
+                          "'world' must lie below the folder of the study or the one above it, be a shipped one, or "
+                          "lie below a folder given with --allow-path");
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ TEST(Spawn, ErrorsReadAsThoseOfFiles) {
   EXPECT_THAT(refused("{name: a, file: rover.yaml}"), HasSubstr("there is a vehicle of this name already"));
   EXPECT_THAT(refused("{name: crate, file: rover.yaml}"), HasSubstr("there is an object of this name already"));
   EXPECT_THAT(refused("{name: x, model: {shoal: 1, bodies: [{name: b, parts: [{shape: mesh, mesh: /etc/passwd}]}]}}"),
-              HasSubstr("spawn:1:70: vehicle 'x': 'mesh' cannot be used in what comes over the bus"));
+              HasSubstr("spawn:1:76: vehicle 'x': body 'b': part 1: 'mesh' cannot be used in what comes over the bus"));
   EXPECT_THAT(refused("{name: x, file: rover.yaml, overrides: {devices.modem.serial: {path: /tmp/x}}}"),
               HasSubstr("'serial' cannot be used"));
   EXPECT_THAT(refused("{name: x, model: {shoal: 1, bodies: [{name: b, parts: [{shape: box}]}]}}"),
