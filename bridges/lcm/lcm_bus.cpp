@@ -25,6 +25,10 @@ namespace {
 
 /// Calls of LcmConnection::handle() before a thread that waits looks at its mailboxes.
 constexpr int max_calls_at_once = 4;
+/// Where messages come one by one without end the receiver lets them gather: waking for each costs more than receiving
+/// it.  A thread that waits for messages receives them at once all the same.
+constexpr int looks_before_pause = 8;
+constexpr std::chrono::milliseconds until_next_look{1}, pause_of_looks{1};
 constexpr std::size_t max_echoes = 4096;
 
 class ChannelMailbox;
@@ -228,9 +232,14 @@ struct LcmBus::Threads final : Arrivals::Port {
   }
 
   void receive_all() {
+    int looks = 0;
     while (!stopping) {
-      readable.wait(std::chrono::milliseconds(-1));
-      if (stopping || !receive()) return;
+      const bool some = readable.wait(looks == 0 ? std::chrono::milliseconds(-1) : until_next_look).count > 0;
+      if (stopping || (some && !receive())) return;
+      looks = some ? looks + 1 : 0;
+      if (looks < looks_before_pause || connection.may_block()) continue;
+      looks = 0;
+      wait_readable(stop_fd, -1, pause_of_looks);
     }
   }
 

@@ -215,12 +215,12 @@ Finding check_port(const LcmEndpoint& endpoint) {
   const auto groups = other_groups(endpoint.address);
   if (groups.empty()) return finding;
   finding.verdict = Verdict::warning;
-  separator = ", even those of other multicast groups (";
+  separator = ", and there are other multicast groups (";
   for (const std::string& group : groups) {
     finding.text += separator + group;
     separator = ", ";
   }
-  finding.text += "): LCM 1.3 keeps apart ports only, so give every team a port of its own";
+  finding.text += "): programs on liblcm 1.3 receive all groups of a port, so give every team a port of its own";
   return finding;
 }
 

@@ -174,6 +174,19 @@ TEST(UdpReceiver, WhileTtlIsZeroOnlyThisMachineIsHeardAndUnicastNever) {
   EXPECT_EQ(result, 0);
 }
 
+TEST(UdpReceiver, OtherGroupsOnItsPortAreNotHeard) {
+  const std::string url = own_url();
+  const auto colon = url.rfind(':');
+  const std::string other = "udpm://239.255.76.68" + url.substr(colon);
+  LcmListener ours(url), theirs(other);
+  ours.listen("a");
+  theirs.publish("a", bytes_of("to another group"));
+  ours.publish("a", bytes_of("to this group"));
+  const auto first = ours.next(10s);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(text_of(first->payload), "to this group");
+}
+
 TEST(UdpReceiver, ThreeSendersLargeMessagesComeWholeAndApart) {
   if (!lcm_test::has_large_receive_buffers()) GTEST_SKIP() << "needs sysctl -w net.core.rmem_max=4194304";
   LcmListener listener(own_url());
