@@ -141,7 +141,7 @@ TEST_F(ControlKey, IsHandedToLaunchedProgramsAndLeavesTheRunAsItIs) {
 
 TEST_F(ControlKey, IsNotNeededWithOpenControlWhichSaysSo) {
   const auto shoal = run(source("worlds/minimal.yaml"), {"--duration", "0", "--lcm-url", far_url(), "--open-control"});
-  EXPECT_TRUE(await([&] { return control({"quit"}).exit_code == 0; }, patience));
+  EXPECT_TRUE(await([&] { return control({"quit", "--timeout", "0.3"}).exit_code == 0; }, patience));
   EXPECT_EQ(shoal->wait(), 0) << shoal->errors();
   EXPECT_THAT(shoal->errors(), HasSubstr("--open-control: whoever reaches the network of this run may control it"));
 }
@@ -162,7 +162,7 @@ TEST_F(ControlKey, IsInAFolderOfItsOwnWithoutResults) {
   EXPECT_THAT(late.errors, HasSubstr("run.key: No such file or directory; the run has ended, needs no key"));
 }
 
-TEST_F(ControlKey, IsReadFromTheEnvironmentBySimpleWords) {
+TEST_F(ControlKey, IsReadFromTheEnvironment) {
   const auto shoal = run(source("worlds/minimal.yaml"), {"--duration", "0", "--lcm-url", far_url()});
   const Program control({"/usr/bin/env", "SHOAL_RUN_KEY=" + key_in(results()), built("shoal"), "control", "quit",
                          "--lcm-url", far_url()});
@@ -170,7 +170,7 @@ TEST_F(ControlKey, IsReadFromTheEnvironmentBySimpleWords) {
 }
 
 /// A second program that answers the ticks of `pilot` before it does, and says that it published something.
-TEST_F(ControlKey, IsNotThereAndForgedAnswersAreReportedByName) {
+TEST_F(ControlKey, IsNotAskedForAndForgedAnswersAreReportedByName) {
   write_file(folder.file("world.yaml"),
              "shoal: 1\nrun: {duration_s: 3, speed: 1}\nphysics: {step_s: 0.01, gravity_mps2: 0}\n"
              "processes: [{name: pilot, client: pilot, command: [" +

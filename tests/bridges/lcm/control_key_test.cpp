@@ -237,13 +237,14 @@ TEST(TwoAnswers, ThatAreTheSameAreNotReported) {
 struct LimitedWorld : lcm_test::ServedWorld {
   LimitedWorld() : ServedWorld("shoal: 1\nphysics: {step_s: 0.01}\nlimits: {spawns_per_client: 2}\n") {}
   std::string spawn(const std::string& name, const std::string& client) {
+    const std::string at_m = std::to_string(3 * ++places);
     const auto reply = ask("spawn", 0,
-                           "{name: " + name +
-                               ", model: {shoal: 1, bodies: [{name: b, parts: [{shape: box, mass_kg: "
-                               "1}]}]}}",
+                           "{name: " + name + ", position_m: [" + at_m +
+                               ", 0, 0], model: {shoal: 1, bodies: [{name: b, parts: [{shape: box, mass_kg: 1}]}]}}",
                            client);
     return reply.ok ? "ok" : reply.text;
   }
+  int places = 0;
 };
 
 TEST(Limits, OnSpawnsAreOfEachClientAndOfAllTogether) {

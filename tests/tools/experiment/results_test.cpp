@@ -78,12 +78,11 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   const auto json = nlohmann::ordered_json::parse(summary.to_json());
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(keys,
-              testing::ElementsAre("world", "description", "seed", "steps", "sim_time_s", "duration_s", "wall_s",
-                                   "real_time_factor", "run_hash", "state_hash", "messages", "dropped_messages",
-                                   "bad_messages", "quick_steps", "metrics", "rules", "contacts", "contact_pairs",
-                                   "processes", "modem_dropped_messages", "serial_dropped_bytes", "judged", "passed",
-                                   "ended", "error", "exit_code", "shoal"));
+  EXPECT_THAT(keys, testing::ElementsAre("world", "description", "seed", "steps", "sim_time_s", "duration_s", "wall_s",
+                                         "real_time_factor", "run_hash", "state_hash", "messages", "dropped_messages",
+                                         "bad_messages", "quick_steps", "metrics", "rules", "contacts", "contact_pairs",
+                                         "processes", "modem_dropped_messages", "serial_dropped_bytes", "judged",
+                                         "passed", "ended", "error", "exit_code", "shoal"));
   EXPECT_EQ(json["world"], "harbor");
   EXPECT_EQ(json["seed"], 3);
   EXPECT_EQ(json["steps"], 1000);
@@ -388,6 +387,28 @@ TEST(Results, DoNotChangeTheRun) {
   options.results = folder.file("results");
   options.record = folder.file("run.lcm");
   EXPECT_EQ(tools::run_world(loaded, options).state_hash, without.state_hash);
+}
+
+TEST(Summary, IsWrittenWhateverAClientCallsItself) {
+  tools::Summary summary;
+  summary.clients.push_back({.client = "pilot\xff"});
+  summary.notices.push_back({1, "quit", "operator\xff", "", ""});
+  const auto json = nlohmann::json::parse(summary.to_json());
+  EXPECT_EQ(json["clients"][0]["name"], "pilot\xef\xbf\xbd");  // U+FFFD, the replacement character
+  EXPECT_EQ(json["control"]["notices"][0]["client"], "operator\xef\xbf\xbd");
+}
+
+TEST(Summary, DoesNotPassWhenAClientGaveTwoAnswersToOneTick) {
+  tools::Summary summary;
+  summary.verdicts.push_back({"a rule", true});
+  summary.clients.push_back({.client = "pilot"});
+  summary.judge_clients();
+  EXPECT_EQ(summary.judgement(), tools::Judgement::passed);
+  summary.clients[0].contradictions = 2;
+  summary.judge_clients();
+  EXPECT_EQ(summary.judgement(), tools::Judgement::failed);
+  EXPECT_EQ(summary.verdicts.back().rule,
+            "client 'pilot' must give one answer to each tick; another program gave 2 different ones in its name");
 }
 
 }  // namespace
