@@ -2,14 +2,23 @@
 
 #include <sys/mman.h>
 
+#include <cstddef>
 #include <cstdlib>
 #include <memory_resource>
 #include <mutex>
 
 namespace sim {
 
-// The address sanitizer must see each object by itself.
-#if defined(__SANITIZE_ADDRESS__)
+// The address sanitizer must see each object by itself.  g++ says that it is there in one way, clang in another.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define SHOAL_ADDRESS_SANITIZER
+#endif
+#elif defined(__SANITIZE_ADDRESS__)
+#define SHOAL_ADDRESS_SANITIZER
+#endif
+
+#if defined(SHOAL_ADDRESS_SANITIZER)
 
 void* allocate_for_steps(std::size_t bytes) {
   return ::operator new(bytes);
@@ -45,6 +54,12 @@ struct Pools {
                                                &carved};
 };
 
+/// The pools of libstdc++ put blocks of 24 bytes side by side, whatever alignment is asked for.
+constexpr std::size_t rounded(std::size_t bytes) {
+  constexpr std::size_t alignment = alignof(std::max_align_t);
+  return (bytes + alignment - 1) / alignment * alignment;
+}
+
 /// Lives to the end of the process: objects with static storage may go later than anything here.
 Pools& pools() {
   static Pools* const all = new Pools;
@@ -55,13 +70,13 @@ Pools& pools() {
 
 void* allocate_for_steps(std::size_t bytes) {
   const std::lock_guard lock(pools().mutex);
-  return pools().pools.allocate(bytes);
+  return pools().pools.allocate(rounded(bytes));
 }
 
 void free_for_steps(void* memory, std::size_t bytes) noexcept {
   if (memory == nullptr) return;
   const std::lock_guard lock(pools().mutex);
-  pools().pools.deallocate(memory, bytes);
+  pools().pools.deallocate(memory, rounded(bytes));
 }
 
 #endif

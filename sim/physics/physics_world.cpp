@@ -63,7 +63,7 @@ void PhysicsWorld::forget() {
   // checkers see it.
   impl_->scene.reset();
   static std::mutex mutex;
-  static std::vector<Impl*> left_behind;
+  static std::vector<Impl*>& left_behind = *new std::vector<Impl*>;  // also after the end of main()
   const std::lock_guard lock(mutex);
   left_behind.push_back(impl_.release());
 }

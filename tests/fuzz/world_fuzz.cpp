@@ -1,12 +1,20 @@
 #include "shoal/message_writer.hpp"
+#include "sim/config/warnings.hpp"
+#include "sim/world/config_warnings.hpp"
 #include "sim/world/load_world.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
+#include "tools/experiment/process_check.hpp"
 
-// A world file from a stranger: read and checked, not built.
+// A world file from a stranger: read and checked as by `shoal check`, not built.
 
 SHOAL_FUZZ_TARGET(world) {
   sim::LoadOptions options;
   options.encode_message = shoal::encode_own_message;
-  fuzz::allow<sim::ConfigError>(
-      [&] { sim::load_world_text(std::string(fuzz::text_of(input)), "worlds/fuzz.yaml", options); });
+  fuzz::allow<sim::ConfigError>([&] {
+    const auto loaded = sim::load_world_text(std::string(fuzz::text_of(input)), "worlds/fuzz.yaml", options);
+    sim::Warnings warnings;
+    sim::warn_of_config(loaded.config, loaded.resolved, warnings);
+    tools::warn_of_processes(loaded, warnings);
+    tools::warn_of_missing_programs(loaded, warnings);
+  });
 }

@@ -184,7 +184,7 @@ sim::ConfigNode overrides_of(const FidelityCase& of, const FidelityOptions& opti
     const sim::SourcePlace place{sim::intern_file_name("--override " + path), 0, 0};
     sim::ConfigNode node = sim::parse_config_text(value, *place.file, diagnostics);
     set_places(node, place);
-    std::erase_if(overrides.entries, [&](const auto& known) { return known.key == path; });
+    std::erase_if(overrides.entries, [&key = path](const auto& known) { return known.key == key; });
     overrides.entries.push_back({path, place, node});
   }
   return overrides;
