@@ -148,8 +148,8 @@ void Lidar3d::disturb(double dt_s, sim::Random& random) {
 
 void Lidar3d::visit_state(sim::StateArchive& archive) {
   archive(turn_end_, turn_length_, step_, next_column_, receiver_);
-  const bool possible =
-      next_column_ >= 0 && next_column_ <= params_.columns && turn_length_ >= sim::Time{0} && step_ >= sim::Time{0};
+  const bool possible = next_column_ >= 0 && next_column_ <= params_.columns && turn_length_ >= sim::Time{0} &&
+                        turn_length_ <= sim::StateArchive::max_time / params_.columns && step_ >= sim::Time{0};
   if (archive.restoring() && !possible) archive.fail("a turn of the laser's head that cannot be");
   // A whole turn is out already.
   if (next_column_ == params_.columns)

@@ -346,6 +346,13 @@ void MicromodemProtocol::say_statistics(const MicromodemPacket& packet, const Mi
 
 void MicromodemProtocol::visit_state(sim::StateArchive& archive) {
   archive(settings_, clock_offset_us_, clock_set_, pulse_time_, due_, sending_until_, next_revision_, starting_);
+  // Three centuries: dates are made of them.
+  constexpr std::int64_t max_us = 10'000'000'000'000'000;
+  archive.require(clock_offset_us_, -max_us, max_us, "an offset of a modem's clock");
+  if (pulse_time_) {
+    archive.require(pulse_time_->second, -max_us, max_us, "a time of a modem's pulse");
+    archive.require(pulse_time_->set_us, -max_us, max_us, "a time of a modem's pulse");
+  }
   archive(cycle_, expected_, ping_, beacon_ping_);
   archive.unhashed(errors_);
 }

@@ -90,7 +90,12 @@ MicromodemSettings::Outcome MicromodemSettings::set(const std::string& name, int
 }
 
 void MicromodemSettings::visit_state(sim::StateArchive& archive) {
-  for (auto& [name, value] : values_) archive(value);
+  for (auto& [name, value] : values_) {
+    int restored = value;
+    archive(restored);
+    if (archive.restoring() && set(name, restored) != Outcome::done)
+      archive.fail("the snapshot has a setting " + name + " of " + std::to_string(restored) + ", which no modem takes");
+  }
 }
 
 }  // namespace devices

@@ -15,6 +15,10 @@ void visit_same_size(sim::StateArchive& archive, std::vector<T>& values, std::st
   static_assert(std::is_arithmetic_v<T>);
   archive.expect_count(values.size(), of);
   archive.raw(values.data(), values.size() * sizeof(T));
+  if constexpr (std::is_floating_point_v<T>) {
+    constexpr T most = static_cast<T>(sim::StateArchive::max_number);
+    for (const T value : values) archive.require(value, -most, most, of);
+  }
 }
 
 }  // namespace devices

@@ -52,8 +52,7 @@ std::string owner_of(int file) {
 
 std::optional<std::string> lock_against_others(int file) {
   int failed = 0;
-  do
-    failed = flock(file, LOCK_EX | LOCK_NB);
+  do failed = flock(file, LOCK_EX | LOCK_NB);
   while (failed != 0 && errno == EINTR);
   // Where a file system has no locks, things are as they were without them.
   if (failed == 0 || errno != EWOULDBLOCK) return std::nullopt;

@@ -27,6 +27,8 @@ class Islands {
   int largest_rows() const { return largest_; }
   /// Of the island that a moving body is in, with the contacts of this step.
   int rows_of(int body) { return rows_[static_cast<std::size_t>(root(parent_, body))]; }
+  /// It was there when the last step began.
+  bool knows(int body) const { return static_cast<std::size_t>(body) < parent_.size(); }
   /// One of the bodies of its island, the same for all of them, with the contacts of this step.
   int first_of(int body) { return root(parent_, body); }
 

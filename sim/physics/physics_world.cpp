@@ -247,9 +247,7 @@ std::string PhysicsWorld::Impl::suspects() {
     if (lightest == nullptr || body->mass_kg_ < lightest->mass_kg_) lightest = body;
     if (heaviest == nullptr || body->mass_kg_ > heaviest->mass_kg_) heaviest = body;
   }
-  const auto ratio = [](const auto& island) {
-    return island.second.second->mass_kg_ / island.second.first->mass_kg_;
-  };
+  const auto ratio = [](const auto& island) { return island.second.second->mass_kg_ / island.second.first->mass_kg_; };
   const auto worst = std::max_element(islands_by_first.begin(), islands_by_first.end(),
                                       [&](const auto& a, const auto& b) { return ratio(a) < ratio(b); });
   if (worst == islands_by_first.end()) return "";
@@ -311,11 +309,12 @@ IslandInfo PhysicsWorld::largest_island() const {
   IslandInfo found;
   int first = -1;
   for (const Body* body : impl_->moving) {
-    const int rows = impl_->islands.rows_of(body->number_);
+    const int rows = impl_->islands.knows(body->number_) ? impl_->islands.rows_of(body->number_) : 0;
     if (rows > found.rows) found.rows = rows, first = impl_->islands.first_of(body->number_);
   }
   for (const auto& body : impl_->bodies) {
-    if (first < 0 || !body || body->fixed() || impl_->islands.first_of(body->number_) != first) continue;
+    if (first < 0 || !body || body->fixed() || !impl_->islands.knows(body->number_)) continue;
+    if (impl_->islands.first_of(body->number_) != first) continue;
     ++found.body_count;
     if (found.bodies.size() < most_names) found.bodies.push_back(body->name());
   }

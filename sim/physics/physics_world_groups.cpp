@@ -1,3 +1,4 @@
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cassert>
 #include <utility>
@@ -183,14 +184,14 @@ void PhysicsWorld::Impl::set_mass(Body& body, const BodyConfig& config_, const d
   const double mean = body.inertia_C_B_.trace() / 3;
   body.gyroscopic_ = !body.inertia_C_B_.isApprox(mean * Matrix3d::Identity(), 1e-12);
   // ODE would end the program or the run over its inverse, and could not say whose it is.
-  const Vector3d moments = body.inertia_C_B_.selfadjointView<Eigen::Lower>().eigenvalues();
+  const Vector3d moments =
+      Eigen::SelfAdjointEigenSolver<Matrix3d>(body.inertia_C_B_, Eigen::EigenvaluesOnly).eigenvalues();
   const bool solvable = mass.mass < 1e30 && moments.minCoeff() > 1e-60 && moments.maxCoeff() < 1e60;
   if (!solvable)
-    throw_config_error(config_.parts.empty() ? config_.place : config_.parts.front().place,
-                       "body '" + body.name() + "'",
-                       "its moments of inertia must be above 1e-60 and below 1e60 kg m2, got " +
-                           number_text(moments.minCoeff()) + " to " + number_text(moments.maxCoeff()) + " with " +
-                           number_text(mass.mass) + " kg");
+    throw_config_error(
+        config_.parts.empty() ? config_.place : config_.parts.front().place, "body '" + body.name() + "'",
+        "its moments of inertia must be above 1e-60 and below 1e60 kg m2, got " + number_text(moments.minCoeff()) +
+            " to " + number_text(moments.maxCoeff()) + " with " + number_text(mass.mass) + " kg");
   dBodySetMass(body.ode_.get(), &mass);
 }
 

@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/system/shoal_program.hpp"
 
@@ -36,7 +38,7 @@ std::vector<std::string> on_small_disk(const std::string& folder, int bytes, con
 
 bool can_mount() {
   const ScratchFolder folder;
-  return Program(on_small_disk(folder.path(), 1 << 20, "true")).wait() == 0;
+  return Program(on_small_disk(folder.file(""), 1 << 20, "true")).wait() == 0;
 }
 
 TEST(FullDisk, LosesNeitherScoreNorHash) {
@@ -50,11 +52,11 @@ TEST(FullDisk, LosesNeitherScoreNorHash) {
   ASSERT_EQ(reference.wait(), 0) << reference.errors();
   const auto expected = nlohmann::json::parse(text_of_file(folder.file("reference") + "/summary.json"));
   // The rest of the disk is filled as soon as the run has begun: tracks.csv is there.
-  Program program(on_small_disk(
-      disk, 3 << 20,
-      "{ (while [ ! -s " + disk + "/r/outlines.dat ]; do :; done; cat /dev/zero > " + disk + "/filler 2>/dev/null; echo full > " +
-          folder.file("full") + ") & } ; " + run + " --results " + disk + "/r; code=$?; wait; cp " + disk + "/r/summary.json " +
-          folder.file("saved.json") + "; exit $code"));
+  Program program(on_small_disk(disk, 3 << 20,
+                                "{ (while [ ! -s " + disk + "/r/outlines.dat ]; do :; done; cat /dev/zero > " + disk +
+                                    "/filler 2>/dev/null; echo full > " + folder.file("full") + ") & } ; " + run +
+                                    " --results " + disk + "/r; code=$?; wait; cp " + disk + "/r/summary.json " +
+                                    folder.file("saved.json") + "; exit $code"));
   const int code = program.wait();
   EXPECT_TRUE(code == 4 || code == 0) << code;  // tracks.csv may have had the last blocks
   const auto saved = nlohmann::json::parse(text_of_file(folder.file("saved.json")));
@@ -78,7 +80,7 @@ TEST(FullDisk, PrintsTheSummaryThatCannotBeSaved) {
 TEST(TwoRuns, CannotShareAResultsFolder) {
   const ScratchFolder folder;
   write_file(folder.file("world.yaml"), endless);
-  const std::vector<std::string> run = {built("shoal"), "run",   folder.file("world.yaml"), "--bus",
+  const std::vector<std::string> run = {built("shoal"), "run",       folder.file("world.yaml"), "--bus",
                                         "none",         "--results", folder.file("results")};
   Program first(run);
   ASSERT_TRUE(await([&] { return std::filesystem::exists(folder.file("results") + "/tracks.csv"); }));
@@ -126,30 +128,49 @@ TEST(SpecialFiles, AreRefusedUnlessAskedFor) {
   Program check({built("shoal"), "check", pipe});
   EXPECT_EQ(check.wait(), 2);
   const std::string minimal = source("worlds/minimal.yaml");
-  for (const std::string& record : {pipe, std::string("/dev/null"), folder.path()}) {
-    Program program({built("shoal"), "run", minimal, "--bus", "none", "--duration", "1", "--record", record, "--overwrite"});
+  for (const std::string& record : {pipe, std::string("/dev/null"), folder.file("")}) {
+    Program program(
+        {built("shoal"), "run", minimal, "--bus", "none", "--duration", "1", "--record", record, "--overwrite"});
     EXPECT_EQ(program.wait(), 4) << record;
     EXPECT_THAT(program.errors(), HasSubstr(record + ": cannot record: it is"));
   }
-  Program asked({"sh", "-c", "printf 'shoal: 1\\n' | " + built("shoal") +
-                                 " run /dev/stdin --special-files --bus none --duration 1 --speed max --record "
-                                 "/dev/null --overwrite"});
+  Program asked({"sh", "-c",
+                 "printf 'shoal: 1\\n' | " + built("shoal") +
+                     " run /dev/stdin --special-files --bus none --duration 1 --speed max --record "
+                     "/dev/null --overwrite"});
   EXPECT_EQ(asked.wait(), 0) << asked.errors();
 }
 
-/// A second signal ends what does not look at the first.
+double cpu_s(pid_t process) {
+  const std::string stat = text_of_file("/proc/" + std::to_string(process) + "/stat");
+  std::istringstream in(stat.substr(stat.rfind(')') + 1));
+  std::string word;
+  for (int i = 0; i < 11; ++i) in >> word;  // up to the fields before utime
+  double ticks = 0;
+  in >> ticks;
+  return ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
+/// The first signal is looked at when the step is over, and that takes minutes.
 TEST(Signals, ASecondOneEndsAStepThatDoesNotEnd) {
   const ScratchFolder folder;
   write_file(folder.file("heap.yaml"), heap_of(1500));
   Program shoal({built("shoal"), "run", folder.file("heap.yaml"), "--bus", "none", "--set", "physics.solver=step",
-                 "--log-level", "error"});
-  std::this_thread::sleep_for(std::chrono::seconds(3));  // it is in its first step, for minutes
-  ASSERT_TRUE(shoal.running()) << shoal.errors();
-  shoal.send_signal(SIGTERM);
-  std::this_thread::sleep_for(std::chrono::milliseconds(700));
-  ASSERT_TRUE(shoal.running());
-  shoal.send_signal(SIGTERM);
-  EXPECT_EQ(shoal.wait(std::chrono::seconds(5)), 128 + SIGTERM);
+                 "--log-level", "error", "--results", folder.file("results")});
+  ASSERT_TRUE(await([&] { return std::filesystem::exists(folder.file("results") + "/world.yaml"); }, patience));
+  const double begun_s = cpu_s(shoal.pid());
+  ASSERT_TRUE(await([&] { return cpu_s(shoal.pid()) > begun_s + 1; }, patience));
+  int sent = 0;
+  EXPECT_TRUE(await(
+      [&] {
+        if (!shoal.running()) return true;
+        shoal.send_signal(SIGTERM);
+        ++sent;
+        return false;
+      },
+      patience));
+  EXPECT_GT(sent, 1);
+  EXPECT_EQ(shoal.wait(), 128 + SIGTERM);
   EXPECT_THAT(shoal.errors(), HasSubstr("ended at once by another signal"));
 }
 
@@ -165,7 +186,8 @@ TEST(SlowPhysics, IsReportedWithTheBodiesThatCauseIt) {
 TEST(SlowPhysics, EndsARunWithItsResultWhenThereIsALimit) {
   const ScratchFolder folder;
   write_file(folder.file("heap.yaml"), heap_of(200) + "limits: {step_cpu_s: 0.005}\n");
-  Program shoal({built("shoal"), "run", folder.file("heap.yaml"), "--bus", "none", "--results", folder.file("results")});
+  Program shoal(
+      {built("shoal"), "run", folder.file("heap.yaml"), "--bus", "none", "--results", folder.file("results")});
   EXPECT_EQ(shoal.wait(), 5);
   EXPECT_THAT(shoal.errors(), HasSubstr("more than 'limits: step_cpu_s' 0.005 allows: 200 bodies"));
   const auto summary = nlohmann::json::parse(text_of_file(folder.file("results") + "/summary.json"));
@@ -180,12 +202,13 @@ TEST(Check, TakesLittleMemoryForEachFurtherVehicleOfAKind) {
     const ScratchFolder folder;
     std::string world = "shoal: 1\nvehicles:\n";
     for (int i = 0; i < vehicles; ++i)
-      world += "  - {name: r" + std::to_string(i) + ", file: pioneer.yaml, position_m: [" + std::to_string(2 * (i % 100)) +
-               ", " + std::to_string(2 * (i / 100)) + ", 0]}\n";
+      world += "  - {name: r" + std::to_string(i) + ", file: pioneer.yaml, position_m: [" +
+               std::to_string(2 * (i % 100)) + ", " + std::to_string(2 * (i / 100)) + ", 0]}\n";
     write_file(folder.file("world.yaml"), world);
-    Program program({"sh", "-c", built("shoal") + " check " + folder.file("world.yaml") +
-                                     " & pid=$!; peak=0; while kill -0 $pid 2>/dev/null; do now=$(grep VmHWM /proc/$pid/status "
-                                     "2>/dev/null | tr -dc 0-9); [ -n \"$now\" ] && peak=$now; done; wait $pid; echo $peak"});
+    Program program({"sh", "-c",
+                     built("shoal") + " check " + folder.file("world.yaml") +
+                         " & pid=$!; peak=0; while kill -0 $pid 2>/dev/null; do now=$(grep VmHWM /proc/$pid/status "
+                         "2>/dev/null | tr -dc 0-9); [ -n \"$now\" ] && peak=$now; done; wait $pid; echo $peak"});
     EXPECT_EQ(program.wait(), 0) << program.errors();
     const std::string output = program.output();
     EXPECT_THAT(output, HasSubstr(std::to_string(6 * vehicles) + " devices"));

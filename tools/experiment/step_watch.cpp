@@ -59,9 +59,10 @@ std::string StepWatch::slow_island() const {
   std::string names;
   for (std::size_t i = 0; i < std::min(max_names, island.bodies.size()); ++i)
     names += (i > 0 ? ", '" : "'") + island.bodies[i] + "'";
-  return fmt::format(": {} bodies touch or are joined and are solved together, with {} contacts in all and {} rows: {}{}",
-                     island.body_count, world_.physics().last_step().contacts, island.rows, names,
-                     island.body_count > max_names ? ", ..." : "");
+  return fmt::format(
+      ": {} bodies touch or are joined and are solved together, with {} contacts in all and {} rows: {}{}",
+      island.body_count, world_.physics().last_step().contacts, island.rows, names,
+      island.body_count > max_names ? ", ..." : "");
 }
 
 }  // namespace tools

@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
+#include <cmath>
+#include <limits>
 
 #include "sim/time.hpp"
 
@@ -316,7 +319,8 @@ TEST(StateArchive, RestoresNoValueThatAnEnumerationDoesNotHave) {
 TEST(StateArchive, RestoresNoNumberThatIsNotFiniteUnlessItMeansSomething) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(error_of_restoring<double>(1e100), "");
-  EXPECT_EQ(error_of_restoring<double>(-1e300), "snapshot: the begin: the snapshot has the number -1e+300, which cannot be");
+  EXPECT_EQ(error_of_restoring<double>(-1e300),
+            "snapshot: the begin: the snapshot has the number -1e+300, which cannot be");
   EXPECT_NE(error_of_restoring<double>(infinity), "");
   EXPECT_NE(error_of_restoring<sim::Vector3d>(std::array{0.0, std::nan(""), 0.0}), "");
   struct Target {
@@ -331,7 +335,8 @@ TEST(StateArchive, RestoresNoTimeThatIsFurtherThanARunCanBe) {
   const std::int64_t most_us = StateArchive::max_time.count();
   EXPECT_EQ(error_of_restoring<std::chrono::microseconds>(most_us), "");
   EXPECT_EQ(error_of_restoring<std::chrono::microseconds>(-most_us), "");
-  EXPECT_EQ(error_of_restoring<std::chrono::microseconds>(most_us + 1), "snapshot: the begin: the snapshot has a time that cannot be");
+  EXPECT_EQ(error_of_restoring<std::chrono::microseconds>(most_us + 1),
+            "snapshot: the begin: the snapshot has a time that cannot be");
   EXPECT_NE(error_of_restoring<std::chrono::microseconds>(std::numeric_limits<std::int64_t>::min()), "");
 }
 

@@ -63,12 +63,27 @@ void put(sim::Bytes& bytes, std::size_t at, Number number) {
 /// One to four places: a bit, a number that is hard to take, or a piece of another place.
 void mutate(sim::Bytes& bytes, sim::Random& random) {
   const auto size = static_cast<std::uint32_t>(bytes.size());
-  constexpr std::int64_t whole[] = {0,       -1, 1, 2, 1'000'000, std::int64_t{1} << 32, std::int64_t{1} << 53,
+  constexpr std::int64_t whole[] = {0,
+                                    -1,
+                                    1,
+                                    2,
+                                    1'000'000,
+                                    std::int64_t{1} << 32,
+                                    std::int64_t{1} << 53,
                                     std::numeric_limits<std::int64_t>::max(),
                                     std::numeric_limits<std::int64_t>::min(),
-                                    1'000'000'000'000, -1'000'000'000'000};
-  constexpr double real[] = {1e300, -1e300, 1e30, -1e30, 1e-300, 1e12, -1, 0,
-                             std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()};
+                                    1'000'000'000'000,
+                                    -1'000'000'000'000};
+  constexpr double real[] = {1e300,
+                             -1e300,
+                             1e30,
+                             -1e30,
+                             1e-300,
+                             1e12,
+                             -1,
+                             0,
+                             std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::infinity()};
   const std::uint32_t places = 1 + random.integer_below(4);
   for (std::uint32_t i = 0; i < places; ++i) {
     const std::size_t at = random.integer_below(size);
