@@ -23,12 +23,6 @@
 namespace bridges {
 namespace {
 
-/// Calls of LcmConnection::handle() before a thread that waits looks at its mailboxes.
-constexpr int max_calls_at_once = 4;
-/// Where messages come one by one without end the receiver lets them gather: waking for each costs more than receiving
-/// it.  A thread that waits for messages receives them at once all the same.
-constexpr int looks_before_pause = 8;
-constexpr std::chrono::milliseconds until_next_look{1}, pause_of_looks{1};
 constexpr std::size_t max_echoes = 4096;
 
 class ChannelMailbox;
@@ -232,23 +226,19 @@ struct LcmBus::Threads final : Arrivals::Port {
   }
 
   void receive_all() {
-    int looks = 0;
+    GatherPauses pauses(connection);
     while (!stopping) {
-      const bool some = readable.wait(looks == 0 ? std::chrono::milliseconds(-1) : until_next_look).count > 0;
-      if (stopping || (some && !receive())) return;
-      looks = some ? looks + 1 : 0;
-      if (looks < looks_before_pause || connection.may_block()) continue;
-      looks = 0;
-      wait_readable(stop_fd, -1, pause_of_looks);
+      const bool something_came = readable.wait(pauses.wait()).count > 0;
+      if (stopping || (something_came && !receive())) return;
+      // A thread that waits for messages receives them at once all the same.
+      if (pauses.due(something_came)) wait_readable(stop_fd, -1, GatherPauses::length);
     }
   }
 
   bool receive() override {
     const std::lock_guard lock(receive_mutex);
-    auto handled = LcmConnection::Handled::more;
-    for (int i = 0; connected && handled == LcmConnection::Handled::more && i < max_calls_at_once; ++i)
-      handled = connection.handle();
-    if (connected && handled == LcmConnection::Handled::lost) {
+    // Once: then a thread that waits looks at its mailboxes, while what came is in the cache.
+    if (connected && connection.handle() == LcmConnection::Handled::lost) {
       connected = false;
       spdlog::warn("the connection to {} is lost; messages are dropped from now on", connection.url());
     }

@@ -10,6 +10,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <utility>
 
 #include "bridges/lcm/udp_inbox.hpp"
 
@@ -178,6 +179,19 @@ LcmConnection::Handled LcmConnection::handle() {
     if (lcm_handle(lcm_.get()) != 0 && lcm_get_fileno(lcm_.get()) < 0) return Handled::lost;
   }
   return Handled::more;
+}
+
+std::uint64_t LcmConnection::received_bytes() const {
+  return udp_ ? udp_->received_bytes() : 0;
+}
+
+bool GatherPauses::due(bool something_came) {
+  const std::uint64_t bytes = connection_.received_bytes();
+  const bool few = bytes - std::exchange(bytes_, bytes) <= max_bytes_of_look;
+  looks_ = something_came && few ? looks_ + 1 : 0;
+  if (looks_ < looks_before_pause || connection_.may_block()) return false;
+  looks_ = 0;
+  return true;
 }
 
 void LcmConnection::shut_down() {

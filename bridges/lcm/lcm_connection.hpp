@@ -58,6 +58,8 @@ class LcmConnection {
   bool publish(const char* channel, std::span<const std::byte> payload);
   /// Calls the handlers for what has come, a few messages at most, without waiting.  By one thread at a time.
   Handled handle();
+  /// What handle() has received so far, over udpm; else 0.  From any thread.
+  std::uint64_t received_bytes() const;
   /// publish() and handle() may wait for another program: tcpq.
   bool may_block() const { return is_tcp_; }
   /// Makes a blocked publish() return, for good.
@@ -80,6 +82,28 @@ class LcmConnection {
   std::unique_ptr<_lcm_t, LcmDeleter> lcm_;
   std::unique_ptr<UdpInbox> udp_;
   int fd_ = -1;
+};
+
+/// When a thread that receives while nobody waits lets messages gather for a while.  Where small ones come one by one
+/// without end, waking for each costs more than receiving it; the kernel's buffer holds what comes in a pause.
+class GatherPauses {
+ public:
+  static constexpr std::chrono::milliseconds until_next_look{1}, length{1};
+
+  explicit GatherPauses(const LcmConnection& connection) : connection_(connection) {}
+  /// How long to wait for the next messages; negative: without limit.
+  std::chrono::milliseconds wait() const { return looks_ == 0 ? std::chrono::milliseconds(-1) : until_next_look; }
+  /// After the wait, and after receiving if there was something: whether to pause now.
+  bool due(bool something_came);
+
+ private:
+  static constexpr int looks_before_pause = 8;
+  /// More at a time are no small messages one by one: images need all the room that the kernel has.
+  static constexpr std::uint64_t max_bytes_of_look = 16 << 10;
+
+  const LcmConnection& connection_;
+  std::uint64_t bytes_ = 0;
+  int looks_ = 0;
 };
 
 /// Waits until one of the descriptors is readable.  `second` may be -1.  False on time-out or signal.

@@ -12,11 +12,7 @@ using namespace std::chrono_literals;
 
 // Every LCM program says this to itself when it starts.
 constexpr std::string_view self_test_channel = "LCM_SELF_TEST";
-/// Where messages come one by one without end the listener's thread lets them gather: waking for each costs more than
-/// receiving it, and the kernel's buffer holds what comes in a pause.  The fragments of an image are fewer.
-constexpr int looks_before_pause = 8;
-constexpr std::chrono::milliseconds until_next_look{1}, pause_of_looks{2};
-/// Then the one that waits has its turn.
+/// Of one look of the listener's thread: then the one that waits has its turn.
 constexpr int max_batches = 64;
 constexpr std::size_t overhead_bytes = sizeof(Received) + 64;
 
@@ -118,21 +114,16 @@ void LcmListener::receive_while_nobody_waits() {
     return std::any_of(readable.tags.begin(), readable.tags.begin() + readable.count,
                        [](const void* tag) { return tag == nullptr; });
   };
-  int looks = 0;
+  GatherPauses pauses(connection_);
   while (true) {
-    const PollSet::Readable readable =
-        readable_by_thread_.wait(looks == 0 ? std::chrono::milliseconds(-1) : until_next_look);
+    const PollSet::Readable readable = readable_by_thread_.wait(pauses.wait());
     if (stopped(readable)) return;
-    looks = readable.count == 0 ? 0 : looks + 1;
-    if (looks == 0) continue;
-    {
+    if (readable.count > 0) {
       const std::lock_guard lock(receive_mutex_);
       for (int i = 0; i < max_batches && connection_.handle() == LcmConnection::Handled::more; ++i) {
       }
     }
-    if (looks < looks_before_pause) continue;
-    looks = 0;
-    if (wait_readable(stop_.number(), -1, pause_of_looks)) return;
+    if (pauses.due(readable.count > 0) && wait_readable(stop_.number(), -1, GatherPauses::length)) return;
   }
 }
 

@@ -50,6 +50,7 @@ bool UdpInbox::handle() {
         return is_wanted;
       },
       [this](const LcmReassembly::Message& message, std::int64_t at_us) { deliver(message, at_us); });
+  received_bytes_ = receiver_.counts().bytes;
   if (unwanted_ - unwanted_before_ >= unwanted_worth_a_filter) filter_when_it_pays();
   return more;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -44,6 +45,8 @@ class UdpInbox {
   /// By the thread that handles.
   Counts counts() const;
   bool filters() const { return filtering_; }
+  /// Of all datagrams so far.  From any thread.
+  std::uint64_t received_bytes() const { return received_bytes_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -65,6 +68,7 @@ class UdpInbox {
   bool filtering_ = false;
   bool filter_refused_ = false;  // for these subscriptions
   Clock::time_point changed_at_;
+  std::atomic<std::uint64_t> received_bytes_ = 0;
   std::vector<Call> called_;  // by the thread that handles
   std::uint64_t unwanted_ = 0, unwanted_before_ = 0;
 };

@@ -115,6 +115,7 @@ bool UdpReceiver::receive(const Wanted& wanted, const Sink& sink) {
     mmsghdr& header = batch_->headers[i];
     const DatagramSender from{ntohl(batch_->senders[i].sin_addr.s_addr), ntohs(batch_->senders[i].sin_port)};
     ++counts_.datagrams;
+    counts_.bytes += header.msg_len;
     if (options_.this_machine_only && !is_own(from.address)) {
       ++counts_.foreign;
       continue;

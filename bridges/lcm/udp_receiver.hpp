@@ -45,7 +45,7 @@ class UdpReceiver {
   bool set_filter(std::vector<sock_filter> program);
 
   struct Counts {
-    std::uint64_t datagrams = 0;
+    std::uint64_t datagrams = 0, bytes = 0;
     std::uint64_t foreign = 0;  ///< of other machines, dropped
   };
   const Counts& counts() const { return counts_; }

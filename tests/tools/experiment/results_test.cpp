@@ -81,8 +81,8 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   EXPECT_THAT(keys, testing::ElementsAre("world", "description", "seed", "steps", "sim_time_s", "duration_s", "wall_s",
                                          "real_time_factor", "run_hash", "state_hash", "messages", "dropped_messages",
                                          "bad_messages", "quick_steps", "metrics", "rules", "contacts", "contact_pairs",
-                                         "processes", "modem_dropped_messages", "serial_dropped_bytes", "judged",
-                                         "passed", "ended", "error", "exit_code", "shoal"));
+                                         "processes", "control", "modem_dropped_messages", "serial_dropped_bytes",
+                                         "judged", "passed", "ended", "error", "exit_code", "shoal"));
   EXPECT_EQ(json["world"], "harbor");
   EXPECT_EQ(json["seed"], 3);
   EXPECT_EQ(json["steps"], 1000);
