@@ -1,4 +1,5 @@
-// How long a message takes between two processes over LCM: bare LCM at both ends, and LcmBus at one end.
+// How long a message takes between two processes over LCM: LcmListener ("bare LCM") at both ends, and LcmBus at one
+// end.
 //   latency_bench [MESSAGES]
 #include <sys/wait.h>
 #include <unistd.h>

@@ -42,7 +42,7 @@ double us_since(Clock::time_point begin) {
   return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
 }
 
-/// Bare LCM: one message there, one back.
+/// LcmListener at both ends, which is LCM without mailboxes: one message there, one back.
 Times ping_pong(const std::string& on, int rounds) {
   const pid_t child = fork();
   if (child == 0) {
