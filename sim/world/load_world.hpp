@@ -14,7 +14,8 @@ struct LoadOptions {
   bool allow_plugins = false;         ///< load the `plugins:` of the world, which then run code
   EncodeMessage encode_message = {};  ///< for events that publish messages
   bool special_files = false;         ///< the world may come from a pipe or a device; it cannot include others then
-  bool resolve = true;                ///< put the vehicle files into LoadedWorld::resolved
+  /// Put the vehicle files into LoadedWorld::resolved; without them it has no vehicles, nor has `vehicle_entries`.
+  bool resolve = true;
 };
 
 struct LoadedWorld {

@@ -91,8 +91,9 @@ TEST(TwoRuns, CannotShareAResultsFolder) {
   EXPECT_THAT(second.errors(), HasSubstr("is writing there"));
   first.send_signal(SIGKILL);
   first.wait();
+  std::filesystem::remove(folder.file("results") + "/world.yaml");
   Program third(run);  // a dead run is no owner
-  ASSERT_TRUE(await([&] { return std::filesystem::file_size(folder.file("results") + "/world.yaml") > 0; }));
+  ASSERT_TRUE(await([&] { return std::filesystem::exists(folder.file("results") + "/world.yaml"); }, patience));
   third.send_signal(SIGTERM);
   EXPECT_EQ(third.wait(), 128 + SIGTERM) << third.errors();
   EXPECT_TRUE(std::filesystem::exists(folder.file("results") + "/summary.json"));
