@@ -62,8 +62,12 @@ TEST(FullDisk, LosesNeitherScoreNorHash) {
   const auto saved = nlohmann::json::parse(text_of_file(folder.file("saved.json")));
   EXPECT_EQ(saved["exit_code"], code);
   EXPECT_EQ(saved["run_hash"].get<std::string>().size(), 16u);
-  if (saved["steps"] == expected["steps"]) EXPECT_EQ(saved["run_hash"], expected["run_hash"]);
-  if (code == 4) EXPECT_THAT(program.errors(), HasSubstr("No space left on device"));
+  if (saved["steps"] == expected["steps"]) {
+    EXPECT_EQ(saved["run_hash"], expected["run_hash"]);
+  }
+  if (code == 4) {
+    EXPECT_THAT(program.errors(), HasSubstr("No space left on device"));
+  }
 }
 
 TEST(FullDisk, PrintsTheSummaryThatCannotBeSaved) {
