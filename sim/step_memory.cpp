@@ -50,7 +50,7 @@ struct Pools {
   std::mutex mutex;
   LargePages pages;
   std::pmr::monotonic_buffer_resource carved{large_page_bytes, &pages};
-  std::pmr::unsynchronized_pool_resource pools{{.max_blocks_per_chunk = 4096, .largest_required_pool_block = 4096},
+  std::pmr::unsynchronized_pool_resource pools{{.max_blocks_per_chunk = 512, .largest_required_pool_block = 4096},
                                                &carved};
 };
 

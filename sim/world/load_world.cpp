@@ -307,6 +307,10 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
     const SourcePlace place{intern_file_name("--seed"), 0, 0};
     set_config_path(root, "run.seed", scalar_node(std::to_string(*options.seed), place), place, diagnostics);
   }
+  if (!options.resolve) {  // what was said of each vehicle is in its instance
+    if (ConfigNode* vehicles_node = root.find("vehicles")) *vehicles_node = {};
+    std::vector<VehicleEntry>().swap(loaded.config.vehicle_entries);  // with its memory
+  }
   loaded.resolved = std::move(root);
   return loaded;
 }

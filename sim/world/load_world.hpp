@@ -19,7 +19,8 @@ struct LoadOptions {
   std::vector<std::string> allow_paths = {};  ///< further folders and files
   bool serial_ports = true;                   ///< they are opened: their paths count
   bool special_files = false;  ///< the world may come from a pipe or a device; it cannot include others then
-  bool resolve = true;         ///< put the vehicle files into LoadedWorld::resolved
+  /// Put the vehicle files into LoadedWorld::resolved; without them it has no vehicles, nor has `vehicle_entries`.
+  bool resolve = true;
 };
 
 /// Which files a world (or vehicle) in `world_file` may name; null: any.

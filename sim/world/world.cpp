@@ -134,15 +134,16 @@ void World::build_parts_of(Vehicle& vehicle, const VehicleInstance& instance) {
     vehicle.add_body(body.name, built);
     if (!body.kinematic) hydrodynamics_->add_body(built, body);
   }
+  // What could be wrong with joints and devices of a kind showed in the first ones.
+  constexpr int max_of_kind_as_a_whole = 100;
+  if (config_.bodies_only_of_many && config_.events.empty() && ++built_of_kind_[&config] > max_of_kind_as_a_whole)
+    return physics_->close_group(vehicle.group());
   for (const JointConfig& joint : config.joints) {
     Body* second = joint.bodies[1] == "world" ? nullptr : &vehicle.body(joint.bodies[1]);
     vehicle.add_joint(
         joint.name, physics_->add_joint(vehicle.group(), joint, vehicle.body(joint.bodies[0]), second, instance.X_WV));
   }
   physics_->close_group(vehicle.group());
-  constexpr int max_of_kind_with_devices = 100;
-  const bool few_devices = config_.few_devices_per_kind && config_.events.empty();
-  if (few_devices && ++built_of_kind_[&config] > max_of_kind_with_devices) return;
   std::vector<std::string> errors;
   for (const DeviceConfig& device : config.devices) {
     try {

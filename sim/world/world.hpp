@@ -244,7 +244,7 @@ class World {
   std::vector<ContactConfig> known_contacts_;
   int next_vehicle_number_ = 0;
   std::int64_t next_object_number_ = 0;
-  std::map<const VehicleConfig*, int> built_of_kind_;  ///< only for WorldConfig::few_devices_per_kind
+  std::map<const VehicleConfig*, int> built_of_kind_;  ///< only for WorldConfig::bodies_only_of_many
   std::uint64_t generation_ = 0;
   std::optional<EndOfRun> ended_;
   std::vector<std::unique_ptr<MountedDevice>> devices_;

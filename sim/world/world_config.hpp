@@ -158,8 +158,8 @@ struct WorldConfig {
   std::vector<ZoneConfig> zones;
   std::vector<ActorConfig> actors;
   std::vector<EventConfig> events;
-  /// For checks of a file: of very many vehicles of one kind only the first ones get their devices.
-  bool few_devices_per_kind = false;
+  /// For checks of a file: of more than 100 vehicles of one kind only the first get joints and devices.
+  bool bodies_only_of_many = false;
   EncodeMessage encode_message;  ///< for actions that publish; empty: they cannot
   double state_rate_hz = 10;     ///< of sim.state and sim.clock
 

@@ -69,7 +69,13 @@ void Scoring::visit_state(sim::StateArchive& archive, History history) {
   }
   for (const auto& metric : metrics_) {
     archive.section("metric " + metric->config().name);
-    metric->visit_state(archive, history);
+    // NaN and infinity stand in figures for what was not seen yet.
+    struct Figures {
+      Metric& metric;
+      History history;
+      void visit_state(sim::StateArchive& each) { metric.visit_state(each, history); }
+    } figures{*metric, history};
+    archive.not_only_finite(figures);
   }
   archive.section("contacts");
   archive(contacts_);

@@ -49,7 +49,7 @@ void check(const std::string& path, const sim::LoadOptions& options) {
   with_messages.encode_message = shoal::encode_own_message;
   with_messages.resolve = false;
   sim::LoadedWorld loaded = sim::load_world(path, with_messages);
-  loaded.config.few_devices_per_kind = true;
+  loaded.config.bodies_only_of_many = true;
   // Building finds what reading cannot: mesh files, bodies without mass.
   sim::InProcessBus bus;
   const sim::World world(loaded.config, bus);
