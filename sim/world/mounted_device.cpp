@@ -102,7 +102,7 @@ MountedDevice::MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig&
   report_outlet_ = std::make_unique<Outlet>(*this, bus_, report_channel_, &vehicle.clock());
   // Who switches the truth on observes: the run, and its hash, stay what they are.
   truth_outlet_ = std::make_unique<Outlet>(*this, RunHash::uncounted(bus_), truth_channel_, nullptr);
-  plan_schedule();
+  plan_again(world.now());
 }
 
 void MountedDevice::plan_schedule() {
@@ -119,14 +119,14 @@ void MountedDevice::plan_schedule() {
 MountedDevice::~MountedDevice() = default;
 
 void MountedDevice::plan_next_sample() {
+  const std::int64_t earliest = next_sample_step_ + 1;
   if (config_.rate_hz <= 0) {
-    next_sample_step_ = samples_planned_ == 0 ? 1 : next_sample_step_ + 1;
+    next_sample_step_ = earliest;
     ++samples_planned_;
     return;
   }
   // Sample k is due at phase + k * period, so that a rate which does not divide the step is right on average.  Two
-  // samples never share a step, and none is before the first step.
-  const std::int64_t earliest = samples_planned_ == 0 ? 1 : next_sample_step_ + 1;
+  // samples never share a step, and none is before the step after the device came.
   const auto step_us = static_cast<double>(host_.step.count());
   // Where many samples fall into one step, all but one are skipped at once.
   const double skip = (static_cast<double>(earliest - 1) * step_us - phase_us_) / period_us_;
@@ -302,9 +302,9 @@ void MountedDevice::change(const DeviceConfig& changed, Time now) {
   if (other_rate) plan_again(now);
 }
 
-/// The new rate counts from time 0 as the old one did; the next sample is the first one after now.
+/// Samples count from time 0, whenever the device came or got its rate; the next one is the first after now.
 void MountedDevice::plan_again(Time now) {
-  samples_planned_ = 1;
+  samples_planned_ = 0;
   next_sample_step_ = now / host_.step;
   plan_schedule();
 }

@@ -133,7 +133,7 @@ class MountedDevice {
   double period_us_ = 0;
   double phase_us_ = 0;
   std::int64_t samples_planned_ = 0;
-  std::int64_t next_sample_step_ = 1;
+  std::int64_t next_sample_step_ = 0;
   Time last_sample_{-1};
   std::optional<Pose> X_WS_before_;  ///< at the end of the last step, for sweep()
   /// What a stuck sensor repeats, and the time stamp in it.

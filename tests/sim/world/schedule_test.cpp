@@ -38,6 +38,19 @@ TEST(Schedule, ARateThatDoesNotDivideTheStepIsRightOnAverage) {
   }
 }
 
+TEST(Schedule, ASensorThatComesLateKeepsItsRateFromItsFirstSample) {
+  TestWorld test(test::rover_world(lidar(", rate_hz: 10, phase_s: 0.05")));
+  test.run_for(1.02);
+  test.world.remove_vehicle("r1");
+  const sim::VehicleInstance again = test.loaded.config.vehicles[0];
+  test.world.add_vehicle(again);
+  Listener<shoal::planar_lidar_t> scans(test, "r1.lidar");
+  test.run_for(0.3);
+  std::vector<std::int64_t> times;
+  for (const auto& scan : scans.take_all()) times.push_back(scan.utime - test.world.epoch_us());
+  EXPECT_EQ(times, (std::vector<std::int64_t>{1050000, 1150000, 1250000}));
+}
+
 TEST(Schedule, ARateAboveTheStepsSamplesEveryStep) {
   EXPECT_EQ(report_times_us(", rate_hz: 1e6", 0.1).size(), 100u);
 }
