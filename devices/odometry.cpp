@@ -12,6 +12,18 @@
 
 namespace devices {
 
+namespace {
+
+constexpr std::int64_t max_ticks = 1'000'000'000'000'000'000;
+
+/// A restored angle, or an error without bound, may be any number.
+std::int64_t whole_ticks(double ticks) {
+  constexpr auto limit = static_cast<double>(max_ticks);
+  return static_cast<std::int64_t>(std::floor(std::fmin(std::fmax(ticks, -limit), limit)));
+}
+
+}  // namespace
+
 void Odometry::Params::read(sim::ParamReader& in) {
   in.require("left_joint");
   in.read_reference("left_joint", left_joint, "joint", "hinge of the left wheel");
@@ -70,7 +82,7 @@ void Odometry::disturb(double dt_s, sim::Random& random) {
   for (int side = 0; side < 2; ++side) {
     wheel_rad_[side] = angles[side];
     believed_rad_[side] += turned[side];
-    ticks[side] = static_cast<std::int64_t>(std::floor(believed_rad_[side] / rad_per_tick));
+    ticks[side] = whole_ticks(believed_rad_[side] / rad_per_tick);
   }
   const double m_per_tick = rad_per_tick * wheel_radius_m_;
   const double left_m = static_cast<double>(ticks[0] - reckoned_.left_ticks) * m_per_tick;
@@ -92,6 +104,9 @@ void Odometry::disturb(double dt_s, sim::Random& random) {
 
 void Odometry::visit_state(sim::StateArchive& archive) {
   archive(X_W0_, truth_theta_rad_, wheel_rad_, believed_rad_, reading_, reckoned_, noise_);
+  for (const std::int64_t ticks : {reckoned_.left_ticks, reckoned_.right_ticks})
+    if (archive.restoring() && (ticks > max_ticks || ticks < -max_ticks))
+      archive.fail("a wheel that turned further than can be counted");
 }
 
 void OdometryReporter::report(sim::Time sampled_at, sim::Publisher& out) const {

@@ -1,6 +1,7 @@
 #include "sim/medium/gauss_markov.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace sim {
 
@@ -35,6 +36,12 @@ void GaussMarkov::advance_to(Time now) {
   }
   const double share = static_cast<double>(now.count() - tick_ * tick_us_) / static_cast<double>(tick_us_);
   values_ = from_ + (to_ - from_) * share;
+}
+
+void GaussMarkov::visit_state(StateArchive& archive) {
+  archive(tick_, from_, to_);
+  if (archive.restoring() && tick_ > std::numeric_limits<std::int64_t>::max() / 2 / tick_us_)
+    archive.fail("a process that is at a time later than can be counted");
 }
 
 }  // namespace sim

@@ -1,3 +1,6 @@
+#include <pthread.h>
+#include <signal.h>
+
 #include <array>
 
 #include "tests/fuzz/fuzz_input.hpp"
@@ -6,7 +9,21 @@
 
 // Meshes that `shoal mesh` has Assimp read.  Assimp works in a child process and may crash there; we may not.
 
+// Of the sanitizers, where there are any.
+extern "C" __attribute__((weak)) void __sanitizer_set_death_callback(void (*callback)());
+
+namespace {
+
+/// A crash of the child is none of ours: libFuzzer must not keep its input.
+void forget_handlers() {
+  for (const int number : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) signal(number, SIG_DFL);
+  if (__sanitizer_set_death_callback != nullptr) __sanitizer_set_death_callback(nullptr);
+}
+
+}  // namespace
+
 SHOAL_FUZZ_TARGET(mesh_import) {
+  [[maybe_unused]] static const int registered = pthread_atfork(nullptr, nullptr, forget_handlers);
   constexpr std::array endings{"dae", "gltf", "glb", "ply", "3ds", "off", "obj", "stl", "x3d", "fbx"};
   fuzz::Reader reader(input);
   const std::string name = std::string("mesh.") + endings[reader.below(endings.size())];
