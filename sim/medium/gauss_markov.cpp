@@ -1,7 +1,6 @@
 #include "sim/medium/gauss_markov.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace sim {
 
@@ -28,7 +27,8 @@ void GaussMarkov::advance_to(Time now) {
   const double dt_s = static_cast<double>(tick_us_) * 1e-6;
   // What was more than 1300 correlation times ago, e^-1300 of it, has been rounded away: the values are the same.
   constexpr std::int64_t remembered_ticks = 1 << 16;
-  if (tick_ < wanted - remembered_ticks) tick_ = wanted - remembered_ticks;
+  // Only a snapshot that somebody made up is ahead of the time.
+  tick_ = std::clamp(tick_, wanted - remembered_ticks, wanted);
   for (; tick_ < wanted; ++tick_) {
     from_ = to_;
     to_ = kept_share(dt_s, correlation_time_s_) * from_ +
@@ -36,12 +36,6 @@ void GaussMarkov::advance_to(Time now) {
   }
   const double share = static_cast<double>(now.count() - tick_ * tick_us_) / static_cast<double>(tick_us_);
   values_ = from_ + (to_ - from_) * share;
-}
-
-void GaussMarkov::visit_state(StateArchive& archive) {
-  archive(tick_, from_, to_);
-  if (archive.restoring() && tick_ > std::numeric_limits<std::int64_t>::max() / 2 / tick_us_)
-    archive.fail("a process that is at a time later than can be counted");
 }
 
 }  // namespace sim

@@ -33,7 +33,7 @@ class GaussMarkov {
   void advance_to(Time now);
   const Vector3d& values() const { return values_; }
   /// After restoring values() follow at the next advance_to().
-  void visit_state(StateArchive& archive);
+  void visit_state(StateArchive& archive) { archive(tick_, from_, to_); }
 
  private:
   Vector3d draw(std::int64_t tick);
