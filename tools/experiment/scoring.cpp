@@ -70,12 +70,12 @@ void Scoring::visit_state(sim::StateArchive& archive, History history) {
   for (const auto& metric : metrics_) {
     archive.section("metric " + metric->config().name);
     // NaN and infinity stand in figures for what was not seen yet.
-    struct Figures {
+    struct State {
       Metric& metric;
       History history;
       void visit_state(sim::StateArchive& each) { metric.visit_state(each, history); }
-    } figures{*metric, history};
-    archive.not_only_finite(figures);
+    } state{*metric, history};
+    archive.not_only_finite(state);
   }
   archive.section("contacts");
   archive(contacts_);
