@@ -61,7 +61,7 @@ class Attempt:
         self.said = open(os.path.join(folder, "said"), "w+", encoding="utf-8")
         self.shoal = subprocess.Popen(
             [os.path.join(BINARIES, "shoal"), "run", "world.yaml", "--launch", "--lcm-url", URL, "--duration", "5",
-             "--snapshot-at", "2,4", "--record", "run.lcm", "--results", "results"],
+             "--snapshot-at", "2,4", "--record", "run.lcm", "--results", "results", "--allow-path", folder],
             cwd=folder, env={**os.environ, name: value, "TMPDIR": os.path.join(folder, "tmp")}, stdin=subprocess.DEVNULL,
             stdout=self.said, stderr=self.said, start_new_session=True)
 

@@ -188,7 +188,8 @@ struct PortStudy {
                "shoal: 1\nstudy: ports\nworld: world.yaml\nlaunch: true\nseeds: [1, 2]\ncases: [{name: a}]\n");
   }
   Ended run(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments{"study", folder.file("study.yaml"), "--output", folder.file("out")};
+    std::vector<std::string> arguments{
+        "study", folder.file("study.yaml"), "--output", folder.file("out"), "--allow-path", folder.file("")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_shoal(arguments);
   }

@@ -75,8 +75,10 @@ class Reader {
     bridges::LogEventView event;
     while (file_.next(event)) {
       count(event.channel);
-      last_stamp_ = event.utime;
-      ends_whole_ = false;
+      if (event.channel != "sim.notice") {  // which may stand behind the end of a step
+        last_stamp_ = event.utime;
+        ends_whole_ = false;
+      }
       if (!informed_ && event.channel == "sim.info") version_ = version_in(event.payload);
       if (!event.channel.starts_with("sim.")) {
         if (informed_ && log_.own_stamps && since_mail_.size() < most_since_mail)
@@ -112,11 +114,12 @@ class Reader {
     std::vector<Came> came = {};  ///< of a record: all messages in it since the sim.mail before
   };
 
-  /// Without signs on the way: a damaged stamp may overflow.
-  std::int64_t step_of(std::int64_t utime) const {
-    const std::uint64_t since = static_cast<std::uint64_t>(utime) - static_cast<std::uint64_t>(log_.info.epoch_utime);
-    return static_cast<std::int64_t>(since) / log_.info.step_us;
+  /// In microseconds.  Without signs on the way: a damaged stamp may overflow.
+  std::int64_t since_start(std::int64_t utime) const {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(utime) -
+                                     static_cast<std::uint64_t>(log_.info.epoch_utime));
   }
+  std::int64_t step_of(std::int64_t utime) const { return since_start(utime) / log_.info.step_us; }
 
   /// A record holds what came from outside beside sim.mail: where a channel has just as many messages more than letters
   /// as came in the holes, those tell of the steps that the holes are about.
@@ -217,7 +220,7 @@ class Reader {
   void take_notice(const bridges::LogEventView& event) {
     if (log_.notices.size() >= bridges::RunNotices::max_kept) return;
     const auto notice = shoal::decode<shoal::sim_notice_t>(event.payload, shoal::Finite::any);
-    const double time_s = informed_ ? static_cast<double>(notice.utime - log_.info.epoch_utime) * 1e-6 : 0;
+    const double time_s = informed_ ? 1e-6 * static_cast<double>(since_start(notice.utime)) : 0;
     log_.notices.push_back(sim::shortened(
         sim::printable(notice_text({time_s, notice.kind, notice.client, notice.signer, notice.text})), 300));
   }
