@@ -307,6 +307,7 @@ class UnjudgedRun : public LiveRun {
 
 TEST_F(UnjudgedRun, WasEndedByQuit) {
   start_it();
+  await_steps(10);
   EXPECT_TRUE(request("quit").ok);
   EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
   expect_not_judged("quit");
