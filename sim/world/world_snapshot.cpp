@@ -38,6 +38,7 @@ void check_events(EventQueue& queue, std::size_t devices, const AcousticChannel&
 void World::visit_state(StateArchive& archive) {
   archive.section("world");
   archive(step_number_, ended_);
+  archive.require(step_number_, 0, StateArchive::max_time.count() / step_us_, "a step");
   archive.unhashed(next_vehicle_number_, next_object_number_, counts_, complaints_, *run_hash_);
   constexpr int most_vehicles_ever = 100'000'000;  // lists have a place for each number
   if (archive.restoring() &&
