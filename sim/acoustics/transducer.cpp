@@ -63,7 +63,10 @@ void Transducer::belong_to(const Audience& own) {
 }
 
 std::int64_t Transducer::out_of_range() const {
-  return channel_.messages_for(own_) - meant_before_ - meant_near_;
+  // Without signs: a snapshot that somebody made up may hold any counts.
+  const auto meant = static_cast<std::uint64_t>(channel_.messages_for(own_));
+  return static_cast<std::int64_t>(meant - static_cast<std::uint64_t>(meant_before_) -
+                                   static_cast<std::uint64_t>(meant_near_));
 }
 
 Transducer::Counts Transducer::counts() const {

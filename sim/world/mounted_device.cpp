@@ -141,7 +141,8 @@ std::int64_t MountedDevice::step_of_sample(std::int64_t sample) const {
   constexpr double beyond_all_runs_us = 1e18;
   const auto step_us = static_cast<double>(host_.step.count());
   const double due_us = phase_us_ + static_cast<double>(sample) * period_us_;
-  return static_cast<std::int64_t>(std::ceil(std::min(due_us, beyond_all_runs_us) / step_us - 1e-9));
+  return static_cast<std::int64_t>(
+      std::ceil(std::clamp(due_us, -beyond_all_runs_us, beyond_all_runs_us) / step_us - 1e-9));
 }
 
 /// The next sample was planned from the last one: whatever else a snapshot says would be made up for sample by sample.
