@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/bus/utime_stamp.hpp"
 #include "sim/world/run_hash.hpp"
@@ -148,9 +149,10 @@ std::int64_t MountedDevice::step_of_sample(std::int64_t sample) const {
 /// The next sample was planned from the last one: whatever else a snapshot says would be made up for sample by sample.
 void MountedDevice::check_schedule(const StateArchive& archive) const {
   if (!senses()) return;
+  archive.require(samples_planned_, 1, std::numeric_limits<std::int64_t>::max() / 2, "a number of samples");
   const bool fits = config_.rate_hz > 0 ? next_sample_step_ == step_of_sample(samples_planned_ - 1)
                                         : next_sample_step_ > 0 && next_sample_step_ <= world_.step_number() + 1;
-  if (samples_planned_ <= 0 || !fits) archive.fail("the snapshot has a next sample that cannot be");
+  if (!fits) archive.fail("the snapshot has a next sample that cannot be");
 }
 
 Time MountedDevice::next_latency() {
