@@ -149,7 +149,7 @@ std::int64_t MountedDevice::step_of_sample(std::int64_t sample) const {
 /// The next sample was planned from the last one: whatever else a snapshot says would be made up for sample by sample.
 void MountedDevice::check_schedule(const StateArchive& archive) const {
   if (!senses()) return;
-  archive.require(samples_planned_, 1, std::numeric_limits<std::int64_t>::max() / 2, "a number of samples");
+  archive.require(samples_planned_, 1, std::numeric_limits<std::int64_t>::max() / 2, "a next sample");
   const bool fits = config_.rate_hz > 0 ? next_sample_step_ == step_of_sample(samples_planned_ - 1)
                                         : next_sample_step_ > 0 && next_sample_step_ <= world_.step_number() + 1;
   if (!fits) archive.fail("the snapshot has a next sample that cannot be");
