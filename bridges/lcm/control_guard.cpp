@@ -24,15 +24,15 @@ ControlGuard::Opened ControlGuard::open(std::string_view channel, std::span<cons
     return opened;
   }
   opened.signer = message.sender;
-  if (const std::string why = refusal_of(message.sender, message.session, message.counter, channel); !why.empty())
+  if (const std::string why = refusal_of(message, channel, opened.came_before); !why.empty())
     opened.refusal = called + why;
-  opened.came_before = !opened.refusal.empty();
   return opened;
 }
 
-std::string ControlGuard::refusal_of(const std::string& name, std::int64_t session, std::int64_t counter,
-                                     std::string_view channel) {
-  const Name key{name, session};
+std::string ControlGuard::refusal_of(const SignedMessage& message, std::string_view channel, bool& came_before) {
+  const std::int64_t counter = message.counter;
+  if (counter <= 0) return "its counter must be above 0, got " + std::to_string(counter);
+  const Name key{message.sender, message.session};
   auto known = senders_.find(key);
   if (known == senders_.end()) {
     if (counter <= floor_)
@@ -44,10 +44,10 @@ std::string ControlGuard::refusal_of(const std::string& name, std::int64_t sessi
   }
   Sender& sender = known->second;
   const auto last = sender.counters.find(channel);
-  if (last != sender.counters.end() && counter <= last->second)
+  came_before = last != sender.counters.end() && counter <= last->second;
+  if (came_before)
     return "its counter " + std::to_string(counter) + " is not above the last one, " + std::to_string(last->second) +
            ": it was sent before, and came once more";
-  if (counter <= 0) return "its counter must be above 0, got " + std::to_string(counter);
   sender.counters.insert_or_assign(std::string(channel), counter);
   by_age_.splice(by_age_.end(), by_age_, sender.place);
   return "";

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bridges/lcm/run_key.hpp"
+#include "bridges/lcm/signed_message.hpp"
 #include "sim/bus/bus.hpp"
 
 namespace bridges {
@@ -18,8 +19,8 @@ inline constexpr const char* needs_key_text =
     "this run is controlled with its key only: use --run DIR, or set SHOAL_RUN_KEY; see docs/control.md";
 
 /// Stands where the simulator takes what controls a run from the buses: takes signed messages out of their envelopes,
-/// and when the run has a key, checks who sent them.  One for all buses of a run: what was sent on one is refused on
-/// another.  Not part of the state of the world: a rewind must not make a captured message valid again.
+/// and when the run has a key, checks who sent them.  One for all buses of a run: a message is taken once, whichever
+/// bus it comes on first.  Not part of the state of the world: a rewind must not make a captured message valid again.
 class ControlGuard {
  public:
   struct Opened {
@@ -46,7 +47,7 @@ class ControlGuard {
   };
 
   /// Why it is refused; empty: it is new.  Notes the counter.
-  std::string refusal_of(const std::string& name, std::int64_t session, std::int64_t counter, std::string_view channel);
+  std::string refusal_of(const SignedMessage& message, std::string_view channel, bool& came_before);
   void make_room();
 
   std::optional<RunKey> key_;

@@ -112,11 +112,17 @@ std::string resolve_lcm_url(const std::string& url) {
   if (parts.kind != "udpm" && parts.kind != "tcpq" && parts.kind != "memq")
     fail(chosen, "unknown kind '" + parts.kind + "'; known kinds: memq, tcpq, udpm");
   check_options(chosen, parts);
-  endpoint_of(chosen, parts);
+  const LcmEndpoint endpoint = endpoint_of(chosen, parts);
   if (parts.kind != "udpm") return chosen;
-  for (const auto& [key, value] : parts.options)
-    if (key == "recv_buf_size") return chosen;
-  return chosen + (chosen.find('?') == std::string::npos ? "?" : "&") + "recv_buf_size=4194304";
+  // With address and port: what liblcm would take for those that are missing is not what the receiver takes.
+  std::string resolved = "udpm://" + endpoint.address + ":" + std::to_string(endpoint.port);
+  std::string before = "?";
+  bool has_buffer = false;
+  for (const auto& [key, value] : parts.options) {
+    resolved += std::exchange(before, "&") + key + "=" + value;
+    has_buffer |= key == "recv_buf_size";
+  }
+  return has_buffer ? resolved : resolved + before + "recv_buf_size=4194304";
 }
 
 LcmEndpoint lcm_endpoint(const std::string& resolved_url) {

@@ -49,8 +49,8 @@ std::string url_error(const std::string& url) {
 TEST(LcmUrl, HasTheLargeBufferUnlessTheUserChoseOne) {
   unsetenv("LCM_DEFAULT_URL");
   EXPECT_EQ(resolve_lcm_url(""), "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304");
-  EXPECT_EQ(resolve_lcm_url("udpm://"), "udpm://?recv_buf_size=4194304");
-  EXPECT_EQ(resolve_lcm_url("udpm://:7668?ttl=1"), "udpm://:7668?ttl=1&recv_buf_size=4194304");
+  EXPECT_EQ(resolve_lcm_url("udpm://"), "udpm://239.255.76.67:7667?recv_buf_size=4194304");
+  EXPECT_EQ(resolve_lcm_url("udpm://:7668?ttl=1"), "udpm://239.255.76.67:7668?ttl=1&recv_buf_size=4194304");
   EXPECT_EQ(resolve_lcm_url("udpm://239.1.1.1:7668?recv_buf_size=100"), "udpm://239.1.1.1:7668?recv_buf_size=100");
   EXPECT_EQ(resolve_lcm_url("memq://"), "memq://");
   const Environment environment("udpm://239.255.76.67:7700?ttl=0");
