@@ -34,7 +34,8 @@ std::uint64_t number64(const unsigned char* at) {
 
 }  // namespace
 
-EventLogReader::EventLogReader(const std::string& path) : file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+EventLogReader::EventLogReader(const std::string& path)
+    : file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {  // a pipe is not waited for
   if (file_.number() < 0) throw BusError(path + ": " + std::strerror(errno));
   struct stat status {};
   if (fstat(file_.number(), &status) != 0) throw BusError(path + ": " + std::strerror(errno));

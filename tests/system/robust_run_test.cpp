@@ -81,6 +81,31 @@ TEST(FullDisk, PrintsTheSummaryThatCannotBeSaved) {
   EXPECT_THAT(program.output(), HasSubstr("run hash"));
 }
 
+/// A stranger's folder may come with results in it.
+TEST(Results, AreNotWrittenThroughLinks) {
+  const ScratchFolder folder;
+  write_file(folder.file("world.yaml"), "shoal: 1\nrun: {duration_s: 0.1, speed: 0}\n");
+  write_file(folder.file("profile"), "mine");
+  std::filesystem::create_directory(folder.file("results"));
+  const std::vector<std::string> names = {"world.yaml",   "tracks.csv",        "errors.csv",        "metrics.csv",
+                                          "summary.json", "summary.json.part", "summary.json.part2"};
+  for (const std::string& name : names)
+    std::filesystem::create_symlink(folder.file("profile"), folder.file("results") + "/" + name);
+  const Ended ended =
+      run_shoal({"run", folder.file("world.yaml"), "--bus", "none", "--results", folder.file("results")});
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_EQ(text_of_file(folder.file("profile")), "mine");
+  EXPECT_THAT(text_of_file(folder.file("results") + "/summary.json"), HasSubstr("\"steps\""));
+}
+
+TEST(SpecialFiles, AreRefusedAsLogsToo) {
+  const ScratchFolder folder;
+  ASSERT_EQ(mkfifo(folder.file("pipe").c_str(), 0600), 0);
+  const Ended ended = run_shoal({"replay", folder.file("pipe")});
+  EXPECT_NE(ended.exit_code, 0);
+  EXPECT_THAT(ended.errors, HasSubstr("pipe: is no regular file"));
+}
+
 TEST(TwoRuns, CannotShareAResultsFolder) {
   const ScratchFolder folder;
   write_file(folder.file("world.yaml"), endless);

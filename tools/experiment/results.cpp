@@ -46,6 +46,7 @@ std::runtime_error cannot_write(const std::string& path, const std::string& reas
 }
 
 void write_file(const std::string& path, const std::string& text) {
+  remove_link(path);
   std::ofstream out(path, std::ios::binary);
   out << text << std::flush;
   if (!out) throw cannot_write(path, std::strerror(errno));
@@ -276,6 +277,7 @@ Results::Results(const std::string& directory, const sim::World& world, bool pic
       pictures_(pictures) {
   std::error_code error;
   const std::string path = directory + "/tracks.csv";
+  remove_link(path);
   tracks_ = error ? nullptr : std::fopen(path.c_str(), "w");
   if (tracks_ == nullptr) throw cannot_write(path, error ? error.message() : std::strerror(errno));
   // What an earlier run left would be taken for this one's, which may be killed.

@@ -4,6 +4,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <sys/utsname.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -31,16 +32,26 @@ std::string processor_class() {
 #endif
 }
 
-/// `path` may come from a stranger's record: a pipe or a device would be read for ever.
+/// As for every file of a world.
+constexpr std::uintmax_t max_file_bytes = 1'000'000'000;
+
+/// `path` may come from a stranger's record: a pipe or a device would be read for ever, and so would some files of the
+/// kernel, which say that they are empty.
 std::string hash_of_file(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return no_hash;
+  std::uintmax_t left = std::filesystem::file_size(path, error);
+  if (error || left > max_file_bytes) return no_hash;
   std::ifstream in(path, std::ios::binary);
   if (!in) return no_hash;
   sim::StateHash hash;
   std::vector<char> buffer(std::size_t{1} << 20);
-  while (in.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) || in.gcount() > 0)
+  while (left > 0) {
+    in.read(buffer.data(), static_cast<std::streamsize>(std::min<std::uintmax_t>(left, buffer.size())));
+    if (in.gcount() <= 0) break;
     hash.add_bytes(buffer.data(), static_cast<std::size_t>(in.gcount()));
+    left -= static_cast<std::uintmax_t>(in.gcount());
+  }
   return in.bad() ? no_hash : fmt::format("{:016x}", hash.value());
 }
 

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
@@ -28,6 +29,12 @@ void write_all(int file, const std::string& text, const std::string& path) {
 
 }  // namespace
 
+void remove_link(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_symlink(path, ignored) && !std::filesystem::is_character_file(path, ignored))
+    std::filesystem::remove(path, ignored);
+}
+
 SummaryFile::SummaryFile(const std::string& directory, std::size_t bytes) : path_(directory + "/summary.json") {
   try {
     make_room(path_ + ".part2", bytes);
@@ -43,7 +50,8 @@ SummaryFile::~SummaryFile() {
 }
 
 void SummaryFile::make_room(const std::string& path, std::size_t bytes) {
-  bridges::FileDescriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  remove_link(path);
+  bridges::FileDescriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666));
   if (file.number() < 0) throw cannot_write(path, errno);
   rooms_.push_back({path, std::move(file)});
   int error = EINTR;

@@ -7,6 +7,10 @@
 
 namespace tools {
 
+/// Before a file is written: a link that somebody left at its place would lead elsewhere.  Other files stay,
+/// and links to terminals and the like.
+void remove_link(const std::string& path);
+
 /// summary.json of a run, with room on the disk for it from the start: a disk that is full by the end must not cost
 /// score and hash.  The room is in `summary.json.part` and `.part2` beside it, for the summary can be written twice.
 class SummaryFile {
