@@ -129,7 +129,7 @@ bool UdpReceiver::receive(const Wanted& wanted, const Sink& sink) {
 
 bool UdpReceiver::is_own(std::uint32_t address) {
   // Where the route to the group goes over lo the source is 0.0.0.0.  From other machines the kernel takes no such
-  // datagram, nor one with an address of this machine, but for the groups of a link (224.0.0.0/24).
+  // datagram, nor one with an address of this machine, except to the groups of a link (224.0.0.0/24).
   if (address == INADDR_ANY) return !is_group_of_link_;
   return own_.contain(address);
 }

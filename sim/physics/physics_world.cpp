@@ -305,7 +305,7 @@ const StepCounts& PhysicsWorld::last_step() const {
   return impl_->counts;
 }
 IslandInfo PhysicsWorld::largest_island() const {
-  constexpr std::size_t most_names = 1000;
+  constexpr std::size_t max_names = 1000;
   IslandInfo found;
   int first = -1;
   for (const Body* body : impl_->moving) {
@@ -316,7 +316,7 @@ IslandInfo PhysicsWorld::largest_island() const {
     if (first < 0 || !body || body->fixed() || !impl_->islands.knows(body->number_)) continue;
     if (impl_->islands.first_of(body->number_) != first) continue;
     ++found.body_count;
-    if (found.bodies.size() < most_names) found.bodies.push_back(body->name());
+    if (found.bodies.size() < max_names) found.bodies.push_back(body->name());
   }
   return found;
 }

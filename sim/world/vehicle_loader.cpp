@@ -66,7 +66,7 @@ std::set<std::string, std::less<>> single_vehicles(const VehicleEntry& entry, co
   return names;
 }
 
-/// Equal for entries whose vehicles are equal but for name and place.
+/// Equal for entries whose vehicles differ in name and place only.
 std::string what_is_said(const VehicleEntry& entry, const ConfigNode& model) {
   return std::to_string(reinterpret_cast<std::uintptr_t>(&model)) + "\n" + to_yaml(entry.parameters) + "\n" +
          to_yaml(entry.overrides);
