@@ -1,7 +1,7 @@
 # cmake --install build/release --prefix P: the programs, what plugins and clients are built against, worlds and vehicles.
 include(CMakePackageConfigHelpers)
 set(package_dir lib/cmake/Shoal)
-set(types_dir ${PROJECT_SOURCE_DIR}/bridges/lcm/types)
+set(types_dir ${PROJECT_SOURCE_DIR}/messages)
 
 install(TARGETS shoal shoal-coop-rover shoal-coop-craft shoal-coop-auv shoal-coop-station shoal-balance RUNTIME DESTINATION bin)
 install(TARGETS generate_type_tables RUNTIME DESTINATION lib/shoal)
@@ -10,7 +10,7 @@ install(FILES bridges/client/shoal/client.hpp DESTINATION include/shoal/shoal)
 
 install(DIRECTORY sim DESTINATION include/shoal FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY ${PROJECT_BINARY_DIR}/sim/generated/sim DESTINATION include/shoal)
-install(DIRECTORY ${types_dir}/shoal ${PROJECT_BINARY_DIR}/bridges/lcm/types/generated/shoal DESTINATION include/shoal
+install(DIRECTORY ${types_dir}/shoal ${PROJECT_BINARY_DIR}/messages/generated/shoal DESTINATION include/shoal
         FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY ${types_dir}/ DESTINATION share/shoal/types FILES_MATCHING PATTERN "*.lcm" PATTERN shoal EXCLUDE)
 

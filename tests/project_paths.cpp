@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The one file that is compiled anew in every checkout: no other holds a path of it.
 #include "tests/project_paths.hpp"
 

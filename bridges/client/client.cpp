@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/client.hpp"
 
 #include <cmath>
 #include <iostream>
 
-#include "bridges/lcm/bus_error.hpp"
-#include "bridges/lcm/lockstep_client.hpp"
+#include "bridges/base/bus_error.hpp"
+#include "bridges/lockstep/lockstep_client.hpp"
 #include "shoal/utime_t.hpp"
 
 namespace shoal {

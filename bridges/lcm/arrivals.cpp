@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lcm/arrivals.hpp"
 
 #include <sys/eventfd.h>
@@ -5,7 +6,7 @@
 
 #include <algorithm>
 
-#include "bridges/lcm/bus_error.hpp"
+#include "bridges/base/bus_error.hpp"
 
 namespace bridges {
 

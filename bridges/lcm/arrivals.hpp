@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <atomic>
@@ -5,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bridges/lcm/poll_set.hpp"
+#include "bridges/base/poll_set.hpp"
 
 namespace bridges {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lcm/bus_reach.hpp"
 
 #include "bridges/lcm/lcm_url.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lcm/lcm_bus.hpp"
 
 #include <spdlog/spdlog.h>
@@ -18,7 +19,7 @@
 #include <vector>
 
 #include "bridges/lcm/outgoing_sender.hpp"
-#include "bridges/lcm/poll_set.hpp"
+#include "bridges/base/poll_set.hpp"
 
 namespace bridges {
 namespace {

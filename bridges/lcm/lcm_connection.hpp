@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <chrono>
@@ -8,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "bridges/lcm/bus_error.hpp"
+#include "bridges/base/bus_error.hpp"
 #include "bridges/lcm/lcm_url.hpp"
 
 // LCM's own type; its header stays out of ours.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lcm/lcm_listener.hpp"
 
 #include <sys/eventfd.h>

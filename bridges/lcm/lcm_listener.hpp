@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <chrono>
@@ -11,9 +12,9 @@
 #include <string_view>
 #include <thread>
 
-#include "bridges/lcm/file_descriptor.hpp"
+#include "bridges/base/file_descriptor.hpp"
 #include "bridges/lcm/lcm_connection.hpp"
-#include "bridges/lcm/poll_set.hpp"
+#include "bridges/base/poll_set.hpp"
 #include "sim/bus/bus.hpp"
 
 namespace bridges {

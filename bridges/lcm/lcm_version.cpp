@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lcm/lcm_version.hpp"
 
 #include <lcm/lcm.h>

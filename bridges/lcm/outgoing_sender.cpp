@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lcm/outgoing_sender.hpp"
 
 namespace bridges {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lcm/reach_check.hpp"
 
 #include <arpa/inet.h>

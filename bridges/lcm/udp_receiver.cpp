@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lcm/udp_receiver.hpp"
 
 #include <arpa/inet.h>
@@ -11,7 +12,7 @@
 #include <chrono>
 #include <cstring>
 
-#include "bridges/lcm/bus_error.hpp"
+#include "bridges/base/bus_error.hpp"
 
 namespace bridges {
 namespace {

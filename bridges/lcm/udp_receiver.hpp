@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstddef>
@@ -7,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bridges/lcm/file_descriptor.hpp"
+#include "bridges/base/file_descriptor.hpp"
 #include "bridges/lcm/lcm_reassembly.hpp"
 #include "bridges/lcm/own_addresses.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Drives rover1 of worlds/minimal.yaml towards the wall, in lockstep, and stops before it.
 #include <iostream>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/message_codec.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/device/plugin.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,7 @@
 #include "sim/physics/physics_world.hpp"
 #include "sim/random/random.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/world/event_queue.hpp"
+#include "sim/event/event_queue.hpp"
 
 namespace sim {
 

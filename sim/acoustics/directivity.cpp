@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/acoustics/directivity.hpp"
 
 #include <math.h>  // j1 is not in <cmath>

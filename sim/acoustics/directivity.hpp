@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "sim/acoustics/decibels.hpp"
 #include "sim/config/param_reader.hpp"
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 
 namespace sim {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cmath>
@@ -7,8 +8,8 @@
 #include "sim/acoustics/decibels.hpp"
 #include "sim/acoustics/modulation.hpp"
 #include "sim/bus/bus.hpp"
-#include "sim/math.hpp"
-#include "sim/time.hpp"
+#include "sim/base/math.hpp"
+#include "sim/base/time.hpp"
 
 namespace sim {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/acoustics/signal_receiver.hpp"
 
 #include <algorithm>

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <optional>
 
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 #include "sim/medium/medium.hpp"
 
 namespace sim {

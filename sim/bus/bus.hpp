@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <atomic>
@@ -10,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/time.hpp"
+#include "sim/base/time.hpp"
 
 namespace sim {
 

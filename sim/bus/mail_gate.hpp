@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <bitset>
@@ -11,7 +12,7 @@
 #include <vector>
 
 #include "sim/bus/bus.hpp"
-#include "sim/world/mail_flags.hpp"
+#include "sim/bus/mail_flags.hpp"
 
 namespace sim {
 

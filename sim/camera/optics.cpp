@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/camera/optics.hpp"
 
 #include <spdlog/fmt/fmt.h>
@@ -7,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sim/camera/image.hpp"
+#include "sim/image/image.hpp"
 
 namespace sim {
 

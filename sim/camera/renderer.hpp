@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "sim/camera/image.hpp"
-#include "sim/camera/light.hpp"
+#include "sim/image/image.hpp"
+#include "sim/scene/light.hpp"
 #include "sim/camera/optics.hpp"
 #include "sim/camera/texture.hpp"
 #include "sim/physics/physics_world.hpp"

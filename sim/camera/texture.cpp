@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/camera/texture.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
-#include "sim/camera/image_file.hpp"
+#include "sim/image/image_file.hpp"
 
 namespace sim {
 

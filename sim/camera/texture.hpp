@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
@@ -7,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/camera/image.hpp"
-#include "sim/math.hpp"
+#include "sim/image/image.hpp"
+#include "sim/base/math.hpp"
 #include "sim/scene/material.hpp"
 
 namespace sim {

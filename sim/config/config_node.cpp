@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/config/config_node.hpp"
 
 #include <algorithm>

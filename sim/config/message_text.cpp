@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/config/message_text.hpp"
 
 #include <algorithm>

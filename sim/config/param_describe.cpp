@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The describing half of ParamReader: rows of tables instead of values.
 #include <algorithm>
 

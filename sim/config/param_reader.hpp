@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstddef>
@@ -14,7 +15,7 @@
 #include "sim/config/config_node.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/param_info.hpp"
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 
 namespace sim {
 

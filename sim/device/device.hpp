@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
@@ -5,12 +6,12 @@
 #include <string>
 
 #include "sim/bus/bus.hpp"
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 #include "sim/random/random.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/state_hash.hpp"
-#include "sim/step_memory.hpp"
-#include "sim/time.hpp"
+#include "sim/base/state_hash.hpp"
+#include "sim/base/step_memory.hpp"
+#include "sim/base/time.hpp"
 
 namespace sim {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <memory>
@@ -5,7 +6,7 @@
 #include <string>
 
 #include "sim/config/param_reader.hpp"
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 
 namespace sim {
 

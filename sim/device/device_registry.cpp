@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/device/device_registry.hpp"
 
 #include <algorithm>

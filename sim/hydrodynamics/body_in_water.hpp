@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/physics/body.hpp"
 

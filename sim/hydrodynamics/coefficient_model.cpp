@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/hydrodynamics/coefficient_model.hpp"
 
 #include <Eigen/Cholesky>

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <algorithm>
 
-#include "sim/hydrodynamics/hydrodynamics_config.hpp"
-#include "sim/math.hpp"
+#include "sim/model/hydrodynamics_config.hpp"
+#include "sim/base/math.hpp"
 #include "sim/medium/medium.hpp"
 
 namespace sim {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/hydrodynamics/hydrodynamics.hpp"
 
 #include <spdlog/fmt/fmt.h>
@@ -9,7 +10,7 @@
 
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/hydrodynamics/hydrodynamics_checks.hpp"
+#include "sim/model/hydrodynamics_checks.hpp"
 #include "sim/physics/physics_world.hpp"
 
 namespace sim {

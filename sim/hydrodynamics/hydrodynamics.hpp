@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <functional>
@@ -12,7 +13,7 @@
 #include "sim/hydrodynamics/immersed_bodies.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/physics/body.hpp"
-#include "sim/physics/physics_config.hpp"
+#include "sim/model/physics_config.hpp"
 
 namespace sim {
 

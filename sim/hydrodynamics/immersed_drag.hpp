@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <vector>
 
-#include "sim/hydrodynamics/hydrodynamics_config.hpp"
+#include "sim/model/hydrodynamics_config.hpp"
 #include "sim/hydrodynamics/immersed_piece.hpp"
 
 namespace sim {

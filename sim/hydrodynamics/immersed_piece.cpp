@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/hydrodynamics/immersed_piece.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <map>
@@ -7,7 +8,7 @@
 #include <vector>
 
 #include "sim/hydrodynamics/immersed_volume.hpp"
-#include "sim/physics/physics_config.hpp"
+#include "sim/model/physics_config.hpp"
 
 namespace sim {
 

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "sim/math.hpp"
-#include "sim/physics/mesh.hpp"
+#include "sim/base/math.hpp"
+#include "sim/geometry/mesh.hpp"
 
 namespace sim {
 

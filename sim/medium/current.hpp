@@ -1,13 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 #include "sim/medium/current_grid.hpp"
 #include "sim/medium/gauss_markov.hpp"
 #include "sim/medium/medium_config.hpp"
-#include "sim/time.hpp"
+#include "sim/base/time.hpp"
 
 namespace sim {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/medium/current_grid.hpp"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 #include <filesystem>
 
 #include "sim/config/message_text.hpp"
-#include "sim/physics/whole_file.hpp"
+#include "sim/base/whole_file.hpp"
 #include "sim/terrain/terrain.hpp"
 
 namespace sim {

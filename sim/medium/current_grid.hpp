@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 #include "sim/medium/medium_config.hpp"
 
 namespace sim {

@@ -1,13 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
 #include <cmath>
 #include <cstdint>
 
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 #include "sim/random/random.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/time.hpp"
+#include "sim/base/time.hpp"
 
 namespace sim {
 

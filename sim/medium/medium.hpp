@@ -1,16 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 #include "sim/medium/current.hpp"
 #include "sim/medium/medium_config.hpp"
 #include "sim/medium/water_column.hpp"
 #include "sim/medium/waves.hpp"
 #include "sim/medium/wind.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/time.hpp"
+#include "sim/base/time.hpp"
 
 namespace sim {
 

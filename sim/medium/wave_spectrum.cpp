@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/medium/wave_spectrum.hpp"
 
 #include <algorithm>

@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 #include "sim/medium/medium_config.hpp"
 #include "sim/medium/wave_spectrum.hpp"
-#include "sim/time.hpp"
+#include "sim/base/time.hpp"
 
 namespace sim {
 

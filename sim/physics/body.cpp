@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/physics/body.hpp"
 
 #include <algorithm>
@@ -5,9 +6,9 @@
 #include <cmath>
 #include <span>
 
-#include "sim/physics/ode_math.hpp"
+#include "sim/ode/ode_math.hpp"
 #include "sim/physics/physics_world.hpp"
-#include "sim/scene/ode_scene.hpp"
+#include "sim/rays/ode_scene.hpp"
 #include "sim/state/state_archive.hpp"
 
 namespace sim {

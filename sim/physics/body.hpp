@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <ode/ode.h>
@@ -6,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 #include "sim/physics/motion.hpp"
-#include "sim/step_memory.hpp"
+#include "sim/base/step_memory.hpp"
 
 namespace sim {
 

@@ -1,13 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/physics/collider.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "sim/physics/free_numbers.hpp"
-#include "sim/physics/ode_math.hpp"
+#include "sim/base/free_numbers.hpp"
+#include "sim/ode/ode_math.hpp"
 #include "sim/physics/terrain_geom.hpp"
-#include "sim/scene/box_grid.hpp"
+#include "sim/geometry/box_grid.hpp"
 
 namespace sim {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <ode/ode.h>
@@ -11,7 +12,7 @@
 #include "sim/physics/contact_table.hpp"
 #include "sim/physics/islands.hpp"
 #include "sim/physics/motion.hpp"
-#include "sim/physics/ode_library.hpp"
+#include "sim/ode/ode_library.hpp"
 
 namespace sim {
 

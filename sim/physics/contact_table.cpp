@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/physics/contact_table.hpp"
 
 #include <algorithm>

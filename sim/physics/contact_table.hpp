@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <ode/ode.h>
@@ -5,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/physics/physics_config.hpp"
+#include "sim/model/physics_config.hpp"
 
 namespace sim {
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "sim/config/message_text.hpp"
-#include "sim/physics/ode_math.hpp"
+#include "sim/ode/ode_math.hpp"
 #include "sim/physics/physics_world_impl.hpp"
 
 // Pairs of terrain and parts that are known to be bad; the figures behind the rules are in docs/terrain.md.

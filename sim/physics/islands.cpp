@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/physics/islands.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "sim/physics/free_numbers.hpp"
+#include "sim/base/free_numbers.hpp"
 
 namespace sim {
 

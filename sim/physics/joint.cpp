@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/physics/joint.hpp"
 
 #include <numbers>
 #include <span>
 #include <utility>
 
-#include "sim/physics/ode_math.hpp"
+#include "sim/ode/ode_math.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/state/state_archive.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <ode/ode.h>
@@ -9,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/math.hpp"
-#include "sim/physics/physics_config.hpp"
+#include "sim/base/math.hpp"
+#include "sim/model/physics_config.hpp"
 
 namespace sim {
 

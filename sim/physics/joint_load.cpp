@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <numbers>
 #include <utility>
 
 #include "sim/physics/joint.hpp"
-#include "sim/physics/ode_math.hpp"
+#include "sim/ode/ode_math.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/state/state_archive.hpp"
 

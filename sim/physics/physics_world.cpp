@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/physics/physics_world.hpp"
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 #include <utility>
 
 #include "sim/config/message_text.hpp"
-#include "sim/physics/ode_math.hpp"
+#include "sim/ode/ode_math.hpp"
 #include "sim/physics/physics_world_impl.hpp"
 #include "sim/state/state_archive.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
@@ -10,12 +11,12 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 #include "sim/physics/body.hpp"
 #include "sim/physics/contact_report.hpp"
 #include "sim/physics/joint.hpp"
 #include "sim/physics/motion.hpp"
-#include "sim/physics/physics_config.hpp"
+#include "sim/model/physics_config.hpp"
 #include "sim/scene/scene.hpp"
 
 namespace sim {

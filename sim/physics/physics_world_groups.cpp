@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cassert>
 #include <utility>
 
 #include "sim/config/message_text.hpp"
-#include "sim/physics/ode_math.hpp"
+#include "sim/ode/ode_math.hpp"
 #include "sim/physics/physics_world_impl.hpp"
 
 // What comes into the world and goes: groups, their bodies, parts and joints.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <map>
@@ -7,13 +8,13 @@
 #include <vector>
 
 #include "sim/physics/collider.hpp"
-#include "sim/physics/free_numbers.hpp"
+#include "sim/base/free_numbers.hpp"
 #include "sim/physics/islands.hpp"
-#include "sim/physics/ode_library.hpp"
-#include "sim/physics/part_shape.hpp"
+#include "sim/ode/ode_library.hpp"
+#include "sim/ode/part_shape.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/physics/terrain_geom.hpp"
-#include "sim/scene/world_scene.hpp"
+#include "sim/rays/world_scene.hpp"
 
 namespace sim {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Contacts with the smooth surface of terrain.  Every shape is asked at a bounded number of places, so that a contact
 // costs the same for any size of cells.  Depths are along the normal of the surface there; all below is ground, so
 // that what sank in is pushed out however deep it is.
@@ -5,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "sim/physics/ode_math.hpp"
+#include "sim/ode/ode_math.hpp"
 #include "sim/physics/terrain_geom.hpp"
 
 namespace sim {

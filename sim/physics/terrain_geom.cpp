@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/physics/terrain_geom.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "sim/physics/ode_math.hpp"
+#include "sim/ode/ode_math.hpp"
 
 namespace sim {
 namespace {

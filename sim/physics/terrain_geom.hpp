@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <ode/ode.h>
@@ -6,9 +7,9 @@
 #include <vector>
 
 #include "sim/physics/contact_table.hpp"
-#include "sim/physics/ode_library.hpp"
-#include "sim/physics/part_shape.hpp"
-#include "sim/physics/physics_config.hpp"
+#include "sim/ode/ode_library.hpp"
+#include "sim/ode/part_shape.hpp"
+#include "sim/model/physics_config.hpp"
 #include "sim/terrain/terrain.hpp"
 
 namespace sim {

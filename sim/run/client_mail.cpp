@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/run/client_mail.hpp"
 
 #include <algorithm>
 #include <cstdio>
 #include <utility>
 
-#include "sim/bus/crc32.hpp"
+#include "sim/base/crc32.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace sim {

@@ -1,13 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/run/lockstep.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
 
-#include "sim/bus/crc32.hpp"
+#include "sim/base/crc32.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/param_reader.hpp"
-#include "sim/world/vehicle_loader.hpp"
+#include "sim/world_file/vehicle_loader.hpp"
 
 namespace sim {
 namespace {

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
 
-#include "sim/time.hpp"
+#include "sim/base/time.hpp"
 
 namespace sim {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
@@ -5,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 
 namespace sim {
 

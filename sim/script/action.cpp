@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/script/action.hpp"
 
 #include <algorithm>
 #include <numeric>
 
 #include "sim/config/message_text.hpp"
-#include "sim/script/read_points.hpp"
-#include "sim/world/world_config.hpp"
+#include "sim/config/read_points.hpp"
+#include "sim/world_file/world_config.hpp"
 
 namespace sim {
 

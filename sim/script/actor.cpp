@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/script/actor.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "sim/script/read_points.hpp"
+#include "sim/config/read_points.hpp"
 #include "sim/world/world.hpp"
 
 namespace sim {

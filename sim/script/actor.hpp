@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <string>
@@ -6,7 +7,7 @@
 #include "sim/config/param_reader.hpp"
 #include "sim/script/path.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/time.hpp"
+#include "sim/base/time.hpp"
 
 namespace sim {
 

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <optional>
 #include <vector>
 
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 
 namespace sim {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/state/state_archive.hpp"
 
 #include "sim/config/message_text.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
@@ -19,9 +20,9 @@
 #include <utility>
 #include <vector>
 
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 #include "sim/state/enum_values.hpp"
-#include "sim/state_hash.hpp"
+#include "sim/base/state_hash.hpp"
 
 namespace sim {
 

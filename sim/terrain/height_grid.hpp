@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstddef>
@@ -6,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/math.hpp"
-#include "sim/physics/mesh.hpp"
+#include "sim/base/math.hpp"
+#include "sim/geometry/mesh.hpp"
 
 namespace sim {
 

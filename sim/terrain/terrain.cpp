@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/terrain/terrain.hpp"
 
 #include <filesystem>
 
-#include "sim/physics/whole_file.hpp"
-#include "sim/script/zone.hpp"
+#include "sim/base/whole_file.hpp"
+#include "sim/geometry/zone.hpp"
 
 namespace sim {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/terrain/terrain_config.hpp"
 
 #include <algorithm>
@@ -5,7 +6,7 @@
 #include <initializer_list>
 
 #include "sim/config/message_text.hpp"
-#include "sim/script/read_points.hpp"
+#include "sim/config/read_points.hpp"
 #include "sim/terrain/height_grid.hpp"
 
 namespace sim {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <optional>
@@ -5,7 +6,7 @@
 #include <vector>
 
 #include "sim/config/param_reader.hpp"
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 
 namespace sim {
 

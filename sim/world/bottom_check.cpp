@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world/bottom_check.hpp"
 
 #include <algorithm>
 
 #include "sim/world/mounted_device.hpp"
 #include "sim/world/vehicle.hpp"
-#include "sim/world/vehicle_config.hpp"
+#include "sim/world_file/vehicle_config.hpp"
 #include "sim/world/world.hpp"
 
 namespace sim {

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <optional>
 #include <string>
 
-#include "sim/world/world_config.hpp"
+#include "sim/world_file/world_config.hpp"
 
 namespace sim {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world/mounted_device.hpp"
 
 #include <algorithm>

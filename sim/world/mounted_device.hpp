@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <memory>
@@ -8,8 +9,8 @@
 #include "sim/bus/bus.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/device/fault.hpp"
-#include "sim/world/event_queue.hpp"
-#include "sim/world/world_config.hpp"
+#include "sim/event/event_queue.hpp"
+#include "sim/world_file/world_config.hpp"
 
 namespace sim {
 

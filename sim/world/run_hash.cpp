@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world/run_hash.hpp"
 
 #include <string>
 
-#include "sim/state_hash.hpp"
+#include "sim/base/state_hash.hpp"
 
 namespace sim {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <memory>
@@ -5,11 +6,11 @@
 #include <vector>
 
 #include "sim/bus/bus.hpp"
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 #include "sim/physics/body.hpp"
 #include "sim/physics/joint.hpp"
-#include "sim/world/vehicle_clock.hpp"
-#include "sim/world/vehicle_config.hpp"
+#include "sim/clock/vehicle_clock.hpp"
+#include "sim/world_file/vehicle_config.hpp"
 
 namespace sim {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world/world.hpp"
 
 #include <spdlog/spdlog.h>
@@ -7,7 +8,7 @@
 
 #include "sim/acoustics/channel.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/script/script.hpp"
+#include "sim/director/script.hpp"
 #include "sim/world/bottom_check.hpp"
 #include "sim/world/notice.hpp"
 #include "sim/world/run_hash.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <functional>
@@ -13,16 +14,16 @@
 
 #include "sim/bus/bus.hpp"
 #include "sim/bus/byte_port.hpp"
-#include "sim/geodesy.hpp"
+#include "sim/base/geodesy.hpp"
 #include "sim/hydrodynamics/hydrodynamics.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/physics/physics_world.hpp"
-#include "sim/thread_pool.hpp"
-#include "sim/world/event_queue.hpp"
-#include "sim/world/mail_flags.hpp"
+#include "sim/base/thread_pool.hpp"
+#include "sim/event/event_queue.hpp"
+#include "sim/bus/mail_flags.hpp"
 #include "sim/world/mounted_device.hpp"
 #include "sim/world/vehicle.hpp"
-#include "sim/world/world_config.hpp"
+#include "sim/world_file/world_config.hpp"
 
 namespace sim {
 

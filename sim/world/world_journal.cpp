@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world/world_journal.hpp"
 
 #include <algorithm>
@@ -7,8 +8,8 @@
 #include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/transducer.hpp"
 #include "sim/config/diagnostics.hpp"
-#include "sim/world/data_files.hpp"
-#include "sim/world/vehicle_loader.hpp"
+#include "sim/world_file/data_files.hpp"
+#include "sim/world_file/vehicle_loader.hpp"
 #include "sim/world/world.hpp"
 
 namespace sim {

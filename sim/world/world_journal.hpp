@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
@@ -9,10 +10,10 @@
 #include <vector>
 
 #include "sim/bus/bus.hpp"
-#include "sim/math.hpp"
+#include "sim/base/math.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/world/world_config.hpp"
+#include "sim/world_file/world_config.hpp"
 
 namespace sim {
 

@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <set>
 #include <stdexcept>
 
 #include "sim/acoustics/channel.hpp"
 #include "sim/config/diagnostics.hpp"
-#include "sim/world/load_world.hpp"
-#include "sim/world/vehicle_loader.hpp"
+#include "sim/world_file/load_world.hpp"
+#include "sim/world_file/vehicle_loader.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_journal.hpp"
 

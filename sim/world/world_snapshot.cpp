@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
 #include "sim/acoustics/channel.hpp"
 #include "sim/config/warnings.hpp"
-#include "sim/script/script.hpp"
+#include "sim/director/script.hpp"
 #include "sim/world/run_hash.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_journal.hpp"

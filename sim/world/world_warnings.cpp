@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world/world_warnings.hpp"
 
 #include "sim/world/world.hpp"

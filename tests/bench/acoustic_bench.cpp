@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Fleets that talk under water beside kinematic vehicles: each sends 32 bytes every 10 s, one after the other, so that
 // what is sent overlaps at many receivers.  Work grows with who hears, which `hearers` counts for each message.
 #include <benchmark/benchmark.h>
@@ -9,7 +10,7 @@
 #include "shoal/modem_send_t.hpp"
 #include "sim/acoustics/channel.hpp"
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world/load_world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
 #include "tests/project_paths.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -8,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sim/physics/mesh.hpp"
+#include "sim/geometry/mesh.hpp"
 
 /// What Embree alone does, used in the plain way: single precision throughout, one scene, no filters.
 namespace bare_embree {

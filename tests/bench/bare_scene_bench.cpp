@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Our rays against bare Embree's in one scene: parts of all shapes strewn over 100 m x 100 m of terrain of 512 x 512
 // cells.  Lidars: 200 of 180 beams of 20 m; ns per ray.  Camera: 320 x 240 pixels, ms per frame.  Update: every part
 // has moved; ms.
@@ -11,9 +12,9 @@
 #include <random>
 #include <vector>
 
-#include "sim/physics/ode_library.hpp"
-#include "sim/physics/ode_math.hpp"
-#include "sim/scene/world_scene.hpp"
+#include "sim/ode/ode_library.hpp"
+#include "sim/ode/ode_math.hpp"
+#include "sim/rays/world_scene.hpp"
 #include "tests/bench/bare_embree.hpp"
 
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the bus costs the thread that simulates.  LcmBus::publish must stay below 2 us.
 #include <benchmark/benchmark.h>
 
@@ -7,7 +8,7 @@
 #include <thread>
 
 #include "bridges/lcm/lcm_bus.hpp"
-#include "bridges/lcm/recording_bus.hpp"
+#include "bridges/log/recording_bus.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/bus/in_process_bus.hpp"
 

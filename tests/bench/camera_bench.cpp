@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One frame: 320 x 240 in color with shadows and 640 x 480 of depth, among 1000 boxes strewn over 100 m x 100 m on a
 // plane, on one core.
 #include <benchmark/benchmark.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the device layer costs: measure, disturb, encode and publish on the in-process bus.
 #include <benchmark/benchmark.h>
 
@@ -5,7 +6,7 @@
 #include <string>
 
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world/load_world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
 
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Steps of worlds with bodies in buoyancy mode, ns a body and step, physics included.  The same bodies in a dry world
 // are the base to compare with.
 #include <benchmark/benchmark.h>
@@ -5,7 +6,7 @@
 #include <string>
 
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world/load_world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
 
 namespace {

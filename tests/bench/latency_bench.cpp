@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How long a message takes between two processes over LCM: LcmListener ("bare LCM") at both ends, and LcmBus at one
 // end.
 //   latency_bench [MESSAGES]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What lockstep costs: the time from a tick to the last answer, for 1 and 10 clients, beside a bare LCM ping-pong of
 // the same sizes in the same run; and how fast a small world runs with 10 clients at 100 Hz.
 //   lockstep_bench [STEPS [CLIENTS ...]]
@@ -13,9 +14,9 @@
 
 #include "bridges/lcm/lcm_bus.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/lcm/lockstep_client.hpp"
-#include "bridges/lcm/sim_service.hpp"
-#include "sim/world/load_world.hpp"
+#include "bridges/lockstep/lockstep_client.hpp"
+#include "bridges/control/sim_service.hpp"
+#include "sim/world_file/load_world.hpp"
 
 namespace {
 

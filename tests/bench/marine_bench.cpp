@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Fleets in water with a current: what a step of one vehicle costs, in CPU time, reports to the in-process bus.
 #include <benchmark/benchmark.h>
 
@@ -6,7 +7,7 @@
 #include "shoal/actuator_command_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world/load_world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
 #include "tests/project_paths.hpp"
 

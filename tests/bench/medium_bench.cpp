@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Questions to the medium, ns each.  A sea of 200 components for 100 boats at 50 Hz, each asking for the water at its
 // origin and for the surface at four points, takes 5000 (water + 4 surface) a simulated second.
 #include <benchmark/benchmark.h>

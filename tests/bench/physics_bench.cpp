@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A fleet of diff-drive robots through PhysicsWorld, against a loop over bare ODE with the same bodies.  The
 // bare loop has the best space of limits A1 (sweep and prune, a sub-space per robot) and makes contacts as it
 // finds them.
@@ -9,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/physics/ode_library.hpp"
+#include "sim/ode/ode_library.hpp"
 #include "tests/sim/physics/small_worlds.hpp"
 
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Fans of 180 rays, ns per ray: in an arena of 1000 cells of 2 m, each with a rover and every other with a box as well,
 // and among boxes strewn over 100 m x 100 m; with either library.
 #include <benchmark/benchmark.h>

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What actors and events cost in a step.
 #include <benchmark/benchmark.h>
 
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world/load_world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
 
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What it costs to save a world, to go back to it, and to hash it; per body and as a whole.
 #include <benchmark/benchmark.h>
 
@@ -8,8 +9,8 @@
 #include <memory>
 #include <string>
 
-#include "tools/experiment/scale_scene.hpp"
-#include "tools/experiment/snapshot_ring.hpp"
+#include "tools/experiment/bench/scale_scene.hpp"
+#include "tools/experiment/snapshot/snapshot_ring.hpp"
 
 namespace {
 

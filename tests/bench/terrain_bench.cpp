@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One contact of a shape with terrain, us per dCollide, and what it takes to build terrain.  The ground is fractal with
 // hills of 4 m and 0.1 m amplitude.
 #include <benchmark/benchmark.h>
@@ -7,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/physics/ode_math.hpp"
+#include "sim/ode/ode_math.hpp"
 #include "sim/physics/terrain_geom.hpp"
 #include "tests/sim/terrain/terrain_worlds.hpp"
 

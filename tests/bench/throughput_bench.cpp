@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How much of what one process sends flat out another one receives, by LcmBus and by LcmListener.
 //   throughput_bench [SECONDS]
 #include <signal.h>

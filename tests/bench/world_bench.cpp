@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The whole simulator on the scale scene, and what its parts cost there.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <chrono>
 
-#include "sim/world/load_world.hpp"
-#include "sim/world/vehicle_loader.hpp"
-#include "tools/experiment/scale_scene.hpp"
+#include "sim/world_file/load_world.hpp"
+#include "sim/world_file/vehicle_loader.hpp"
+#include "tools/experiment/bench/scale_scene.hpp"
 
 namespace {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the framework does around every device: watchdog, latencies, losses, faults, power.
 
 #include <gmock/gmock.h>
@@ -8,7 +9,7 @@
 #include "shoal/joint_state_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "sim/world/mounted_device.hpp"
-#include "tests/devices/arm_fixture.hpp"
+#include "tests/devices/joint/arm_fixture.hpp"
 
 namespace {
 

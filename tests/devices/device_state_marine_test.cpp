@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What devices in the water and some others must keep over a snapshot; tests/devices/device_state_test.cpp has the
 // rest.
 #include <limits>
@@ -7,7 +8,7 @@
 #include "shoal/nmea_sentence_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "sim/physics/physics_world.hpp"
-#include "tests/devices/modem_fixture.hpp"
+#include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/devices/state_fixture.hpp"
 
 namespace {

@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What devices keep from step to step: a world that is saved and restored goes on bit for bit as it would have.
 
-#include "devices/autopilot_route.hpp"
+#include "devices/autopilot/autopilot_route.hpp"
 #include "shoal/acoustic_received_t.hpp"
 #include "shoal/actuator_command_t.hpp"
 #include "shoal/autopilot_command_t.hpp"
@@ -9,9 +10,9 @@
 #include "shoal/station_command_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "shoal/wrench_t.hpp"
-#include "tests/devices/arm_fixture.hpp"
-#include "tests/devices/marine_fixture.hpp"
-#include "tests/devices/modem_fixture.hpp"
+#include "tests/devices/joint/arm_fixture.hpp"
+#include "tests/devices/marine/marine_fixture.hpp"
+#include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/devices/state_fixture.hpp"
 
 namespace {

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every world that comes with the simulator is saved at its start and at random steps, and goes on alike wherever it is
 // restored.
 #include <algorithm>
 #include <filesystem>
 
-#include "tests/devices/port_fixture.hpp"
+#include "tests/devices/comms/port_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/project_paths.hpp"
 

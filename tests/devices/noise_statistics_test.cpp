@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What sim::Noise does to a device's reports, measured on the reports.
 #include "shoal/imu_t.hpp"
 #include "tests/devices/world_fixture.hpp"

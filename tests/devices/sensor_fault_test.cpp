@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What faults do to the measurements of a sensor, on paper and in its statistics.
 #include "shoal/imu_t.hpp"
 #include "tests/devices/world_fixture.hpp"

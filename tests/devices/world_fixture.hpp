@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,7 +10,7 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world/load_world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
 
 namespace test {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tests/fidelity/closed_forms.hpp"
 
 #include <gmock/gmock.h>

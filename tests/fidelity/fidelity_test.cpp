@@ -1,4 +1,5 @@
-#include "tools/experiment/fidelity.hpp"
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/fidelity/fidelity.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,11 +14,11 @@
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world/bottom_check.hpp"
-#include "sim/world/load_world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
-#include "tools/experiment/fidelity_report.hpp"
+#include "tools/experiment/fidelity/fidelity_report.hpp"
 
 namespace {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <fstream>
@@ -5,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/geodesy.hpp"
+#include "sim/base/geodesy.hpp"
 #include "tests/project_paths.hpp"
 
 namespace test {

@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tests/fuzz/fuzz_input.hpp"
-#include "tools/autonomy/acoustic_frame.hpp"
-#include "tools/autonomy/state_packet.hpp"
+#include "tools/autonomy/acomms/acoustic_frame.hpp"
+#include "tools/autonomy/acomms/state_packet.hpp"
 
 // Frames that the example programs take from acoustic modems.  The checksum is made right half of the time.
 

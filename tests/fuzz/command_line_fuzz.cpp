@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/spdlog.h>
 
-#include "bridges/lcm/bus_error.hpp"
+#include "bridges/base/bus_error.hpp"
 #include "bridges/lcm/lcm_connection.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
-#include "tools/autonomy/behaviour_text.hpp"
-#include "tools/autonomy/tdma.hpp"
-#include "tools/autonomy/waypoint_text.hpp"
+#include "tools/autonomy/behaviours/behaviour_text.hpp"
+#include "tools/autonomy/acomms/tdma.hpp"
+#include "tools/autonomy/behaviours/waypoint_text.hpp"
 #include "tools/command_line/arguments.hpp"
 #include "tools/command_line/checks.hpp"
 

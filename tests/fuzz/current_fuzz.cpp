@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/medium/current_grid.hpp"
 #include "sim/terrain/height_grid.hpp"
 #include "tests/fuzz/fuzz_input.hpp"

@@ -1,4 +1,5 @@
-#include "sim/camera/image_file.hpp"
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/image/image_file.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 // Images of textures: PNG and JPEG.

@@ -1,4 +1,5 @@
-#include "sim/physics/mesh.hpp"
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/geometry/mesh.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 // Meshes that the simulator reads itself: STL and OBJ.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <pthread.h>
 #include <signal.h>
 
@@ -5,7 +6,7 @@
 
 #include "tests/fuzz/fuzz_input.hpp"
 #include "tests/fuzz/scratch_file.hpp"
-#include "tools/shoal/mesh_import.hpp"
+#include "tools/shoal/mesh/mesh_import.hpp"
 
 // Meshes that `shoal mesh` has Assimp read.  Assimp works in a child process and may crash there; we may not.
 

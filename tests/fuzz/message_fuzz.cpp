@@ -1,4 +1,5 @@
-#include "all_message_types.hpp"  // made by CMake: every type in bridges/lcm/types
+// SPDX-License-Identifier: BSD-3-Clause
+#include "all_message_types.hpp"  // made by CMake: every type in messages
 #include "shoal/message_codec.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 

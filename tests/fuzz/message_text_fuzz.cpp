@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/lcm_parser.hpp"
 #include "shoal/message_writer.hpp"
 #include "tests/fuzz/fuzz_input.hpp"

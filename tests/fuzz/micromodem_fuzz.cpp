@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "devices/micromodem_protocol.hpp"
+#include "devices/comms/micromodem_protocol.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 // What a program writes to the serial port of a Micro-Modem, and what comes through the water meanwhile.

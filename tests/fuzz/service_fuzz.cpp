@@ -1,14 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 
-#include "bridges/lcm/lockstep_service.hpp"
-#include "bridges/lcm/sim_service.hpp"
+#include "bridges/lockstep/lockstep_service.hpp"
+#include "bridges/control/sim_service.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/message_writer.hpp"
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_resend_t.hpp"
 #include "shoal/sim_resent_t.hpp"
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world/load_world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 // A stranger on the bus: requests to the simulator and messages of the lockstep, in any order, good and bad.

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 #include <limits>
 
 #include "shoal/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/world/load_world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 

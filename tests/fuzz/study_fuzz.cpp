@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/message_writer.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 #include "tests/fuzz/scratch_file.hpp"
-#include "tools/experiment/fidelity.hpp"
-#include "tools/experiment/study_config.hpp"
+#include "tools/experiment/fidelity/fidelity.hpp"
+#include "tools/experiment/study/study_config.hpp"
 
 // Files of experiments: studies, cases of the fidelity report and their references.
 

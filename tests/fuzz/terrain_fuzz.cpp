@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/config/param_reader.hpp"
 #include "sim/terrain/terrain.hpp"
 #include "tests/fuzz/fuzz_input.hpp"

@@ -1,5 +1,6 @@
-#include "sim/world/load_world.hpp"
-#include "sim/world/vehicle_loader.hpp"
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world_file/load_world.hpp"
+#include "sim/world_file/vehicle_loader.hpp"
 #include "tests/fuzz/scratch_file.hpp"
 
 // A vehicle file, alone, in a world and as a spawn request over the bus.

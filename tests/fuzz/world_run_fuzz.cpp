@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <set>
 
 #include "shoal/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world/load_world.hpp"
-#include "sim/world/vehicle_config.hpp"
+#include "sim/world_file/load_world.hpp"
+#include "sim/world_file/vehicle_config.hpp"
 #include "sim/world/world.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Installs the build tree into a prefix, builds the example plugin against it as a user would, and runs it.
 #include <gmock/gmock.h>
 

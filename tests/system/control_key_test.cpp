@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
@@ -6,7 +7,7 @@
 #include <sstream>
 
 #include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/lcm/signed_message.hpp"
+#include "bridges/signing/signed_message.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_control_reply_t.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 #include <signal.h>
 
@@ -5,9 +6,9 @@
 #include <filesystem>
 #include <random>
 
-#include "bridges/lcm/event_log.hpp"
+#include "bridges/log/event_log.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/lcm/lockstep_client.hpp"
+#include "bridges/lockstep/lockstep_client.hpp"
 #include "tests/system/shoal_program.hpp"
 
 // 0 ok, 1 a pass rule failed, 2 usage or configuration, 3 physics, 4 bus or file, 5 time-out, 129, 130 and 143

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -5,7 +6,7 @@
 #include <filesystem>
 #include <map>
 
-#include "bridges/lcm/event_log.hpp"
+#include "bridges/log/event_log.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/odometry_t.hpp"
@@ -146,7 +147,7 @@ TEST(LcmTools, TheViewersScriptMakesAClassOfEachType) {
   ASSERT_EQ(script.wait(), 0) << script.errors();
   std::string folder = script.output();
   folder.erase(folder.find_last_not_of('\n') + 1);
-  for (const auto& file : std::filesystem::directory_iterator(source("bridges/lcm/types"))) {
+  for (const auto& file : std::filesystem::directory_iterator(source("messages"))) {
     if (file.path().extension() != ".lcm") continue;
     EXPECT_TRUE(std::filesystem::exists(folder + "/shoal/" + file.path().stem().string() + ".class")) << file.path();
   }

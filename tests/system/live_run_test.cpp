@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 #include <signal.h>
 
@@ -7,7 +8,7 @@
 #include <random>
 
 #include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/lcm/lockstep_client.hpp"
+#include "bridges/lockstep/lockstep_client.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_control_reply_t.hpp"

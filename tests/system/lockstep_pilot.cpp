@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A lockstep client for tests: what it does depends on every byte that it receives, and on nothing else.  At the end
 // it prints a hash of all that it handled, in order.
 //   lockstep_pilot --name pilot --vehicle rover1 --receive rover1.odometry ...

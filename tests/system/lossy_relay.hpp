@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <atomic>
@@ -10,7 +11,7 @@
 
 #include "bridges/lcm/lcm_connection.hpp"
 #include "sim/bus/bus.hpp"
-#include "sim/bus/crc32.hpp"
+#include "sim/base/crc32.hpp"
 
 namespace system_test {
 

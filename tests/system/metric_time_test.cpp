@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "sim/world/metric_types.hpp"
+#include "sim/world_file/metric_types.hpp"
 #include "tests/system/shoal_program.hpp"
 
 // Every type of metric goes back with its world: by rewind, by restore, into a branch, and with --from.

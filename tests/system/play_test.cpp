@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 #include <signal.h>
 
 #include <algorithm>
 
-#include "bridges/lcm/bus_error.hpp"
+#include "bridges/base/bus_error.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/lcm/lockstep_client.hpp"
+#include "bridges/lockstep/lockstep_client.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/utime_t.hpp"
 #include "tests/system/shoal_program.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Runs that meet a full disk, another run, a pipe, a step that does not end, or physics that nearly stands still.
 #include <fcntl.h>
 #include <gmock/gmock.h>

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
 #include <cstdlib>
 #include <filesystem>
 
-#include "sim/camera/image_file.hpp"
+#include "sim/image/image_file.hpp"
 #include "tests/system/shoal_program.hpp"
 
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 #include <signal.h>
 
@@ -11,7 +12,7 @@
 #include "shoal/sim_vehicle_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "tests/system/shoal_program.hpp"
-#include "tools/experiment/snapshot_file.hpp"
+#include "tools/experiment/snapshot/snapshot_file.hpp"
 
 // Snapshots, rewind, branches and `until` in the real program, asked for over the bus.
 

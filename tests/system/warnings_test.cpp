@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What `shoal check` and `shoal run` warn of, as a user sees it.
 #include <gmock/gmock.h>
 

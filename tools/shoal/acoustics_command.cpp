@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -5,16 +6,16 @@
 #include <memory>
 #include <optional>
 
-#include "devices/acoustic_modem.hpp"
+#include "devices/comms/acoustic_modem.hpp"
 #include "shoal/message_writer.hpp"
 #include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/transducer.hpp"
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world/load_world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
-#include "tools/experiment/acoustic_closed_forms.hpp"
-#include "tools/experiment/acoustic_link.hpp"
-#include "tools/experiment/world_by_name.hpp"
+#include "tools/experiment/acoustics/acoustic_closed_forms.hpp"
+#include "tools/experiment/acoustics/acoustic_link.hpp"
+#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/fmt/fmt.h>
 
 #include <iostream>
 #include <memory>
 
-#include "sim/thread_pool.hpp"
-#include "tools/experiment/scale_scene.hpp"
+#include "sim/base/thread_pool.hpp"
+#include "tools/experiment/bench/scale_scene.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {

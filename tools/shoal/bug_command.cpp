@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/shoal/bug_command.hpp"
 
 #include <iostream>
 #include <memory>
 #include <stdexcept>
 
-#include "bridges/lcm/bus_error.hpp"
-#include "tools/experiment/bug_report.hpp"
+#include "bridges/base/bus_error.hpp"
+#include "tools/experiment/bug_report/bug_report.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
 

@@ -1,14 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
 #include <memory>
 
 #include "shoal/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/camera/texture.hpp"
-#include "sim/world/load_world.hpp"
-#include "sim/world/vehicle_loader.hpp"
+#include "sim/world_file/load_world.hpp"
+#include "sim/world_file/vehicle_loader.hpp"
 #include "sim/world/world.hpp"
-#include "tools/experiment/process_check.hpp"
-#include "tools/experiment/world_by_name.hpp"
+#include "tools/experiment/process/process_check.hpp"
+#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <spdlog/fmt/fmt.h>
 
 #include <CLI/CLI.hpp>
 
-#include "sim/world/load_world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/command_line/help.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,13 +12,13 @@
 #include <thread>
 
 #include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/lcm/signed_message.hpp"
-#include "bridges/lcm/wait_notice.hpp"
+#include "bridges/signing/signed_message.hpp"
+#include "bridges/lockstep/wait_notice.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_control_reply_t.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "sim/config/message_text.hpp"
-#include "tools/experiment/runner.hpp"
+#include "tools/experiment/run/runner.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <unistd.h>
 
 #include <iostream>
@@ -8,8 +9,8 @@
 #include "sim/device/device_registry.hpp"
 #include "tools/command_line/text_layout.hpp"
 #include "tools/shoal/commands.hpp"
-#include "tools/shoal/json_schema.hpp"
-#include "tools/shoal/reference_pages.hpp"
+#include "tools/shoal/reference/json_schema.hpp"
+#include "tools/shoal/reference/reference_pages.hpp"
 
 namespace tools {
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
 
-#include "tools/experiment/fidelity.hpp"
-#include "tools/experiment/fidelity_report.hpp"
+#include "tools/experiment/fidelity/fidelity.hpp"
+#include "tools/experiment/fidelity/fidelity_report.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <unistd.h>
 
 #include <iostream>
@@ -8,7 +9,7 @@
 #include "sim/config/shipped_files.hpp"
 #include "sim/device/device_registry.hpp"
 #include "tools/command_line/text_layout.hpp"
-#include "tools/experiment/world_by_name.hpp"
+#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -9,12 +10,12 @@
 #include <optional>
 #include <regex>
 
-#include "bridges/lcm/event_log.hpp"
+#include "bridges/log/event_log.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "sim/config/message_text.hpp"
-#include "tools/experiment/allan_table.hpp"
-#include "tools/experiment/log_picture.hpp"
+#include "tools/experiment/pictures/allan_table.hpp"
+#include "tools/experiment/pictures/log_picture.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
@@ -11,12 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "bridges/lcm/bus_error.hpp"
+#include "bridges/base/bus_error.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "sim/device/device_registry.hpp"
 #include "tools/command_line/parse.hpp"
 #include "tools/command_line/text_layout.hpp"
-#include "tools/experiment/runner.hpp"
+#include "tools/experiment/run/runner.hpp"
 #include "tools/shoal/bug_command.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/new_command.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <charconv>
 #include <cmath>
 #include <iostream>
@@ -6,8 +7,8 @@
 
 #include "shoal/message_writer.hpp"
 #include "sim/medium/medium.hpp"
-#include "sim/world/load_world.hpp"
-#include "tools/experiment/world_by_name.hpp"
+#include "sim/world_file/load_world.hpp"
+#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/fmt/fmt.h>
 
 #include <iostream>
 #include <memory>
 
 #include "tools/shoal/commands.hpp"
-#include "tools/shoal/mesh_import.hpp"
+#include "tools/shoal/mesh/mesh_import.hpp"
 
 namespace tools {
 

@@ -1,15 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/spdlog.h>
 
 #include <fstream>
 #include <iostream>
 #include <memory>
 
-#include "bridges/lcm/lockstep_service.hpp"
-#include "tools/experiment/play.hpp"
-#include "tools/experiment/replay.hpp"
-#include "tools/experiment/run_error.hpp"
-#include "tools/experiment/runner.hpp"
-#include "tools/experiment/world_by_name.hpp"
+#include "bridges/lockstep/lockstep_service.hpp"
+#include "tools/experiment/replay/play.hpp"
+#include "tools/experiment/replay/replay.hpp"
+#include "tools/experiment/files/run_error.hpp"
+#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
 #include "tools/shoal/speed_option.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -5,7 +6,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "tools/experiment/report_page.hpp"
+#include "tools/experiment/report/report_page.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/spdlog.h>
 
 #include <charconv>
@@ -7,10 +8,10 @@
 #include <sstream>
 
 #include "shoal/message_writer.hpp"
-#include "tools/experiment/bug_report.hpp"
-#include "tools/experiment/run_identity.hpp"
-#include "tools/experiment/runner.hpp"
-#include "tools/experiment/world_by_name.hpp"
+#include "tools/experiment/bug_report/bug_report.hpp"
+#include "tools/experiment/snapshot/run_identity.hpp"
+#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/speed_option.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/spdlog.h>
 
 #include <charconv>
@@ -6,16 +7,16 @@
 #include <memory>
 #include <optional>
 
-#include "devices/camera.hpp"
+#include "devices/ranging/camera.hpp"
 #include "shoal/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/camera/image_file.hpp"
+#include "sim/image/image_file.hpp"
 #include "sim/camera/renderer.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/world/load_world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
-#include "tools/experiment/overview.hpp"
-#include "tools/experiment/world_by_name.hpp"
+#include "tools/experiment/pictures/overview.hpp"
+#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
 

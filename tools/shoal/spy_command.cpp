@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <poll.h>
 #include <spdlog/fmt/fmt.h>
 #include <sys/ioctl.h>
@@ -12,10 +13,10 @@
 #include <optional>
 
 #include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/lcm/wait_notice.hpp"
+#include "bridges/lockstep/wait_notice.hpp"
 #include "shoal/message_schema.hpp"
 #include "tools/command_line/text_layout.hpp"
-#include "tools/experiment/runner.hpp"
+#include "tools/experiment/run/runner.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/shoal/start_files.hpp"
 
 namespace tools {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -6,9 +7,9 @@
 #include <stdexcept>
 #include <thread>
 
-#include "tools/experiment/runner.hpp"
-#include "tools/experiment/study_results.hpp"
-#include "tools/experiment/world_by_name.hpp"
+#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/study/study_results.hpp"
+#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/client.hpp"
 
 #include <gmock/gmock.h>
@@ -10,7 +11,7 @@
 #include "shoal/helm_command_t.hpp"
 #include "shoal/pressure_t.hpp"
 #include "shoal/utime_t.hpp"
-#include "tests/bridges/lcm/fake_simulator.hpp"
+#include "tests/bridges/lockstep/fake_simulator.hpp"
 
 namespace {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lcm/arrivals.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +9,7 @@
 #include <thread>
 
 #include "bridges/lcm/lcm_bus.hpp"
-#include "lcm_test_support.hpp"
+#include "tests/bridges/lcm/lcm_test_support.hpp"
 
 namespace bridges {
 namespace {

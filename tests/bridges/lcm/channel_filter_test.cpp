@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lcm/channel_filter.hpp"
 
 #include <arpa/inet.h>
@@ -6,8 +7,8 @@
 
 #include <optional>
 
-#include "bridges/lcm/file_descriptor.hpp"
-#include "datagrams.hpp"
+#include "bridges/base/file_descriptor.hpp"
+#include "tests/bridges/lcm/datagrams.hpp"
 
 namespace bridges {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lcm/lcm_bus.hpp"
 
 #include <arpa/inet.h>
@@ -12,7 +13,7 @@
 #include <thread>
 
 #include "bridges/lcm/lcm_listener.hpp"
-#include "lcm_test_support.hpp"
+#include "tests/bridges/lcm/lcm_test_support.hpp"
 
 namespace bridges {
 namespace {

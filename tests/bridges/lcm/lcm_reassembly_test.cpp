@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lcm/lcm_reassembly.hpp"
 
 #include <gtest/gtest.h>
@@ -6,8 +7,8 @@
 #include <numeric>
 #include <random>
 
-#include "datagrams.hpp"
-#include "lcm_test_support.hpp"
+#include "tests/bridges/lcm/datagrams.hpp"
+#include "tests/bridges/lcm/lcm_test_support.hpp"
 
 namespace bridges {
 namespace {

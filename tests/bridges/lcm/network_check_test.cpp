@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lcm/network_check.hpp"
 
 #include <gtest/gtest.h>
@@ -16,8 +17,8 @@
 
 #include "bridges/lcm/lcm_bus.hpp"
 #include "bridges/lcm/reach_check.hpp"
-#include "lcm_test_support.hpp"
-#include "own_network.hpp"
+#include "tests/bridges/lcm/lcm_test_support.hpp"
+#include "tests/bridges/lcm/own_network.hpp"
 
 namespace bridges {
 namespace {

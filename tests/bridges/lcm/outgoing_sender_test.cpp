@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lcm/outgoing_sender.hpp"
 
 #include <gmock/gmock.h>
@@ -6,7 +7,7 @@
 #include <future>
 #include <mutex>
 
-#include "lcm_test_support.hpp"
+#include "tests/bridges/lcm/lcm_test_support.hpp"
 
 namespace bridges {
 namespace {

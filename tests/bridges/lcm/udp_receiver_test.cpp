@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/socket.h>
@@ -13,9 +14,9 @@
 
 #include "bridges/lcm/lcm_listener.hpp"
 #include "bridges/lcm/udp_inbox.hpp"
-#include "datagrams.hpp"
-#include "lcm_test_support.hpp"
-#include "own_network.hpp"
+#include "tests/bridges/lcm/datagrams.hpp"
+#include "tests/bridges/lcm/lcm_test_support.hpp"
+#include "tests/bridges/lcm/own_network.hpp"
 
 namespace bridges {
 namespace {

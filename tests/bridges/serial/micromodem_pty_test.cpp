@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Two Micro-Modems in one world, each with a host on its pseudo-terminal.
 
 #include <fcntl.h>
@@ -11,10 +12,10 @@
 #include <set>
 
 #include "bridges/serial/serial_port.hpp"
-#include "devices/nmea.hpp"
+#include "devices/common/nmea.hpp"
 #include "shoal/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world/load_world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"

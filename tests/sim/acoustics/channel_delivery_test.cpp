@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Who hears a signal, what overlaps, and what is counted.
 
 #include "tests/sim/acoustics/sea_of_hydrophones.hpp"

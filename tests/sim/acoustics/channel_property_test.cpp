@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What holds in the acoustic channel whatever the places, speeds and sounds.
 
 #include <gtest/gtest.h>
@@ -6,7 +7,7 @@
 #include <array>
 #include <memory>
 
-#include "tests/devices/acoustic_probe.hpp"
+#include "tests/devices/sound_positioning/acoustic_probe.hpp"
 
 namespace {
 

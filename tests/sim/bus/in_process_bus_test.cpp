@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/bus/in_process_bus.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/bus/mail_gate.hpp"
 
 #include <gmock/gmock.h>

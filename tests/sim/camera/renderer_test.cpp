@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/camera/renderer.hpp"
 
 #include <gmock/gmock.h>
@@ -5,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "sim/camera/image_file.hpp"
+#include "sim/image/image_file.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/sim/physics/small_worlds.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/config/warnings.hpp"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tests/fidelity/closed_forms.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +7,7 @@
 #include <numbers>
 
 #include "sim/hydrodynamics/coefficient_model.hpp"
-#include "sim/hydrodynamics/spheroid.hpp"
+#include "sim/model/spheroid.hpp"
 #include "sim/world/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/sim/hydrodynamics/marine_worlds.hpp"

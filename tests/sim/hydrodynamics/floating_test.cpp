@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <numbers>
 
 #include "sim/hydrodynamics/immersed_volume.hpp"

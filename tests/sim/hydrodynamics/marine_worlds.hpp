@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <string>
 
 #include "sim/config/param_reader.hpp"
-#include "sim/hydrodynamics/hydrodynamics_config.hpp"
+#include "sim/model/hydrodynamics_config.hpp"
 
 namespace test {
 

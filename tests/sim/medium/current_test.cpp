@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -6,7 +7,7 @@
 #include <numbers>
 
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world/load_world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
 #include "tests/fidelity/closed_forms.hpp"
 #include "tests/scratch_folder.hpp"

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
 #include <algorithm>
 
 #include "sim/medium/sea_water.hpp"
 #include "sim/medium/stability.hpp"
-#include "sim/world/load_world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "tests/fidelity/closed_forms.hpp"
 #include "tests/sim/medium/log_capture.hpp"
 #include "tests/sim/medium/medium_worlds.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/physics/body.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/physics/joint.hpp"
 
 #include <gtest/gtest.h>

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <ode/ode.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "sim/physics/ode_library.hpp"
+#include "sim/ode/ode_library.hpp"
 #include "tests/sim/physics/small_worlds.hpp"
 
 namespace {

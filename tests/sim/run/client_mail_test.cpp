@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/run/client_mail.hpp"
 
 #include <gtest/gtest.h>
 
-#include "sim/bus/crc32.hpp"
+#include "sim/base/crc32.hpp"
 #include "sim/bus/in_process_bus.hpp"
 
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/state/state_archive.hpp"
 
 #include <gmock/gmock.h>
@@ -8,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/time.hpp"
+#include "sim/base/time.hpp"
 
 namespace {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -5,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/physics/ode_math.hpp"
+#include "sim/ode/ode_math.hpp"
 #include "sim/physics/terrain_geom.hpp"
 #include "tests/sim/terrain/terrain_worlds.hpp"
 

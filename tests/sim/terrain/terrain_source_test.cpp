@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <png.h>
@@ -6,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "sim/bus/crc32.hpp"
+#include "sim/base/crc32.hpp"
 #include "sim/terrain/terrain.hpp"
 #include "tests/scratch_folder.hpp"
 

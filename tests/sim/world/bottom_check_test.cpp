@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world/bottom_check.hpp"
 
 #include "tests/devices/world_fixture.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world/start_check.hpp"
 
 #include <gmock/gmock.h>

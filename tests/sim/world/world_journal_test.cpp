@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world/world_journal.hpp"
 
 #include <gmock/gmock.h>
@@ -7,7 +8,7 @@
 #include <vector>
 
 #include "shoal/modem_send_t.hpp"
-#include "sim/world/vehicle_loader.hpp"
+#include "sim/world_file/vehicle_loader.hpp"
 #include "tests/devices/state_fixture.hpp"
 
 // What came and went is told by who is there: a world that is restored must be the same in all bits.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 #include <string>
 #include <tuple>
 
-#include "sim/world/vehicle_loader.hpp"
+#include "sim/world_file/vehicle_loader.hpp"
 #include "tests/devices/state_fixture.hpp"
 
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/command_line/text_layout.hpp"
 
 #include <gtest/gtest.h>

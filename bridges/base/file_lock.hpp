@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace bridges {
+
+/// Locks an open file or folder against other runs, for as long as the file stays open; a process that dies lets go of
+/// it.  Returns nothing, or who has the lock, such as `process 1234 (shoal run world.yaml)`.
+std::optional<std::string> lock_against_others(int file);
+
+}  // namespace bridges

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridges/base/poll_set.hpp"
+
+#include <sys/epoll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "bridges/base/bus_error.hpp"
+
+namespace bridges {
+
+PollSet::PollSet() : epoll_(epoll_create1(EPOLL_CLOEXEC)) {
+  if (epoll_ < 0) throw BusError("no file descriptor is left for the bus");
+}
+
+PollSet::~PollSet() {
+  close(epoll_);
+}
+
+void PollSet::add(int fd, void* tag) {
+  epoll_event event{};
+  event.events = EPOLLIN | EPOLLEXCLUSIVE;
+  event.data.ptr = tag;
+  if (epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event) != 0)
+    throw BusError("the system does not let the bus wait for its messages (epoll)");
+}
+
+void PollSet::remove(int fd) {
+  epoll_ctl(epoll_, EPOLL_CTL_DEL, fd, nullptr);
+}
+
+PollSet::Readable PollSet::wait(std::chrono::milliseconds timeout) {
+  std::array<epoll_event, most_at_once> events;
+  const auto limit = std::clamp<std::int64_t>(timeout.count(), -1, std::numeric_limits<int>::max());
+  const int count = epoll_wait(epoll_, events.data(), most_at_once, static_cast<int>(limit));
+  Readable readable;
+  for (int i = 0; i < count; ++i) readable.tags[readable.count++] = events[static_cast<std::size_t>(i)].data.ptr;
+  return readable;
+}
+
+}  // namespace bridges

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace bridges {
+
+/// What each client has used up of something of which a run grants a number to each, and ten times that to all
+/// together: a client may call itself anything.  Not part of the state of the world.
+class ClientAccounts {
+ public:
+  /// `what`: in the error, such as `spawn requests`; `key`: of `limits` in the world.
+  ClientAccounts(std::string what, std::string key, std::int64_t per_client)
+      : what_(std::move(what)), key_(std::move(key)), per_client_(per_client) {}
+
+  /// Throws std::runtime_error when the client has none left.
+  void check(const std::string& client) const;
+  void use(const std::string& client);
+
+ private:
+  static constexpr std::size_t max_clients = 1000;  // those who come later share one account
+  const std::string& account_of(const std::string& client) const;
+
+  std::string what_, key_;
+  std::int64_t per_client_;
+  std::int64_t all_ = 0;
+  std::map<std::string, std::int64_t, std::less<>> used_;
+};
+
+}  // namespace bridges

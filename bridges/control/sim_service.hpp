@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "bridges/control/client_accounts.hpp"
+#include "bridges/lockstep/lockstep_service.hpp"
+#include "bridges/control/other_simulators.hpp"
+#include "bridges/control/run_notices.hpp"
+#include "bridges/control/time_machine.hpp"
+#include "bridges/control/visitors.hpp"
+#include "shoal/sim_control_request_t.hpp"
+#include "sim/bus/bus.hpp"
+#include "sim/run/run_control.hpp"
+#include "sim/world/world.hpp"
+
+namespace bridges {
+
+/// The simulator's own channels: publishes sim.info, sim.clock and sim.state, and answers requests on sim.control.
+/// Speaks through any Bus.
+class SimService {
+ public:
+  struct Info {
+    std::string resolved_config;
+    std::string versions;
+    std::string build = {};  ///< see sim_info_t
+    std::string files = {};
+  };
+
+  /// `network`: the bus under `bus`; the handshake goes there directly, so that records leave it out.
+  SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim::RunControl& control, LockstepService& lockstep,
+             Info info);
+
+  /// A bus that vehicles have to themselves: there the service gives the time on sim.clock, answers join, leave and
+  /// alive on sim.control, and nothing else.  In the order in which the lockstep knows them.
+  void serve_vehicles(sim::Bus& network);
+  /// What changes the world is written down there.  It must outlive this.
+  void use_journal(RunJournal& journal);
+  /// Serves what is about time: pause, resume, step, speed, until, where, snapshot, restore and rewind.  It must
+  /// outlive this; null: nobody does.
+  void set_time_machine(TimeMachine* machine) { time_machine_ = machine; }
+  /// Who else starts on the buses: asked by them, which is told of once.  It must outlive this.
+  void use_others(const OtherSimulators& others) { others_ = &others; }
+  /// Whose vehicles there are.
+  void visit_state(sim::StateArchive& archive) { visitors_.visit_state(archive); }
+  /// While muted only the world's bus is published on.
+  void set_muted(bool muted) { muted_ = muted; }
+  /// Tells of vehicles that came or went when time did, beside the record, which knows nothing of another time.
+  void tell_changes() { visitors_.tell_others(network_); }
+  /// Publishes sim.info now, and not a second time at this step.
+  void publish_info();
+  /// Carries out a request that a journal wrote down.  Throws std::runtime_error that says why it was refused, as then.
+  void obey_again(const shoal::sim_control_request_t& request);
+  /// Publishes what is due after the world's current step: clock, state, info.
+  void publish_step();
+  /// Answers the requests that have come.
+  void handle_requests();
+  /// A client is gone: it leaves the lockstep, and the vehicles that came with it go.
+  void client_gone(const std::string& client);
+
+  /// For whom the world waits; empty: for nobody.
+  std::string waits_for() { return lockstep_.waits_for(); }
+  /// Bad requests so far.
+  std::int64_t bad_messages() const { return bad_messages_; }
+  /// Requests so far that were refused as they were not signed with the key of the run.
+  std::int64_t refused_requests() const { return refused_requests_; }
+  /// Who made the run end, go back, or lose something.
+  const RunNotices& notices() const { return notices_; }
+
+ private:
+  /// Where clients may be.
+  struct Line {
+    sim::Bus* network;
+    std::unique_ptr<sim::Mailbox> requests;
+    std::unique_ptr<sim::Mailbox> infos;  ///< of another simulator that was not found at the start
+  };
+
+  void publish_state();
+  void handle_request(Line& line, const sim::Message& message);
+  void refuse(Line& line, const shoal::sim_control_request_t& request, const ControlGuard::Opened& opened);
+  void answer(Line& line, const shoal::sim_control_request_t& request, const std::string& signer);
+  void reply(Line& line, const shoal::sim_control_request_t& request, std::int64_t session, bool ok,
+             const std::string& text);
+  /// What came of it; nothing: it is not decided yet, and not answered.  Throws std::runtime_error that says why it was
+  /// refused.
+  std::optional<std::string> obey(Line& line, const shoal::sim_control_request_t& request);
+  /// What limits how often a client may request this; null: nothing does.
+  ClientAccounts* account_for(const std::string& command);
+  bool lets_go_of_another(const shoal::sim_control_request_t& request) const;
+  void note(const shoal::sim_control_request_t& request, const std::string& signer);
+  int number_of(const Line& line) const { return static_cast<int>(&line - lines_.data()); }
+  bool is_own_question(Line& line, const shoal::sim_control_request_t& request);
+  void warn_of_another(const Line& line, const char* how);
+  bool leave(int line, const shoal::sim_control_request_t& request);
+  void complain(const std::string& text);
+  bool due(double rate_hz) const;
+  template <typename Message>
+  void publish(sim::Bus& bus, const std::string& channel, const Message& message);
+
+  sim::Bus& bus_;
+  sim::Bus& network_;
+  sim::World& world_;
+  sim::RunControl& control_;
+  LockstepService& lockstep_;
+  Info info_;
+  Visitors visitors_;
+  RunJournal* journal_ = nullptr;
+  TimeMachine* time_machine_ = nullptr;
+  bool muted_ = false;
+  std::int64_t info_step_ = -1;  // of the last sim.info
+  const OtherSimulators* others_ = nullptr;
+  bool warned_of_another_ = false;
+  std::vector<Line> lines_;  // the world's first
+  RunNotices notices_;
+  ClientAccounts spawns_, rewinds_;
+  std::set<std::string, std::less<>> told_refused_;  // clients
+  std::int64_t refused_requests_ = 0;
+  std::chrono::steady_clock::time_point refusals_since_;
+  int refusals_answered_ = 0;  // since then
+  sim::Bytes buffer_;
+  std::int64_t bad_messages_ = 0;
+};
+
+}  // namespace bridges

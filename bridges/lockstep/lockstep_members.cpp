@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "bridges/lockstep/lockstep_line.hpp"
+#include "bridges/lockstep/resend.hpp"
+#include "shoal/sim_control_reply_t.hpp"
+#include "sim/config/message_text.hpp"
+
+// Who takes part in the lockstep: joining, leaving, two clients of one name.
+
+namespace bridges {
+
+namespace {
+
+/// After this the world takes another client of the same name.
+constexpr std::chrono::seconds alive_for{1};
+constexpr std::size_t most_ended_sessions = 1000;
+/// How the summary calls the end of a client that asked for it.
+constexpr const char* left = "left";
+
+std::string seconds_text(sim::Time time) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f s", sim::to_seconds(time));
+  return text;
+}
+
+}  // namespace
+
+std::string LockstepService::names() const {
+  std::string names;
+  for (const auto& [name, member] : lockstep_.members()) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
+bool LockstepService::join(int line, const shoal::sim_control_request_t& request) {
+  if (request.client.empty() || request.client.size() > 60)
+    throw std::runtime_error("'join' needs a client name of 1 to 60 characters");
+  const double steps = request.value * 1e6 / static_cast<double>(world_.step_time().count());
+  if (!(steps > 0.5 && steps < 1e12))
+    throw std::runtime_error("'join' needs a period of at least one step, in seconds");
+  const auto period_steps = static_cast<std::int64_t>(std::llround(steps));
+  if (std::abs(steps - static_cast<double>(period_steps)) > 1e-6)
+    throw std::runtime_error("'join' needs a period that is a multiple of the step of " +
+                             std::to_string(sim::to_seconds(world_.step_time())) + " s");
+  const sim::LockstepTerms terms = sim::read_lockstep_terms(request.text, defaults_);
+  check_session(request.client, terms.session);
+  const sim::LockstepMember* first = lockstep_.find(request.client);
+  // A request acts on its own bus only.
+  if (first && first->line != line && !first->gone)
+    throw std::runtime_error("a client '" + request.client + "' takes part on " + line_of(first->line).called +
+                             "; give this one on " + line_of(line).called + " another name");
+  if (first && (first->terms.session != terms.session || first->line != line)) {
+    if (!may_join(*first, terms)) return false;
+    forget(request.client, "another client of its name took its place");
+  }
+  if (!lockstep_.has(request.client) && lockstep_.members().size() >= 1000)
+    throw std::runtime_error("1000 clients have joined; there is room for no more");
+  lockstep_.join(request.client, terms, period_steps, world_.step_number(), line);
+  challenges_.erase(request.client);
+  dropped_.erase(request.client);
+  join_ids_[request.client] = request.id;
+  summary_of(request.client).ended.clear();
+  watch_gates();
+  return true;
+}
+
+bool LockstepService::is_over(const std::string& client, std::int64_t session) const {
+  return session != 0 && std::find(ended_.begin(), ended_.end(), std::pair(client, session)) != ended_.end();
+}
+
+/// A request that the network repeated, or held back, must not take in again who has left.
+void LockstepService::check_session(const std::string& client, std::int64_t session) const {
+  if (!is_over(client, session)) return;
+  const auto summary = summaries_.find(client);
+  throw std::runtime_error("the session " + std::to_string(session) + " of client '" + client + "' is over" +
+                           (summary == summaries_.end() || summary->second.ended.empty() || lockstep_.has(client)
+                                ? ""
+                                : " (" + summary->second.ended + ")") +
+                           "; join with another one");
+}
+
+/// The other of that name may have died a moment ago; it can show that it lives.
+bool LockstepService::may_join(const sim::LockstepMember& first, const sim::LockstepTerms& terms) {
+  if (first.gone) return true;
+  const std::string name = first.name;
+  const Clock::time_point now = Clock::now();
+  take_messages();  // what it said before it was asked tells nothing
+  const auto [entry, fresh] = challenges_.try_emplace(name);
+  Challenge& challenge = entry->second;
+  if (fresh || now - challenge.ask_at > 5 * alive_for) challenge = {now, now, false};
+  if (challenge.lives) {
+    challenges_.erase(name);
+    throw std::runtime_error("another client of the name '" + name + "' takes part, and answers" +
+                             (terms.session == 0 ? "" : "; give this one another name"));
+  }
+  const auto asked = asked_.find(name);
+  const bool at_work = asked != asked_.end() && !first.answered;
+  if (at_work) return now - asked->second.since > alive_for;
+  // While the world runs its next tick will show; a program may be busy between its ticks.
+  if (control_.paused && now - challenge.since > alive_for) return true;
+  if (now >= challenge.ask_at) {
+    challenge.ask_at = now + first_resend_interval;
+    ask_whether_it_lives(first);
+  }
+  return false;
+}
+
+bool LockstepService::has(const std::string& client, int line) const {
+  const auto member = lockstep_.members().find(client);
+  return member != lockstep_.members().end() && member->second.line == line;
+}
+
+bool LockstepService::has_left(const std::string& client) const {
+  const auto summary = summaries_.find(client);
+  return !lockstep_.has(client) && summary != summaries_.end() && summary->second.ended == left;
+}
+
+bool LockstepService::leave(int line, const shoal::sim_control_request_t& request) {
+  const std::string called = "client '" + sim::printable(sim::shortened(request.client)) + "'";
+  const sim::LeaveTerms terms = sim::read_leave_terms(request.text);
+  const sim::LockstepMember* member = lockstep_.find(request.client);
+  if (member == nullptr && is_over(request.client, terms.session))
+    return true;  // it asks again: the answer was lost, or is on its way
+  if (member == nullptr)
+    throw std::runtime_error("no client of the name '" + sim::shortened(request.client) + "' has joined");
+  if (member->line != line)
+    throw std::runtime_error("the " + called + " takes part on " + line_of(member->line).called + "; a request on " +
+                             line_of(line).called + " does not act there");
+  if (terms.session != 0 && terms.session != member->terms.session)
+    throw std::runtime_error("the client '" + member->name + "' that has joined is another one");
+  if (terms.acknowledged > member->sequence)
+    throw std::runtime_error("the client '" + member->name + "' leaves after tick " +
+                             std::to_string(terms.acknowledged) + ", which it was not sent");
+  // What it said before it leaves counts, if it takes a while to arrive.  It does not answer ticks that come later.
+  const bool answered = member->answered || (terms.acknowledged >= 0 && terms.acknowledged < member->sequence);
+  const bool complete = line_of(member->line).mail.is_complete(member->name);
+  if (terms.session != 0 && !(answered && complete)) return false;
+  tell_who_left(*member, line, terms);
+  forget(request.client, left);
+  return true;
+}
+
+void LockstepService::tell_who_left(const sim::LockstepMember& member, int line, const sim::LeaveTerms& terms) {
+  constexpr int most_told = 100;
+  if (++told_left_ > most_told) return;
+  const std::string called = "client '" + sim::printable(member.name) + "'";
+  const std::string at = " at " + seconds_text(world_.now()) + " on " + line_of(line).called;
+  const std::string more = told_left_ == most_told ? " (no more of these are told)" : "";
+  if (terms.session == 0 && member.terms.session != 0)
+    spdlog::warn("lockstep: a request without its session{} let go of {}; the world goes on without it{}", at, called,
+                 more);
+  else
+    spdlog::info("lockstep: {} left{}{}", called, at, more);
+}
+
+void LockstepService::follow(int line, const shoal::sim_control_request_t& request) {
+  constexpr std::size_t most_followers = 1000;
+  if (request.client.empty() || request.client.size() > 60)
+    throw std::runtime_error("'follow' needs a client name of 1 to 60 characters");
+  const std::int64_t session = sim::read_follow_terms(request.text).session;
+  if (session == 0) throw std::runtime_error("'follow' needs a 'session' from 1 on");
+  const auto known = std::find_if(followers_.begin(), followers_.end(), [&](const Follower& each) {
+    return each.name == request.client && each.session == session && each.line == line;
+  });
+  if (known != followers_.end()) return;
+  followers_.push_back({request.client, session, line});
+  if (followers_.size() > most_followers) followers_.pop_front();
+}
+
+std::string LockstepService::what_is_missing(const sim::LockstepMember& member) {
+  return "client '" + member.name + "' acknowledged step " + std::to_string(member.asked) + ", but " +
+         line_of(member.line).mail.missing_text(member.name);
+}
+
+void LockstepService::client_gone(const std::string& client) {
+  sim::LockstepMember* member = lockstep_.find(client);
+  if (member == nullptr || member->gone) return;
+  if (!member->terms.agreed) return forget(client, "its process ended");
+  member->gone = true;
+  summary_of(client).ended = "its process ended";
+}
+
+void LockstepService::forget(const std::string& client, const std::string& why) {
+  if (const sim::LockstepMember* member = lockstep_.find(client)) {
+    Line& line = line_of(member->line);
+    line.mail.give_up(client);
+    if (member->terms.session != 0) {
+      ended_.emplace_back(client, member->terms.session);
+      if (ended_.size() > most_ended_sessions) ended_.pop_front();
+    }
+  }
+  lockstep_.leave(client);
+  asked_.erase(client);
+  join_ids_.erase(client);
+  challenges_.erase(client);
+  answers_.erase(client);
+  summary_of(client).ended = why;
+  watch_gates();
+}
+
+void LockstepService::drop(const std::string& client, const std::string& why) {
+  const sim::LockstepMember* member = lockstep_.find(client);
+  if (member == nullptr) return;
+  spdlog::warn("lockstep: {}; the world goes on without it", why);
+  if (dropped_.size() < 1000)
+    dropped_[client] = {member->terms.session, join_ids_[client], member->line,
+                        why + "; the world went on without it: join again"};
+  forget(client, why);
+}
+
+void LockstepService::tell_dropped(const Dropped& dropped, const std::string& client) {
+  shoal::sim_control_reply_t reply;
+  reply.utime = utime();
+  reply.id = dropped.join_id;
+  reply.client = client;
+  reply.session = dropped.session;
+  reply.ok = false;
+  reply.text = dropped.why;
+  line_of(dropped.line).publish("sim.control.reply", reply, world_.now());
+}
+
+}  // namespace bridges

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridges/log/recording_bus.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "bridges/log/event_log.hpp"
+#include "bridges/base/file_lock.hpp"
+
+namespace bridges {
+namespace {
+
+/// Sync word, number, time, two lengths.
+constexpr std::uint64_t event_head_bytes = 28;
+constexpr std::size_t copied_at_once = std::size_t{1} << 20;
+constexpr std::chrono::milliseconds shortest_pause{50};
+constexpr std::chrono::milliseconds max_buffered{250};
+
+std::unique_ptr<EventLogWriter> create(const std::string& path, Existing existing) {
+  // O_EXCL decides and creates in one go; a device such as /dev/full is never "made".
+  const int flags = O_WRONLY | O_CREAT | O_CLOEXEC | (existing == Existing::refuse ? O_EXCL : 0);
+  FileDescriptor file(open(path.c_str(), flags, 0666));
+  if (file.number() < 0 && errno == EEXIST)
+    throw BusError(path + ": exists already; choose another name or pass --overwrite");
+  if (file.number() < 0) throw BusError(path + ": " + std::strerror(errno));
+  if (const auto owner = lock_against_others(file.number()))
+    throw BusError(path + ": " + *owner + " is recording into it; choose another name");
+  // Only now: what another run records stays.  A device has no length.
+  if (ftruncate(file.number(), 0) != 0 && errno != EINVAL) throw BusError(path + ": " + std::strerror(errno));
+  return std::make_unique<EventLogWriter>(std::move(file));
+}
+
+}  // namespace
+
+RecordingBus::RecordingBus(std::unique_ptr<sim::Bus> inner, const std::string& path, std::int64_t epoch_utime,
+                           Existing existing)
+    : RecordingBus(*inner, path, epoch_utime, existing) {
+  owned_ = std::move(inner);
+}
+
+RecordingBus::RecordingBus(sim::Bus& inner, const std::string& path, std::int64_t epoch_utime, Existing existing)
+    : inner_(inner), path_(path), epoch_utime_(epoch_utime), utime_(epoch_utime), log_(create(path, existing)) {}
+
+RecordingBus::RecordingBus(sim::Bus& inner, RecordingBus& first) : inner_(inner), first_(&first) {}
+
+RecordingBus::~RecordingBus() {
+  close();
+}
+
+void RecordingBus::publish(std::string_view channel, std::span<const std::byte> payload, sim::Time at) {
+  inner_.publish(channel, payload, at);
+  set_time(at);
+  record(channel, payload);
+}
+
+void RecordingBus::admitted(std::span<const sim::MailGate::Mail> mail) {
+  for (const sim::MailGate::Mail& each : mail) record(each.channel, each.payload);
+}
+
+void RecordingBus::set_time(sim::Time at) {
+  if (first_) return first_->set_time(at);
+  utime_ = std::max(utime_, epoch_utime_ + at.count());
+}
+
+void RecordingBus::record(std::string_view channel, std::span<const std::byte> payload) {
+  if (first_) return first_->record(channel, payload);
+  if (!log_ || error_) return;
+  errno = 0;
+  if (!log_->write(static_cast<std::int64_t>(recorded_), utime_, channel, payload)) return fail(errno);
+  ++recorded_;
+  bytes_ += event_head_bytes + channel.size() + payload.size();
+  // Once a simulated second, but not more often than it is worth it: a killed run loses little, and `tail` sees it
+  // grow.
+  if (const std::int64_t second = (utime_ - epoch_utime_) / 1'000'000; second > looked_s_) {
+    looked_s_ = second;
+    hand_over();
+  }
+}
+
+void RecordingBus::end_of_step() {
+  inner_.end_of_step();
+  // A simulated second may last minutes: in a slow run, or in a world that is large.
+  if (!first_) hand_over_after(max_buffered);
+}
+
+void RecordingBus::hand_over() {
+  if (first_) return first_->hand_over();
+  hand_over_after(shortest_pause);
+}
+
+void RecordingBus::hand_over_after(std::chrono::milliseconds pause) {
+  if (!log_ || error_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now - handed_over_ < pause) return;
+  handed_over_ = now;
+  if (!log_->hand_over()) fail(errno);
+}
+
+void RecordingBus::prepare(const std::string& path, std::uint64_t events, std::uint64_t bytes, Existing existing) {
+  give_up();
+  if (!log_ || error_) return;
+  if (!log_->flush()) return fail(errno);
+  next_.emplace(Next{path, events, bytes, create(path, existing)});
+  const FileDescriptor from(open(path_.c_str(), O_RDONLY | O_CLOEXEC));
+  sim::Bytes part(copied_at_once);
+  std::uint64_t left = from.number() < 0 ? bytes + 1 : bytes;
+  while (left > 0 && from.number() >= 0) {
+    const ssize_t got = ::read(from.number(), part.data(), std::min<std::uint64_t>(left, part.size()));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0 || !next_->log->write({part.data(), static_cast<std::size_t>(got)})) break;
+    left -= static_cast<std::uint64_t>(got);
+  }
+  if (left == 0 && next_->log->flush()) return;  // a full disk shows here
+  give_up();
+  throw BusError(path + ": cannot copy " + path_ + " into it");
+}
+
+void RecordingBus::give_up() {
+  if (!next_) return;
+  const std::string path = next_->path;
+  next_.reset();
+  std::remove(path.c_str());
+}
+
+void RecordingBus::go_on() {
+  if (!next_) return;
+  log_ = std::move(next_->log);
+  path_ = next_->path;
+  recorded_ = next_->events;
+  bytes_ = next_->bytes;
+  next_.reset();
+  utime_ = epoch_utime_;  // time went back: the next set_time() tells
+  looked_s_ = 0;
+}
+
+void RecordingBus::fail(int error_number) {
+  error_ = path_ + ": cannot record: " + std::strerror(error_number != 0 ? error_number : EIO);
+}
+
+void RecordingBus::close() {
+  if (!log_) return;
+  errno = 0;
+  if (!error_ && !log_->flush()) fail(errno);
+  log_.reset();
+}
+
+}  // namespace bridges

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridges/log/run_journal.hpp"
+
+#include <utility>
+
+#include "shoal/message_codec.hpp"
+#include "shoal/sim_hash_t.hpp"
+
+namespace bridges {
+
+namespace {
+
+/// What one sim.mail holds, about: LCM carries at most 16 MB.
+constexpr std::size_t most_bytes = std::size_t{1} << 20;
+
+}  // namespace
+
+void SerialMail::add(std::int64_t step, const std::string& path, sim::Bytes bytes) {
+  waiting_[path].emplace_back(step, std::move(bytes));
+}
+
+sim::Bytes SerialMail::read(const std::string& path, std::int64_t step) {
+  const auto known = waiting_.find(path);
+  if (known == waiting_.end()) return {};
+  auto& letters = known->second;
+  while (!letters.empty() && letters.front().first < step) letters.pop_front();
+  if (letters.empty() || letters.front().first != step) return {};
+  sim::Bytes bytes = std::move(letters.front().second);
+  letters.pop_front();
+  return bytes;
+}
+
+/// A serial port that writes down what comes in.
+class RunJournal::Port final : public sim::BytePort {
+ public:
+  Port(RunJournal& journal, std::string path, std::unique_ptr<sim::BytePort> inner)
+      : journal_(journal), path_(std::move(path)), inner_(std::move(inner)) {}
+
+  sim::Bytes read() override {
+    if (journal_.muted_) return journal_.serial_mail_.read(path_, journal_.step());
+    sim::Bytes bytes = inner_->read();
+    if (!bytes.empty()) journal_.letter(serial_bus, path_, bytes);
+    return bytes;
+  }
+  void write(std::span<const std::byte> bytes) override {
+    if (!journal_.muted_) inner_->write(bytes);
+  }
+  std::uint64_t dropped_bytes() const override { return inner_->dropped_bytes(); }
+
+ private:
+  RunJournal& journal_;
+  std::string path_;
+  std::unique_ptr<sim::BytePort> inner_;
+};
+
+sim::PortOpener RunJournal::wrap(sim::PortOpener open) {
+  if (!open) return {};
+  return [this, open = std::move(open)](const std::string& kind,
+                                        const std::string& path) -> std::unique_ptr<sim::BytePort> {
+    return std::make_unique<Port>(*this, path, open(kind, path));
+  };
+}
+
+void RunJournal::attach(const sim::World& world) {
+  world_ = &world;
+  every_steps_ = world.config().run.hash_every_steps;
+}
+
+void RunJournal::admitted(const std::string& bus, std::span<const sim::MailGate::Mail> mail) {
+  for (const sim::MailGate::Mail& each : mail) letter(bus, each.channel, each.payload);
+}
+
+void RunJournal::request(const shoal::sim_control_request_t& request) {
+  shoal::encode_into(request, buffer_);
+  letter("", request_channel, buffer_);
+}
+
+void RunJournal::letter(const std::string& bus, const std::string& channel, std::span<const std::byte> payload) {
+  if (muted_ || world_ == nullptr) return;
+  if (listener_) listener_(step(), {bus, channel, sim::Bytes(payload.begin(), payload.end())});
+  if (!waiting_.empty() && waiting_bytes_ + payload.size() > most_bytes) publish_mail();
+  shoal::sim_letter_t letter;
+  letter.step = step();
+  letter.bus = bus;
+  letter.channel = channel;
+  letter.size = static_cast<std::int32_t>(payload.size());
+  const auto* begin = reinterpret_cast<const std::uint8_t*>(payload.data());
+  letter.data.assign(begin, begin + payload.size());
+  waiting_.push_back(std::move(letter));
+  waiting_bytes_ += payload.size();
+}
+
+void RunJournal::after_step() {
+  if (muted_) return;
+  if (!waiting_.empty()) publish_mail();
+  if (every_steps_ > 0 && world_->step_number() % every_steps_ == 0) publish_hash();
+}
+
+void RunJournal::finish(bool step_is_whole) {
+  if (muted_ || world_ == nullptr) return;
+  if (!waiting_.empty()) publish_mail();
+  if (!step_is_whole || !started_ || last_hash_step_ == world_->step_number()) return;
+  if (every_steps_ > 0) return publish_hash();
+  if (heard_ && !heard_()) return;
+  publish_mail();  // without letters: a log that ends with this one was not cut off
+  last_hash_step_ = world_->step_number();
+}
+
+void RunJournal::begin_branch(std::int32_t branch, std::int64_t next_sequence) {
+  branch_ = branch;
+  sequence_ = next_sequence;
+  waiting_.clear();
+  waiting_bytes_ = 0;
+  last_hash_step_ = -1;
+}
+
+void RunJournal::publish_mail() {
+  shoal::sim_mail_t message;
+  message.utime = world_->epoch_us() + world_->now().count();
+  message.step = world_->step_number();
+  message.sequence = sequence_++;
+  message.branch = branch_;
+  message.count = static_cast<std::int32_t>(waiting_.size());
+  message.letter = std::move(waiting_);
+  waiting_.clear();
+  waiting_bytes_ = 0;
+  shoal::encode_into(message, buffer_);
+  bus_.publish("sim.mail", buffer_, world_->now());
+}
+
+void RunJournal::publish_hash() {
+  if (heard_ && !heard_()) return;
+  shoal::sim_hash_t message;
+  message.utime = world_->epoch_us() + world_->now().count();
+  message.step = world_->step_number();
+  message.branch = branch_;
+  message.mail_sequence = sequence_;
+  sim::StateHash whole;  // World::state_hash() is that of the hashes of all parts; so the state is gone through once
+  for (const sim::PartHash& part : world_->part_hashes()) {
+    whole.add(part.hash);
+    message.part.push_back(part.part);
+    message.part_hash.push_back(static_cast<std::int64_t>(part.hash));
+  }
+  message.hash = static_cast<std::int64_t>(whole.value());
+  message.part.push_back(run_hash_part);
+  message.part_hash.push_back(static_cast<std::int64_t>(world_->run_hash()));
+  message.count = static_cast<std::int32_t>(message.part.size());
+  shoal::encode_into(message, buffer_);
+  bus_.publish("sim.hash", buffer_, world_->now());
+  last_hash_step_ = world_->step_number();
+}
+
+}  // namespace bridges

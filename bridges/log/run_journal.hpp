@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "shoal/sim_control_request_t.hpp"
+#include "shoal/sim_mail_t.hpp"
+#include "sim/bus/byte_port.hpp"
+#include "sim/bus/mail_gate.hpp"
+#include "sim/world/world.hpp"
+
+namespace bridges {
+
+/// What came in through serial ports once, to be read again at the same steps.
+class SerialMail {
+ public:
+  void add(std::int64_t step, const std::string& path, sim::Bytes bytes);
+  /// What was read from the port of this path at this step; empty when nothing was.
+  sim::Bytes read(const std::string& path, std::int64_t step);
+  void clear() { waiting_.clear(); }
+
+ private:
+  std::map<std::string, std::deque<std::pair<std::int64_t, sim::Bytes>>> waiting_;
+};
+
+/// Writes down on the world's bus what makes a run repeatable: all that comes to the world from outside (sim.mail), and
+/// hashes that prove that a repetition is equal (sim.hash).
+class RunJournal {
+ public:
+  /// In sim_letter_t::bus, for bytes of pseudo-terminals and FIFOs.
+  static constexpr const char* serial_bus = "serial";
+  /// In sim_letter_t::channel, for a request that changes the world.
+  static constexpr const char* request_channel = "sim.control";
+  /// In sim_hash_t::part, after the parts of the state: World::run_hash().  No name in a world has a space.
+  static constexpr const char* run_hash_part = "run hash";
+  /// In sim_letter_t::step, before the first reports.
+  static constexpr std::int64_t before_first_reports = -1;
+
+  /// Something that came to the world from outside; see sim_letter_t.
+  struct Letter {
+    std::string bus, channel;
+    sim::Bytes payload;
+  };
+
+  /// `bus`: the world's, recorded.  Both must outlive this.
+  explicit RunJournal(sim::Bus& bus) : bus_(bus) {}
+
+  /// An opener whose ports write down what they read.  Empty for an empty one.
+  sim::PortOpener wrap(sim::PortOpener open);
+  /// To be called once, before anything is written down.
+  void attach(const sim::World& world);
+  /// The first reports go out next.
+  void start() { started_ = true; }
+
+  /// Hashes are worked out while `heard` says that somebody may read them; empty: always.
+  void set_heard(std::function<bool()> heard) { heard_ = std::move(heard); }
+
+  /// Mail that was admitted at the begin of a step.
+  void admitted(const std::string& bus, std::span<const sim::MailGate::Mail> mail);
+  /// A request that is about to change the world.
+  void request(const shoal::sim_control_request_t& request);
+  void letter(const std::string& bus, const std::string& channel, std::span<const std::byte> payload);
+  /// `listener` hears of every letter when it is handed over; empty: nobody.
+  using Listener = std::function<void(std::int64_t step, const Letter& letter)>;
+  void set_listener(Listener listener) { listener_ = std::move(listener); }
+
+  /// After each step: publishes what came to it, and a hash when one is due.
+  void after_step();
+  /// Publishes what is left, and unless the last step broke off half-way a last hash; where there are none, a sim.mail
+  /// without letters.  Safe to call twice.
+  void finish(bool step_is_whole = true);
+
+  /// While a part of a run is worked out again nothing is published or written down, and serial ports give what is in
+  /// serial_mail() and drop what is written to them.
+  void mute(bool muted) {
+    muted_ = muted;
+    serial_mail_.clear();
+  }
+  SerialMail& serial_mail() { return serial_mail_; }
+  /// A run that went back: what is published from now on belongs to another branch.
+  void begin_branch(std::int32_t branch, std::int64_t next_sequence);
+  std::int32_t branch() const { return branch_; }
+  /// Of the next sim.mail.
+  std::int64_t sequence() const { return sequence_; }
+
+ private:
+  class Port;
+
+  std::int64_t step() const { return started_ ? world_->step_number() : before_first_reports; }
+  void publish_mail();
+  void publish_hash();
+
+  sim::Bus& bus_;
+  const sim::World* world_ = nullptr;
+  std::int64_t every_steps_ = 0;
+  bool started_ = false, muted_ = false;
+  std::int32_t branch_ = 0;
+  std::int64_t sequence_ = 0;
+  std::int64_t last_hash_step_ = -1;  // or of what stands for the last one
+  std::vector<shoal::sim_letter_t> waiting_;
+  std::size_t waiting_bytes_ = 0;
+  sim::Bytes buffer_;
+  Listener listener_;
+  std::function<bool()> heard_;
+  SerialMail serial_mail_;
+};
+
+}  // namespace bridges

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "devices/autopilot/autopilot_actuators.hpp"
+#include "devices/autopilot/autopilot_config.hpp"
+#include "sim/device/device_registry.hpp"
+#include "sim/world/vehicle.hpp"
+
+namespace shoal {
+class helm_command_t;
+class station_command_t;
+class waypoints_command_t;
+}  // namespace shoal
+
+namespace devices {
+
+/// Steers a marine vehicle: holds heading, depth or altitude and speed, follows waypoints, or stays at a station.  It
+/// reads the true motion of the body it is on, and publishes commands on the channels of the actuators it drives, at
+/// its rate, as an external program would.
+class Autopilot final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning =
+      "Autopilot: heading, depth, altitude, speed, waypoints, station keeping, by thrusters and fins of its vehicle.";
+  static constexpr double default_rate_hz = 10;
+  using Params = AutopilotParams;
+  using Mode = AutopilotMode;
+
+  /// What it is after, and how far from it.  NaN: does not apply.
+  struct Reading {
+    Mode mode = Mode::off;
+    double speed_mps = 0, heading_rad = 0, depth_m = 0, altitude_m = 0;
+    double speed_error_mps = 0, heading_error_rad = 0, depth_error_m = 0, altitude_error_m = 0;
+    double cross_track_m = 0, distance_m = 0;
+    bool saturated = false;
+    void visit_state(sim::StateArchive& archive);
+  };
+
+  Autopilot(const Params& params, const sim::DeviceContext& context);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double, sim::Random&) override {}
+  /// It is told to keep an altitude somewhere.
+  bool needs_bottom() const override;
+  void visit_state(sim::StateArchive& archive) override;
+  const Reading& reading() const { return reading_; }
+  const Route& route() const { return route_; }
+
+  // Commands.  A number that is NaN leaves what it is about as it is.
+  void set_mode(Mode mode);
+  /// Ends a route or station when there is a heading among the numbers.
+  void set_helm(const shoal::helm_command_t& command);
+  void set_waypoints(const shoal::waypoints_command_t& command);
+  void set_station(const shoal::station_command_t& command);
+
+ private:
+  CraftMotion motion_of(const sim::World& world) const;
+  double altitude_of(const sim::SenseContext& context) const;
+  double depth_m() const;
+  Eigen::Vector2d place() const;
+  void take_height(const std::optional<double>& depth_m, const std::optional<double>& altitude_m);
+  void begin_route(std::vector<Waypoint> points, bool loop);
+  void follow_route(double dt_s);
+  void follow_circle();
+  void begin_circle(const Eigen::Vector2d& center_W);
+  void take_waypoint();
+  double height_wanted(const sim::SenseContext& context);
+  void drive(const sim::SenseContext& context, const Demand& demand);
+  void drive_helm(const Demand& demand, sim::Time now);
+
+  Params params_;
+  const sim::World& world_;
+  sim::Vehicle& vehicle_;
+  const sim::Body& body_;
+  const sim::DeviceFaults& faults_;
+  double surface_m_;  // of the still water
+  std::optional<AutopilotActuators> actuators_;
+  HelmLaw law_;
+  Route route_;
+  Circle circle_;
+  Mode mode_;
+  Setpoint wanted_;
+  // One of them.
+  std::optional<double> depth_wanted_m_, altitude_wanted_m_;
+  Limited limited_;
+  Reading reading_;
+};
+
+/// Publishes shoal.autopilot_state_t.
+class AutopilotReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.autopilot_state_t";
+  explicit AutopilotReporter(const Autopilot& autopilot) : autopilot_(autopilot) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const Autopilot& autopilot_;
+};
+
+/// Takes shoal.helm_command_t, shoal.waypoints_command_t, shoal.station_command_t and shoal.autopilot_command_t.
+class AutopilotController final : public sim::Controller {
+ public:
+  static constexpr const char* command_messages =
+      "shoal.helm_command_t, shoal.waypoints_command_t, shoal.station_command_t, shoal.autopilot_command_t";
+  explicit AutopilotController(Autopilot& autopilot) : autopilot_(autopilot) {}
+  void receive(sim::Time now, std::span<const std::byte> payload) override;
+
+ private:
+  Autopilot& autopilot_;
+};
+
+}  // namespace devices

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "devices/autopilot/autopilot_config.hpp"
+#include "devices/marine/thruster_command.hpp"
+#include "sim/device/device_registry.hpp"
+#include "sim/world/vehicle.hpp"
+
+namespace devices {
+
+/// The actuators that an autopilot drives, by the geometry and the curves of its vehicle's file.
+class AutopilotActuators {
+ public:
+  /// Throws ConfigError for names of no thruster or fin, and for axes that they cannot give.
+  AutopilotActuators(const AutopilotParams& params, const sim::DeviceContext& context);
+
+  CraftAbilities abilities() const;
+  /// Finds the commands for a wrench at a speed through the water.
+  Limited share(const Wrench& wrench, const sim::Vector3d& v_B, double density_kgpm3);
+  /// Publishes the commands that share() found.
+  void publish(sim::Time now);
+
+ private:
+  struct Driven {
+    std::string name;
+    double command = 0;
+  };
+  struct Propeller {
+    Driven device;
+    ThrusterCommand curve;
+    sim::Vector3d axis_B;
+  };
+  struct Plane {
+    Driven device;
+    double limit_rad;
+  };
+  void add_thrusters(const AutopilotParams& params, const sim::DeviceContext& context);
+  void add_fins(const AutopilotParams& params, const sim::DeviceContext& context);
+  void publish(const Driven& device, sim::Time now);
+
+  sim::Vehicle& vehicle_;
+  std::int64_t epoch_us_;
+  Wrench mass_;
+  std::vector<Propeller> propellers_;
+  std::vector<Plane> planes_;
+  std::optional<ThrustAllocation> allocation_;
+  Eigen::MatrixXd fin_angles_;  // fins x torque: rad per N m at 1 m/s
+  Eigen::VectorXd forces_N_;
+  sim::Bytes payload_;
+};
+
+}  // namespace devices

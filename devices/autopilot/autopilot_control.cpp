@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/autopilot/autopilot_control.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace devices {
+
+void HoldGains::read(sim::ParamReader& in) {
+  in.read("bandwidth_radps", bandwidth_radps, sim::above_to(0, 100),
+          "an error is gone after a few times 1 / bandwidth");
+  in.read("damping", damping, sim::between(0.3, 10), "1: no overshoot");
+  in.read("rate_max", rate_max, sim::above(0), "it changes no faster: m/s, or rad/s of an angle");
+  in.read("integral", integral, sim::between(0, 0.5), "weight of the sum of errors, which takes away a steady one");
+}
+
+double AxisHold::step(double error, double rate, double dt_s, bool frozen) {
+  const double w = gains_.bandwidth_radps, damping = gains_.damping;
+  const double wanted = w / (2 * damping) * error;
+  const double rate_wanted = std::clamp(wanted, -gains_.rate_max, gains_.rate_max);
+  // On the way to a far value errors would pile up.
+  if (!frozen && wanted == rate_wanted) sum_ += gains_.integral * w * w * w * error * dt_s;
+  return 2 * damping * w * (rate_wanted - rate) + sum_;
+}
+
+double RateHold::step(double error, double dt_s, bool frozen) {
+  if (!frozen) sum_ += integral_ * bandwidth_radps_ * bandwidth_radps_ * error * dt_s;
+  return bandwidth_radps_ * error + sum_;
+}
+
+}  // namespace devices

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/autopilot/autopilot_route.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "sim/base/math.hpp"
+
+namespace devices {
+
+namespace {
+
+void read_point(sim::ParamReader& in, const char* key, Eigen::Vector2d& value, const char* meaning) {
+  std::vector<double> numbers{value.x(), value.y()};
+  in.require(key);
+  in.read(key, numbers, sim::any_place(), meaning);
+  if (in.describing()) return;
+  if (numbers.size() != 2) return in.error(key, "'" + std::string(key) + "' must be two numbers, east and north");
+  value = {numbers[0], numbers[1]};
+}
+
+void check_one_height(sim::ParamReader& in, const std::optional<double>& depth_m,
+                      const std::optional<double>& altitude_m) {
+  if (!in.describing() && depth_m && altitude_m) in.error("altitude_m", "give 'depth_m' or 'altitude_m', not both");
+}
+
+}  // namespace
+
+void Waypoint::read(sim::ParamReader& in) {
+  read_point(in, "at_m", p_W, "[east, north] in the world frame");
+  in.read("depth_m", depth_m, sim::any_place(), "below the still surface; unset: as before");
+  in.read("altitude_m", altitude_m, sim::above(0), "over the bottom, in place of a depth");
+  in.read("speed_mps", speed_mps, sim::between(0, 100), "through the water; unset: as before");
+  check_one_height(in, depth_m, altitude_m);
+}
+
+void Lawnmower::read(sim::ParamReader& in) {
+  read_point(in, "corner_m", corner_m, "[east, north] where the first track begins");
+  in.read_deg("direction_deg", direction_rad, sim::between(-360, 360),
+              "of the first track, counter-clockwise from east");
+  in.read("length_m", length_m, sim::above_to(0, 1e6), "of a track");
+  in.read("width_m", width_m, sim::between(-1e6, 1e6), "to the left of the first track; negative: to its right");
+  in.read("spacing_m", spacing_m, sim::above_to(0, 1e6), "between tracks");
+  in.read("depth_m", depth_m, sim::any_place(), "below the still surface; unset: as before");
+  in.read("altitude_m", altitude_m, sim::above(0), "over the bottom, in place of a depth");
+  in.read("speed_mps", speed_mps, sim::between(0, 100), "through the water; unset: as before");
+  check_one_height(in, depth_m, altitude_m);
+  if (!in.describing() && std::abs(width_m) / spacing_m > 10000)
+    in.error("spacing_m", "'spacing_m' makes over 10000 tracks");
+}
+
+std::vector<Waypoint> Lawnmower::waypoints() const {
+  const Eigen::Vector2d along(std::cos(direction_rad), std::sin(direction_rad));
+  const Eigen::Vector2d left(-along.y(), along.x());
+  // The last track may lie on the edge; rounding is not to lose it.
+  const int tracks = static_cast<int>(std::floor(std::abs(width_m) / spacing_m + 1e-9)) + 1;
+  std::vector<Waypoint> points;
+  for (int track = 0; track < tracks; ++track) {
+    const Eigen::Vector2d near = corner_m + left * std::copysign(track * spacing_m, width_m);
+    const Eigen::Vector2d far = near + along * length_m;
+    for (const Eigen::Vector2d& end : {track % 2 == 0 ? near : far, track % 2 == 0 ? far : near})
+      points.push_back({end, depth_m, altitude_m, speed_mps});
+  }
+  return points;
+}
+
+void GuidanceParams::read(sim::ParamReader& in) {
+  in.read("lookahead_m", lookahead_m, sim::above(0), "it heads for the leg this far ahead; a few lengths of the craft");
+  in.read("integral", integral, sim::between(0, 10),
+          "against drift: weight of the sum of cross-track errors, m/s; a quarter of the speed");
+  in.read("acceptance_radius_m", acceptance_radius_m, sim::above(0), "so near to a waypoint it is reached");
+}
+
+void Route::start(std::vector<Waypoint> points, bool loop, const Eigen::Vector2d& from_W) {
+  points_ = std::move(points);
+  loop_ = loop;
+  finished_ = false;
+  to_ = 0;
+  from_W_ = from_W;
+  sum_m_ = 0;
+}
+
+bool Route::reached(const Eigen::Vector2d& p_W) const {
+  const Eigen::Vector2d leg = to().p_W - from_W_;
+  return (to().p_W - p_W).norm() <= params_.acceptance_radius_m || (p_W - to().p_W).dot(leg) > 0;
+}
+
+Aim Route::aim(const Eigen::Vector2d& p_W, double dt_s) {
+  // A point on the spot of another is reached with it; each is looked at once.
+  for (std::size_t looked = 0; !finished_ && looked < points_.size() && reached(p_W); ++looked) {
+    if (to_ + 1 == points_.size() && !loop_) {
+      finished_ = true;
+      break;
+    }
+    from_W_ = to().p_W;
+    to_ = (to_ + 1) % points_.size();
+    sum_m_ = 0;
+  }
+  const Eigen::Vector2d leg = to().p_W - from_W_, way = p_W - from_W_;
+  Aim aim;
+  aim.distance_m = (to().p_W - p_W).norm();
+  // A leg without length has no direction: the point itself is aimed at.
+  const double length = leg.norm();
+  if (length < 1e-6) {
+    aim.heading_rad = std::atan2(to().p_W.y() - p_W.y(), to().p_W.x() - p_W.x());
+    return aim;
+  }
+  aim.cross_track_m = (leg.x() * way.y() - leg.y() * way.x()) / length;
+  const double lookahead = params_.lookahead_m, biased = aim.cross_track_m + params_.integral * sum_m_;
+  aim.heading_rad = sim::wrap_angle(std::atan2(leg.y(), leg.x()) - std::atan(biased / lookahead));
+  // In a turn the sum would only wind up.
+  if (std::abs(aim.cross_track_m) < lookahead / 2)
+    sum_m_ += dt_s * lookahead * aim.cross_track_m / (lookahead * lookahead + biased * biased);
+  return aim;
+}
+
+void Circle::start(const Eigen::Vector2d& center_W, const Eigen::Vector2d& p_W, double heading_rad) {
+  center_W_ = center_W;
+  const Eigen::Vector2d out = p_W - center_W;
+  turn_ = out.x() * std::sin(heading_rad) - out.y() * std::cos(heading_rad) < 0 ? -1 : 1;
+}
+
+Aim Circle::aim(const Eigen::Vector2d& p_W) const {
+  constexpr double gain = 2;
+  const Eigen::Vector2d out = p_W - center_W_;
+  Aim aim;
+  aim.distance_m = out.norm();
+  const double beyond_m = aim.distance_m - radius_m_;
+  aim.cross_track_m = -turn_ * beyond_m;
+  aim.heading_rad = sim::wrap_angle(std::atan2(out.y(), out.x()) +
+                                    turn_ * (std::numbers::pi / 2 + std::atan(gain * beyond_m / radius_m_)));
+  return aim;
+}
+
+void Circle::visit_state(sim::StateArchive& archive) {
+  archive(center_W_, turn_);
+  if (archive.restoring() && turn_ != 1 && turn_ != -1) archive.fail("a circle turns to the left or to the right");
+}
+
+void Route::visit_state(sim::StateArchive& archive) {
+  archive(points_, loop_, finished_, to_, from_W_, sum_m_);
+  if (to_ >= std::max<std::size_t>(points_.size(), 1))
+    archive.fail("a route of " + std::to_string(points_.size()) + " waypoints cannot go to number " +
+                 std::to_string(to_));
+}
+
+}  // namespace devices

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/autopilot/helm_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace devices {
+
+namespace {
+
+// Slower than this through the water a craft with rudder or two propellers keeps its heading at a station.
+constexpr double idle_mps = 0.05;
+// A craft with fins that is slower is steered as if it had this speed.
+constexpr double slowest_mps = 0.5;
+
+Eigen::Vector2d at_most(const Eigen::Vector2d& v, double length) {
+  const double norm = v.norm();
+  return norm > length ? Eigen::Vector2d(v * (length / norm)) : v;
+}
+
+}  // namespace
+
+void HelmGains::read(sim::ParamReader& in) {
+  in.read("heading", heading, "hold of the heading, rad and rad/s");
+  in.read("depth", depth, "hold of depth or altitude by thrusters, m and m/s");
+  in.read("attitude", attitude, "hold of roll and pitch, rad and rad/s");
+  in.read("position", position, "hold of a station, m and m/s");
+  in.read("speed_bandwidth_radps", speed_bandwidth_radps, sim::above_to(0, 100), "hold of the speed");
+  in.read("speed_integral", speed_integral, sim::between(0, 1), "weight of the sum of its errors");
+  in.read("climb_gain_per_s", climb_gain_per_s, sim::above_to(0, 10), "with fins: climb in m/s per m of depth error");
+  in.read("steerage_mps", steerage_mps, sim::above(0),
+          "with fins: no slower at a station, which it passes over again and again");
+  in.read_deg("pitch_max_deg", pitch_max_rad, sim::above_to(0, 80), "with fins: the steepest climb or dive");
+}
+
+HelmLaw::HelmLaw(const HelmGains& gains, const CraftAbilities& craft)
+    : gains_(gains),
+      craft_(craft),
+      heading_(gains.heading),
+      depth_(gains.depth),
+      roll_(gains.attitude),
+      pitch_(gains.attitude),
+      east_(gains.position),
+      north_(gains.position),
+      speed_(gains.speed_bandwidth_radps, gains.speed_integral) {}
+
+/// Acceleration in the world that takes a craft with thrusters to all sides to its station.
+sim::Vector3d HelmLaw::stay_sideways(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s,
+                                     bool frozen) {
+  const sim::Vector3d p = motion.X_WS.translation();
+  return {east_.step(station.x() - p.x(), motion.v_WS_W.x(), dt_s, frozen),
+          north_.step(station.y() - p.y(), motion.v_WS_W.y(), dt_s, frozen), 0};
+}
+
+/// A craft that goes ahead only heads where the water must be left behind: against the current in the end, which the
+/// sum of errors finds.
+void HelmLaw::stay_ahead(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s, bool frozen,
+                         Demand& demand) {
+  const HoldGains& gains = gains_.position;
+  // Its heading has to come first, so it is slower than a craft that moves to all sides.
+  const double k = 0.2 * gains.bandwidth_radps / gains.damping;
+  const Eigen::Vector2d error = station - motion.X_WS.translation().head<2>();
+  if (craft_.fins) {
+    demand.heading_rad = std::atan2(error.y(), error.x());
+    demand.speed_mps = std::clamp(k * error.norm(), gains_.steerage_mps, std::max(gains_.steerage_mps, gains.rate_max));
+    return;
+  }
+  const Eigen::Vector2d near = at_most(k * error, gains.rate_max);
+  if (!frozen && (k * error).norm() <= gains.rate_max) drift_sum_mps_ += gains.integral * k * k * error * dt_s;
+  const Eigen::Vector2d wanted = near + drift_sum_mps_;
+  if (wanted.norm() < idle_mps) return;
+  demand.heading_rad = std::atan2(wanted.y(), wanted.x());
+  const double turn = sim::wrap_angle(demand.heading_rad - sim::yaw_of(motion.X_WS.linear()));
+  demand.speed_mps = wanted.norm() * std::max(0.0, std::cos(turn));
+}
+
+/// The pitch (nose down is positive) at which a craft with fins comes to its height.
+double HelmLaw::pitch_for(const CraftMotion& motion, double height_m, double dt_s, bool frozen) {
+  const double k = gains_.climb_gain_per_s;
+  const double error = height_m - motion.X_WS.translation().z();
+  const double speed = std::max(slowest_mps, motion.v_S.x());
+  const double nose_up = std::asin(std::clamp(k * error / speed, -1.0, 1.0)) + climb_sum_rad_;
+  const double kept = std::clamp(nose_up, -gains_.pitch_max_rad, gains_.pitch_max_rad);
+  if (!frozen && kept == nose_up) climb_sum_rad_ += gains_.depth.integral * k * k / speed * error * dt_s;
+  return -kept;
+}
+
+Demand HelmLaw::step(const CraftMotion& motion, const Setpoint& wanted, double dt_s, const Limited& limited) {
+  const bool frozen = limited.thrusters, turn_frozen = craft_.fins ? limited.fins : limited.thrusters;
+  Demand demand;
+  demand.heading_rad = wanted.heading_rad;
+  demand.speed_mps = wanted.station_m ? 0 : wanted.speed_mps;
+  const sim::Vector3d rpy = sim::rpy_from_rotation(motion.X_WS.linear());
+  sim::Vector3d a_W = sim::Vector3d::Zero(), a_S = sim::Vector3d::Zero(), turn_S;
+  if (wanted.station_m && craft_.sideways) {
+    a_W = stay_sideways(motion, *wanted.station_m, dt_s, frozen);
+  } else {
+    if (wanted.station_m) stay_ahead(motion, *wanted.station_m, dt_s, frozen, demand);
+    demand.speed_error_mps = demand.speed_mps - motion.v_S.x();
+    a_S.x() = speed_.step(demand.speed_error_mps, dt_s, frozen);
+    a_S.y() = -gains_.speed_bandwidth_radps * motion.v_S.y();
+  }
+  double pitch = 0;
+  if (craft_.fins)
+    pitch = pitch_for(motion, wanted.height_m, dt_s, turn_frozen);
+  else if (craft_.heaves)
+    a_W.z() = depth_.step(wanted.height_m - motion.X_WS.translation().z(), motion.v_WS_W.z(), dt_s, frozen);
+  demand.heading_error_rad = sim::wrap_angle(demand.heading_rad - rpy.z());
+  turn_S.x() = roll_.step(-rpy.x(), motion.w_S.x(), dt_s, turn_frozen);
+  turn_S.y() = pitch_.step(pitch - rpy.y(), motion.w_S.y(), dt_s, turn_frozen);
+  turn_S.z() = heading_.step(demand.heading_error_rad, motion.w_S.z(), dt_s, turn_frozen);
+  a_S += motion.X_WS.linear().transpose() * a_W;
+  demand.wrench.head<3>() = craft_.mass.head<3>().cwiseProduct(a_S);
+  demand.wrench.tail<3>() = craft_.mass.tail<3>().cwiseProduct(turn_S);
+  return demand;
+}
+
+void HelmLaw::reset() {
+  for (AxisHold* hold : {&heading_, &depth_, &roll_, &pitch_, &east_, &north_}) hold->reset();
+  speed_.reset();
+  climb_sum_rad_ = 0;
+  drift_sum_mps_.setZero();
+}
+
+}  // namespace devices

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/autopilot/thrust_allocation.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace devices {
+
+const std::vector<std::string>& wrench_axes() {
+  static const std::vector<std::string> names{"surge", "sway", "heave", "roll", "pitch", "yaw"};
+  return names;
+}
+
+ThrustAllocation::ThrustAllocation(std::vector<ThrusterPlace> thrusters, const std::vector<int>& axes)
+    : thrusters_(std::move(thrusters)), effect_(6, static_cast<Eigen::Index>(thrusters_.size())) {
+  double arms = 0;
+  for (std::size_t i = 0; i < thrusters_.size(); ++i) {
+    const sim::Vector3d push = thrusters_[i].X_ST.linear().col(0);
+    const sim::Vector3d torque = thrusters_[i].X_ST.translation().cross(push);
+    effect_.col(static_cast<Eigen::Index>(i)) << push, torque;
+    arms += torque.squaredNorm();
+  }
+  arm_m_ = std::max(1e-3, std::sqrt(arms / static_cast<double>(std::max<std::size_t>(1, thrusters_.size()))));
+  axes_ = axes;
+  if (axes.empty()) {
+    for (const int axis : {0, 5, 2, 1, 3, 4}) {
+      axes_.push_back(axis);
+      if (!controllable(axes_)) axes_.pop_back();
+    }
+  }
+  for (std::size_t n = 1; n <= axes_.size(); ++n)
+    if (!controllable({axes_.begin(), axes_.begin() + static_cast<std::ptrdiff_t>(n)}))
+      throw std::invalid_argument("the thrusters cannot give " + wrench_axes()[static_cast<std::size_t>(axes_[n - 1])] +
+                                  (n > 1 ? " beside the axes before it" : ""));
+  if (axes_.empty()) throw std::invalid_argument("the thrusters push nowhere");
+  const Eigen::Index rows = static_cast<Eigen::Index>(axes_.size());
+  Eigen::MatrixXd effect(rows, effect_.cols());
+  for (Eigen::Index row = 0; row < rows; ++row) effect.row(row) = effect_.row(axes_[static_cast<std::size_t>(row)]);
+  Eigen::VectorXd ease(effect_.cols());
+  for (Eigen::Index i = 0; i < ease.size(); ++i) ease[i] = 1 / thrusters_[static_cast<std::size_t>(i)].weight;
+  const Eigen::MatrixXd eased = ease.asDiagonal() * effect.transpose();
+  inverse_ = eased * (effect * eased).inverse();
+}
+
+/// The axes are independent, by a margin: an arm of a twentieth of the others' would ask for huge forces.
+bool ThrustAllocation::controllable(const std::vector<int>& axes) const {
+  if (static_cast<Eigen::Index>(axes.size()) > effect_.cols()) return false;
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(axes.size()), effect_.cols());
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    rows.row(static_cast<Eigen::Index>(i)) = effect_.row(axes[i]) / (axes[i] < 3 ? 1 : arm_m_);
+  return Eigen::JacobiSVD<Eigen::MatrixXd>(rows).singularValues().minCoeff() > 0.05;
+}
+
+bool ThrustAllocation::gives(int axis) const {
+  return std::find(axes_.begin(), axes_.end(), axis) != axes_.end();
+}
+
+/// One way it pushes with less than a hundredth of what it has the other way, or not at all.
+bool ThrustAllocation::cannot_push(Eigen::Index thruster, double force_N) const {
+  const ThrusterPlace& place = thrusters_[static_cast<std::size_t>(thruster)];
+  const double limit = std::abs(force_N > 0 ? place.max_N : place.min_N);
+  return force_N != 0 && limit <= 0.01 * std::max(place.max_N, -place.min_N);
+}
+
+/// The least weighted squares of the forces among those that come nearest to the wrench, without what was dropped; what
+/// turns out to be dropped too goes the same way (active set).  Returns the share of the wrench that they give.
+double ThrustAllocation::nearest(const Wrench& wanted, std::vector<bool> dropped, Eigen::VectorXd& forces_N) const {
+  const auto rows = static_cast<Eigen::Index>(axes_.size());
+  Eigen::VectorXd target(rows), given(rows);
+  Eigen::MatrixXd effect(rows, effect_.cols());
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const int axis = axes_[static_cast<std::size_t>(row)];
+    const double arm = axis < 3 ? 1 : arm_m_;
+    target[row] = wanted[axis] / arm;
+    effect.row(row) = effect_.row(axis) / arm;
+  }
+  for (bool again = true; again;) {
+    again = false;
+    Eigen::VectorXd ease(effect.cols());
+    for (Eigen::Index i = 0; i < ease.size(); ++i)
+      ease[i] =
+          dropped[static_cast<std::size_t>(i)] ? 0 : 1 / std::sqrt(thrusters_[static_cast<std::size_t>(i)].weight);
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+    solver.setThreshold(0.05);
+    solver.compute(effect * ease.asDiagonal());
+    forces_N = ease.cwiseProduct(solver.solve(target));
+    for (Eigen::Index i = 0; i < forces_N.size(); ++i)
+      if (!dropped[static_cast<std::size_t>(i)] && cannot_push(i, forces_N[i]))
+        again = dropped[static_cast<std::size_t>(i)] = true;
+    given = effect * forces_N;
+  }
+  const double square = target.squaredNorm();
+  return square > 0 ? std::clamp(given.dot(target) / square, 0.0, 1.0) : 1;
+}
+
+double ThrustAllocation::allocate(const Wrench& wanted, Eigen::VectorXd& forces_N) const {
+  forces_N = Eigen::VectorXd::Zero(effect_.cols());
+  if (!wanted.allFinite()) return 0;
+  for (std::size_t i = 0; i < axes_.size(); ++i)
+    forces_N += inverse_.col(static_cast<Eigen::Index>(i)) * wanted[axes_[i]];
+  std::vector<bool> dropped(thrusters_.size());
+  for (std::size_t i = 0; i < dropped.size(); ++i)
+    dropped[i] = cannot_push(static_cast<Eigen::Index>(i), forces_N[static_cast<Eigen::Index>(i)]);
+  const bool any = std::find(dropped.begin(), dropped.end(), true) != dropped.end();
+  const double share = any ? nearest(wanted, dropped, forces_N) : 1;
+  double scale = 1;
+  for (Eigen::Index i = 0; i < forces_N.size(); ++i) {
+    const ThrusterPlace& thruster = thrusters_[static_cast<std::size_t>(i)];
+    const double limit = forces_N[i] > 0 ? thruster.max_N : thruster.min_N;
+    if (std::abs(forces_N[i]) > std::abs(limit)) scale = std::min(scale, limit / forces_N[i]);
+  }
+  forces_N *= scale;
+  return scale * share;
+}
+
+}  // namespace devices

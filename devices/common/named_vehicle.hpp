@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+/// What a device that is being built may name: a vehicle that is in the world, or that the world file puts there.
+/// Null: there is none of this name.
+inline const sim::VehicleConfig* named_vehicle(const sim::World& world, const std::string& name) {
+  if (const sim::Vehicle* vehicle = world.find_vehicle(name)) return &vehicle->config();
+  const auto& all = world.config().vehicles;
+  const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.name == name; });
+  return found == all.end() ? nullptr : found->config.get();
+}
+
+}  // namespace devices

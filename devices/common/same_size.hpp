@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "sim/state/state_archive.hpp"
+
+namespace devices {
+
+/// Numbers that are as many in every run of the device, since their count follows from its parameters.  `of`: what
+/// they are, for the error of a snapshot that has another number of them.
+template <typename T>
+void visit_same_size(sim::StateArchive& archive, std::vector<T>& values, std::string_view of) {
+  static_assert(std::is_arithmetic_v<T>);
+  archive.expect_count(values.size(), of);
+  archive.raw(values.data(), values.size() * sizeof(T));
+  if constexpr (std::is_floating_point_v<T>) {
+    constexpr T most = static_cast<T>(sim::StateArchive::max_number);
+    for (const T value : values) archive.require(value, -most, most, of);
+  }
+}
+
+}  // namespace devices

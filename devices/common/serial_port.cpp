@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/common/serial_port.hpp"
+
+#include <stdexcept>
+
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+namespace {
+
+struct SerialLosses {
+  std::uint64_t dropped_bytes = 0;
+};
+
+}  // namespace
+
+std::uint64_t serial_dropped_bytes(sim::World& world) {
+  return world.shared<SerialLosses>().dropped_bytes;
+}
+
+void SerialParams::read(sim::ParamReader& in) {
+  in.read_choice("kind", kind, {"pty", "fifo"}, "pseudo-terminal, or a pair of FIFOs PATH.in and PATH.out");
+  in.require("path");
+  in.read_path("path", path, sim::PathUse::made,
+               "where programs find it, from the folder of the run; {vehicle}, {device} and {run} are replaced");
+  if (in.has("path") && path.empty()) in.error("path", "'path' must not be empty");
+}
+
+void SerialMessageParams::read(sim::ParamReader& in) {
+  SerialParams::read(in);
+  in.read_choice("framing", framing, {"line", "raw"}, "line: a message is a line; raw: what came within a step");
+}
+
+SerialPort::SerialPort(const SerialParams& params, const sim::DeviceContext& context)
+    : world_(context.world),
+      who_("vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'"),
+      path_(sim::channel_name(params.path, context.vehicle.name(), context.config.name)) {
+  if (!context.world.open_port()) return;
+  try {
+    port_ = context.world.open_port()(params.kind, path_);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(who_ + ": " + error.what());
+  }
+}
+
+sim::Bytes SerialPort::read() {
+  return port_ ? port_->read() : sim::Bytes{};
+}
+
+void SerialPort::write(std::span<const std::byte> bytes) {
+  if (!port_) return;
+  port_->write(bytes);
+  const std::uint64_t dropped_bytes = port_->dropped_bytes();
+  if (dropped_bytes == dropped_bytes_) return;
+  world_.shared<SerialLosses>().dropped_bytes += dropped_bytes - dropped_bytes_;
+  const bool told = dropped_bytes_ > 0;
+  dropped_bytes_ = dropped_bytes;
+  if (!told) world_.complain(who_, "nobody reads '" + path_ + "': what waits longest is dropped");
+}
+
+void SerialPort::write(const std::string& text) {
+  write(std::as_bytes(std::span(text.data(), text.size())));
+}
+
+void complain_of_length(sim::World& world, const std::string& device, std::size_t longest_bytes) {
+  world.complain("device '" + device + "'",
+                 "what came by its serial port has more than " + std::to_string(longest_bytes) + " bytes");
+}
+
+SerialMessages::SerialMessages(const SerialMessageParams& params, const sim::DeviceContext& context)
+    : port_(params, context), lines_(params.framing == "line") {}
+
+std::vector<sim::Bytes> SerialMessages::take(std::size_t max_bytes) {
+  sim::Bytes bytes = port_.read();
+  std::vector<sim::Bytes> messages;
+  if (!lines_) {
+    if (bytes.size() > max_bytes) bytes.resize(max_bytes + 1);
+    if (!bytes.empty()) messages.push_back(std::move(bytes));
+    return messages;
+  }
+  for (const std::byte b : bytes) {
+    if (b == std::byte{'\n'}) {
+      // One byte more than allowed, so that the line is seen to be too long.
+      if (cut_) line_.resize(max_bytes + 1);
+      if (!line_.empty()) messages.push_back(std::move(line_));
+      line_.clear();
+      cut_ = false;
+    } else if (b != std::byte{'\r'}) {
+      if (line_.size() < max_bytes)
+        line_.push_back(b);
+      else
+        cut_ = true;
+    }
+  }
+  return messages;
+}
+
+void SerialMessages::write(sim::Bytes data) {
+  if (lines_) data.push_back(std::byte{'\n'});
+  port_.write(data);
+}
+
+}  // namespace devices

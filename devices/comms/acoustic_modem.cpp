@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/comms/acoustic_modem.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <stdexcept>
+
+#include "devices/comms/micromodem_rates.hpp"
+#include "devices/common/own_clock.hpp"
+#include "shoal/acoustic_received_t.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/modem_send_t.hpp"
+#include "sim/config/message_text.hpp"
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+namespace {
+
+/// What a preset stands for: the defaults of the keys after it.
+void use_preset(AcousticModem::Params& params) {
+  for (const MicromodemRate& rate : micromodem_rates()) {
+    if (params.preset != "micromodem_rate" + std::to_string(rate.number)) continue;
+    params.modulation = rate.modulation;
+    params.bandwidth_Hz = rate.bandwidth_Hz;
+    params.bit_rate_bps = rate.bit_rate_bps;
+    params.frames = rate.frames;
+    params.frame_bytes = rate.frame_bytes;
+    params.preamble_s = micromodem_probe_s;
+  }
+  // Two modems as there are many; figures are typical, of no product.
+  if (params.preset == "low_rate") {
+    params.frequency_Hz = 10000;
+    params.bandwidth_Hz = 5000;
+    params.bit_rate_bps = 140;
+    params.frame_bytes = 64;
+    params.whole_frames = false;
+    params.source_level_dB = 187;
+  } else if (params.preset == "high_rate") {
+    params.modulation = sim::Modulation::psk;
+    params.frequency_Hz = 26000;
+    params.bandwidth_Hz = 16000;
+    params.bit_rate_bps = 10000;
+    params.frame_bytes = 1024;
+    params.preamble_s = 0.1;
+    params.whole_frames = false;
+    params.source_level_dB = 184;
+  }
+}
+
+constexpr std::string_view mark = "msg ";
+
+/// Those that understand each other.
+std::string group_of(const AcousticModem::Params& params) {
+  return "acoustic_modem " + params.network;
+}
+
+/// What the frame tells beside the data, in Signal::code: the sending time by the sender's clock, the destination.
+std::string code_of(sim::Time sent, const std::string& destination) {
+  return std::string(mark) + std::to_string(sent.count()) + " " + destination;
+}
+
+/// False: it is a frame of another kind of modem.
+bool read_code(std::string_view code, sim::Time& sent, std::string& destination) {
+  if (!code.starts_with(mark)) return false;
+  code.remove_prefix(mark.size());
+  const std::size_t space = code.find(' ');
+  std::int64_t sent_us = 0;
+  if (space == std::string_view::npos ||
+      std::from_chars(code.data(), code.data() + space, sent_us).ptr != code.data() + space)
+    return false;
+  sent = sim::Time{sent_us};
+  destination = code.substr(space + 1);
+  return true;
+}
+
+}  // namespace
+
+void AcousticModem::Params::read(sim::ParamReader& in) {
+  std::vector<std::string> presets;
+  for (const MicromodemRate& rate : micromodem_rates())
+    presets.push_back("micromodem_rate" + std::to_string(rate.number));
+  presets.insert(presets.end(), {"low_rate", "high_rate"});
+  in.read_choice("preset", preset, presets, "a packet type or a modem as there are many; the keys below win over it");
+  if (!in.describing()) use_preset(*this);
+  in.read("network", network, "modems understand each other only in the same network; the others are noise");
+  in.read("source_level_dB", source_level_dB, sim::between(0, 300), "re 1 uPa at 1 m, on its axis");
+  in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "middle of its band");
+  in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e6), "of its band");
+  in.read_choice(
+      "modulation", modulation,
+      {{"fsk", sim::Modulation::fsk}, {"psk", sim::Modulation::psk}, {"dpsk", sim::Modulation::dpsk}},
+      "frequency shift keying, heard without phase; phase shift keying, coherent; differential phase shift keying");
+  in.read("bit_rate_bps", bit_rate_bps, sim::between(1e-3, 1e9), "bits per second while it sends");
+  in.read("coding_gain_dB", coding_gain_dB, sim::between(0, 60), "what its code adds to Eb/N0");
+  in.read("frame_bytes", frame_bytes, sim::between(1, 1 << 16), "bytes of a frame");
+  in.read("frames", frames, sim::between(1, 256), "of a packet, at most");
+  in.read("whole_frames", whole_frames, "a packet takes the time of whole frames, however few bytes are in them");
+  in.read("max_message_bytes", max_message_bytes, sim::between(0, 1 << 20),
+          "longer messages are refused; 0: frames x frame_bytes");
+  in.read("preamble_s", preamble_s, sim::between(0, 100), "of each packet, before its bits");
+  in.read("header_bits", header_bits, sim::between(0, 1 << 16), "of each packet, beside those of the message");
+  in.read("queue_messages", queue_messages, sim::at_least(1), "messages waiting to be sent; the oldest is dropped");
+  in.read("synchronous_s", synchronous_s, sim::between(0, 3600),
+          "sending begins at a whole multiple of this (in UTC) by the vehicle's clock; 0: at once");
+  in.read("listen_before_sending", listen_before_sending, "it waits while it is taking a signal");
+  in.read("promiscuous", promiscuous, "reports messages for others, too");
+  in.read("transmit_power_W", transmit_power_W, sim::at_least(0), "taken from the battery while it sends");
+  in.read("receiver", receiver, "how it hears");
+  in.read("serial", serial, "a pseudo-terminal or FIFO that any program can open");
+  if (in.describing()) return;
+  if (synchronous_s > 0 && synchronous_s < 1e-3)
+    in.error("synchronous_s", "'synchronous_s' must be 0 or >= 0.001, got " + sim::number_text(synchronous_s));
+  if (bandwidth_Hz >= 2 * frequency_Hz)
+    in.error("bandwidth_Hz", "'bandwidth_Hz' must be < 2 x frequency_Hz, got " + sim::number_text(bandwidth_Hz));
+  if (max_message_bytes > frames * frame_bytes)
+    in.error("max_message_bytes", "'max_message_bytes' must be <= frames x frame_bytes, that is " +
+                                      std::to_string(frames * frame_bytes) + ", got " +
+                                      std::to_string(max_message_bytes));
+}
+
+AcousticModem::AcousticModem(const Params& params, const sim::DeviceContext& context)
+    : params_(params),
+      world_(context.world),
+      vehicle_(context.vehicle),
+      transducer_(*this, params.receiver, context),
+      now_(context.world.now()) {
+  if (params.serial) serial_ = std::make_unique<SerialMessages>(*params.serial, context);
+  transducer_.belong_to({group_of(params), vehicle_.name()});
+  world_.shared<MessageModems>().join(transducer_.full_name(), *this);
+}
+
+AcousticModem::~AcousticModem() {
+  world_.shared<MessageModems>().leave(transducer_.full_name());
+}
+
+void AcousticModem::change(const Params& params) {
+  params_ = params;
+  transducer_.change(params.receiver);
+}
+
+std::size_t AcousticModem::longest_message_bytes() const {
+  const int bytes = params_.max_message_bytes > 0 ? params_.max_message_bytes : params_.frames * params_.frame_bytes;
+  return static_cast<std::size_t>(bytes);
+}
+
+std::int64_t AcousticModem::bits(std::size_t bytes) const {
+  std::int64_t sent_bytes = static_cast<std::int64_t>(bytes);
+  if (params_.whole_frames)
+    sent_bytes = (sent_bytes + params_.frame_bytes - 1) / params_.frame_bytes * params_.frame_bytes;
+  return params_.header_bits + 8 * sent_bytes;
+}
+
+double AcousticModem::duration_s(std::size_t bytes) const {
+  return params_.preamble_s + sim::packet_duration_s(bits(bytes), params_.bit_rate_bps);
+}
+
+void AcousticModem::send(sim::Time, std::string destination, sim::Bytes data) {
+  if (data.empty()) throw std::runtime_error("a message must have at least 1 byte");
+  if (data.size() > longest_message_bytes())
+    throw std::runtime_error("a message must have at most " + std::to_string(longest_message_bytes()) + " bytes, got " +
+                             std::to_string(data.size()));
+  if (!destination.empty() && world_.find_vehicle(destination) == nullptr)
+    throw std::runtime_error("'destination' names no vehicle: '" + sim::shortened(sim::printable(destination)) + "'");
+  if (destination == vehicle_.name()) throw std::runtime_error("'destination' is the sending vehicle itself");
+  if (queue_.size() >= static_cast<std::size_t>(params_.queue_messages)) {
+    queue_.pop_front();
+    ++dropped_;
+  }
+  queue_.push_back({std::move(destination), std::move(data)});
+}
+
+void AcousticModem::act(const sim::ActContext& context) {
+  now_ = context.now;
+  if (serial_) read_serial(context.now);
+  // Short messages go out several in a step, each when the one before has ended.
+  const sim::Time end = context.now + sim::from_seconds(context.step_s);
+  while (!queue_.empty() && transducer_.works()) {
+    sim::Time start = std::max(context.now, transducer_.busy_until());
+    if (params_.synchronous_s > 0)
+      start = next_whole(vehicle_, world_.epoch_us(), start, sim::from_seconds(params_.synchronous_s));
+    if (start >= end || (params_.listen_before_sending && transducer_.receiving())) return;
+    Outgoing message = std::move(queue_.front());
+    queue_.pop_front();
+    transmit(start, std::move(message));
+  }
+}
+
+double AcousticModem::power_W() const {
+  return transducer_.busy_until() > now_ ? params_.transmit_power_W : 0;
+}
+
+void AcousticModem::transmit(sim::Time at, Outgoing message) {
+  sim::Signal signal;
+  signal.kind = sim::Signal::Kind::message;
+  signal.source_level = sim::Decibels{params_.source_level_dB};
+  signal.centre_Hz = params_.frequency_Hz;
+  signal.bandwidth_Hz = params_.bandwidth_Hz;
+  signal.duration = std::max(sim::from_seconds(duration_s(message.data.size())), sim::Time{1});
+  signal.modulation = params_.modulation;
+  signal.bit_rate_bps = params_.bit_rate_bps;
+  signal.bits = bits(message.data.size());
+  signal.coding_gain_dB = params_.coding_gain_dB;
+  signal.network = params_.network;
+  signal.code = code_of(vehicle_.clock().reading(at), message.destination);
+  signal.payload = std::move(message.data);
+  signal.to = {group_of(params_), message.destination};
+  transducer_.transmit(std::move(signal), at);
+}
+
+bool AcousticModem::listens_to(const sim::Signal& signal) const {
+  return signal.kind == sim::Signal::Kind::message && signal.network == params_.network;
+}
+
+void AcousticModem::heard(const sim::Reception& heard) {
+  if (!heard.understood()) return;
+  Packet packet;
+  if (!read_code(heard.signal.code, packet.sent_reading, packet.destination)) return;
+  packet.source = heard.source.substr(0, heard.source.find('/'));
+  if (!packet.destination.empty() && packet.destination != vehicle_.name() && !params_.promiscuous) return;
+  packet.sent = heard.sent;
+  packet.arrived = heard.begun;
+  packet.arrived_reading = vehicle_.clock().reading(heard.begun);
+  packet.snr_dB = heard.sinr.dB();
+  packet.level_dB = heard.level.dB();
+  packet.closing_mps = heard.closing_mps;
+  packet.data = heard.signal.payload;
+  if (serial_) serial_->write(packet.data);
+  tell_tap(heard.ended, packet.source, packet.data);
+  arrived_.push_back(std::move(packet));
+}
+
+void AcousticModem::measure(const sim::SenseContext&) {
+  received_.clear();
+  std::swap(received_, arrived_);
+}
+
+void AcousticModem::visit_state(sim::StateArchive& archive) {
+  archive(queue_, arrived_, received_, now_);
+  archive.unhashed(dropped_);
+  if (serial_) archive(*serial_);
+}
+
+void AcousticModem::read_serial(sim::Time now) {
+  for (sim::Bytes& data : serial_->take(longest_message_bytes()))
+    if (data.size() > longest_message_bytes())
+      complain_of_length(world_, transducer_.full_name(), longest_message_bytes());
+    else
+      send(now, "", std::move(data));
+}
+
+void AcousticModemReporter::report(sim::Time, sim::Publisher& out) const {
+  for (const AcousticModem::Packet& packet : modem_.received()) {
+    shoal::acoustic_received_t message;
+    message.utime = out.utime_elsewhere(packet.arrived, packet.arrived_reading);
+    message.sent_utime = out.utime_elsewhere(packet.sent, packet.sent_reading);
+    message.travel_time_s = static_cast<double>(message.utime - message.sent_utime) * 1e-6;
+    message.source = packet.source;
+    message.destination = packet.destination;
+    message.snr_db = packet.snr_dB;
+    message.level_db = packet.level_dB;
+    message.doppler_mps = packet.closing_mps;
+    message.size = static_cast<std::int32_t>(packet.data.size());
+    const auto* data = reinterpret_cast<const std::uint8_t*>(packet.data.data());
+    message.data.assign(data, data + packet.data.size());
+    shoal::encode_into(message, out.buffer());
+    out.publish(out.buffer());
+  }
+}
+
+void AcousticModemController::receive(sim::Time now, std::span<const std::byte> payload) {
+  const auto command = shoal::decode<shoal::modem_send_t>(payload, shoal::Finite::required);
+  const auto* data = reinterpret_cast<const std::byte*>(command.data.data());
+  modem_.send(now, command.destination, sim::Bytes(data, data + command.data.size()));
+}
+
+SHOAL_TRANSCEIVER("acoustic_modem", AcousticModem, AcousticModemReporter, AcousticModemController);
+
+}  // namespace devices

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "sim/bus/bus.hpp"
+#include "sim/base/time.hpp"
+
+namespace devices {
+
+/// A modem that carries messages of bytes between vehicles, as a gateway sees it.
+class MessageModem {
+ public:
+  /// Told of each message that arrives.
+  using Tap = std::function<void(sim::Time at, const std::string& source, const sim::Bytes& data)>;
+
+  virtual ~MessageModem() = default;
+  /// Queues a message; empty destination: everybody.  Throws std::runtime_error when it cannot be sent.
+  virtual void send(sim::Time now, std::string destination, sim::Bytes data) = 0;
+  virtual std::size_t longest_message_bytes() const = 0;
+  /// Messages that were not sent, as its queue was full.
+  virtual std::int64_t dropped_from_queue() const = 0;
+  /// One at most.
+  void set_tap(Tap tap) { tap_ = std::move(tap); }
+
+ protected:
+  void tell_tap(sim::Time at, const std::string& source, const sim::Bytes& data) const {
+    if (tap_) tap_(at, source, data);
+  }
+
+ private:
+  Tap tap_;
+};
+
+/// The message modems of a world by full name, such as `buoy/radio`.
+class MessageModems {
+ public:
+  void join(const std::string& full_name, MessageModem& modem) { modems_[full_name] = &modem; }
+  void leave(const std::string& full_name) {
+    const auto modem = modems_.find(full_name);
+    if (modem == modems_.end()) return;
+    dropped_by_those_gone_ += modem->second->dropped_from_queue();
+    modems_.erase(modem);
+  }
+  /// Null when there is none.
+  MessageModem* find(const std::string& full_name) const {
+    const auto found = modems_.find(full_name);
+    return found == modems_.end() ? nullptr : found->second;
+  }
+
+  /// Messages that all modems, also those that have left, dropped from full queues.
+  std::int64_t dropped_from_queues() const {
+    std::int64_t dropped = dropped_by_those_gone_;
+    for (const auto& [name, modem] : modems_) dropped += modem->dropped_from_queue();
+    return dropped;
+  }
+
+ private:
+  std::map<std::string, MessageModem*, std::less<>> modems_;
+  std::int64_t dropped_by_those_gone_ = 0;
+};
+
+}  // namespace devices

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/comms/micromodem.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "devices/common/named_vehicle.hpp"
+#include "devices/common/own_clock.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/nmea_sentence_t.hpp"
+#include "sim/config/message_text.hpp"
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+namespace {
+
+MicromodemProtocol::Config protocol_config(const Micromodem::Params& params) {
+  MicromodemProtocol::Config config;
+  config.address = params.address;
+  config.psk = params.psk;
+  config.synchronous = params.synchronous;
+  config.revision = params.revision;
+  config.frequency_Hz = params.frequency_Hz;
+  if (params.lbl) config.beacon_turnaround_s = params.lbl->turnaround_s;
+  return config;
+}
+
+}  // namespace
+
+/// What the modems of a world are called, by network and address.
+struct Micromodem::Addresses {
+  std::map<std::pair<std::string, int>, std::vector<std::string>> names;
+};
+
+void MicromodemBeaconParams::read(sim::ParamReader& in) {
+  in.read("network", network, "of the transponders");
+  in.read("transponders", transponders, "up to four that are told apart: vehicle, or vehicle/device");
+  in.read("turnaround_s", turnaround_s, sim::between(0, 10), "of the transponders; it is taken off the travel times");
+  in.read("ping_s", ping_s, sim::between(1e-4, 1), "of the sound that asks");
+  in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "of the sound that asks");
+  in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e6), "of the sound that asks");
+  if (!in.describing() && transponders.size() > micromodem_beacons)
+    in.error("transponders", "'transponders' must be at most 4, got " + std::to_string(transponders.size()));
+}
+
+void Micromodem::Params::read(sim::ParamReader& in) {
+  in.read("address", address, sim::between(0, micromodem_broadcast - 1), "its own; 127 means everybody");
+  in.read("psk", psk, "has the co-processor that rates 1 to 6 need");
+  in.read("synchronous", synchronous,
+          "sends at whole seconds of the vehicle's clock from the start (setting SNV), for one-way travel times");
+  in.read("network", network, "modems understand each other only in the same network; the others are noise");
+  in.read("revision", revision, "of its software, in $CAREV; from 2 on it takes $CCTMS beside $CCCLK");
+  in.read("source_level_dB", source_level_dB, sim::between(0, 300), "re 1 uPa at 1 m, on its axis");
+  in.read("frequency_Hz", frequency_Hz, sim::between(2500, 1e6), "middle of its band");
+  in.read("coding_gain_dB", coding_gain_dB, sim::between(0, 60), "what its codes add to Eb/N0");
+  in.read("transmit_power_W", transmit_power_W, sim::at_least(0), "taken from the battery while it sends");
+  in.read("receiver", receiver, "how it hears");
+  in.read("lbl", lbl, "transponders that $CCPDT, $CCPNT and $CCPGT ask");
+  in.read("serial", serial, "a pseudo-terminal or FIFO that any program can open");
+  const auto is_plain = [](char c) { return c > ' ' && c < 127 && c != ',' && c != '*' && c != '$'; };
+  if (!in.describing() && (revision.empty() || !std::all_of(revision.begin(), revision.end(), is_plain)))
+    in.error("revision",
+             "'revision' is a field of a sentence and must have letters, digits and points, no ',', '*', "
+             "'$' or space, got '" +
+                 sim::shortened(sim::printable(revision)) + "'");
+}
+
+Micromodem::Micromodem(const Params& params, const sim::DeviceContext& context)
+    : params_(params),
+      vehicle_(context.vehicle),
+      epoch_us_(context.world.epoch_us()),
+      addresses_(context.world.shared<Addresses>()),
+      transducer_(*this, params.receiver, context),
+      protocol_(protocol_config(params), *this),
+      now_(context.world.now()) {
+  check_beacons(context);
+  if (params.serial) serial_ = std::make_unique<SerialPort>(*params.serial, context);
+  take_address();  // nothing fails after it, so the destructor takes it back
+  warn_of_address();
+}
+
+Micromodem::~Micromodem() {
+  unlist();
+}
+
+void Micromodem::check_beacons(const sim::DeviceContext& context) const {
+  if (!params_.lbl) return;
+  for (const std::string& name : params_.lbl->transponders) {
+    const std::size_t slash = name.find('/');
+    const sim::VehicleConfig* vehicle = named_vehicle(context.world, name.substr(0, slash));
+    const auto is_meant = [&](const sim::DeviceConfig& device) {
+      return device.type == "transponder" && (slash == std::string::npos || device.name == name.substr(slash + 1));
+    };
+    if (vehicle != nullptr && std::any_of(vehicle->devices.begin(), vehicle->devices.end(), is_meant)) continue;
+    sim::throw_config_error(context.config.place,
+                            "vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'",
+                            "'transponders' names no transponder of the world '" + name + "'");
+  }
+}
+
+/// Two of one address answer for each other; the others cannot tell.
+void Micromodem::warn_of_address() const {
+  const auto& names = addresses_.names[{params_.network, address_}];
+  if (names.size() == 2 && names[0] != names[1])
+    spdlog::warn("micromodems '{}' and '{}' have the same address {} in network '{}'", names[0], names[1], address_,
+                 params_.network);
+}
+
+void Micromodem::list(int address) {
+  unlist();
+  address_ = address;
+  addresses_.names[{params_.network, address_}].push_back(transducer_.full_name());
+}
+
+void Micromodem::unlist() {
+  const auto names = addresses_.names.find({params_.network, address_});
+  if (names == addresses_.names.end()) return;
+  const auto own = std::find(names->second.begin(), names->second.end(), transducer_.full_name());
+  if (own != names->second.end()) names->second.erase(own);
+  if (names->second.empty()) addresses_.names.erase(names);
+}
+
+void Micromodem::take(const std::string& sentence, sim::Time now) {
+  now_ = now;
+  NmeaLines lines;  // by the bus every sentence is whole
+  const std::string ended = sentence + "\n";
+  for (const auto& line : lines.add(std::as_bytes(std::span(ended.data(), ended.size())))) take_line(line, now);
+}
+
+void Micromodem::take_line(const NmeaLines::Line& line, sim::Time now) {
+  protocol_.take_line(line, now);
+  if (protocol_.address() == address_) return;
+  take_address();
+  warn_of_address();
+}
+
+void Micromodem::take_address() {
+  list(protocol_.address());
+  transducer_.belong_to({group(), std::to_string(address_)});
+}
+
+void Micromodem::act(const sim::ActContext& context) {
+  now_ = context.now;
+  if (!transducer_.works()) {
+    if (serial_) serial_->read();  // nobody listens
+    off_ = true;
+    return;
+  }
+  if (std::exchange(off_, false)) {
+    lines_ = {};
+    protocol_.restart(context.now);
+  }
+  protocol_.tick(context.now);
+  if (!serial_) return;
+  for (const auto& line : lines_.add(serial_->read())) take_line(line, context.now);
+}
+
+double Micromodem::power_W() const {
+  return transducer_.busy_until() > now_ ? params_.transmit_power_W : 0;
+}
+
+void Micromodem::say(const std::string& body) {
+  std::string sentence = nmea_sentence(body);
+  if (serial_) serial_->write(sentence + "\r\n");
+  if (saying_.size() >= most_sentences) saying_.pop_front();
+  saying_.push_back({now_, vehicle_.clock().reading(now_), std::move(sentence)});
+}
+
+MicromodemSide::Sound Micromodem::send(sim::Signal signal, sim::Time at, bool on_the_second) {
+  sim::Time begin = std::max({at, now_, transducer_.busy_until()});
+  if (on_the_second) begin = next_whole(vehicle_, epoch_us_, begin, sim::from_seconds(1));
+  const Sound sound{begin, begin + signal.duration};
+  transducer_.transmit(std::move(signal), begin);
+  return sound;
+}
+
+MicromodemSide::Sound Micromodem::transmit(const MicromodemPacket& packet, sim::Time at, bool on_the_second) {
+  const auto& rate = micromodem_rates()[static_cast<std::size_t>(packet.is_short() ? 0 : packet.rate)];
+  sim::Signal signal;
+  signal.kind = sim::Signal::Kind::message;
+  signal.source_level = sim::Decibels{params_.source_level_dB};
+  signal.centre_Hz = params_.frequency_Hz;
+  signal.bandwidth_Hz = rate.bandwidth_Hz;
+  signal.modulation = rate.modulation;
+  signal.bit_rate_bps = rate.bit_rate_bps;
+  signal.coding_gain_dB = params_.coding_gain_dB;
+  const auto frames = static_cast<int>(packet.frames.size());
+  signal.bits = packet.is_short() ? micromodem_short_bits : 8 * std::int64_t{frames} * rate.frame_bytes;
+  signal.duration = sim::from_seconds(packet.is_short() ? micromodem_short_s() : micromodem_packet_s(rate, frames));
+  signal.network = params_.network;
+  signal.code = packet.code();
+  signal.payload = packet.payload();
+  const int to = packet.kind == MicromodemPacket::Kind::cycle_init && packet.source != address_ ? packet.source
+                                                                                                : packet.destination;
+  signal.to = {group(), to == micromodem_broadcast ? "" : std::to_string(to)};
+  return send(std::move(signal), at, on_the_second);
+}
+
+MicromodemSide::Sound Micromodem::ask_beacons(sim::Time at, bool on_the_second) {
+  const MicromodemBeaconParams beacons = params_.lbl.value_or(MicromodemBeaconParams{});
+  sim::Signal signal;
+  signal.kind = sim::Signal::Kind::ping;
+  signal.source_level = sim::Decibels{params_.source_level_dB};
+  signal.centre_Hz = beacons.frequency_Hz;
+  signal.bandwidth_Hz = beacons.bandwidth_Hz;
+  signal.duration = sim::from_seconds(beacons.ping_s);
+  signal.network = beacons.network;
+  return send(std::move(signal), at, on_the_second);
+}
+
+sim::Time Micromodem::call_back() {
+  transducer_.call_back();
+  return transducer_.busy_until();
+}
+
+double Micromodem::elapsed_s(sim::Time from, sim::Time to) const {
+  return sim::to_seconds(to - from) * (1 + vehicle_.clock().rate_error());
+}
+
+std::int64_t Micromodem::utc_us(sim::Time at) const {
+  return epoch_us_ + vehicle_.clock().reading(at).count();
+}
+
+bool Micromodem::listens_to(const sim::Signal& signal) const {
+  if (signal.kind == sim::Signal::Kind::message) return signal.network == params_.network;
+  return signal.kind == sim::Signal::Kind::answer && params_.lbl && signal.network == params_.lbl->network &&
+         (signal.code.empty() || signal.code == transducer_.full_name());
+}
+
+void Micromodem::heard(const sim::Reception& heard) {
+  now_ = std::max(now_, heard.ended);
+  if (heard.signal.kind == sim::Signal::Kind::answer) return heard_beacon(heard);
+  // One that it did not take is nothing to it.  Out of the water is the sender: it would hear nothing there itself.
+  const bool has_errors = heard.loss == sim::SignalLoss::noise || heard.loss == sim::SignalLoss::interference ||
+                          heard.loss == sim::SignalLoss::sender_off || heard.loss == sim::SignalLoss::out_of_water;
+  if (!heard.understood() && !(heard.noticed && has_errors)) return;
+  const auto packet = MicromodemPacket::read(heard.signal.code, heard.signal.payload);
+  if (!packet) return;
+  MicromodemArrival arrival;
+  arrival.begun = heard.begun, arrival.ended = heard.ended;
+  arrival.level_dB = heard.level.dB();
+  arrival.snr_dB = heard.sinr.dB();
+  arrival.noise_dB = (heard.level - heard.snr).dB();
+  arrival.closing_mps = heard.closing_mps;
+  arrival.good = heard.understood();
+  protocol_.heard(*packet, arrival);
+}
+
+void Micromodem::heard_beacon(const sim::Reception& heard) {
+  if (!heard.understood()) return;
+  for (std::size_t i = 0; i < params_.lbl->transponders.size(); ++i) {
+    const std::string& name = params_.lbl->transponders[i];
+    if (heard.source == name || heard.source.starts_with(name + "/"))
+      return protocol_.beacon_answered(static_cast<int>(i), heard.begun);
+  }
+}
+
+void Micromodem::measure(const sim::SenseContext&) {
+  said_.assign(std::make_move_iterator(saying_.begin()), std::make_move_iterator(saying_.end()));
+  saying_.clear();
+}
+
+void Micromodem::visit_state(sim::StateArchive& archive) {
+  archive(protocol_, lines_, off_, now_, saying_, said_);
+  if (archive.restoring()) list(protocol_.address());
+}
+
+void MicromodemReporter::report(sim::Time, sim::Publisher& out) const {
+  for (const Micromodem::Said& said : modem_.said()) {
+    shoal::nmea_sentence_t message;
+    message.utime = out.utime_elsewhere(said.at, said.reading);
+    message.sentence = said.sentence;
+    shoal::encode_into(message, out.buffer());
+    out.publish(out.buffer());
+  }
+}
+
+void MicromodemController::receive(sim::Time now, std::span<const std::byte> payload) {
+  modem_.take(shoal::decode<shoal::nmea_sentence_t>(payload, shoal::Finite::required).sentence, now);
+}
+
+SHOAL_TRANSCEIVER("micromodem", Micromodem, MicromodemReporter, MicromodemController);
+
+}  // namespace devices

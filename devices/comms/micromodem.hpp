@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "devices/comms/micromodem_protocol.hpp"
+#include "devices/common/serial_port.hpp"
+#include "sim/acoustics/transducer.hpp"
+#include "sim/device/device_registry.hpp"
+
+namespace devices {
+
+/// The transponders that $CCPDT, $CCPNT and $CCPGT ask.
+struct MicromodemBeaconParams {
+  std::string network = "usbl";
+  std::vector<std::string> transponders;
+  double turnaround_s = 0.02;
+  double ping_s = 0.005;
+  double frequency_Hz = 26000;
+  double bandwidth_Hz = 1000;
+  void read(sim::ParamReader& in);
+};
+
+/// Acoustic modem of the WHOI Micro-Modem class: its NMEA sentences through a pseudo-terminal and through the bus, its
+/// packets through the water.  What it says and when is MicromodemProtocol's.
+class Micromodem final : public sim::Sensor, private sim::AcousticListener, private MicromodemSide {
+ public:
+  static constexpr const char* meaning = "Acoustic modem of the WHOI Micro-Modem class, with its NMEA sentences.";
+  struct Params {
+    int address = 0;
+    bool psk = true;
+    bool synchronous = false;
+    std::string network = "micromodem";
+    std::string revision = "0.93.0.48";
+    double source_level_dB = 185;
+    double frequency_Hz = 25000;
+    double coding_gain_dB = 0;
+    double transmit_power_W = 0;
+    sim::ReceiverConfig receiver;
+    std::optional<MicromodemBeaconParams> lbl;
+    std::optional<SerialParams> serial;
+    void read(sim::ParamReader& in);
+  };
+  struct Said {
+    sim::Time at;       ///< true time
+    sim::Time reading;  ///< by the vehicle's clock
+    std::string sentence;
+    void visit_state(sim::StateArchive& archive) { archive(at, reading, sentence); }
+  };
+
+  /// Throws ConfigError when the world has no water, or `lbl` names no transponder of the world.
+  Micromodem(const Params& params, const sim::DeviceContext& context);
+  ~Micromodem() override;
+
+  /// A sentence from the host by the bus; an end of line is not needed.
+  void take(const std::string& sentence, sim::Time now);
+  void act(const sim::ActContext& context);
+  double power_W() const;
+
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double, sim::Random&) override {}
+  void visit_state(sim::StateArchive& archive) override;
+
+  /// What it said since the last sample.
+  const std::vector<Said>& said() const { return said_; }
+  const MicromodemProtocol& protocol() const { return protocol_; }
+  const sim::Transducer& transducer() const { return transducer_; }
+
+ private:
+  struct Addresses;
+  static constexpr std::size_t most_sentences = 4096;  // between two samples
+
+  void check_beacons(const sim::DeviceContext& context) const;
+  void warn_of_address() const;
+  /// In the addresses of the world.
+  void list(int address);
+  void unlist();
+  bool listens_to(const sim::Signal& signal) const override;
+  void heard(const sim::Reception& heard) override;
+  void heard_beacon(const sim::Reception& heard);
+  void say(const std::string& body) override;
+  Sound transmit(const MicromodemPacket& packet, sim::Time at, bool on_the_second) override;
+  Sound ask_beacons(sim::Time at, bool on_the_second) override;
+  sim::Time call_back() override;
+  std::int64_t utc_us(sim::Time at) const override;
+  double elapsed_s(sim::Time from, sim::Time to) const override;
+  /// The host may have given it another address.
+  void take_address();
+  void take_line(const NmeaLines::Line& line, sim::Time now);
+  std::string group() const { return "micromodem " + params_.network; }
+  Sound send(sim::Signal signal, sim::Time at, bool on_the_second);
+
+  Params params_;
+  const sim::Vehicle& vehicle_;
+  std::int64_t epoch_us_;
+  Addresses& addresses_;
+  sim::Transducer transducer_;
+  MicromodemProtocol protocol_;
+  NmeaLines lines_;
+  std::deque<Said> saying_;
+  std::vector<Said> said_;
+  std::unique_ptr<SerialPort> serial_;
+  sim::Time now_{0};
+  int address_ = -1;  // that the channel knows; -1: none yet
+  bool off_ = false;  // without power, or silent by a fault
+};
+
+/// Publishes one shoal.nmea_sentence_t for each sentence to the host.
+class MicromodemReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.nmea_sentence_t";
+  explicit MicromodemReporter(const Micromodem& modem) : modem_(modem) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const Micromodem& modem_;
+};
+
+/// Takes shoal.nmea_sentence_t.
+class MicromodemController final : public sim::Controller {
+ public:
+  static constexpr const char* command_messages = "shoal.nmea_sentence_t";
+  explicit MicromodemController(Micromodem& modem) : modem_(modem) {}
+  void receive(sim::Time now, std::span<const std::byte> payload) override;
+
+ private:
+  Micromodem& modem_;
+};
+
+}  // namespace devices

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+
+#include "sim/device/device_registry.hpp"
+
+namespace devices {
+
+/// Moves a kinematic body as a helm asks, without forces: first order in speed and in turn rate, no gravity, no
+/// contact that stops it.  The cheapest marine vehicle, for thousands.
+///
+/// Speed and turn rate tend to their targets with their time constants; the path angle is what the depth asks for, or
+/// the elevator; the water carries the vehicle along.  Depth counts from the still surface.  It does not rise out of
+/// the water: it levels out below the surface.  x and y of the body are its own, roll is none.
+class NaiveDrive final : public sim::Actuator {
+ public:
+  static constexpr const char* meaning =
+      "Moves a kinematic body by speed, heading and depth, or by thrust, rudder and elevator; no forces.";
+  static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::hold};
+  struct Params {
+    double max_speed_mps = 2;
+    double max_astern_mps = 0;
+    double speed_time_constant_s = 2;
+    double max_turn_rate_radps = 0.25;
+    double turn_time_constant_s = 1;
+    double steerage_speed_mps = 0.5;
+    double max_pitch_rad = 0.5;
+    double heading_gain_per_s = 0.5;
+    double depth_gain_per_s = 0.2;
+    double rise_mps = 0;
+    bool surface = false;
+    bool drifts = true;
+    double start_speed_mps = 0;
+    void read(sim::ParamReader& in);
+  };
+
+  NaiveDrive(const Params& params, const sim::DeviceContext& context);
+  void change(const Params& params);
+  void act(const sim::ActContext& context) override;
+  void make_safe(sim::SafeState safe) override;
+  void visit_state(sim::StateArchive& archive) override;
+
+  /// NaN leaves a setpoint as it is.  In water a depth below 0 is 0.
+  void set_helm(double speed_mps, double heading_rad, double depth_m);
+  /// -1 to 1 each; positive rudder turns counter-clockwise, positive elevator takes it down.
+  void set_controls(double thrust, double rudder, double elevator);
+  bool surface() const { return params_.surface; }
+
+ private:
+  struct Path {
+    double forward_mps, climb_mps, pitch_rad;
+  };
+  double wanted_turn(double speed_share) const;
+  double surface_over_m() const;
+  double wanted_climb(double surface_m) const;
+  Path path(double surface_m);
+  void take_pose();
+  void look_for_the_current();
+
+  // What each step needs, side by side.
+  sim::Body& body_;
+  const sim::World& world_;
+  double still_surface_m_;  // without tide and waves; without water the world's zero stands for it
+  double speed_mps_, turn_radps_ = 0, climb_mps_ = 0;
+  double yaw_rad_ = 0, pitch_rad_ = 0;
+  sim::Vector3d p_WB_ = sim::Vector3d::Zero();
+  sim::Pose X_WB_ = sim::Pose::Identity();  // where it left the body; another pose means that somebody moved it
+  double speed_target_mps_;
+  double heading_target_rad_ = std::numeric_limits<double>::quiet_NaN();  // NaN: by rudder
+  double depth_target_m_ = std::numeric_limits<double>::quiet_NaN();      // NaN: by elevator
+  double rudder_ = 0, elevator_ = 0;
+  bool left_the_current_ = false;                         // was said
+  double step_s_ = 0, speed_share_ = 0, turn_share_ = 0;  // of the way to the target in a step
+  Params params_;
+};
+
+/// Takes shoal.helm_command_t, shoal.thrust_rudder_elevator_command_t or shoal.thrust_rudder_command_t.
+class NaiveDriveController final : public sim::Controller {
+ public:
+  static constexpr const char* command_messages =
+      "shoal.helm_command_t, shoal.thrust_rudder_elevator_command_t, shoal.thrust_rudder_command_t";
+  explicit NaiveDriveController(NaiveDrive& drive) : drive_(drive) {}
+  void receive(sim::Time now, std::span<const std::byte> payload) override;
+
+ private:
+  NaiveDrive& drive_;
+};
+
+}  // namespace devices

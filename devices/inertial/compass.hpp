@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "devices/inertial/inclinometer.hpp"
+
+namespace devices {
+
+/// Three-axis magnetometer and the heading it gives.  The earth's field is the same in the whole world.  What is
+/// measured: soft iron * field + hard iron + noise; hard iron is magnetised and turns with the sensor, soft iron bends
+/// the field (Gebre-Egziabher et al., Calibration of strapdown magnetometers in magnetic field domain, J. Aerosp. Eng.
+/// 19(2), 2006).
+class Compass final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Magnetic heading and field, with hard and soft iron.";
+  static constexpr double default_rate_hz = 10;
+  enum class TiltCompensation { none, ideal, accelerometer };
+  struct Params {
+    // The World Magnetic Model 2025 at the default origin (42.36 N 71.09 W, Cambridge, Massachusetts) at the start of
+    // 2026: -13.97 deg, 66.26 deg, 51.22 uT; computed from NOAA's coefficients, held against the declinations of its
+    // test values.
+    double declination_rad = sim::degrees_to_radians(-14.0);
+    double inclination_rad = sim::degrees_to_radians(66.3);
+    double field_uT = 51.2;
+    double declination_correction_rad = 0;
+    sim::Vector3d hard_iron_uT = sim::Vector3d::Zero();
+    std::vector<double> soft_iron = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< rows of a matrix
+    TiltCompensation tilt_compensation = TiltCompensation::accelerometer;
+    double tilt_time_s = 0.3;
+    sim::NoiseParams field_noise;    ///< of each axis, uT
+    sim::NoiseParams heading_noise;  ///< rad
+    void read(sim::ParamReader& in);
+  };
+  struct Reading {
+    double heading_rad = 0;       ///< from magnetic north, clockwise, [0, 2 pi)
+    double heading_true_rad = 0;  ///< from true north; the measured one by the declination it was told
+    sim::Vector3d field_S_uT = sim::Vector3d::Zero();
+    void visit_state(sim::StateArchive& archive) { archive(heading_rad, heading_true_rad, field_S_uT); }
+  };
+
+  Compass(const Params& params, const sim::DeviceContext& context);
+  void change(const Params& params);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  void visit_state(sim::StateArchive& archive) override {
+    archive(strapdown_, tilt_filter_, field_noise_, heading_noise_, reading_);
+  }
+  const Reading& reading() const { return reading_; }
+
+ private:
+  /// The heading when the field and a direction upwards are given in S.
+  static double heading_of(const sim::Vector3d& field_S, const sim::Vector3d& up_S);
+
+  Params params_;
+  Strapdown strapdown_;
+  LowPass tilt_filter_;
+  sim::Noise field_noise_, heading_noise_;
+  sim::Vector3d up_S_ = sim::Vector3d::UnitZ();
+  Reading reading_;
+};
+
+/// Publishes shoal.compass_t.
+class CompassReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.compass_t";
+  explicit CompassReporter(const Compass& compass) : compass_(compass) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const Compass& compass_;
+};
+
+}  // namespace devices

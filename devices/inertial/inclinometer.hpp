@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "devices/inertial/strapdown.hpp"
+#include "sim/random/noise.hpp"
+
+namespace devices {
+
+/// Roll and pitch of a sensor frame for which the specific force is the direction upwards: right at rest, wrong while
+/// the sensor is accelerated.
+struct Tilt {
+  double roll_rad = 0;   ///< as in Rz(yaw) Ry(pitch) Rx(roll)
+  double pitch_rad = 0;  ///< positive: the nose is down
+  void visit_state(sim::StateArchive& archive) { archive(roll_rad, pitch_rad); }
+};
+Tilt tilt_of(const sim::Vector3d& up_S);
+
+/// Measures roll and pitch as real ones do, by the specific force.  The truth is the attitude.
+class Inclinometer final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Roll and pitch from the specific force, so it errs while accelerated.";
+  static constexpr double default_rate_hz = 10;
+  struct Params {
+    bool ideal = false;
+    double time_constant_s = 0.3;
+    sim::NoiseParams noise;  ///< of roll and of pitch, rad
+    void read(sim::ParamReader& in);
+  };
+
+  Inclinometer(const Params& params, const sim::DeviceContext& context);
+  void change(const Params& params);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  void visit_state(sim::StateArchive& archive) override { archive(strapdown_, filter_, noise_, reading_); }
+  const Tilt& reading() const { return reading_; }
+
+ private:
+  bool ideal_;
+  Strapdown strapdown_;
+  LowPass filter_;
+  sim::Noise noise_;
+  Tilt reading_;
+};
+
+/// Publishes shoal.inclination_t.
+class InclinometerReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.inclination_t";
+  explicit InclinometerReporter(const Inclinometer& inclinometer) : inclinometer_(inclinometer) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const Inclinometer& inclinometer_;
+};
+
+}  // namespace devices

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "sim/device/device_registry.hpp"
+#include "sim/random/noise.hpp"
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+/// Tells what parts of the vehicle touch.  It looks at every step: a touch that is over before the next sample is
+/// reported, with the places of the step in which it pressed most.
+class Bumper final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Contacts of parts of the vehicle: where, with whom and how hard.";
+  static constexpr double default_rate_hz = 0;
+  static constexpr const char* fixed_keys[] = {"parts"};
+  enum class When { changes, always };
+  struct Params {
+    std::vector<std::string> parts;
+    double min_force_N = 0;
+    When report = When::changes;
+    sim::NoiseParams force_noise;
+    void read(sim::ParamReader& in);
+  };
+  struct Place {
+    std::string part;
+    std::string other;
+    sim::Vector3d position_V = sim::Vector3d::Zero();
+    sim::Vector3d normal_V = sim::Vector3d::Zero();  ///< out of the other, into this vehicle
+    double force_N = 0;
+    void visit_state(sim::StateArchive& archive) { archive(part, other, position_V, normal_V, force_N); }
+  };
+
+  Bumper(const Params& params, const sim::DeviceContext& context);
+  ~Bumper() override;
+  /// Looks at the contacts of the last step; the framework calls it before each one.
+  void act(const sim::ActContext& context);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  /// All but the parts.
+  void change(const Params& params);
+  void visit_state(sim::StateArchive& archive) override {
+    archive(force_noise_, looked_, pressed_, most_force_N_, touching_, changed_, sampled_, places_);
+  }
+
+  bool touching() const { return touching_; }
+  /// The reporter has something to say.
+  bool is_news() const { return params_.report == When::always || changed_; }
+  const std::vector<Place>& places() const { return places_; }
+
+ private:
+  void look();
+  void add_place(const sim::ContactReport& contact, int own, std::vector<Place>& places) const;
+  bool is_own(int part) const;
+
+  Params params_;
+  sim::World& world_;
+  const sim::Vehicle& vehicle_;
+  std::vector<int> parts_;  ///< their numbers, sorted
+  sim::Noise force_noise_;
+  bool looked_ = true;          ///< at the last step
+  std::vector<Place> pressed_;  ///< since the last sample: the step that pressed most
+  double most_force_N_ = -1;
+  bool touching_ = false;
+  bool changed_ = false;
+  bool sampled_ = false;
+  std::vector<Place> places_;  ///< the reading
+};
+
+/// Publishes shoal.bumper_t: at the first sample and when a touch begins or ends, or at every sample.  A report of a
+/// change that is lost on its way is not repeated.
+class BumperReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.bumper_t";
+  explicit BumperReporter(const Bumper& bumper) : bumper_(bumper) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const Bumper& bumper_;
+};
+
+}  // namespace devices

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "devices/joint/joint_power.hpp"
+#include "sim/device/device_registry.hpp"
+#include "sim/world/vehicle.hpp"
+
+namespace devices {
+
+/// The motors and the stops of a joint's axes, all of which messages set while the world runs.
+///
+/// Each axis has a motor with a velocity and the most force that it may take for it, as ODE's: it gives what brings the
+/// axis to that velocity within a step, and not more than its force.  A velocity out of reach and a force is thus a
+/// motor of that force.  A stop that is set behind the joint pushes it back, as fast as the stops of the joint are
+/// stiff.
+class JointDrive final : public sim::Actuator {
+ public:
+  static constexpr const char* meaning =
+      "Motors and stops of a ball, hinge, hinge2, slider or universal, set by messages.";
+  static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::coast};
+  static constexpr const char* fixed_keys[] = {"joint", "axes"};
+  struct Params {
+    std::string joint;
+    std::vector<double> axes;  ///< 0 to 2; empty: all
+    double max_velocity = 10;  ///< rad/s, or m/s of a slider
+    double max_force = 10;     ///< N m, or N of a slider
+    MotorPower power;
+    void read(sim::ParamReader& in);
+  };
+  /// NaN: as it is.
+  struct Settings {
+    double velocity = std::numeric_limits<double>::quiet_NaN();
+    double max_force = std::numeric_limits<double>::quiet_NaN();
+    double low_stop = std::numeric_limits<double>::quiet_NaN();   ///< -infinity: none
+    double high_stop = std::numeric_limits<double>::quiet_NaN();  ///< infinity: none
+  };
+
+  JointDrive(const Params& params, const sim::DeviceContext& context);
+  void act(const sim::ActContext& context) override;
+  /// stop: the motors brake with the most force; coast: they turn freely.  Stops stay where they are.
+  void make_safe(sim::SafeState safe) override;
+  void change(const Params& params);
+  double power_W() const override;
+  void visit_state(sim::StateArchive& archive) override;
+
+  /// Of one axis, or of all with -1.  Velocity and force beyond the limits are cut.  Throws std::runtime_error, and
+  /// changes nothing, for an axis that it does not have, a force below zero, and stops that cannot be.
+  void set(int axis, const Settings& settings);
+
+ private:
+  struct Axis {
+    int number;  ///< of the joint
+    double velocity = 0, max_force = 0;
+    double low_stop = -std::numeric_limits<double>::infinity(), high_stop = std::numeric_limits<double>::infinity();
+    bool has_stops = true;
+    void visit_state(sim::StateArchive& archive) {
+      archive(velocity, max_force);
+      archive.not_only_finite(low_stop, high_stop);
+    }
+  };
+  Axis with(Axis axis, const Settings& settings) const;
+  void check_stops(const Axis& axis, const Settings& settings) const;
+
+  Params params_;
+  sim::Joint& joint_;
+  const sim::Vehicle& vehicle_;
+  std::vector<Axis> axes_;
+  bool coasting_ = false;
+};
+
+/// Takes shoal.joint_settings_t.
+class JointDriveController final : public sim::Controller {
+ public:
+  static constexpr const char* command_messages = "shoal.joint_settings_t";
+  explicit JointDriveController(JointDrive& drive) : drive_(drive) {}
+  void receive(sim::Time now, std::span<const std::byte> payload) override;
+
+ private:
+  JointDrive& drive_;
+};
+
+}  // namespace devices

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/joint/joint_load.hpp"
+
+#include "shoal/message_codec.hpp"
+#include "shoal/wrench_t.hpp"
+#include "sim/physics/body.hpp"
+
+namespace devices {
+
+void JointLoad::Params::read(sim::ParamReader& in) {
+  in.require("joint");
+  in.read_reference("joint", joint, "joint", "joint that it measures, of any type");
+  in.read_choice("frame", frame, {"sensor", "body", "world"},
+                 "axes of the reading: as the device is mounted, of the body it is mounted on, or of the world");
+  in.read("force_noise", force_noise, "error of each component of the force, N");
+  in.read("torque_noise", torque_noise, "error of each component of the torque, N m");
+}
+
+JointLoad::JointLoad(const Params& params, const sim::DeviceContext& context)
+    : params_(params),
+      joint_(context.joint(params.joint)),
+      body_(context.body),
+      force_noise_(context.noise(params.force_noise, 3, "force_noise")),
+      torque_noise_(context.noise(params.torque_noise, 3, "torque_noise")) {
+  context.joint(params.joint).measure_load();
+}
+
+sim::Matrix3d JointLoad::R_FW(const sim::SenseContext& context) const {
+  if (params_.frame == "sensor") return context.X_WS.linear().transpose();
+  if (params_.frame == "body") return body_.X_WB().linear().transpose();
+  return sim::Matrix3d::Identity();
+}
+
+void JointLoad::measure(const sim::SenseContext& context) {
+  const sim::Matrix3d R = R_FW(context);
+  force_N_ = R * joint_.force_W_N();
+  torque_Nm_ = R * joint_.torque_W_Nm();
+}
+
+void JointLoad::disturb(double dt_s, sim::Random& random) {
+  force_noise_.apply(std::span<double>(force_N_.data(), 3), dt_s, random);
+  torque_noise_.apply(std::span<double>(torque_Nm_.data(), 3), dt_s, random);
+}
+
+void JointLoad::change(const Params& params) {
+  params_.frame = params.frame;
+  force_noise_.change(params.force_noise);
+  torque_noise_.change(params.torque_noise);
+}
+
+void JointLoadReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
+  shoal::wrench_t message;
+  message.utime = out.utime(sampled_at);
+  for (int i = 0; i < 3; ++i) {
+    message.force_N[i] = load_.force_N()[i];
+    message.torque_Nm[i] = load_.torque_Nm()[i];
+  }
+  shoal::encode_into(message, out.buffer());
+  out.publish(out.buffer());
+}
+
+SHOAL_SENSOR("joint_load", JointLoad, JointLoadReporter);
+
+}  // namespace devices

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "sim/device/device_registry.hpp"
+#include "sim/physics/joint.hpp"
+#include "sim/random/noise.hpp"
+
+namespace devices {
+
+/// Force and torque through a joint, as a load cell or a force-torque sensor in it measures: what the joint applies on
+/// its second body (where only one body moves, on that one), with the torque about the joint's anchor.
+class JointLoad final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Force and torque that go through a joint, about its anchor.";
+  static constexpr double default_rate_hz = 100;
+  static constexpr const char* fixed_keys[] = {"joint"};
+  struct Params {
+    std::string joint;
+    std::string frame = "sensor";
+    sim::NoiseParams force_noise;
+    sim::NoiseParams torque_noise;
+    void read(sim::ParamReader& in);
+  };
+
+  JointLoad(const Params& params, const sim::DeviceContext& context);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  /// The errors and the frame; the joint stays.
+  void change(const Params& params);
+  void visit_state(sim::StateArchive& archive) override { archive(force_noise_, torque_noise_, force_N_, torque_Nm_); }
+  /// In the frame that the parameters say.
+  const sim::Vector3d& force_N() const { return force_N_; }
+  const sim::Vector3d& torque_Nm() const { return torque_Nm_; }
+
+ private:
+  sim::Matrix3d R_FW(const sim::SenseContext& context) const;
+
+  Params params_;
+  const sim::Joint& joint_;
+  const sim::Body& body_;
+  sim::Noise force_noise_, torque_noise_;
+  sim::Vector3d force_N_ = sim::Vector3d::Zero();
+  sim::Vector3d torque_Nm_ = sim::Vector3d::Zero();
+};
+
+/// Publishes shoal.wrench_t.
+class JointLoadReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.wrench_t";
+  explicit JointLoadReporter(const JointLoad& load) : load_(load) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const JointLoad& load_;
+};
+
+}  // namespace devices

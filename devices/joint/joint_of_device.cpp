@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/joint/joint_of_device.hpp"
+
+#include <stdexcept>
+
+#include "sim/config/diagnostics.hpp"
+#include "sim/world/vehicle.hpp"
+
+namespace devices {
+
+namespace {
+
+/// Such as: joint 'lift' is a slider.
+std::string what_it_is(const sim::Joint& joint, const std::string& name) {
+  const std::string& type = joint.type();
+  return "joint '" + name + "' is " + (type == "fixed" ? type : (type == "ball" ? "a ball joint" : "a " + type));
+}
+
+}  // namespace
+
+void refuse(const sim::DeviceContext& context, const std::string& text) {
+  sim::throw_config_error(context.config.place,
+                          "vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'", text);
+}
+
+sim::Joint& joint_with_axis(const sim::DeviceContext& context, const std::string& name, int axis) {
+  sim::Joint& joint = context.joint(name);
+  if (joint.type() == "ball" && joint.axes() > 0)
+    refuse(context, what_it_is(joint, name) + "; a device of type joint_drive moves it");
+  if (axis >= joint.axes())
+    refuse(context,
+           what_it_is(joint, name) + " and has no axis" + (joint.axes() > 0 ? " " + std::to_string(axis) : ""));
+  return joint;
+}
+
+sim::Joint& wheel_joint(const sim::DeviceContext& context, const std::string& name) {
+  sim::Joint& joint = context.joint(name);
+  if (joint.type() != "hinge" && joint.type() != "hinge2")
+    refuse(context, what_it_is(joint, name) + "; a wheel must be on a hinge or hinge2");
+  return joint;
+}
+
+const sim::JointConfig& joint_config(const sim::Vehicle& vehicle, const std::string& name) {
+  for (const sim::JointConfig& joint : vehicle.config().joints)
+    if (joint.name == name) return joint;
+  throw std::out_of_range(name);
+}
+
+}  // namespace devices

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "devices/joint/joint_power.hpp"
+#include "sim/device/device_registry.hpp"
+#include "sim/world/vehicle.hpp"
+
+namespace devices {
+
+/// A set point that keeps to a largest velocity and acceleration, and comes to rest exactly at its target.
+class SetPoint {
+ public:
+  double position = 0;
+  double velocity = 0;
+
+  struct Limits {
+    double velocity;
+    double acceleration;  ///< may be infinite
+  };
+  void visit_state(sim::StateArchive& archive) { archive(position, velocity); }
+  /// One step towards a position.
+  void approach(double target, const Limits& limits, double step_s);
+  /// One step at a velocity, never beyond the positions given.
+  void run(double target_velocity, double low, double high, const Limits& limits, double step_s);
+
+ private:
+  void advance(double wanted_velocity, const Limits& limits, double step_s);
+};
+
+/// Drives one axis of a joint to a position, at a velocity or with an effort.
+///
+/// Position and velocity commands move a set point with limited velocity and acceleration.  `control: velocity` lets
+/// the physics' velocity motor follow it: velocity = that of the set point + kp * error.  `control: pid` applies the
+/// effort kp * error + ki * integral + kd * error of the velocity.  An effort command applies that effort.
+class JointServo final : public sim::Actuator {
+ public:
+  static constexpr const char* meaning = "Servo on one axis of a joint, commanded by position, velocity or effort.";
+  static constexpr sim::SafeState safe_states[] = {sim::SafeState::hold, sim::SafeState::coast, sim::SafeState::stop,
+                                                   sim::SafeState::park};
+  static constexpr const char* fixed_keys[] = {"joint", "axis"};
+  enum class Mode { position, velocity, effort, coast };
+  enum class Control { velocity, pid };
+  struct Params {
+    std::string joint;
+    int axis = 0;
+    Control control = Control::velocity;
+    double kp = 20;
+    double ki = 0;
+    double kd = 0;
+    double integral_limit = 0;  ///< of the effort that the integral gives
+    std::optional<double> low;
+    std::optional<double> high;
+    double max_velocity = 1;
+    std::optional<double> max_acceleration;
+    double max_effort = 10;
+    double park_position = 0;
+    MotorPower power;
+    void read(sim::ParamReader& in);
+  };
+
+  JointServo(const Params& params, const sim::DeviceContext& context);
+  void act(const sim::ActContext& context) override;
+  /// hold: keeps the position of this moment; stop: slows down to rest; coast: no effort; park: goes to
+  /// `park_position`.
+  void make_safe(sim::SafeState safe) override;
+  void change(const Params& params);
+  double power_W() const override;
+  void visit_state(sim::StateArchive& archive) override;
+
+  /// Beyond the limits it is cut.
+  void set_position(double position);
+  void set_velocity(double velocity);
+  void set_effort(double effort);
+  void coast() { mode_ = Mode::coast; }
+  const SetPoint& set_point() const { return set_point_; }
+  double low() const { return low_; }
+  double high() const { return high_; }
+
+ private:
+  void find_range();
+  void move_set_point(double step_s);
+  double pid_effort(double max_effort, double step_s);
+  double cut_effort(double max_effort) const;
+  double error() const { return set_point_.position - joint_.position(params_.axis); }
+
+  Params params_;
+  sim::Joint& joint_;
+  const sim::Vehicle& vehicle_;
+  std::optional<double> low_stop_, high_stop_;
+  double low_, high_;
+  Mode mode_ = Mode::position;  ///< until the first command it stays where it is
+  double target_ = 0;           ///< by mode
+  SetPoint set_point_;
+  bool follows_ = false;  ///< without force the set point goes with the joint, so that it does not jump afterwards
+  double integral_ = 0;   ///< effort
+  double applied_ = 0;    ///< effort of the last step, where this class gave it
+};
+
+/// Takes shoal.joint_servo_command_t, or shoal.joint_command_t for a velocity, told apart by their fingerprints.
+class JointServoController final : public sim::Controller {
+ public:
+  static constexpr const char* command_messages = "shoal.joint_servo_command_t, shoal.joint_command_t";
+  explicit JointServoController(JointServo& servo) : servo_(servo) {}
+  void receive(sim::Time now, std::span<const std::byte> payload) override;
+
+ private:
+  JointServo& servo_;
+};
+
+}  // namespace devices

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "sim/device/device_registry.hpp"
+#include "sim/physics/joint.hpp"
+#include "sim/random/noise.hpp"
+
+namespace devices {
+
+/// Positions, velocities and efforts of joints.  A joint with two axes is listed twice: NAME and NAME/1; a
+/// ball with a motor three times.
+class JointState final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Positions, velocities and efforts of the vehicle's joints.";
+  static constexpr double default_rate_hz = 50;
+  static constexpr const char* fixed_keys[] = {"joints", "effort"};
+  struct Params {
+    std::vector<std::string> joints;
+    bool effort = true;
+    sim::NoiseParams position_noise;
+    sim::NoiseParams velocity_noise;
+    sim::NoiseParams effort_noise;
+    void read(sim::ParamReader& in);
+  };
+  struct Axis {
+    std::string name;
+    sim::Joint* joint;
+    int axis;
+  };
+
+  JointState(const Params& params, const sim::DeviceContext& context);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  /// The errors; the joints stay.
+  void change(const Params& params);
+  void visit_state(sim::StateArchive& archive) override;
+
+  // In the joints' own signs; rad, rad/s, N m, or m, m/s, N of a slider.
+  const std::vector<Axis>& axes() const { return axes_; }
+  const std::vector<double>& positions() const { return positions_; }
+  const std::vector<double>& velocities() const { return velocities_; }
+  const std::vector<double>& efforts() const { return efforts_; }
+
+ private:
+  std::vector<Axis> axes_;
+  sim::Noise position_noise_, velocity_noise_, effort_noise_;
+  std::vector<double> positions_, velocities_, efforts_;
+};
+
+/// Publishes shoal.joint_state_t.
+class JointStateReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.joint_state_t";
+  explicit JointStateReporter(const JointState& state) : state_(state) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const JointState& state_;
+};
+
+}  // namespace devices

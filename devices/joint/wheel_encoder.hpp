@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "sim/device/device_registry.hpp"
+#include "sim/physics/joint.hpp"
+#include "sim/random/noise.hpp"
+
+namespace devices {
+
+/// Counts the ticks of wheels.  It counts how joints turn: a wheel that slips is counted as one that rolls.
+class WheelEncoder final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Ticks of wheels, counted from the turning of their joints.";
+  static constexpr double default_rate_hz = 50;
+  static constexpr const char* fixed_keys[] = {"joints", "ticks_per_turn"};
+  struct Params {
+    std::vector<std::string> joints;
+    int ticks_per_turn = 1024;
+    double missed_ticks = 0;
+    sim::NoiseParams noise;  ///< of the angle each wheel turned between two samples, rad
+    void read(sim::ParamReader& in);
+  };
+  struct Wheel {
+    std::string name;
+    const sim::Joint* joint;
+    int axis;  ///< the last one of the joint: of hinge2 the wheel's
+  };
+
+  WheelEncoder(const Params& params, const sim::DeviceContext& context);
+  /// The truth: every tick counted, and the joint's own rate.
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  /// The errors; joints and ticks stay.
+  void change(const Params& params);
+  void visit_state(sim::StateArchive& archive) override;
+  const std::vector<Wheel>& wheels() const { return wheels_; }
+  const std::vector<std::int64_t>& ticks() const { return ticks_; }
+  const std::vector<double>& rates_radps() const { return rates_radps_; }
+
+ private:
+  std::int64_t missed_of(std::int64_t passed, sim::Random& random) const;
+  std::int64_t ticks_at(double angle_rad) const;
+
+  Params params_;
+  std::vector<Wheel> wheels_;
+  sim::Noise noise_;
+  std::vector<double> angles_rad_;     ///< true, at the last sample
+  std::vector<double> believed_rad_;   ///< with the noise
+  std::vector<std::int64_t> passed_;   ///< ticks of the believed angle
+  std::vector<std::int64_t> counted_;  ///< of those the ones not missed
+  std::vector<std::int64_t> ticks_;    ///< the reading
+  std::vector<double> rates_radps_;    ///< the reading
+};
+
+/// Publishes shoal.wheel_encoder_t.
+class WheelEncoderReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.wheel_encoder_t";
+  explicit WheelEncoderReporter(const WheelEncoder& encoder) : encoder_(encoder) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const WheelEncoder& encoder_;
+};
+
+}  // namespace devices

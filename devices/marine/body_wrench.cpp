@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/marine/body_wrench.hpp"
+
+#include <cmath>
+
+#include "shoal/message_codec.hpp"
+#include "shoal/wrench_t.hpp"
+
+namespace devices {
+
+void BodyWrench::Params::read(sim::ParamReader& in) {
+  in.read("force_max_N", force_max_N, sim::between(0, 1e9), "the most along each axis, both ways");
+  in.read("torque_max_Nm", torque_max_Nm, sim::between(0, 1e9), "the most about each axis, both ways");
+  in.read("lag_s", lag_s, sim::at_least(0), "time constant of a first-order lag; 0: it follows at once");
+}
+
+BodyWrench::BodyWrench(const Params& params, const sim::DeviceContext& context)
+    : params_(params),
+      body_(context.body),
+      p_BD_(context.config.X_BS().translation()),
+      R_BD_(context.config.X_BS().linear()) {}
+
+void BodyWrench::change(const Params& params) {
+  params_ = params;
+  set_wrench(wanted_force_N_, wanted_torque_Nm_);
+}
+
+void BodyWrench::set_wrench(const sim::Vector3d& force_N, const sim::Vector3d& torque_Nm) {
+  wanted_force_N_ = force_N.cwiseMin(params_.force_max_N).cwiseMax(-params_.force_max_N);
+  wanted_torque_Nm_ = torque_Nm.cwiseMin(params_.torque_max_Nm).cwiseMax(-params_.torque_max_Nm);
+}
+
+void BodyWrench::act(const sim::ActContext& context) {
+  const double left = params_.lag_s > 0 ? std::exp(-context.step_s / params_.lag_s) : 0;  // of the way
+  force_N_ = wanted_force_N_ + left * (force_N_ - wanted_force_N_);
+  torque_Nm_ = wanted_torque_Nm_ + left * (torque_Nm_ - wanted_torque_Nm_);
+  if (context.effectiveness == 0 || (force_N_.isZero(0) && torque_Nm_.isZero(0))) return;
+  const sim::BodyMotion body = body_.motion();
+  const sim::Vector3d force_B = R_BD_ * (context.effectiveness * force_N_).eval();
+  const sim::Vector3d torque_B = R_BD_ * (context.effectiveness * torque_Nm_).eval();
+  body_.add_force_W(body.R_WB * force_B, body.p_WB + body.R_WB * p_BD_);
+  if (!torque_B.isZero(0)) body_.add_torque_W(body.R_WB * torque_B);
+}
+
+void BodyWrenchController::receive(sim::Time, std::span<const std::byte> payload) {
+  const auto command = shoal::decode<shoal::wrench_t>(payload, shoal::Finite::required);
+  wrench_.set_wrench({command.force_N[0], command.force_N[1], command.force_N[2]},
+                     {command.torque_Nm[0], command.torque_Nm[1], command.torque_Nm[2]});
+}
+
+SHOAL_ACTUATOR("body_wrench", BodyWrench, BodyWrenchController);
+
+}  // namespace devices

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "devices/common/actuator_lag.hpp"
+#include "sim/device/device_registry.hpp"
+#include "sim/physics/body.hpp"
+
+namespace devices {
+
+/// A force and a torque on the body, in the device frame, the force at its origin: thrusters that somebody else has
+/// allocated, a tow, a push in a test.  Works in air too.
+class BodyWrench final : public sim::Actuator {
+ public:
+  static constexpr const char* meaning = "Force and torque on the body in the device's frame, at its origin.";
+  struct Params {
+    sim::Vector3d force_max_N = sim::Vector3d::Constant(1000);
+    sim::Vector3d torque_max_Nm = sim::Vector3d::Constant(1000);
+    double lag_s = 0;
+    void read(sim::ParamReader& in);
+  };
+
+  BodyWrench(const Params& params, const sim::DeviceContext& context);
+  void act(const sim::ActContext& context) override;
+  /// stop: no force.
+  void make_safe(sim::SafeState) override { set_wrench(sim::Vector3d::Zero(), sim::Vector3d::Zero()); }
+  void change(const Params& params);
+  void visit_state(sim::StateArchive& archive) override {
+    archive(wanted_force_N_, wanted_torque_Nm_, force_N_, torque_Nm_);
+  }
+
+  /// In the device frame; each axis is cut to its limit.
+  void set_wrench(const sim::Vector3d& force_N, const sim::Vector3d& torque_Nm);
+
+ private:
+  Params params_;
+  sim::Body& body_;
+  sim::Vector3d p_BD_;
+  sim::Matrix3d R_BD_;
+  sim::Vector3d wanted_force_N_ = sim::Vector3d::Zero(), wanted_torque_Nm_ = sim::Vector3d::Zero();
+  sim::Vector3d force_N_ = sim::Vector3d::Zero(), torque_Nm_ = sim::Vector3d::Zero();
+};
+
+/// Takes shoal.wrench_t.
+class BodyWrenchController final : public sim::Controller {
+ public:
+  static constexpr const char* command_messages = "shoal.wrench_t";
+  explicit BodyWrenchController(BodyWrench& wrench) : wrench_(wrench) {}
+  void receive(sim::Time now, std::span<const std::byte> payload) override;
+
+ private:
+  BodyWrench& wrench_;
+};
+
+}  // namespace devices

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "devices/common/actuator_commands.hpp"
+#include "devices/common/actuator_lag.hpp"
+#include "devices/marine/foil.hpp"
+#include "devices/marine/water_mount.hpp"
+#include "sim/model/hydrodynamics_config.hpp"
+
+namespace devices {
+
+/// Force and moment about the body's origin for each rad of deflection and (m/s)^2 of forward speed, as published.
+struct FinCoefficients {
+  sim::Vector3d force = sim::Vector3d::Zero();  ///< of the body, forward-left-up
+  sim::Vector3d moment = sim::Vector3d::Zero();
+  void read(sim::ParamReader& in);
+};
+
+/// A rudder, a stern plane, a bow plane.  In the device frame D, x is forward along the chord at rest and z is the
+/// hinge.  A command is an angle in rad; a positive one turns the leading edge from x towards y.  With flow from ahead
+/// the lift is along +y then.
+///
+/// - A rudder at the stern, mounted with `rpy_deg: [0, 0, 0]`: positive turns the vehicle to starboard (as delta_r of
+///   MSS).  `rpy_deg: [180, 0, 0]`: to port.
+/// - A stern plane, `rpy_deg: [90, 0, 0]`: the lift is upwards, positive turns the nose down (as delta_s of MSS and of
+///   Prestero).  `rpy_deg: [-90, 0, 0]`: nose up.
+///
+/// Lift and drag are those of a foil, see Foil.
+class Fin final : public sim::Actuator {
+ public:
+  static constexpr const char* meaning =
+      "Rudder or plane that turns about z of its frame; commanded by its angle in rad.";
+  static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::hold};
+  enum class Model { lift, coefficients };
+  enum class Flow { local, body };
+  struct Params {
+    Model model = Model::lift;
+    Flow flow = Flow::local;
+    double area_m2 = 0.01;
+    FoilParams foil;
+    std::optional<double> density_kgpm3;
+    std::optional<FinCoefficients> coefficients;
+    double limit_rad = sim::degrees_to_radians(30);
+    std::optional<double> rate_limit_degps;
+    LagParams lag;
+    void read(sim::ParamReader& in);
+  };
+
+  Fin(const Params& params, const sim::DeviceContext& context);
+  /// `effectiveness` slows the servo; at 0 the fin stays where it is.
+  void act(const sim::ActContext& context) override;
+  /// stop: amidships; hold: where it is.
+  void make_safe(sim::SafeState safe) override { command_ = safe == sim::SafeState::hold ? lag_.value() : 0; }
+  void change(const Params& params);
+  void visit_state(sim::StateArchive& archive) override { archive(lag_, command_); }
+
+  /// Angle in rad; beyond the limit it is cut.
+  void set_command(double angle_rad);
+  double angle_rad() const { return lag_.value(); }
+
+ private:
+  void lift_locally(const WaterFlow& flow, double angle_rad, double scale, double step_s);
+  void lift_by_speed_of_body(const WaterFlow& flow, double angle_rad, double scale, double step_s);
+  void act_as_published(const WaterFlow& flow, double angle_rad, double scale, double step_s);
+
+  Params params_;
+  WaterMount mount_;
+  Lag lag_;
+  double command_ = 0;
+  double span_m_ = 0;
+  double largest_coefficient_ = 1;  // of force or moment
+  Foil foil_;
+};
+
+}  // namespace devices

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/marine/foil.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace devices {
+
+void FoilParams::read(sim::ParamReader& in) {
+  in.read("aspect_ratio", aspect_ratio, sim::above_to(0, 100), "square of the span over the area");
+  in.read("lift_slope", lift_slope, sim::between(0, 20),
+          "dC_L/d(angle), per rad; absent: pi AR / (1 + sqrt(1 + (AR/2)^2))");
+  in.read_deg("stall_deg", stall_rad, sim::above_to(0, 89), "angle of attack at which the flow begins to part");
+  in.read_deg("stall_width_deg", stall_width_rad, sim::above_to(0, 89), "so much later it is a plate across the flow");
+  in.read("drag_coefficient", drag_coefficient, sim::between(0, 10), "C_D without lift");
+  in.read("span_efficiency", span_efficiency, sim::above_to(0, 2), "e of the drag that comes with lift");
+  in.read("plate_coefficient", plate_coefficient, sim::between(0, 3), "C_D when it stands across the flow");
+}
+
+double FoilParams::slope() const {
+  // Whicker & Fehlner 1958 without sweep.
+  return lift_slope.value_or(std::numbers::pi * aspect_ratio / (1 + std::sqrt(1 + aspect_ratio * aspect_ratio / 4)));
+}
+
+Eigen::Vector2d Foil::force(double mx, double my, double angle_rad) const {
+  // The chord, turned to point forward in the motion.
+  const double cx = std::cos(angle_rad), cy = std::sin(angle_rad);
+  double sine = mx * cy - my * cx, cosine = mx * cx + my * cy;
+  if (cosine < 0) {
+    sine = -sine;
+    cosine = -cosine;
+  }
+  const double attack = std::atan2(sine, cosine);
+  double C_L = slope_ * attack;
+  double C_D =
+      params_.drag_coefficient + C_L * C_L / (std::numbers::pi * params_.span_efficiency * params_.aspect_ratio);
+  const double past = std::min((std::abs(attack) - params_.stall_rad) / params_.stall_width_rad, 1.0);
+  if (past > 0) {
+    const double stalled = past * past * (3 - 2 * past);
+    const double C_N = params_.plate_coefficient * sine * sine;
+    C_L += stalled * (std::copysign(C_N * cosine, sine) - C_L);
+    C_D += stalled * (params_.drag_coefficient + C_N * std::abs(sine) - C_D);
+  }
+  return {-C_D * mx - C_L * my, -C_D * my + C_L * mx};
+}
+
+}  // namespace devices

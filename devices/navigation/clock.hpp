@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "sim/device/device_registry.hpp"
+#include "sim/clock/vehicle_clock.hpp"
+
+namespace devices {
+
+/// Tells the state of the vehicle's clock, as a time server on board does.  The true error is on the truth channel
+/// only.
+class Clock final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "State of the vehicle's clock: when it was disciplined, how good it may be.";
+  static constexpr double default_rate_hz = 1;
+  struct Params {
+    void read(sim::ParamReader&) {}
+  };
+  struct Reading {
+    bool disciplined = false;
+    double since_fix_s = -1;
+    double estimated_std_s = 0;
+    double error_s = 0;
+    double rate_error = 0;  ///< mean since the last sample
+    void visit_state(sim::StateArchive& archive) {
+      archive(disciplined, since_fix_s, estimated_std_s);
+      archive.not_only_finite(error_s, rate_error);
+    }
+  };
+
+  Clock(const Params& params, const sim::DeviceContext& context);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  void visit_state(sim::StateArchive& archive) override { archive(reading_, last_error_s_); }
+  const Reading& reading() const { return reading_; }
+
+ private:
+  const sim::VehicleClock& clock_;
+  Reading reading_;
+  double last_error_s_ = 0;
+};
+
+/// Publishes shoal.clock_status_t.
+class ClockReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.clock_status_t";
+  explicit ClockReporter(const Clock& clock) : clock_(clock) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const Clock& clock_;
+};
+
+}  // namespace devices

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/device/device_registry.hpp"
+#include "sim/medium/medium.hpp"
+#include "sim/physics/physics_world.hpp"
+#include "sim/random/noise.hpp"
+#include "sim/scene/scene.hpp"
+
+namespace devices {
+
+constexpr std::size_t dvl_beams = 4;
+
+/// Doppler velocity log: four beams about -z of the sensor frame S, 90 deg apart.  Along each beam b (of unit length)
+/// it measures b . v; the velocity v is the least squares solution for the beams that see the bottom, three at least.
+/// What the beams hit counts as standing still.
+class Dvl final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning =
+      "Doppler velocity log: velocity over the bottom and through the water, altitude.";
+  static constexpr double default_rate_hz = 5;
+  static constexpr bool casts_rays = true;
+  struct Params {
+    std::string preset;
+    double beam_angle_rad = sim::degrees_to_radians(30);     ///< from -z
+    double first_azimuth_rad = sim::degrees_to_radians(45);  ///< of the first beam, from x to y
+    double altitude_min_m = 0.5, altitude_max_m = 100;       ///< along -z
+    double incidence_max_rad = sim::degrees_to_radians(60);
+    double beam_dropout = 0;
+    bool water_track = true;
+    double layer_from_m = 2, layer_to_m = 8;  ///< along -z
+    double beam_std_mps = 0, beam_std_per_mps = 0, scale_std = 0;
+    std::optional<double> assumed_sound_speed_mps;
+    std::vector<std::string> see_through;
+    sim::NoiseParams beam_noise, velocity_noise;  ///< m/s
+    sim::NoiseParams range_noise;                 ///< m
+    void read(sim::ParamReader& in);
+  };
+  struct Beam {
+    double range_m = 0;
+    double velocity_mps = 0;  ///< towards what it hits
+    double water_mps = 0;     ///< towards the layer of water
+    bool sees_bottom = false, hears_water = false;
+    void visit_state(sim::StateArchive& archive) {
+      archive(range_m, velocity_mps, water_mps, sees_bottom, hears_water);
+    }
+  };
+  struct Reading {
+    std::array<Beam, dvl_beams> beams;
+    std::optional<sim::Vector3d> velocity_S, water_velocity_S;
+    double altitude_m = 0, fom_mps = 0;  ///< of a reading with velocity_S
+    void visit_state(sim::StateArchive& archive) { archive(beams, velocity_S, water_velocity_S, altitude_m, fom_mps); }
+  };
+
+  Dvl(const Params& params, const sim::DeviceContext& context);
+  void change(const Params& params);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  std::int64_t rays() const override { return dvl_beams; }
+  void visit_state(sim::StateArchive& archive) override;
+  const Reading& reading() const { return reading_; }
+
+ private:
+  /// The water that a beam hears in the layer: sets its velocity.
+  void listen_to_water(const sim::Ray& ray_W, const sim::Vector3d& v_WS_W, Beam& beam) const;
+  /// Velocities and altitude from the beams.
+  void solve();
+  double expected_beam_std_mps() const;
+
+  Params params_;
+  const sim::PhysicsWorld& physics_;
+  const sim::Medium& medium_;
+  int own_group_;
+  const sim::NoiseFault& beam_fault_;
+  sim::RayFilter filter_;
+  sim::Noise beam_noise_, water_beam_noise_, velocity_noise_, water_velocity_noise_, range_noise_;
+  double scale_draw_;       ///< standard normal, once in a run
+  double sound_scale_ = 1;  ///< assumed over true speed of sound
+  double speed_mps_ = 0;    ///< true, for the noise
+  std::array<sim::Vector3d, dvl_beams> beams_S_;
+  Reading reading_;
+};
+
+/// Publishes shoal.dvl_t.
+class DvlReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.dvl_t";
+  explicit DvlReporter(const Dvl& dvl) : dvl_(dvl) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const Dvl& dvl_;
+};
+
+}  // namespace devices

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/navigation/leak.hpp"
+
+#include <algorithm>
+
+#include "shoal/leak_t.hpp"
+#include "shoal/message_codec.hpp"
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+void Leak::Params::read(sim::ParamReader& in) {
+  in.read("rated_depth_m", rated_depth_m, sim::above(0), "once deeper than this it leaks for good; unset: never");
+  in.read("leaking", leaking, "it leaks now; for `set` in events");
+  in.read("ingress_lps", ingress_lps, sim::above(0), "litres per second that come in while it leaks under water");
+  in.read("alarm_l", alarm_l, sim::above(0), "litres in the hull that the probe reacts to");
+  in.read("volume_l", volume_l, sim::above(0), "litres that the hull takes");
+  in.read("water_noise", water_noise, "error of the water in the hull, litres; a fault's bias is a false alarm");
+}
+
+Leak::Leak(const Params& params, const sim::DeviceContext& context)
+    : params_(params), water_noise_(context.noise(params.water_noise, 1, "water_noise")) {}
+
+void Leak::change(const Params& params) {
+  params_ = params;
+  water_noise_.change(params.water_noise);
+}
+
+void Leak::measure(const sim::SenseContext& context) {
+  const double depth_m = context.world.medium().depth_m(context.X_WS.translation());
+  if (params_.rated_depth_m && depth_m > *params_.rated_depth_m) burst_ = true;
+  if ((burst_ || params_.leaking) && depth_m > 0)
+    water_l_ = std::min(water_l_ + params_.ingress_lps * context.dt_s, params_.volume_l);
+  reading_l_ = water_l_;
+}
+
+void Leak::disturb(double dt_s, sim::Random& random) {
+  water_noise_.apply(reading_l_, dt_s, random);
+  reading_l_ = std::max(reading_l_, 0.0);
+}
+
+void Leak::visit_state(sim::StateArchive& archive) {
+  archive(water_l_, burst_, reading_l_, water_noise_);
+}
+
+void LeakReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
+  shoal::leak_t message;
+  message.utime = out.utime(sampled_at);
+  message.leak = leak_.leak();
+  message.water_l = leak_.water_l();
+  shoal::encode_into(message, out.buffer());
+  out.publish(out.buffer());
+}
+
+SHOAL_SENSOR("leak", Leak, LeakReporter);
+
+}  // namespace devices

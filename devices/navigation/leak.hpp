@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "sim/device/device_registry.hpp"
+#include "sim/random/noise.hpp"
+
+namespace devices {
+
+/// Leak detector: water comes into the hull while its place is deeper than the hull is rated for, or while an event
+/// says so, and it reports how much.  It does not make the hull heavier.
+class Leak final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Leak detector: water in the hull, from too great a depth or from an event.";
+  static constexpr double default_rate_hz = 1;
+  struct Params {
+    std::optional<double> rated_depth_m;
+    bool leaking = false;
+    double ingress_lps = 0.05;
+    double alarm_l = 0.01;
+    double volume_l = 10;
+    sim::NoiseParams water_noise;  ///< litres
+    void read(sim::ParamReader& in);
+  };
+
+  Leak(const Params& params, const sim::DeviceContext& context);
+  void change(const Params& params);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  void visit_state(sim::StateArchive& archive) override;
+  double water_l() const { return reading_l_; }
+  bool leak() const { return reading_l_ >= params_.alarm_l; }
+
+ private:
+  Params params_;
+  sim::Noise water_noise_;
+  double water_l_ = 0;  ///< in the hull
+  bool burst_ = false;  ///< it has been too deep: it leaks wherever there is water
+  double reading_l_ = 0;
+};
+
+/// Publishes shoal.leak_t.
+class LeakReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.leak_t";
+  explicit LeakReporter(const Leak& leak) : leak_(leak) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const Leak& leak_;
+};
+
+}  // namespace devices

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "sim/device/device_registry.hpp"
+#include "sim/physics/joint.hpp"
+#include "sim/random/noise.hpp"
+
+namespace devices {
+
+/// Dead reckoning of a differential drive from quantised wheel ticks.  It believes its own wheel radius and track,
+/// which may be off, and knows nothing of slip: the error grows as it does on a real rover.
+class Odometry final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning =
+      "Position from the ticks of two wheels; errors by slip, ticks and calibration.";
+  static constexpr double default_rate_hz = 20;
+  struct Params {
+    std::string left_joint;
+    std::string right_joint;
+    std::optional<double> wheel_radius_m, track_m;  ///< that it believes in; unset: as in the vehicle
+    int ticks_per_turn = 1024;
+    sim::NoiseParams noise;  ///< of the angle each wheel turned between two samples, rad
+    void read(sim::ParamReader& in);
+  };
+  struct Reading {
+    double x_m = 0, y_m = 0, theta_rad = 0;
+    double forward_mps = 0, turn_radps = 0;
+    std::int64_t left_ticks = 0, right_ticks = 0;
+    void visit_state(sim::StateArchive& archive) {
+      archive(x_m, y_m, theta_rad, forward_mps, turn_radps, left_ticks, right_ticks);
+    }
+  };
+
+  Odometry(const Params& params, const sim::DeviceContext& context);
+  /// The truth: the vehicle's pose relative to where it started.
+  void measure(const sim::SenseContext& context) override;
+  /// The measurement: ticks counted and summed up.
+  void disturb(double dt_s, sim::Random& random) override;
+  void visit_state(sim::StateArchive& archive) override;
+  const Reading& reading() const { return reading_; }
+
+ private:
+  Params params_;
+  double wheel_radius_m_, track_m_;  ///< that it believes in
+  const sim::Joint& left_;
+  const sim::Joint& right_;
+  sim::Noise noise_;
+  sim::Pose X_W0_;  ///< where the vehicle started
+  double truth_theta_rad_ = 0;
+  double wheel_rad_[2] = {0, 0};     ///< true angles at the last sample
+  double believed_rad_[2] = {0, 0};  ///< with the noise, before they are cut into ticks
+  Reading reading_;
+  Reading reckoned_;
+};
+
+/// Publishes shoal.odometry_t.
+class OdometryReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.odometry_t";
+  explicit OdometryReporter(const Odometry& odometry) : odometry_(odometry) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const Odometry& odometry_;
+};
+
+}  // namespace devices

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "devices/navigation/depth_formula.hpp"
+#include "sim/device/device_registry.hpp"
+#include "sim/random/noise.hpp"
+
+namespace devices {
+
+/// Pressure sensor: the absolute pressure of the water or air at its place, and the depth it makes of it.
+class Pressure final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Pressure sensor: absolute pressure, depth, temperature.";
+  static constexpr double default_rate_hz = 10;
+  struct Params {
+    DepthFormula depth;
+    sim::NoiseParams pressure_noise;     ///< Pa
+    sim::NoiseParams temperature_noise;  ///< degrees C
+    void read(sim::ParamReader& in);
+  };
+
+  Pressure(const Params& params, const sim::DeviceContext& context);
+  void change(const Params& params);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  void visit_state(sim::StateArchive& archive) override;
+
+  double pressure_Pa() const { return pressure_Pa_; }
+  double depth_m() const { return params_.depth.depth_m(pressure_Pa_); }
+  double temperature_C() const { return temperature_C_; }
+
+ private:
+  Params params_;
+  sim::Noise pressure_noise_, temperature_noise_;
+  double pressure_Pa_ = 0, temperature_C_ = 0;
+};
+
+/// Publishes shoal.pressure_t.
+class PressureReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.pressure_t";
+  explicit PressureReporter(const Pressure& pressure) : pressure_(pressure) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const Pressure& pressure_;
+};
+
+}  // namespace devices

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/device/device_registry.hpp"
+#include "sim/random/noise.hpp"
+
+namespace devices {
+
+/// Senses where the other vehicles are: relative to itself, and in the world if asked for.
+class SwarmPosition final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Relative (and absolute) positions of the other vehicles within range.";
+  static constexpr double default_rate_hz = 5;
+  struct Params {
+    double range_max_m = 30;
+    bool absolute = false;
+    bool occlusion = false;
+    std::vector<std::string> see_through;  ///< categories of parts that do not hide a vehicle
+    sim::NoiseParams relative_noise;
+    sim::NoiseParams absolute_noise;
+    void read(sim::ParamReader& in);
+  };
+  struct Sighting {
+    int vehicle = -1;  ///< its number in the world
+    std::string name;
+    sim::Vector3d p_SV_S = sim::Vector3d::Zero();  ///< from the sensor, in the sensor's frame
+    sim::Vector3d p_WV = sim::Vector3d::Zero();
+    void visit_state(sim::StateArchive& archive) { archive(vehicle, name, p_SV_S, p_WV); }
+  };
+
+  SwarmPosition(const Params& params, const sim::DeviceContext& context);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  void visit_state(sim::StateArchive& archive) override;
+  /// In the order of the vehicles in the world.
+  const std::vector<Sighting>& sightings() const { return sightings_; }
+  bool absolute() const { return params_.absolute; }
+
+ private:
+  struct Errors {
+    int vehicle = -1;
+    sim::Noise relative, absolute;
+    double seen_at_s = 0;
+  };
+  bool visible(const sim::SenseContext& context, const sim::Vehicle& other) const;
+  Errors& errors_of(const Sighting& sighting);
+  Errors new_errors(int vehicle, const std::string& name) const;
+  void make_errors_of(const std::vector<int>& seen, const sim::StateArchive& archive);
+
+  Params params_;
+  std::uint32_t categories_ = ~0u;
+  std::uint64_t seed_;
+  std::string full_name_;
+  const sim::NoiseFault& relative_fault_;
+  const sim::NoiseFault& absolute_fault_;
+  std::vector<Sighting> sightings_;
+  std::vector<Errors> errors_;     ///< of each vehicle seen so far, in the order of first sight
+  std::vector<int> errors_index_;  ///< by vehicle number; -1: not seen yet
+  double now_s_ = 0;
+};
+
+/// Publishes shoal.swarm_position_t.
+class SwarmPositionReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.swarm_position_t";
+  explicit SwarmPositionReporter(const SwarmPosition& sensor) : sensor_(sensor) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const SwarmPosition& sensor_;
+};
+
+}  // namespace devices

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/navigation/water_speed.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shoal/message_codec.hpp"
+#include "shoal/water_speed_t.hpp"
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+void WaterSpeed::Params::read(sim::ParamReader& in) {
+  in.read_choice(
+      "senses", senses, {"both", "forward", "magnitude"},
+      "both: the speed with its sign; forward: 0 when the water comes from behind, as a pitot tube; magnitude: "
+      "without its sign, as a paddle wheel");
+  in.read("threshold_mps", threshold_mps, sim::at_least(0), "slower than this it reports 0: a paddle wheel sticks");
+  in.read("speed_max_mps", speed_max_mps, sim::above(0), "it reports no more than this");
+  in.read("speed_noise", speed_noise, "error of the speed, m/s");
+}
+
+WaterSpeed::WaterSpeed(const Params& params, const sim::DeviceContext& context)
+    : params_(params), speed_noise_(context.noise(params.speed_noise, 1, "speed_noise")) {}
+
+void WaterSpeed::change(const Params& params) {
+  params_ = params;
+  speed_noise_.change(params.speed_noise);
+}
+
+void WaterSpeed::measure(const sim::SenseContext& context) {
+  const sim::Medium& medium = context.world.medium();
+  const sim::Vector3d& p_WS = context.X_WS.translation();
+  speed_mps_ = 0;
+  valid_ = medium.in_water(p_WS);
+  if (!valid_) return;
+  speed_mps_ = context.X_WS.linear().col(0).dot(context.v_WS_W - medium.water_velocity_W(p_WS));
+  if (params_.senses == "forward") speed_mps_ = std::max(speed_mps_, 0.0);
+  if (params_.senses == "magnitude") speed_mps_ = std::abs(speed_mps_);
+  if (std::abs(speed_mps_) < params_.threshold_mps) speed_mps_ = 0;
+  speed_mps_ = std::clamp(speed_mps_, -params_.speed_max_mps, params_.speed_max_mps);
+}
+
+void WaterSpeed::disturb(double dt_s, sim::Random& random) {
+  speed_noise_.apply(speed_mps_, dt_s, random);
+  speed_mps_ = std::clamp(speed_mps_, -params_.speed_max_mps, params_.speed_max_mps);
+  if (!valid_) speed_mps_ = 0;
+}
+
+void WaterSpeed::visit_state(sim::StateArchive& archive) {
+  archive(speed_mps_, valid_, speed_noise_);
+}
+
+void WaterSpeedReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
+  shoal::water_speed_t message;
+  message.utime = out.utime(sampled_at);
+  message.speed_mps = sensor_.speed_mps();
+  message.valid = sensor_.valid();
+  shoal::encode_into(message, out.buffer());
+  out.publish(out.buffer());
+}
+
+SHOAL_SENSOR("water_speed", WaterSpeed, WaterSpeedReporter);
+
+}  // namespace devices

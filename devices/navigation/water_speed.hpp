@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "sim/device/device_registry.hpp"
+#include "sim/random/noise.hpp"
+
+namespace devices {
+
+/// Paddle wheel or pitot tube: speed of its place through the water, along +x of the sensor frame.
+class WaterSpeed final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Paddle wheel or pitot tube: speed through the water along its x axis.";
+  static constexpr double default_rate_hz = 5;
+  struct Params {
+    std::string senses = "both";
+    double threshold_mps = 0;
+    double speed_max_mps = 20;
+    sim::NoiseParams speed_noise;  ///< m/s
+    void read(sim::ParamReader& in);
+  };
+
+  WaterSpeed(const Params& params, const sim::DeviceContext& context);
+  void change(const Params& params);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  void visit_state(sim::StateArchive& archive) override;
+  double speed_mps() const { return speed_mps_; }
+  bool valid() const { return valid_; }
+
+ private:
+  Params params_;
+  sim::Noise speed_noise_;
+  double speed_mps_ = 0;
+  bool valid_ = false;
+};
+
+/// Publishes shoal.water_speed_t.
+class WaterSpeedReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.water_speed_t";
+  explicit WaterSpeedReporter(const WaterSpeed& sensor) : sensor_(sensor) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const WaterSpeed& sensor_;
+};
+
+}  // namespace devices

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "sim/device/device_registry.hpp"
+#include "sim/random/noise.hpp"
+#include "sim/world/vehicle.hpp"
+
+namespace devices {
+
+/// The one battery of a vehicle: an open-circuit voltage E that falls with the charge, behind an internal resistance R
+/// (the Rint model; Plett, Battery Management Systems, vol. I: Battery Modeling, 2015).  It gives the vehicle the power
+/// P it draws: E I - R I^2 = P; of that the charge pays E I.  Where P is more than E^2 / 4R the voltage breaks down to
+/// E / 2, and no more comes.
+class Battery final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Battery of the vehicle: drained by its devices; empty, they go off.";
+  static constexpr double default_rate_hz = 1;
+  static constexpr bool always_on = true;
+  static constexpr const char* fixed_keys[] = {"initial_charge"};
+  struct Params {
+    double capacity_Wh = 100;
+    double initial_charge = 1;
+    std::vector<double> open_circuit_V = {11, 12.6};
+    double internal_resistance_ohm = 0;
+    sim::NoiseParams voltage_noise;
+    sim::NoiseParams current_noise;
+    sim::NoiseParams charge_noise;
+    void read(sim::ParamReader& in);
+  };
+  struct Reading {
+    double voltage_V = 0, current_A = 0, charge = 1, energy_J = 0;
+    bool empty = false;
+    void visit_state(sim::StateArchive& archive) { archive(voltage_V, current_A, charge, energy_J, empty); }
+  };
+
+  Battery(const Params& params, const sim::DeviceContext& context);
+  /// Drains it by what the devices drew since the last step.
+  void act(const sim::ActContext& context);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  /// Its charge stays the same share of the capacity.
+  void change(const Params& params);
+  void visit_state(sim::StateArchive& archive) override {
+    archive(voltage_noise_, current_noise_, charge_noise_, energy_J_, current_A_, reading_);
+  }
+  const Reading& reading() const { return reading_; }
+  double energy_J() const { return energy_J_; }
+
+ private:
+  double capacity_J() const { return params_.capacity_Wh * 3600; }
+  double open_circuit_V() const;
+  double drawn_W(double step_s);
+
+  Params params_;
+  sim::Vehicle& vehicle_;
+  sim::Noise voltage_noise_, current_noise_, charge_noise_;
+  double energy_J_;
+  double current_A_ = 0;
+  Reading reading_;
+};
+
+/// Publishes shoal.battery_t.
+class BatteryReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.battery_t";
+  explicit BatteryReporter(const Battery& battery) : battery_(battery) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const Battery& battery_;
+};
+
+}  // namespace devices

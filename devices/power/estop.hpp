@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "sim/device/device_registry.hpp"
+#include "sim/world/vehicle.hpp"
+
+namespace devices {
+
+class Bumper;
+
+/// The emergency stop of a vehicle: while it is engaged, all actuators are in their safe states and take no commands.
+/// Released, they stay there until their next command.
+class EmergencyStop final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Emergency stop: engaged, all actuators of the vehicle go to safe states.";
+  static constexpr double default_rate_hz = 10;
+  static constexpr bool always_on = true;
+  struct Params {
+    bool engaged_at_start = false;
+    std::string stops_on_touch;
+    void read(sim::ParamReader& in);
+  };
+
+  EmergencyStop(const Params& params, const sim::DeviceContext& context);
+  /// Engages when the bumper begins to touch; a release holds until the next touch.
+  void act(const sim::ActContext& context);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double, sim::Random&) override {}
+  void visit_state(sim::StateArchive& archive) override { archive(touched_, engaged_); }
+  void set_engaged(bool engaged);
+  bool engaged() const { return engaged_; }
+
+ private:
+  Params params_;
+  sim::Vehicle& vehicle_;
+  const Bumper* bumper_ = nullptr;  ///< once all devices are there
+  bool touched_ = false;
+  bool engaged_ = false;  ///< as sampled
+};
+
+/// Publishes shoal.estop_t.
+class EmergencyStopReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.estop_t";
+  explicit EmergencyStopReporter(const EmergencyStop& estop) : estop_(estop) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const EmergencyStop& estop_;
+};
+
+/// Takes shoal.estop_t.
+class EmergencyStopController final : public sim::Controller {
+ public:
+  static constexpr const char* command_messages = "shoal.estop_t";
+  explicit EmergencyStopController(EmergencyStop& estop) : estop_(estop) {}
+  void receive(sim::Time now, std::span<const std::byte> payload) override;
+
+ private:
+  EmergencyStop& estop_;
+};
+
+}  // namespace devices

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/ranging/camera.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "devices/common/param_checks.hpp"
+#include "devices/ranging/ray_filter.hpp"
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+namespace {
+
+/// LCM 1.3.1 sends no message of more than 16 MiB; some of it is left for the metadata.
+constexpr int most_message_bytes = (16 << 20) - (64 << 10);
+
+/// What the cameras of a world share: decoded textures, and the rays of lenses that are alike.
+struct SharedByCameras {
+  std::shared_ptr<sim::TextureLibrary> textures = std::make_shared<sim::TextureLibrary>();
+  std::map<std::string, std::weak_ptr<const sim::PixelRays>> rays;
+
+  std::shared_ptr<const sim::PixelRays> rays_of(const sim::OpticsConfig& config, int per_side) {
+    auto& known = rays[config.text() + " " + std::to_string(per_side)];
+    auto found = known.lock();
+    if (!found) known = found = sim::make_pixel_rays(sim::Optics(config), per_side);
+    return found;
+  }
+};
+
+bool takes_light(Camera::Kind kind) {
+  return kind == Camera::Kind::rgb || kind == Camera::Kind::grey;
+}
+
+sim::ImageKind render_kind(Camera::Kind kind) {
+  switch (kind) {
+    case Camera::Kind::depth:
+      return sim::ImageKind::depth;
+    case Camera::Kind::parts:
+      return sim::ImageKind::parts;
+    case Camera::Kind::vehicles:
+      return sim::ImageKind::groups;
+    default:
+      return sim::ImageKind::color;
+  }
+}
+
+}  // namespace
+
+void ExposureParams::read(sim::ParamReader& in) {
+  in.read("auto", automatic, "each picture is made as bright as a middle grey");
+  in.read("gain", gain, sim::above_to(0, 1000), "times the light, on top of auto");
+}
+
+void Camera::Params::read(sim::ParamReader& in) {
+  in.read_choice("image", image,
+                 {{"rgb", Kind::rgb},
+                  {"grey", Kind::grey},
+                  {"depth", Kind::depth},
+                  {"segmentation_parts", Kind::parts},
+                  {"segmentation_vehicles", Kind::vehicles}},
+                 "what it takes");
+  optics.read(in);
+  in.read_choice("encoding", encoding,
+                 {{"raw", Encoding::raw}, {"raw16", Encoding::raw16}, {"png", Encoding::png}, {"jpeg", Encoding::jpeg}},
+                 "of the message; raw16: depth in mm, 0 where there is none; png of depth too");
+  in.read("jpeg_quality", jpeg_quality, sim::between(1, 100), "of jpeg");
+  in.read("range_max_m", range_max_m, sim::above_to(0, 100'000), "what is farther along the ray is not seen");
+  std::string along = depth_along_ray ? "ray" : "axis";
+  in.read_choice("depth_along", along, {"axis", "ray"}, "depth: distance along the optical axis, or range of the ray");
+  depth_along_ray = along == "ray";
+  in.read("antialias", antialias, sim::between(1, 4), "rgb, grey: so many rays along each side of a pixel");
+  in.read("exposure", exposure, "rgb, grey: how bright it becomes");
+  in.read("noise", noise, "rgb, grey: error of each level from 0 to 255; depth: of each depth, m");
+  in.read("depth_noise_per_m", depth_noise_per_m, sim::at_least(0),
+          "depth: a standard deviation of this times depth squared, 1/m, as stereo has it");
+  in.read("full_well_electrons", full_well_electrons, sim::at_least(0),
+          "rgb, grey: electrons of a white pixel, for shot noise; 0: none");
+  in.read("read_noise_electrons", read_noise_electrons, sim::at_least(0), "rgb, grey: with full_well_electrons");
+  in.read("readout_s", readout_s, sim::between(0, 10),
+          "rolling shutter: the first row is exposed this long before the last, which is at the sample time");
+  in.read("exposure_time_s", exposure_time_s, sim::between(0, 10),
+          "rgb, grey: motion blur over this time up to the sample");
+  in.read("blur_samples", blur_samples, sim::between(2, 64), "images that a blurred one is made of");
+  in.read("sees_own_vehicle", sees_own_vehicle, "the own vehicle is in the picture");
+  in.read_references("see_through", see_through, "category", "categories of parts that are not in the picture");
+  if (in.describing()) return;
+  if (encoding == Encoding::raw16 && image != Kind::depth) in.error("encoding", "'raw16' is for images of depth");
+  if (encoding == Encoding::jpeg && !takes_light(image)) in.error("encoding", "'jpeg' is for images rgb and grey");
+  if (static_cast<double>(optics.width) * optics.height * antialias * antialias > sim::max_image_pixels)
+    in.error("antialias", "'antialias' makes more than " + std::to_string(sim::max_image_pixels) + " rays in an image");
+  if (exposure_time_s > 0 && readout_s > 0)
+    in.error("exposure_time_s", "needs either 'readout_s' or 'exposure_time_s', not both");
+  if (exposure_time_s > 0 && !takes_light(image)) in.error("exposure_time_s", "is for images rgb and grey");
+  if (read_noise_electrons > 0 && full_well_electrons == 0)
+    in.error("read_noise_electrons", "'read_noise_electrons' needs 'full_well_electrons'");
+  check_time(in);
+  if (message_bytes() > most_message_bytes)
+    in.error(in.has("height") ? "height" : "width",
+             fmt::format("an image must have at most {} bytes, got {:.0f}: the bus carries no more; 'encoding' png or "
+                         "jpeg makes it smaller",
+                         most_message_bytes, message_bytes()));
+}
+
+void Camera::Params::check_time(sim::ParamReader& in) const {
+  const char* key = readout_s > 0 ? "readout_s" : "exposure_time_s";
+  const double span_s = std::max(readout_s, exposure_time_s);
+  const double rate_hz = rate_hz_of(in, default_rate_hz);
+  if (span_s > 0 && rate_hz == 0)
+    in.error(key, fmt::format("'{}' needs a 'rate_hz' > 0: at 0 there is an image in every step", key));
+  if (span_s * rate_hz > 1 + 1e-9)
+    in.error(key, fmt::format("'{}' must be at most 1 / rate_hz, got {:g} s at {:g} Hz", key, span_s, rate_hz));
+}
+
+double Camera::Params::message_bytes() const {
+  if (encoding == Encoding::png || encoding == Encoding::jpeg) return 0;
+  const double bytes = image == Kind::rgb     ? 3
+                       : image == Kind::grey  ? 1
+                       : image == Kind::depth ? (encoding == Encoding::raw ? 4 : 2)
+                                              : 2;
+  return bytes * optics.width * optics.height;
+}
+
+Camera::Camera(const Params& params, const sim::DeviceContext& context)
+    : world_(context.world),
+      physics_(context.world.physics()),
+      vehicle_(context.vehicle),
+      config_(context.config),
+      step_(sim::from_seconds(context.world.config().physics.step_s)),
+      own_group_(context.vehicle.group()),
+      noise_(context.noise(params.noise, params.image == Kind::rgb ? 3 : 1, "noise")) {
+  change(params);
+  renderer_->clear(frame_);
+  levels_ = sim::develop(params_.image == Kind::grey ? sim::grey_of(frame_.light) : frame_.light, 1);
+  depth_m_ = frame_.depth_m;
+}
+
+void Camera::change(const Params& params) {
+  params_ = params;
+  noise_.change(params.noise);
+  auto& shared = world_.shared<SharedByCameras>();
+  sim::RenderOptions options;
+  options.kind = render_kind(params.image);
+  options.filter =
+      make_ray_filter(physics_, sim::RayKind::light, params.see_through, own_group_, params.sees_own_vehicle);
+  options.range_max_m = params.range_max_m;
+  options.depth_along_ray = params.depth_along_ray;
+  options.light = world_.config().light;
+  // A mean of depths or labels is neither.
+  const int per_side = takes_light(params.image) ? params.antialias : 1;
+  renderer_ =
+      std::make_unique<sim::Renderer>(physics_, shared.rays_of(params.optics, per_side), options, shared.textures);
+  renderer_->clear(under_way_);
+  next_exposure_ = 0;
+  next_sample_ = swept_at_;  // not known until the next sweep
+}
+
+int Camera::exposures() const {
+  if (params_.readout_s > 0) return params_.optics.height;
+  return params_.exposure_time_s > 0 ? params_.blur_samples : 1;
+}
+
+void Camera::expose(int exposure, const sim::Pose& X_WS) {
+  if (params_.readout_s > 0)
+    renderer_->render_rows(X_WS, exposure, exposure + 1, 1, under_way_);
+  else
+    renderer_->render_rows(X_WS, 0, params_.optics.height, 1.0F / static_cast<float>(exposures()), under_way_);
+}
+
+sim::Time Camera::before_sample(int exposure) const {
+  const int count = exposures();
+  if (count < 2) return sim::Time{0};
+  const double span_s = params_.readout_s > 0 ? params_.readout_s : params_.exposure_time_s;
+  return sim::from_seconds(span_s * (count - 1 - exposure) / (count - 1));
+}
+
+void Camera::remember(const sim::SweepContext& context) {
+  if (places_.empty() || places_.back().at != context.from) {  // the first step, or it was without power
+    places_.clear();
+    places_.push_back({context.from, context.X_WS_from});
+  }
+  places_.push_back({context.now, context.X_WS});
+  while (places_.size() > 2 && places_[1].at <= context.now - before_sample(0)) places_.pop_front();
+}
+
+sim::Pose Camera::X_WS_at(sim::Time at) const {
+  if (at <= places_.front().at) return places_.front().X_WS;
+  const auto after =
+      std::lower_bound(places_.begin(), places_.end(), at, [](const Place& p, sim::Time t) { return p.at < t; });
+  if (after == places_.end()) return places_.back().X_WS;
+  const auto before = std::prev(after);
+  return sim::SweepContext{world_, vehicle_, before->at, after->at, before->X_WS, after->X_WS, {}}.X_WS_at(at);
+}
+
+void Camera::sweep(const sim::SweepContext& context) {
+  swept_at_ = context.now;
+  next_sample_ = context.next_sample;
+  const int count = exposures();
+  if (count < 2) return;
+  remember(context);
+  for (; next_exposure_ < count; ++next_exposure_) {
+    const sim::Time at = context.next_sample - before_sample(next_exposure_);
+    if (at > context.now) return;
+    // Before this step where the image before it ended late, as with a rate that does not divide the step.
+    expose(next_exposure_, X_WS_at(at));
+  }
+}
+
+std::int64_t Camera::rays() const {
+  int due = next_exposure_;
+  while (due < exposures() && next_sample_ - before_sample(due) <= swept_at_ + step_) ++due;
+  const auto image = static_cast<std::int64_t>(renderer_->rays().directions_S.size());
+  return (due - next_exposure_) * (params_.readout_s > 0 ? image / params_.optics.height : image);
+}
+
+void Camera::measure(const sim::SenseContext& context) {
+  for (; next_exposure_ < exposures(); ++next_exposure_) expose(next_exposure_, context.X_WS);
+  next_exposure_ = 0;
+  image_digest_.renew();
+  // The next one is no earlier than this; the next sweep knows.
+  const double steps = config_.rate_hz > 0 ? 1 / (config_.rate_hz * sim::to_seconds(step_)) : 1;
+  next_sample_ = context.now + step_ * std::max<std::int64_t>(1, static_cast<std::int64_t>(steps + 1e-9));
+  std::swap(frame_, under_way_);
+  renderer_->clear(under_way_);
+  if (params_.image == Kind::depth) depth_m_ = frame_.depth_m;
+  if (!takes_light(params_.image)) return;
+  gain_ = static_cast<float>(params_.exposure.gain);
+  if (params_.exposure.automatic) gain_ *= sim::auto_gain(frame_.light);
+  if (params_.image == Kind::grey)
+    light_ = sim::grey_of(frame_.light);
+  else
+    std::swap(light_, frame_.light);
+  levels_ = sim::develop(light_, gain_);
+}
+
+void Camera::add_sensor_noise(sim::Random& random) {
+  const double full = params_.full_well_electrons;
+  const double read_variance = params_.read_noise_electrons * params_.read_noise_electrons;
+  for (std::size_t i = 0; i < light_.data.size(); ++i) {
+    const double electrons = full * std::clamp(static_cast<double>(gain_ * light_.data[i]), 0.0, 1.0);
+    const double counted = electrons + std::sqrt(electrons + read_variance) * random.gaussian();
+    levels_.data[i] = sim::srgb_from_linear(static_cast<float>(counted / full));
+  }
+}
+
+void Camera::disturb(double dt_s, sim::Random& random) {
+  if (takes_light(params_.image)) {
+    if (params_.full_well_electrons > 0) add_sensor_noise(random);
+    values_.assign(levels_.data.begin(), levels_.data.end());
+    noise_.apply(std::span<double>(values_), dt_s, random);
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      levels_.data[i] = static_cast<std::uint8_t>(std::clamp(values_[i], 0.0, 255.0) + 0.5);
+  } else if (params_.image == Kind::depth) {
+    values_.assign(depth_m_.data.begin(), depth_m_.data.end());
+    if (params_.depth_noise_per_m > 0)
+      for (double& depth : values_)
+        if (std::isfinite(depth)) depth += params_.depth_noise_per_m * depth * depth * random.gaussian();
+    noise_.apply(std::span<double>(values_), dt_s, random);
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      if (std::isfinite(depth_m_.data[i])) depth_m_.data[i] = static_cast<float>(std::max(0.0, values_[i]));
+  }
+}
+
+void Camera::visit_state(sim::StateArchive& archive) {
+  archive(noise_, places_, swept_at_, next_sample_, next_exposure_);
+  if (next_exposure_ < 0 || next_exposure_ > exposures())
+    archive.fail("the snapshot has an image after " + std::to_string(next_exposure_) + " exposures of " +
+                 std::to_string(exposures()));
+  const auto visit = [&archive](auto& image) {
+    archive.expect_count(image.data.size(), "values in an image");
+    archive.raw(image.data.data(), image.data.size() * sizeof image.data[0]);
+  };
+  // The part of the next image that is there already.
+  if (archive.restoring()) renderer_->clear(under_way_);
+  if (next_exposure_ > 0) {
+    visit(under_way_.light);
+    visit(under_way_.depth_m);
+    visit(under_way_.labels);
+  }
+  image_digest_.visit(archive, levels_.data, depth_m_.data, frame_.labels.data);
+}
+
+std::string Camera::label_text() const {
+  std::vector<std::uint16_t> seen(frame_.labels.data);
+  std::sort(seen.begin(), seen.end());
+  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  std::string text;
+  for (const std::uint16_t label : seen)
+    text += std::to_string(label) + " " + sim::Renderer::label_name(physics_, render_kind(params_.image), label) + "\n";
+  return text;
+}
+
+SHOAL_SENSOR("camera", Camera, CameraReporter);
+
+}  // namespace devices

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "devices/common/reading_digest.hpp"
+#include "sim/camera/renderer.hpp"
+#include "sim/device/device_registry.hpp"
+#include "sim/random/noise.hpp"
+
+namespace devices {
+
+/// How bright a picture becomes.
+struct ExposureParams {
+  bool automatic = false;  ///< each picture gets the gain that makes its mean a middle grey
+  double gain = 1;         ///< times the light; beside `automatic` on top of that
+  void read(sim::ParamReader& in);
+};
+
+/// Camera without GPU or display: looks along +x of the sensor frame S, +y is left in the image and +z up.
+/// See docs/cameras.md.
+class Camera final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Camera: color, grey, depth or segmentation; pinhole or fisheye.";
+  static constexpr double default_rate_hz = 20;
+  static constexpr bool casts_rays = true;
+  static constexpr bool sweeps = true;
+  static constexpr const char* fixed_keys[] = {"image", "readout_s", "exposure_time_s", "blur_samples"};
+  enum class Kind { rgb, grey, depth, parts, vehicles };
+  enum class Encoding { raw, raw16, png, jpeg };
+  struct Params {
+    sim::OpticsConfig optics;
+    Kind image = Kind::rgb;
+    Encoding encoding = Encoding::raw;
+    int jpeg_quality = 85;
+    double range_max_m = 10'000;
+    bool depth_along_ray = false;
+    int antialias = 1;
+    ExposureParams exposure;
+    sim::NoiseParams noise;          ///< of levels 0 to 255, or of depth, m
+    double depth_noise_per_m = 0;    ///< standard deviation of depth is this times depth squared, 1/m
+    double full_well_electrons = 0;  ///< shot noise: electrons of a white pixel; 0: none
+    double read_noise_electrons = 0;
+    double readout_s = 0;
+    double exposure_time_s = 0;
+    int blur_samples = 4;
+    bool sees_own_vehicle = false;
+    std::vector<std::string> see_through;  ///< part categories
+    void read(sim::ParamReader& in);
+    /// Of the pixels of an image; 0 when they are compressed.
+    double message_bytes() const;
+
+   private:
+    void check_time(sim::ParamReader& in) const;
+  };
+
+  Camera(const Params& params, const sim::DeviceContext& context);
+  void change(const Params& params);
+  void sweep(const sim::SweepContext& context) override;
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  std::int64_t rays() const override;
+  void visit_state(sim::StateArchive& archive) override;
+
+  const Params& params() const { return params_; }
+  /// What it sees and in which light, for pictures with its lens.
+  const sim::RenderOptions& render_options() const { return renderer_->options(); }
+  /// The last image, of the kind that was asked for; the others are empty.
+  const sim::Image8& levels() const { return levels_; }        ///< rgb, grey
+  const sim::FloatImage& depth_m() const { return depth_m_; }  ///< depth; infinity: nothing in range
+  const sim::Image16& labels() const { return frame_.labels; }
+  /// What each label in the last image stands for, one `LABEL NAME` in a line.
+  std::string label_text() const;
+
+ private:
+  /// Exposures of an image: rows that are read out one after the other, or whole images that blur into one.
+  int exposures() const;
+  /// When one of them is, before the sample of its image.
+  sim::Time before_sample(int exposure) const;
+  void expose(int exposure, const sim::Pose& X_WS);
+  /// Keeps where the camera was, for as long as an image takes.
+  void remember(const sim::SweepContext& context);
+  /// Where it was, as far back as that is known.
+  sim::Pose X_WS_at(sim::Time at) const;
+  void add_sensor_noise(sim::Random& random);
+
+  struct Place {
+    sim::Time at{0};
+    sim::Pose X_WS = sim::Pose::Identity();
+    void visit_state(sim::StateArchive& archive) { archive(at, X_WS); }
+  };
+
+  sim::World& world_;
+  const sim::PhysicsWorld& physics_;
+  const sim::Vehicle& vehicle_;
+  const sim::DeviceConfig& config_;
+  sim::Time step_;
+  int own_group_;
+  Params params_;
+  std::unique_ptr<sim::Renderer> renderer_;
+  sim::Noise noise_;
+  sim::Frame under_way_, frame_;  // the next image, and the last one
+  int next_exposure_ = 0;
+  std::deque<Place> places_;                // at the ends of steps, the last one now
+  sim::Time swept_at_{0}, next_sample_{0};  // as far as known, for rays()
+  sim::FloatImage light_;                   // the last image without errors, in color or grey
+  float gain_ = 1;
+  sim::Image8 levels_;
+  sim::FloatImage depth_m_;
+  ReadingDigest image_digest_;  // of the last image
+  std::vector<double> values_;  // what noise works on
+};
+
+/// Publishes shoal.image_t, equal on the wire to bot_core's.
+class CameraReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.image_t";
+  explicit CameraReporter(const Camera& camera) : camera_(camera) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const Camera& camera_;
+};
+
+/// FourCC numbers of bot_core's pixel formats, as signed 32-bit integers.  PNG is none of bot_core's: the letters
+/// `PNG `, least significant first.
+enum PixelFormat : std::int32_t {
+  pixel_format_grey = 1497715271,
+  pixel_format_rgb = 859981650,
+  pixel_format_mjpeg = 1196444237,
+  pixel_format_le_grey16 = 909199180,
+  pixel_format_float_grey32 = 842221382,
+  pixel_format_png = 'P' | 'N' << 8 | 'G' << 16 | ' ' << 24
+};
+
+}  // namespace devices

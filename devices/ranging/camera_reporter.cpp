@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "devices/ranging/camera.hpp"
+#include "shoal/image_t.hpp"
+#include "shoal/message_codec.hpp"
+#include "sim/image/image_file.hpp"
+
+namespace devices {
+
+namespace {
+
+/// Millimetres, rounded; 0 where there is nothing, or nothing that fits.
+sim::Image16 millimetres(const sim::FloatImage& depth_m) {
+  sim::Image16 image(depth_m.width, depth_m.height, 1);
+  for (std::size_t i = 0; i < image.data.size(); ++i) {
+    const double mm = 1000.0 * static_cast<double>(depth_m.data[i]);
+    if (mm < 65535.5) image.data[i] = static_cast<std::uint16_t>(std::lround(mm));
+  }
+  return image;
+}
+
+template <typename T>
+void set_raw(shoal::image_t& message, const sim::Image<T>& image, std::int32_t format) {
+  message.pixelformat = format;
+  message.row_stride = static_cast<std::int32_t>(sizeof(T)) * image.width * image.channels;
+  message.data.resize(image.data.size() * sizeof(T));
+  // x86 and ARM, the machines there are builds for, are little endian as the formats are.
+  std::memcpy(message.data.data(), image.data.data(), message.data.size());
+}
+
+/// `compressed`: keeps its memory.
+void set_compressed(shoal::image_t& message, const sim::Bytes& compressed, std::int32_t format) {
+  message.pixelformat = format;
+  message.row_stride = 0;
+  message.data.resize(compressed.size());
+  std::memcpy(message.data.data(), compressed.data(), compressed.size());
+}
+
+void add_metadata(shoal::image_t& message, const std::string& key, const std::string& value) {
+  shoal::image_metadata_t entry;
+  entry.key = key;
+  entry.n = static_cast<std::int32_t>(value.size());
+  entry.value.assign(value.begin(), value.end());
+  message.metadata.push_back(std::move(entry));
+}
+
+void set_levels(shoal::image_t& message, const Camera& camera) {
+  static thread_local sim::Bytes bytes;
+  const sim::Image8& image = camera.levels();
+  if (camera.params().encoding == Camera::Encoding::raw)
+    return set_raw(message, image, image.channels == 1 ? pixel_format_grey : pixel_format_rgb);
+  const bool png = camera.params().encoding == Camera::Encoding::png;
+  png ? sim::encode_png(image, bytes) : sim::encode_jpeg(image, camera.params().jpeg_quality, bytes);
+  set_compressed(message, bytes, png ? pixel_format_png : pixel_format_mjpeg);
+}
+
+void set_16_bits(shoal::image_t& message, const sim::Image16& image, bool png) {
+  static thread_local sim::Bytes bytes;
+  if (!png) return set_raw(message, image, pixel_format_le_grey16);
+  sim::encode_png(image, bytes);
+  set_compressed(message, bytes, pixel_format_png);
+}
+
+void set_depth(shoal::image_t& message, const Camera& camera) {
+  const bool meters = camera.params().encoding == Camera::Encoding::raw;
+  if (meters)
+    set_raw(message, camera.depth_m(), pixel_format_float_grey32);
+  else
+    set_16_bits(message, millimetres(camera.depth_m()), camera.params().encoding == Camera::Encoding::png);
+  add_metadata(message, "unit", meters ? "m" : "mm");
+  add_metadata(message, "depth_along", camera.params().depth_along_ray ? "ray" : "axis");
+}
+
+}  // namespace
+
+void CameraReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
+  static thread_local shoal::image_t message;  // keeps its memory from image to image
+  const Camera::Params& params = camera_.params();
+  message.utime = out.utime(sampled_at);
+  message.width = params.optics.width;
+  message.height = params.optics.height;
+  message.metadata.clear();
+  add_metadata(message, "optics", params.optics.text());
+  switch (params.image) {
+    case Camera::Kind::rgb:
+    case Camera::Kind::grey:
+      set_levels(message, camera_);
+      break;
+    case Camera::Kind::depth:
+      set_depth(message, camera_);
+      break;
+    case Camera::Kind::parts:
+    case Camera::Kind::vehicles:
+      set_16_bits(message, camera_.labels(), params.encoding == Camera::Encoding::png);
+      add_metadata(message, "labels", camera_.label_text());
+      break;
+  }
+  message.size = static_cast<std::int32_t>(message.data.size());
+  message.nmetadata = static_cast<std::int32_t>(message.metadata.size());
+  shoal::encode_into(message, out.buffer());
+  out.publish(out.buffer());
+}
+
+}  // namespace devices

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "devices/ranging/sonar_bins.hpp"
+
+namespace devices {
+
+/// Forward-looking imaging sonar: echo level over range and bearing.  The beams fan out about +x of the sensor frame S,
+/// from -fov/2 to +fov/2 about +z, counter-clockwise, and are tall: elevation is not told apart.
+class ImagingSonar final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Forward-looking sonar: a picture of echo levels over range and bearing.";
+  static constexpr double default_rate_hz = 5;
+  static constexpr bool casts_rays = true;
+  struct Params {
+    int beams = 128;
+    double fov_rad = sim::degrees_to_radians(90);
+    double vertical_rad = sim::degrees_to_radians(20);
+    int elevation_rays = 48;
+    int beam_rays = 1;
+    SonarParams sonar;
+    SonarPictureParams picture;
+    Params() { sonar.tvg = "20log"; }
+    void read(sim::ParamReader& in);
+  };
+
+  ImagingSonar(const Params& params, const sim::DeviceContext& context);
+  void change(const Params& params);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  std::int64_t rays() const override { return static_cast<std::int64_t>(rays_S_.size()); }
+  void visit_state(sim::StateArchive& archive) override { archive(receiver_, bins_); }
+
+  const SonarBins& picture() const { return bins_; }
+  const SonarParams& sonar() const { return params_.sonar; }
+  double first_bearing_rad() const { return params_.beams > 1 ? -params_.fov_rad / 2 : 0; }
+  double bearing_step_rad() const { return params_.beams > 1 ? params_.fov_rad / (params_.beams - 1) : 0; }
+
+ private:
+  double beam_width_rad() const { return params_.beams > 1 ? bearing_step_rad() : params_.fov_rad; }
+  void make_rays();
+
+  Params params_;
+  SonarReceiver receiver_;
+  SonarBins bins_;
+  std::vector<SonarRay> rays_S_;  ///< beam by beam
+  /// Of each ray: towards more elevation, times the elevation that the ray stands for; and towards more bearing.
+  std::vector<sim::Vector3d> up_S_, left_S_;
+};
+
+/// Publishes shoal.sonar_image_t.
+class ImagingSonarReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.sonar_image_t";
+  explicit ImagingSonarReporter(const ImagingSonar& sonar) : sonar_(sonar) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const ImagingSonar& sonar_;
+};
+
+}  // namespace devices

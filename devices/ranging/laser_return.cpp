@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/ranging/laser_return.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "devices/ranging/beam_pattern.hpp"
+#include "devices/ranging/ray_filter.hpp"
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+namespace {
+
+/// A polished surface is never flat: its mirrored share has fallen to 1/e at this angle from head-on.
+const double gloss_width_sine = std::sin(sim::degrees_to_radians(3.0));
+constexpr double dark_reflectivity = 0.1;
+
+}  // namespace
+
+void LaserWeather::read(sim::ParamReader& in) {
+  in.read("extinction_per_m", extinction_per_m, sim::between(0, 10), "share of the power lost per metre, each way");
+  in.read("false_returns_per_m", false_returns_per_m, sim::between(0, 10),
+          "returns from drops per metre of beam; their ranges are exponential with the mean 1 / this");
+  in.read("drop_intensity", drop_intensity, sim::at_least(0), "intensity of a return from a drop");
+}
+
+void LaserParams::read(sim::ParamReader& in) {
+  in.read("range_min_m", range_min_m, sim::at_least(0), "anything nearer reports this");
+  in.read("range_max_m", range_max_m, sim::above(0), "a ray that hits nothing reports this");
+  in.read("resolution_m", resolution_m, sim::at_least(0), "ranges are rounded to multiples of this; 0: not");
+  in.read("range_std_m", range_std_m, sim::at_least(0), "white noise of each range at no distance ...");
+  in.read("range_std_per_m", range_std_per_m, sim::between(0, 1),
+          "... and what its standard deviation grows by per metre");
+  in.read("range_at_10_percent_m", dark_range_m, sim::at_least(0),
+          "largest range at which a surface of reflectivity 0.1 is seen head-on; 0: every surface is seen");
+  in.read_deg("beam_divergence_deg", beam_divergence_rad, sim::between(0, 30), "full angle of a beam");
+  in.read("beam_samples", beam_samples, sim::between(1, 100), "rays that sample a beam; 1: its axis only");
+  in.read(
+      "merge_m", merge_m, sim::at_least(0),
+      "echoes of one beam nearer together than this (half a pulse's length) are one, at their mean weighted by power");
+  in.read_choice("returns", returns, {"strongest", "first"}, "which of several echoes of a beam is reported");
+  in.read("sees_own_vehicle", sees_own_vehicle, "rays hit the parts of the own vehicle");
+  in.read_references("see_through", see_through, "category", "categories of parts that rays pass");
+  in.read("weather", weather, "rain, fog or dust");
+  in.read("noise", noise, "error of each range, m");
+  if (in.describing()) return;
+  if (range_min_m >= range_max_m) in.error("range_min_m", "'range_min_m' must be < range_max_m");
+  if (beam_samples > 1 && beam_divergence_rad == 0)
+    in.error("beam_samples", "'beam_samples' > 1 needs the key 'beam_divergence_deg'");
+}
+
+void LaserReturns::assign(std::size_t beams, double range_m) {
+  ranges_m.assign(beams, range_m);
+  intensities.assign(beams, 0.0);
+  returned.assign(beams, 0);
+}
+
+LaserReceiver::LaserReceiver(const LaserParams& params, const sim::DeviceContext& context)
+    : physics_(context.world.physics()),
+      own_group_(context.vehicle.group()),
+      noise_(context.noise(params.noise, 1, "noise")),
+      fault_(context.faults.noise_of("noise")) {
+  change(params);
+}
+
+void LaserReceiver::change(const LaserParams& params) {
+  params_ = params;
+  noise_.change(params.noise);
+  filter_ = make_ray_filter(physics_, sim::RayKind::laser, params.see_through, own_group_, params.sees_own_vehicle);
+  pattern_ = cone_pattern(params.beam_divergence_rad / 2, params.beam_samples);
+}
+
+double LaserReceiver::intensity(const sim::RayHit& hit, const sim::Vector3d& direction_W) const {
+  const sim::LaserSurface& surface = physics_.material(hit.material).laser;
+  const double cosine = std::clamp(-hit.normal_W.dot(direction_W), 0.0, 1.0);
+  double back = (1 - surface.gloss) * cosine;
+  if (surface.gloss > 0)
+    back += surface.gloss * std::exp(-(1 - cosine * cosine) / (gloss_width_sine * gloss_width_sine));
+  const double air = params_.weather.extinction_per_m;
+  return surface.reflectivity * back * (air > 0 ? std::exp(-2 * air * hit.range_m) : 1.0);
+}
+
+double LaserReceiver::threshold(double range_m) const {
+  if (params_.dark_range_m == 0) return 0;
+  const double share = range_m / params_.dark_range_m;
+  return dark_reflectivity * share * share;
+}
+
+void LaserReceiver::receive(const sim::RayHit& hit, const sim::Vector3d& direction_W, LaserReturns& returns,
+                            std::size_t i) const {
+  returns.ranges_m[i] = params_.range_max_m;
+  returns.intensities[i] = 0;
+  returns.returned[i] = 0;
+  if (!hit.hit()) return;
+  const double power = intensity(hit, direction_W);
+  if (power < threshold(hit.range_m)) return;
+  returns.ranges_m[i] = std::clamp(hit.range_m, params_.range_min_m, params_.range_max_m);
+  returns.intensities[i] = power;
+  returns.returned[i] = 1;
+}
+
+void LaserReceiver::receive(std::span<const sim::RayHit> hits, std::span<const sim::Ray> rays, LaserReturns& returns,
+                            std::size_t i) {
+  if (hits.size() == 1) return receive(hits.front(), rays.front().direction_W, returns, i);
+  returns.ranges_m[i] = params_.range_max_m;
+  returns.intensities[i] = 0;
+  returns.returned[i] = 0;
+  echoes_.clear();
+  for (std::size_t k = 0; k < hits.size(); ++k)
+    if (hits[k].hit())
+      echoes_.push_back({hits[k].range_m, intensity(hits[k], rays[k].direction_W) / static_cast<double>(hits.size())});
+  std::sort(echoes_.begin(), echoes_.end(), [](const Echo& a, const Echo& b) { return a.range_m < b.range_m; });
+  const bool first = params_.returns == "first";
+  for (std::size_t from = 0, to = 0; from < echoes_.size(); from = to) {
+    double power = 0, moment = 0, sum_m = 0;
+    for (; to < echoes_.size() && (to == from || echoes_[to].range_m - echoes_[from].range_m < params_.merge_m); ++to) {
+      power += echoes_[to].power;
+      moment += echoes_[to].power * echoes_[to].range_m;
+      sum_m += echoes_[to].range_m;
+    }
+    // A scanner whose parameters see everything sees black, too.
+    const double mean_m = power > 0 ? moment / power : sum_m / static_cast<double>(to - from);
+    if (power < threshold(mean_m) || (returns.returned[i] && power <= returns.intensities[i])) continue;
+    returns.ranges_m[i] = std::clamp(mean_m, params_.range_min_m, params_.range_max_m);
+    returns.intensities[i] = power;
+    returns.returned[i] = 1;
+    if (first) return;
+  }
+}
+
+void LaserReceiver::disturb(LaserReturns& returns, double dt_s, sim::Random& random) {
+  std::vector<double>& ranges_m = returns.ranges_m;
+  if (params_.weather.false_returns_per_m > 0) {
+    for (std::size_t i = 0; i < ranges_m.size(); ++i) {
+      const double drop_m = -std::log(random.uniform()) / params_.weather.false_returns_per_m;
+      if (drop_m >= ranges_m[i] || drop_m < params_.range_min_m) continue;
+      ranges_m[i] = drop_m;
+      returns.intensities[i] = params_.weather.drop_intensity;
+      returns.returned[i] = 1;
+    }
+  }
+  if (params_.range_std_m > 0 || params_.range_std_per_m > 0)
+    for (double& range_m : ranges_m)
+      range_m += fault_.factor * (params_.range_std_m + params_.range_std_per_m * range_m) * random.gaussian();
+  noise_.apply(std::span<double>(ranges_m), dt_s, random);
+  for (std::size_t i = 0; i < ranges_m.size(); ++i) {
+    if (params_.resolution_m > 0) ranges_m[i] = std::round(ranges_m[i] / params_.resolution_m) * params_.resolution_m;
+    ranges_m[i] =
+        returns.returned[i] ? std::clamp(ranges_m[i], params_.range_min_m, params_.range_max_m) : params_.range_max_m;
+  }
+}
+
+}  // namespace devices

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/ranging/lidar.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "devices/ranging/lidar_presets.hpp"
+#include "devices/common/param_checks.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/planar_lidar_t.hpp"
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+void Lidar::Params::read(sim::ParamReader& in) {
+  std::vector<std::string> names{"none"};
+  for (const LidarPreset& unit : lidar_presets()) names.push_back(unit.name);
+  in.read_choice("preset", preset, names, "a unit by its data sheet; the keys below win over it");
+  // The preset is the default of the keys that follow.
+  for (const LidarPreset& unit : lidar_presets()) {
+    if (unit.name != preset || in.describing()) continue;
+    beams = unit.beams;
+    fov_rad = unit.fov_rad;
+    laser = unit.laser;
+  }
+  in.read("beams", beams, sim::between(1, 100000), "rays per scan");
+  in.read_deg("fov_deg", fov_rad, sim::between(0, 360), "angle the fan covers");
+  in.read("intensities", intensities, "the message has the strength of each return, too");
+  laser.read(in);
+  if (in.describing()) return;
+  const RayFactor factors[] = {{"beams", double(beams)}, {"beam_samples", double(laser.beam_samples)}};
+  check_rays(in, factors);
+}
+
+Lidar::Lidar(const Params& params, const sim::DeviceContext& context) : receiver_(params.laser, context) {
+  change(params);
+}
+
+void Lidar::change(const Params& params) {
+  params_ = params;
+  receiver_.change(params.laser);
+  const auto beams = static_cast<std::size_t>(params.beams);
+  returns_.assign(beams, params.laser.range_max_m);
+  digest_.renew();
+  fan_.count = params.beams;
+  fan_.range_max_m = params.laser.range_max_m;
+  fan_.first_angle_rad = params.beams == 1 ? 0.0 : -0.5 * params.fov_rad;
+  // A full circle has no last beam on top of the first.
+  const bool full_circle = params.fov_rad >= 2 * std::numbers::pi - 1e-9;
+  const int gaps = full_circle ? params.beams : params.beams - 1;
+  fan_.step_rad = gaps > 0 ? params.fov_rad / gaps : 0.0;
+
+  directions_S_.clear();
+  for (std::size_t i = 0; i < beams; ++i) {
+    const double angle_rad = fan_.first_angle_rad + static_cast<double>(i) * fan_.step_rad;
+    const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+    for (const sim::Vector3d& d : receiver_.beam_pattern())
+      directions_S_.emplace_back(c * d.x() - s * d.y(), s * d.x() + c * d.y(), d.z());
+  }
+  hits_.assign(directions_S_.size(), {});
+  rays_.assign(receiver_.beam_pattern().size() > 1 ? directions_S_.size() : 0, {});
+}
+
+void Lidar::measure(const sim::SenseContext& context) {
+  digest_.renew();
+  if (rays_.empty())
+    measure_axes(context);
+  else
+    measure_beams(context);
+}
+
+void Lidar::measure_axes(const sim::SenseContext& context) {
+  fan_.X_WS = context.X_WS;
+  context.world.scene().cast_fan(fan_, receiver_.filter(), hits_);
+  if (!params_.intensities && receiver_.sees_all()) {
+    for (std::size_t i = 0; i < hits_.size(); ++i) {
+      returns_.ranges_m[i] = std::clamp(hits_[i].range_m, params_.laser.range_min_m, params_.laser.range_max_m);
+      returns_.returned[i] = hits_[i].hit();
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < hits_.size(); ++i)
+    receiver_.receive(hits_[i], context.X_WS.linear() * directions_S_[i], returns_, i);
+}
+
+void Lidar::measure_beams(const sim::SenseContext& context) {
+  for (std::size_t k = 0; k < rays_.size(); ++k)
+    rays_[k] = {context.X_WS.translation(), context.X_WS.linear() * directions_S_[k], params_.laser.range_max_m};
+  context.world.scene().cast(rays_, receiver_.filter(), hits_);
+  const std::size_t samples = receiver_.beam_pattern().size();
+  for (std::size_t i = 0; i < returns_.size(); ++i)
+    receiver_.receive(std::span(hits_).subspan(i * samples, samples), std::span(rays_).subspan(i * samples, samples),
+                      returns_, i);
+}
+
+void Lidar::disturb(double dt_s, sim::Random& random) {
+  receiver_.disturb(returns_, dt_s, random);
+}
+
+std::span<const double> Lidar::intensities() const {
+  return params_.intensities ? std::span<const double>(returns_.intensities) : std::span<const double>();
+}
+
+void Lidar::visit_state(sim::StateArchive& archive) {
+  digest_.visit(archive, returns_.ranges_m, intensities());
+  archive(receiver_);
+}
+
+void LidarReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
+  static thread_local shoal::planar_lidar_t message;  // keeps its vectors from scan to scan
+  const std::vector<double>& ranges_m = lidar_.ranges_m();
+  const std::span<const double> intensities = lidar_.intensities();
+  message.utime = out.utime(sampled_at);
+  message.nranges = static_cast<std::int32_t>(ranges_m.size());
+  message.ranges.resize(ranges_m.size());
+  for (std::size_t i = 0; i < ranges_m.size(); ++i) message.ranges[i] = static_cast<float>(ranges_m[i]);
+  message.nintensities = static_cast<std::int32_t>(intensities.size());
+  message.intensities.resize(intensities.size());
+  for (std::size_t i = 0; i < intensities.size(); ++i) message.intensities[i] = static_cast<float>(intensities[i]);
+  message.rad0 = static_cast<float>(lidar_.first_angle_rad());
+  message.radstep = static_cast<float>(lidar_.step_rad());
+  shoal::encode_into(message, out.buffer());
+  out.publish(out.buffer());
+}
+
+SHOAL_SENSOR("lidar", Lidar, LidarReporter);
+
+}  // namespace devices

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "devices/ranging/laser_return.hpp"
+#include "devices/common/reading_digest.hpp"
+
+namespace devices {
+
+/// Multi-ring laser scanner.  Its head turns about +z of the sensor frame S, counter-clockwise seen from above, once in
+/// a report period: column k of n looks to the azimuth -pi + 2 pi k / n, and the last column is measured at the end of
+/// the turn.  Each step casts the columns that passed in it, from where the sensor was at their times.  The turn that
+/// begins before the run, or while the device has no power, lacks the columns of that time.
+class Lidar3d final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "Multi-ring laser scanner: a point cloud for each turn of its head.";
+  static constexpr double default_rate_hz = 10;
+  static constexpr bool casts_rays = true;
+  static constexpr bool sweeps = true;
+  struct Params {
+    std::string preset = "none";
+    int rings = 16;
+    double lowest_rad = sim::degrees_to_radians(-15);
+    double highest_rad = sim::degrees_to_radians(15);
+    std::vector<double> ring_angles_deg;  ///< when given, instead of the three above
+    int columns = 900;
+    LaserParams laser;
+    void read(sim::ParamReader& in);
+  };
+
+  Lidar3d(const Params& params, const sim::DeviceContext& context);
+  void change(const Params& params);
+  void sweep(const sim::SweepContext& context) override;
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  std::int64_t rays() const override;
+  void visit_state(sim::StateArchive& archive) override;
+
+  /// The last turn, column by column, ring by ring.
+  const LaserReturns& returns() const { return returns_; }
+  int rings() const { return static_cast<int>(elevations_rad_.size()); }
+  int columns() const { return params_.columns; }
+  sim::Vector3d direction_S(int column, int ring) const;
+  /// When a column of the last turn was measured, from the turn's end; 0 or below.
+  sim::Time offset(int column) const;
+
+ private:
+  /// The beams of the columns that have passed in this turn; the others are empty.
+  void visit_begun_turn(sim::StateArchive& archive);
+  void begin_turn(const sim::SweepContext& context);
+  /// Casts the columns [first, last).
+  void cast_columns(const sim::SweepContext& context, int first, int last);
+
+  const sim::DeviceConfig& config_;
+  Params params_;
+  LaserReceiver receiver_;
+  std::vector<double> elevations_rad_;
+  std::vector<sim::Vector3d> ring_rays_;  ///< of azimuth 0: of each ring its beam, or all rays that sample it
+  LaserReturns returns_;
+  ReadingDigest digest_;  ///< of a whole turn
+  sim::Time turn_end_{-1};
+  sim::Time turn_length_{0};
+  sim::Time step_{0};  ///< of the last sweep, for rays()
+  int next_column_ = 0;
+  std::vector<sim::Ray> rays_;
+  std::vector<sim::RayHit> hits_;
+};
+
+/// Publishes shoal.point_cloud_t.
+class Lidar3dReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.point_cloud_t";
+  explicit Lidar3dReporter(const Lidar3d& lidar) : lidar_(lidar) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const Lidar3d& lidar_;
+};
+
+}  // namespace devices

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/ranging/side_scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shoal/message_codec.hpp"
+#include "shoal/side_scan_t.hpp"
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+SideScan::Params::Params() {
+  sonar.tvg = "20log";
+  sonar.range_min_m = 0;
+}
+
+void SideScan::Params::read(sim::ParamReader& in) {
+  in.read_deg("along_deg", along_rad, sim::above_to(0, 30), "width of the beams along the track, at -3 dB");
+  in.read_deg("vertical_deg", vertical_rad, sim::above_to(0, 90), "height of the beams, at -3 dB");
+  in.read_deg("depression_deg", depression_rad, sim::between(0, 90), "of the middle of the beams, below the xy-plane");
+  in.read("rays", rays, sim::between(1, 20000), "rays over the height of each beam");
+  in.read("along_rays", along_rays, sim::between(1, 20), "rays over the width of a beam");
+  sonar.read(in);
+  picture.read(in, sonar);
+}
+
+SideScan::SideScan(const Params& params, const sim::DeviceContext& context)
+    : receiver_(params.sonar, context), bins_(params.picture, context) {
+  change(params);
+}
+
+void SideScan::change(const Params& params) {
+  params_ = params;
+  receiver_.change(params.sonar);
+  bins_.change(params.picture, params.sonar, 2);
+  make_rays();
+}
+
+void SideScan::make_rays() {
+  rays_S_.clear();
+  down_S_.clear();
+  // Over twice the -3 dB height, where the two-way response has fallen by 24 dB, but no farther than straight down.
+  const double lowest_rad = std::min(params_.depression_rad + params_.vertical_rad, std::numbers::pi / 2);
+  const double highest_rad = params_.depression_rad - params_.vertical_rad;
+  const int n = params_.rays, m = params_.along_rays;
+  const double height_rad = (lowest_rad - highest_rad) / n, width_rad = params_.along_rad / m;
+  for (const double side : {1.0, -1.0})
+    for (int k = 0; k < m; ++k)
+      for (int i = 0; i < n; ++i) {
+        const double down_rad = highest_rad + (i + 0.5) * height_rad;
+        const double along_rad = (k + 0.5 - 0.5 * m) * width_rad;
+        const double ca = std::cos(along_rad), sa = std::sin(along_rad);
+        const double cd = std::cos(down_rad), sd = std::sin(down_rad);
+        const double response = beam_response(down_rad - params_.depression_rad, params_.vertical_rad) *
+                                beam_response(along_rad, params_.along_rad);
+        rays_S_.push_back({{sa, side * ca * cd, -ca * sd}, height_rad * width_rad, response * response});
+        down_S_.push_back(height_rad * sim::Vector3d(0, -side * ca * sd, -ca * cd));
+      }
+}
+
+void SideScan::measure(const sim::SenseContext& context) {
+  receiver_.cast(context.world.scene(), context.X_WS, rays_S_);
+  bins_.begin(receiver_);
+  for (std::size_t i = 0; i < rays_S_.size(); ++i) {
+    const SonarEcho echo = receiver_.echo(i, rays_S_[i]);
+    if (echo.power_uPa2 > 0)
+      bins_.add(echo, receiver_.range_slope(i, context.X_WS.linear() * down_S_[i]), i < rays_S_.size() / 2 ? 0 : 1);
+  }
+  bins_.finish(receiver_);
+}
+
+void SideScan::disturb(double dt_s, sim::Random& random) {
+  bins_.disturb(dt_s, random);
+}
+
+void SideScan::visit_state(sim::StateArchive& archive) {
+  archive(receiver_, bins_);
+}
+
+void SideScanReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
+  static thread_local shoal::side_scan_t message;  // keeps its memory from ping to ping
+  const SonarBins& picture = sonar_.picture();
+  message.utime = out.utime(sampled_at);
+  message.range_min_m = static_cast<float>(sonar_.sonar().range_min_m);
+  message.range_max_m = static_cast<float>(sonar_.sonar().range_max_m);
+  message.floor_dB = static_cast<float>(picture.params().floor_dB);
+  message.dB_per_count = static_cast<float>(picture.params().dB_per_count());
+  message.nbins = picture.bins();
+  message.port.resize(static_cast<std::size_t>(picture.bins()));
+  message.starboard.resize(message.port.size());
+  for (std::size_t bin = 0; bin < message.port.size(); ++bin) {
+    message.port[bin] = picture.pixels()[2 * bin];
+    message.starboard[bin] = picture.pixels()[2 * bin + 1];
+  }
+  shoal::encode_into(message, out.buffer());
+  out.publish(out.buffer());
+}
+
+SHOAL_SENSOR("side_scan", SideScan, SideScanReporter);
+
+}  // namespace devices

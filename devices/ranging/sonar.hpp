@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "devices/ranging/sonar_return.hpp"
+#include "sim/random/noise.hpp"
+
+namespace devices {
+
+/// A sonar with one beam, a cone about an axis of the sensor frame S: the range to what it hears first.
+class RangeSonar : public sim::Sensor {
+ public:
+  static constexpr double default_rate_hz = 10;
+  static constexpr bool casts_rays = true;
+  struct Params {
+    SonarParams sonar;
+    SonarDetectionParams detection;
+    double beam_rad = sim::degrees_to_radians(20);
+    int rays = 64;
+    double resolution_m = 0.01;
+    sim::NoiseParams noise;           ///< of the range, m
+    sim::NoiseParams strength_noise;  ///< dB
+    void read(sim::ParamReader& in);
+  };
+
+  RangeSonar(const Params& params, const sim::DeviceContext& context, const sim::Vector3d& axis_S);
+  void change(const Params& params);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  std::int64_t rays() const override { return static_cast<std::int64_t>(rays_S_.size()); }
+  void visit_state(sim::StateArchive& archive) override;
+
+  double range_m() const { return range_m_; }
+  double strength_dB() const { return strength_dB_; }
+  bool valid() const { return valid_; }
+
+ private:
+  void miss();
+
+  Params params_;
+  sim::Vector3d axis_S_;
+  SonarReceiver receiver_;
+  sim::Noise noise_, strength_noise_;
+  std::vector<SonarRay> rays_S_;
+  std::vector<SonarEcho> echoes_;
+  double range_m_ = 0;
+  double strength_dB_ = 0;
+  bool valid_ = false;
+};
+
+/// Looks along +x of S.
+class Sonar final : public RangeSonar {
+ public:
+  static constexpr const char* meaning = "Single-beam sonar: range and strength of the first echo in a cone.";
+  Sonar(const Params& params, const sim::DeviceContext& context)
+      : RangeSonar(params, context, sim::Vector3d::UnitX()) {}
+};
+
+/// Looks along -z of S: downwards, when it is mounted upright.
+class Altimeter final : public RangeSonar {
+ public:
+  static constexpr const char* meaning = "Single-beam sonar that looks down: height above the ground.";
+  Altimeter(const Params& params, const sim::DeviceContext& context)
+      : RangeSonar(params, context, -sim::Vector3d::UnitZ()) {}
+};
+
+/// Publishes shoal.sonar_range_t.
+class RangeSonarReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.sonar_range_t";
+  explicit RangeSonarReporter(const RangeSonar& sonar) : sonar_(sonar) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const RangeSonar& sonar_;
+};
+
+}  // namespace devices

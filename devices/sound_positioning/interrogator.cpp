@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/sound_positioning/interrogator.hpp"
+
+#include <algorithm>
+
+#include "devices/sound_positioning/transponder.hpp"
+#include "sim/physics/body.hpp"
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+namespace {
+
+/// Sound is slower in no water.
+constexpr double slowest_mps = 1400;
+
+}  // namespace
+
+void InterrogatorParams::read(sim::ParamReader& in) {
+  in.read("network", network, "transponders of this network answer");
+  in.read("range_max_m", range_max_m, sim::above_to(0, 20000), "transponders farther away are not heard");
+  in.read("source_level_dB", source_level_dB, sim::between(0, 260), "of the ping, re 1 uPa at 1 m");
+  in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "of the ping");
+  in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e5), "of the ping");
+  in.read("ping_s", ping_s, sim::between(1e-4, 1), "length of the ping");
+  in.read("receiver", receiver, "what it hears");
+}
+
+Interrogator::Interrogator(const InterrogatorParams& params, const sim::DeviceContext& context)
+    : params_(params),
+      context_(context),
+      network_(context.world.shared<TransponderNetwork>()),
+      transducer_(*this, params.receiver, context) {}
+
+void Interrogator::change(const InterrogatorParams& params) {
+  params_ = params;
+  transducer_.change(params.receiver);
+}
+
+bool Interrogator::listens_to(const sim::Signal& signal) const {
+  return signal.kind == sim::Signal::Kind::answer && signal.network == params_.network;
+}
+
+void Interrogator::ping(sim::Time at) {
+  asked_.clear();
+  answers_.clear();
+  double slowest_turnaround_s = params_.ping_s, longest_answer_s = 0;
+  for (const Transponder* transponder : network_.members()) {
+    if (transponder->params().network != params_.network || &transponder->vehicle() == &context_.vehicle) continue;
+    asked_.push_back(transponder->full_name());
+    slowest_turnaround_s = std::max(slowest_turnaround_s, transponder->params().turnaround_s);
+    longest_answer_s = std::max(longest_answer_s, transponder->params().ping_s);
+  }
+  waiting_for_ = asked_;
+  pinged_ = at;
+  window_end_ = at + sim::from_seconds(2 * params_.range_max_m / slowest_mps + slowest_turnaround_s + longest_answer_s);
+  sim::Signal signal;
+  signal.kind = sim::Signal::Kind::ping;
+  signal.source_level = sim::Decibels{params_.source_level_dB};
+  signal.centre_Hz = params_.frequency_Hz;
+  signal.bandwidth_Hz = params_.bandwidth_Hz;
+  signal.duration = sim::from_seconds(params_.ping_s);
+  signal.network = params_.network;
+  signal.payload = encode_ping(++number_);
+  transducer_.transmit(std::move(signal), at);
+}
+
+void Interrogator::heard(const sim::Reception& heard) {
+  if (!heard.understood() || heard.signal.code != context_.full_name()) return;
+  const auto answer = decode_answer(heard.signal.payload);
+  if (!answer || answer->ping != number_) return;
+  const double turnaround_s = std::max(answer->turnaround_s, params_.ping_s);
+  const sim::Vector3d p_ST_W = heard.p_sent_W - heard.p_begun_W;
+  const double way_m = (answer->out_m + p_ST_W.norm()) / 2;
+  std::erase(waiting_for_, heard.source);
+  if (way_m > params_.range_max_m) return;
+  answers_.push_back({heard.source, heard.begun, sim::to_seconds(heard.begun - pinged_) - turnaround_s, way_m,
+                      R_WS(heard.begun).transpose() * p_ST_W});
+}
+
+sim::Matrix3d Interrogator::R_WS(sim::Time at) const {
+  // The body stands as at the end of the step; the sound came a little before.
+  const sim::Vector3d turn_rad = context_.body.motion().w_WB_W * sim::to_seconds(at - context_.world.now());
+  const double angle_rad = turn_rad.norm();
+  if (angle_rad == 0) return transducer_.R_WS();
+  return Eigen::AngleAxisd(angle_rad, turn_rad / angle_rad).toRotationMatrix() * transducer_.R_WS();
+}
+
+std::vector<Interrogator::Answer> Interrogator::take_answers() {
+  std::vector<Answer> taken;
+  std::swap(taken, answers_);
+  return taken;
+}
+
+void Interrogator::visit_state(sim::StateArchive& archive) {
+  archive(number_, pinged_, window_end_, asked_, waiting_for_, answers_);
+}
+
+}  // namespace devices

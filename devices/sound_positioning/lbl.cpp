@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/sound_positioning/lbl.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "shoal/lbl_t.hpp"
+#include "shoal/message_codec.hpp"
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+namespace {
+
+constexpr double no_answer = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+void Lbl::Params::read(sim::ParamReader& in) {
+  interrogator.read(in);
+  in.read("ping_period_s", ping_period_s, sim::between(0.01, 1e4), "between two pings, at least");
+  in.read("assumed_sound_speed_mps", assumed_sound_speed_mps, sim::between(100, 10000),
+          "that turns times into ranges; unset: the true one at the sensor");
+  in.read("answer_dropout", answer_dropout, sim::between(0, 1), "probability that an answer is missed, for each anew");
+  in.read("time_noise", time_noise, "error of each travel time there and back, s");
+}
+
+Lbl::Lbl(const Params& params, const sim::DeviceContext& context)
+    : params_(params),
+      interrogator_(params.interrogator, context),
+      time_noise_(context.noise(params.time_noise, 1, "time_noise")) {}
+
+void Lbl::change(const Params& params) {
+  params_ = params;
+  interrogator_.change(params.interrogator);
+  time_noise_.change(params.time_noise);
+}
+
+void Lbl::measure(const sim::SenseContext& context) {
+  ranges_.clear();
+  const sim::Medium& medium = context.world.medium();
+  const sim::Vector3d& p_WS = context.X_WS.translation();
+  assumed_mps_ = params_.assumed_sound_speed_mps.value_or(medium.sound_speed_mps(p_WS));
+  if (asking_ && interrogator_.done(context.now)) collect();
+  if (asking_ || context.now < next_ping_ || !medium.in_water(p_WS)) return;
+  next_ping_ = context.now + sim::from_seconds(params_.ping_period_s);
+  interrogator_.ping(context.now);
+  asking_ = true;
+}
+
+void Lbl::collect() {
+  asking_ = false;
+  for (const std::string& name : interrogator_.asked()) ranges_.push_back({name, no_answer, no_answer});
+  for (const Interrogator::Answer& answer : interrogator_.take_answers()) {
+    const auto range = std::find_if(ranges_.begin(), ranges_.end(),
+                                    [&](const Range& each) { return each.transponder == answer.transponder; });
+    if (range != ranges_.end()) *range = {answer.transponder, answer.two_way_s, answer.way_m};
+  }
+}
+
+void Lbl::disturb(double dt_s, sim::Random& random) {
+  since_ping_s_ += dt_s;
+  for (Range& range : ranges_) {
+    if (std::isnan(range.travel_time_s)) continue;
+    if (params_.answer_dropout > 0 && random.uniform() < params_.answer_dropout) {
+      range.travel_time_s = range.range_m = no_answer;
+      continue;
+    }
+    time_noise_.apply(range.travel_time_s, since_ping_s_, random);
+    since_ping_s_ = 0;
+    range.travel_time_s = std::max(range.travel_time_s, 0.0);
+    range.range_m = range.travel_time_s / 2 * assumed_mps_;
+  }
+}
+
+void Lbl::visit_state(sim::StateArchive& archive) {
+  archive(interrogator_, asking_, next_ping_, ranges_, since_ping_s_, time_noise_);
+}
+
+void LblReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
+  if (lbl_.ranges().empty()) return;
+  shoal::lbl_t message;
+  message.utime = out.utime(sampled_at);
+  message.n = static_cast<std::int32_t>(lbl_.ranges().size());
+  for (const Lbl::Range& range : lbl_.ranges()) {
+    message.transponder.push_back(range.transponder);
+    message.travel_time_s.push_back(range.travel_time_s);
+    message.range_m.push_back(range.range_m);
+  }
+  shoal::encode_into(message, out.buffer());
+  out.publish(out.buffer());
+}
+
+SHOAL_SENSOR("lbl", Lbl, LblReporter);
+
+}  // namespace devices

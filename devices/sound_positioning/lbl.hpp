@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "devices/sound_positioning/interrogator.hpp"
+#include "sim/random/noise.hpp"
+
+namespace devices {
+
+/// Long baseline: asks a net of transponders with one ping, and reports the travel times of all answers together, when
+/// they are in or nothing in range can come any more.  The next ping goes out at a sample after that, not before
+/// `ping_period_s` is over.
+class Lbl final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "LBL: ranges to a net of acoustic transponders, by the time of sound.";
+  static constexpr double default_rate_hz = 10;
+  struct Params {
+    InterrogatorParams interrogator{.network = "lbl", .range_max_m = 3000};
+    double ping_period_s = 5;
+    std::optional<double> assumed_sound_speed_mps;
+    double answer_dropout = 0;
+    sim::NoiseParams time_noise;  ///< s
+    void read(sim::ParamReader& in);
+  };
+  /// Of one transponder.
+  struct Range {
+    std::string transponder;
+    double travel_time_s = 0, range_m = 0;  ///< NaN: no answer
+    void visit_state(sim::StateArchive& archive) {
+      archive(transponder);
+      archive.not_only_finite(travel_time_s, range_m);
+    }
+  };
+
+  Lbl(const Params& params, const sim::DeviceContext& context);
+  void change(const Params& params);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  void visit_state(sim::StateArchive& archive) override;
+  /// Of the ping that is over with this sample; empty: none is, or nobody was asked.
+  const std::vector<Range>& ranges() const { return ranges_; }
+
+ private:
+  void collect();
+
+  Params params_;
+  Interrogator interrogator_;
+  sim::Noise time_noise_;
+  bool asking_ = false;
+  sim::Time next_ping_{0};
+  std::vector<Range> ranges_;
+  double assumed_mps_ = 0;   ///< that turns the times of this sample into ranges
+  double since_ping_s_ = 0;  ///< for the slow parts of the error
+};
+
+/// Publishes one shoal.lbl_t for each ping.
+class LblReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.lbl_t";
+  explicit LblReporter(const Lbl& lbl) : lbl_(lbl) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const Lbl& lbl_;
+};
+
+}  // namespace devices

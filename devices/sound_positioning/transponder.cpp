@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/sound_positioning/transponder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shoal/message_codec.hpp"
+#include "shoal/transponder_t.hpp"
+#include "sim/world/vehicle.hpp"
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+void Transponder::Params::read(sim::ParamReader& in) {
+  in.read("network", network, "it answers pings of this network, and those without one");
+  in.read("code", code, "it answers pings with this code, and those without one");
+  in.read("turnaround_s", turnaround_s, sim::between(0, 10), "from the ping to its answer, first sound to first sound");
+  in.read("source_level_dB", source_level_dB, sim::between(0, 260), "of the answer, re 1 uPa at 1 m");
+  in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "of pings that it hears");
+  in.read("answer_frequency_Hz", answer_frequency_Hz, sim::between(100, 1e6),
+          "of its answer; unset: the lowest of 28000, 29000, ... that no other one of its network answers on");
+  in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e5), "about both frequencies");
+  in.read("ping_s", ping_s, sim::between(1e-4, 1), "length of the answer");
+  in.read("receiver", receiver, "what it hears");
+}
+
+Transponder::Transponder(const Params& params, const sim::DeviceContext& context)
+    : params_(params),
+      network_(context.world.shared<TransponderNetwork>()),
+      answer_Hz_(params.answer_frequency_Hz ? *params.answer_frequency_Hz
+                                            : network_.free_answer_Hz(params.network, params.bandwidth_Hz)),
+      transducer_(*this, params.receiver, context) {
+  network_.join(*this);
+}
+
+Transponder::~Transponder() {
+  network_.leave(*this);
+}
+
+bool Transponder::listens_to(const sim::Signal& signal) const {
+  return signal.kind == sim::Signal::Kind::ping && (signal.network.empty() || signal.network == params_.network) &&
+         (signal.code.empty() || signal.code == params_.code) &&
+         std::abs(signal.centre_Hz - params_.frequency_Hz) < (signal.bandwidth_Hz + params_.bandwidth_Hz) / 2;
+}
+
+void Transponder::heard(const sim::Reception& heard) {
+  if (!heard.understood() || heard.source.starts_with(vehicle().name() + "/")) return;
+  const sim::Time at = std::max(heard.begun + sim::from_seconds(params_.turnaround_s), heard.ended);
+  if (at < transducer_.busy_until()) return;
+  ++answers_;
+  asked_by_ = heard.source;
+  sim::Signal answer;
+  answer.kind = sim::Signal::Kind::answer;
+  answer.source_level = sim::Decibels{params_.source_level_dB};
+  answer.centre_Hz = answer_Hz_;
+  answer.bandwidth_Hz = params_.bandwidth_Hz;
+  answer.duration = sim::from_seconds(params_.ping_s);
+  answer.network = params_.network;
+  answer.code = heard.source;
+  answer.payload = encode_answer({decode_ping(heard.signal.payload), params_.turnaround_s,
+                                  (heard.p_begun_W - heard.p_sent_W).norm(), params_.code});
+  transducer_.transmit(std::move(answer), at);
+}
+
+void Transponder::visit_state(sim::StateArchive& archive) {
+  archive(answers_, answer_Hz_, asked_by_);
+  if (archive.restoring() && !(answer_Hz_ > 0)) archive.fail("a transponder's frequency must be above 0");
+}
+
+void TransponderReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
+  shoal::transponder_t message;
+  message.utime = out.utime(sampled_at);
+  message.answers = transponder_.answers();
+  message.asked_by = transponder_.asked_by();
+  shoal::encode_into(message, out.buffer());
+  out.publish(out.buffer());
+}
+
+SHOAL_SENSOR("transponder", Transponder, TransponderReporter);
+
+}  // namespace devices

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "devices/sound_positioning/usbl.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shoal/message_codec.hpp"
+#include "shoal/usbl_t.hpp"
+#include "sim/world/world.hpp"
+
+namespace devices {
+
+void Usbl::Params::read(sim::ParamReader& in) {
+  interrogator.read(in);
+  in.read("ping_period_s", ping_period_s, sim::between(0.01, 1e4), "between two pings, at least");
+  in.read("assumed_sound_speed_mps", assumed_sound_speed_mps, sim::between(100, 10000),
+          "that turns times into ranges; unset: the true one at the sensor");
+  in.read("answer_dropout", answer_dropout, sim::between(0, 1), "probability that an answer is missed, for each anew");
+  in.read("range_noise", range_noise, "error of each range, m");
+  in.read("azimuth_noise", azimuth_noise, "error of each azimuth, rad");
+  in.read("elevation_noise", elevation_noise, "error of each elevation, rad");
+}
+
+Usbl::Usbl(const Params& params, const sim::DeviceContext& context)
+    : params_(params),
+      interrogator_(params.interrogator, context),
+      range_noise_(context.noise(params.range_noise, 1, "range_noise")),
+      azimuth_noise_(context.noise(params.azimuth_noise, 1, "azimuth_noise")),
+      elevation_noise_(context.noise(params.elevation_noise, 1, "elevation_noise")) {}
+
+void Usbl::change(const Params& params) {
+  params_ = params;
+  interrogator_.change(params.interrogator);
+  range_noise_.change(params.range_noise);
+  azimuth_noise_.change(params.azimuth_noise);
+  elevation_noise_.change(params.elevation_noise);
+}
+
+sim::Vector3d Usbl::Fix::position_S() const {
+  const double across_m = range_m * std::cos(elevation_rad);
+  return {across_m * std::cos(azimuth_rad), across_m * std::sin(azimuth_rad), range_m * std::sin(elevation_rad)};
+}
+
+void Usbl::measure(const sim::SenseContext& context) {
+  fixes_.clear();
+  const sim::Medium& medium = context.world.medium();
+  const sim::Vector3d& p_WS = context.X_WS.translation();
+  for (const Interrogator::Answer& answer : interrogator_.take_answers()) {
+    const sim::Vector3d& p_ST_S = answer.p_ST_S;
+    fixes_.push_back({answer.transponder, answer.two_way_s, answer.way_m, std::atan2(p_ST_S.y(), p_ST_S.x()),
+                      std::atan2(p_ST_S.z(), std::hypot(p_ST_S.x(), p_ST_S.y()))});
+  }
+  assumed_mps_ = params_.assumed_sound_speed_mps.value_or(medium.sound_speed_mps(p_WS));
+  if (context.now < next_ping_ || !interrogator_.done(context.now) || !medium.in_water(p_WS)) return;
+  next_ping_ = context.now + sim::from_seconds(params_.ping_period_s);
+  interrogator_.ping(context.now);
+}
+
+void Usbl::disturb(double dt_s, sim::Random& random) {
+  since_fix_s_ += dt_s;
+  for (Fix& fix : fixes_) {
+    fix.range_m = fix.travel_time_s / 2 * assumed_mps_;
+    range_noise_.apply(fix.range_m, since_fix_s_, random);
+    azimuth_noise_.apply(fix.azimuth_rad, since_fix_s_, random);
+    elevation_noise_.apply(fix.elevation_rad, since_fix_s_, random);
+    fix.range_m = std::max(fix.range_m, 0.0);
+    fix.azimuth_rad = sim::wrap_angle(fix.azimuth_rad);
+    since_fix_s_ = 0;
+  }
+  if (params_.answer_dropout > 0)
+    std::erase_if(fixes_, [&](const Fix&) { return random.uniform() < params_.answer_dropout; });
+}
+
+void Usbl::visit_state(sim::StateArchive& archive) {
+  archive(interrogator_, next_ping_, fixes_, since_fix_s_, range_noise_, azimuth_noise_, elevation_noise_);
+}
+
+void UsblReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
+  for (const Usbl::Fix& fix : usbl_.fixes()) {
+    const sim::Vector3d position_S = fix.position_S();
+    shoal::usbl_t message;
+    message.utime = out.utime(sampled_at);
+    message.target = fix.target;
+    message.travel_time_s = fix.travel_time_s;
+    message.range_m = fix.range_m;
+    message.azimuth_rad = fix.azimuth_rad;
+    message.elevation_rad = fix.elevation_rad;
+    for (int i = 0; i < 3; ++i) message.position_m[i] = position_S[i];
+    shoal::encode_into(message, out.buffer());
+    out.publish(out.buffer());
+  }
+}
+
+SHOAL_SENSOR("usbl", Usbl, UsblReporter);
+
+}  // namespace devices

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "devices/sound_positioning/interrogator.hpp"
+#include "sim/random/noise.hpp"
+
+namespace devices {
+
+/// Ultra-short baseline: range and direction to the transponders of its network.  A ping goes out at a sample, every
+/// `ping_period_s`, but not before the answers to the last one are in.  The travel time is that of the sound from where
+/// this device was at the ping to the transponder and from there to where it is when the answer comes; the direction is
+/// to where the transponder answered.  What came is reported at the next sample.
+class Usbl final : public sim::Sensor {
+ public:
+  static constexpr const char* meaning = "USBL: range and direction to acoustic transponders, by the time of sound.";
+  static constexpr double default_rate_hz = 10;
+  struct Params {
+    InterrogatorParams interrogator{.network = "usbl"};
+    double ping_period_s = 1;
+    std::optional<double> assumed_sound_speed_mps;
+    double answer_dropout = 0;
+    sim::NoiseParams range_noise;      ///< m
+    sim::NoiseParams azimuth_noise;    ///< rad
+    sim::NoiseParams elevation_noise;  ///< rad
+    void read(sim::ParamReader& in);
+  };
+  /// What has been heard of one transponder.
+  struct Fix {
+    std::string target;
+    double travel_time_s = 0, range_m = 0, azimuth_rad = 0, elevation_rad = 0;
+    sim::Vector3d position_S() const;
+    void visit_state(sim::StateArchive& archive) {
+      archive(target, travel_time_s, range_m, azimuth_rad, elevation_rad);
+    }
+  };
+
+  Usbl(const Params& params, const sim::DeviceContext& context);
+  void change(const Params& params);
+  void measure(const sim::SenseContext& context) override;
+  void disturb(double dt_s, sim::Random& random) override;
+  void visit_state(sim::StateArchive& archive) override;
+  const std::vector<Fix>& fixes() const { return fixes_; }
+
+ private:
+  Params params_;
+  Interrogator interrogator_;
+  sim::Noise range_noise_, azimuth_noise_, elevation_noise_;
+  sim::Time next_ping_{0};
+  std::vector<Fix> fixes_;
+  double assumed_mps_ = 0;  ///< that turns the times of this sample into ranges
+  double since_fix_s_ = 0;  ///< for the slow parts of the errors
+};
+
+/// Publishes one shoal.usbl_t for each answer that came since the last sample.
+class UsblReporter final : public sim::Reporter {
+ public:
+  static constexpr const char* report_message = "shoal.usbl_t";
+  explicit UsblReporter(const Usbl& usbl) : usbl_(usbl) {}
+  void report(sim::Time sampled_at, sim::Publisher& out) const override;
+
+ private:
+  const Usbl& usbl_;
+};
+
+}  // namespace devices

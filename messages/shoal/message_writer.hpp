@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "shoal/message_schema.hpp"
+#include "sim/config/config_node.hpp"
+
+namespace shoal {
+
+/// Encodes a map `{member: value}` as a message of the type `type`, such as `shoal.pose_t`.  Members that are missing
+/// are 0, empty or false, or NaN where NaN means "as before" (shoal.helm_command_t, station_command_t,
+/// waypoints_command_t), which `.nan` says too; a member that is the length of arrays follows from them.  A `byte`
+/// array may be given as text.  Unknown types and members, values of another type or out of range, lists of another
+/// length go to `diagnostics` at their place, and the result is empty.
+std::vector<std::byte> encode_message(const MessageTypes& types, const std::string& type, const sim::ConfigNode& value,
+                                      sim::Diagnostics& diagnostics);
+
+/// The same for Shoal's own types: what sim::LoadOptions::encode_message wants.
+std::vector<std::byte> encode_own_message(const std::string& type, const sim::ConfigNode& value,
+                                          sim::Diagnostics& diagnostics);
+
+}  // namespace shoal

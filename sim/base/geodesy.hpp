@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "sim/base/math.hpp"
+
+namespace sim {
+
+/// A place on the WGS84 ellipsoid.
+struct GeodeticPosition {
+  double latitude_deg = 0;
+  double longitude_deg = 0;
+  double height_m = 0;  ///< over the ellipsoid
+};
+
+/// Local east-north-up coordinates about an origin, by way of earth-centred coordinates (GeographicLib).
+class Geodesy {
+ public:
+  explicit Geodesy(const GeodeticPosition& origin);
+  ~Geodesy();
+  GeodeticPosition to_geodetic(const Vector3d& p_W) const;
+  Vector3d to_local(const GeodeticPosition& position) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sim

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/base/math.hpp"
+
+namespace sim {
+
+Matrix3d rotation_from_rpy(const Vector3d& rpy_rad) {
+  return (Eigen::AngleAxisd(rpy_rad.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy_rad.y(), Vector3d::UnitY()) *
+          Eigen::AngleAxisd(rpy_rad.x(), Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+Vector3d rpy_from_rotation(const Matrix3d& R) {
+  const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
+  return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
+}
+
+Pose make_pose(const Vector3d& position_m, const Vector3d& rpy_rad) {
+  Pose X = Pose::Identity();
+  X.linear() = rotation_from_rpy(rpy_rad);
+  X.translation() = position_m;
+  return X;
+}
+
+double yaw_of(const Matrix3d& R) {
+  return std::atan2(R(1, 0), R(0, 0));
+}
+
+double wrap_angle(double angle_rad) {
+  const double wrapped = std::remainder(angle_rad, 2 * std::numbers::pi);
+  return wrapped <= -std::numbers::pi ? wrapped + 2 * std::numbers::pi : wrapped;
+}
+
+}  // namespace sim

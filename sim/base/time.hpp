@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+
+namespace sim {
+
+/// Simulated time since the start of the run: an integer number of microseconds.  Never the wall clock.
+using Time = std::chrono::microseconds;
+
+inline double to_seconds(Time t) {
+  return static_cast<double>(t.count()) * 1e-6;
+}
+/// The nearest whole microsecond.
+inline Time from_seconds(double t_s) {
+  return Time{std::llround(t_s * 1e6)};
+}
+
+}  // namespace sim

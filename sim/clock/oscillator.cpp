@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/clock/oscillator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace sim {
+
+namespace {
+
+/// The oscillator alone: how well it was set, `offset_s` and `offset_std_s` say.
+struct ClockPreset {
+  const char* name;
+  double drift_std_ppm, white_fm, random_walk_fm, flicker_floor, temperature_ppm_per_C;
+};
+
+// tcxo, ocxo: typical of their class, of no one unit; an underwater OCXO ages by 0.2 to 2e-9 in a day
+// (slx-timing.com/underwater-system-precision-clock, seen), and a drift of 0.02 ppm is some ten days of that.
+// csac: Microchip SA.45s.  Seen, Microchip's notes on its timing error (Chip Scale Atomic Clocks: Effects on Timing
+// Error): about 1 us after 24 h, 5 us after 48 h, 8 to 12 us after 72 h without an error at the start; a random walk
+// of 1e-13 / sqrt(s) gives 1.5, 4.2 and 7.6 us.  From memory of its data sheet, not seen: Allan deviation 3e-10 at
+// 1 s falling to 1e-11 at 1000 s, 5e-11 at shipment, 5e-10 over 45 C.
+constexpr ClockPreset presets[] = {
+    {"perfect", 0, 0, 0, 0, 0},
+    {"tcxo", 1, 1e-9, 1e-11, 5e-10, 0.05},
+    {"ocxo", 0.02, 1e-11, 1e-13, 1e-11, 1e-4},
+    {"csac", 5e-5, 3e-10, 1e-13, 5e-12, 1e-5},
+};
+
+/// Steps of the frequency that no oscillator makes are cut, so that the clock never runs backwards.
+constexpr double most_rate = 0.1;
+
+}  // namespace
+
+void ClockConfig::read(ParamReader& in) {
+  std::vector<std::string> names;
+  for (const ClockPreset& each : presets) names.emplace_back(each.name);
+  in.read_choice("preset", preset, names, "a kind of oscillator, see docs/clocks.md; the keys below win over it");
+  for (const ClockPreset& each : presets) {
+    if (each.name != preset || in.describing()) continue;
+    drift_std_ppm = each.drift_std_ppm;
+    white_fm = each.white_fm;
+    random_walk_fm = each.random_walk_fm;
+    flicker_floor = each.flicker_floor;
+    temperature_ppm_per_C = each.temperature_ppm_per_C;
+  }
+  constexpr double year_s = 31557600;
+  in.read("offset_s", offset_s, between(-year_s, year_s), "reading minus true time at the start");
+  in.read("offset_std_s", offset_std_s, between(0, 1e6),
+          "standard deviation of a further offset, drawn once per vehicle");
+  in.read("drift_ppm", drift_ppm, between(-1e4, 1e4), "constant error of the frequency; 1 ppm gains 3.6 ms in an hour");
+  in.read("drift_std_ppm", drift_std_ppm, between(0, 1e3),
+          "standard deviation of a further drift, drawn once per vehicle");
+  in.read("white_fm", white_fm, between(0, 1e-4), "Allan deviation at 1 s by white noise of the frequency");
+  in.read("random_walk_fm", random_walk_fm, between(0, 1e-6),
+          "random walk of the frequency in 1 s, 1/sqrt(s); an Allan deviation of this times sqrt(tau / 3)");
+  in.read("flicker_floor", flicker_floor, between(0, 1e-4), "flat part of the Allan deviation");
+  in.read("temperature_ppm_per_C", temperature_ppm_per_C, between(-100, 100),
+          "change of the frequency with the temperature of the water at the vehicle");
+  in.read("reference_temperature_C", reference_temperature_C, between(-50, 100),
+          "without an effect; also that of the clock in air");
+  in.read("update_s", update_s, between(0.01, 3600), "interval at which the random parts advance; linear in between");
+  in.read("resolution_s", resolution_s, between(1e-6, 60),
+          "tick: the reading is rounded down to a multiple of it, and to whole microseconds");
+}
+
+bool ClockConfig::wanders() const {
+  return white_fm > 0 || random_walk_fm > 0 || flicker_floor > 0 || temperature_ppm_per_C != 0;
+}
+
+bool ClockConfig::perfect() const {
+  const bool set = offset_s == 0 && offset_std_s == 0 && drift_ppm == 0 && drift_std_ppm == 0;
+  return set && !wanders() && resolution_s <= 1e-6;
+}
+
+double flicker_process_std() {
+  return std::sqrt(std::numbers::ln10 / (2 * std::numbers::ln2));
+}
+
+const std::vector<double>& flicker_times_s() {
+  static const std::vector<double> times = {1, 10, 100, 1e3, 1e4, 1e5};
+  return times;
+}
+
+Oscillator::Oscillator(const ClockConfig& config, std::uint64_t seed, const std::string& name)
+    : config_(config), random_(seed, name) {
+  offset_s_ = config.offset_s + config.offset_std_s * random_.gaussian();
+  drift_ = 1e-6 * (config.drift_ppm + config.drift_std_ppm * random_.gaussian());
+  drift_ = std::clamp(drift_, -most_rate, most_rate);
+  if (config.flicker_floor <= 0) return;
+  // From the stationary distribution: it has been on for a while.
+  for (std::size_t i = 0; i < flicker_times_s().size(); ++i)
+    flicker_.push_back(config.flicker_floor * flicker_process_std() * random_.gaussian());
+}
+
+void Oscillator::advance(std::optional<double> temperature_C) {
+  random_.begin_step(intervals_++);
+  const double dt_s = config_.update_s;
+  const double root_s = std::sqrt(dt_s);
+  double gained_s = walk_ * dt_s;
+  if (config_.white_fm > 0) gained_s += config_.white_fm * root_s * random_.gaussian();
+  if (config_.random_walk_fm > 0) {
+    // The walk and its integral over the interval, which are correlated: variances q^2 dt and q^2 dt^3 / 3.
+    const double first = random_.gaussian(), second = random_.gaussian();
+    walk_ += config_.random_walk_fm * root_s * first;
+    gained_s += config_.random_walk_fm * dt_s * root_s * (first / 2 + second / std::sqrt(12.0));
+  }
+  for (std::size_t i = 0; i < flicker_.size(); ++i) {
+    const double times = dt_s / flicker_times_s()[i];
+    const double fresh = config_.flicker_floor * flicker_process_std() * std::sqrt(-std::expm1(-2 * times));
+    const double before = flicker_[i];
+    flicker_[i] = std::exp(-times) * before + fresh * random_.gaussian();
+    gained_s += (before + flicker_[i]) / 2 * dt_s;
+  }
+  if (temperature_C)
+    gained_s += 1e-6 * config_.temperature_ppm_per_C * (*temperature_C - config_.reference_temperature_C) * dt_s;
+  walk_ = std::clamp(walk_, -most_rate, most_rate);
+  wander_s_ += std::clamp(gained_s, -most_rate * dt_s, most_rate * dt_s);
+}
+
+void Oscillator::visit_state(StateArchive& archive) {
+  archive(offset_s_, drift_, intervals_, wander_s_, walk_);
+  archive.expect_count(flicker_.size(), "parts of the flicker noise of a clock");
+  for (double& part : flicker_) archive(part);
+}
+
+}  // namespace sim

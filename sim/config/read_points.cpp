@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/config/read_points.hpp"
+
+#include <string>
+
+#include "sim/config/message_text.hpp"
+
+namespace sim {
+
+void read_points(ParamReader& in, const char* key, std::vector<Vector3d>& value, std::size_t columns,
+                 const char* meaning) {
+  ParamInfo info;
+  info.key = key;
+  info.type = columns == 2 ? "list of [x, y]" : "list of [x, y, z]";
+  info.initial = "[]";
+  info.meaning = meaning;
+  in.describe(std::move(info));
+  const ConfigNode* list = in.child(key);
+  if (list == nullptr) return;
+  if (list->kind != ConfigNode::Kind::list)
+    return in.error(key, "'" + std::string(key) + "' must be a list of points, got " + shown(*list));
+  value.clear();
+  for (std::size_t i = 0; i < list->items.size(); ++i) {
+    const std::string name = std::string(key) + "[" + std::to_string(i + 1) + "]";
+    const ConfigNode item = map_node(name, list->items[i]);
+    ParamReader one(item, in.who(), in.diagnostics());
+    std::vector<double> numbers;
+    one.read(name.c_str(), numbers, any_place(), "");
+    if (list->items[i].kind == ConfigNode::Kind::list && list->items[i].items.size() != columns)
+      one.error(name.c_str(),
+                "'" + name + "' must be " + std::to_string(columns) + " numbers, got " + shown(list->items[i]));
+    else if (numbers.size() == columns)
+      value.emplace_back(numbers[0], numbers[1], columns == 3 ? numbers[2] : 0.0);
+  }
+}
+
+}  // namespace sim

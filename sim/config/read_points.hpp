@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "sim/config/param_reader.hpp"
+
+namespace sim {
+
+/// A list of points `[[x, y, z], ...]`, or of `[x, y]` when `columns` is 2 (z is then 0).
+void read_points(ParamReader& in, const char* key, std::vector<Vector3d>& value, std::size_t columns,
+                 const char* meaning);
+
+}  // namespace sim

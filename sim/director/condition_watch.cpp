@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/director/condition_watch.hpp"
+
+#include "sim/director/touch_watch.hpp"
+#include "sim/geometry/zone.hpp"
+#include "sim/world/world.hpp"
+
+namespace sim {
+
+namespace {
+
+/// Something that is true or false of each vehicle.
+class VehicleWatch : public ConditionWatch {
+ public:
+  explicit VehicleWatch(std::string vehicle) : vehicle_(std::move(vehicle)) {}
+
+  int count_new(World& world) final {
+    int count = 0;
+    const auto look_at = [&](const Vehicle& vehicle) {
+      const auto number = static_cast<std::size_t>(vehicle.number());
+      if (number >= states_.size()) states_.resize(number + 1, unknown);
+      const State now = holds(vehicle) ? yes : no;
+      if (fires(states_[number], now)) ++count;
+      states_[number] = now;
+    };
+    if (vehicle_ == "any") {
+      for (const auto& vehicle : world.vehicles()) look_at(*vehicle);
+    } else if (const Vehicle* vehicle = world.find_vehicle(vehicle_)) {
+      look_at(*vehicle);
+    }
+    return count;
+  }
+
+  void visit_state(StateArchive& archive) final { archive(states_); }
+
+ protected:
+  enum State : signed char { unknown, no, yes };
+  virtual bool holds(const Vehicle& vehicle) const = 0;
+  virtual bool fires(State before, State now) const { return before != yes && now == yes; }
+
+ private:
+  std::string vehicle_;
+  std::vector<State> states_;  ///< by the vehicle's number
+};
+
+class ZoneWatch final : public VehicleWatch {
+ public:
+  ZoneWatch(const Condition& condition, const Zones& zones)
+      : VehicleWatch(condition.subject),
+        kind_(condition.kind),
+        zone_(zones.all()[static_cast<std::size_t>(zones.index_of(condition.object))]) {}
+
+ private:
+  bool holds(const Vehicle& vehicle) const override { return zone_.contains(vehicle.X_WV().translation()); }
+  bool fires(State before, State now) const override {
+    if (kind_ == Condition::Kind::leaves) return before == yes && now == no;
+    if (kind_ == Condition::Kind::enters) return before == no && now == yes;
+    return before != yes && now == yes;
+  }
+
+  Condition::Kind kind_;
+  const Zone& zone_;
+};
+
+class SpeedWatch final : public VehicleWatch {
+ public:
+  explicit SpeedWatch(const Condition& condition) : VehicleWatch(condition.subject), speed_mps_(condition.speed_mps) {}
+
+ private:
+  bool holds(const Vehicle& vehicle) const override { return vehicle.base().v_WB_W().norm() > speed_mps_; }
+  double speed_mps_;
+};
+
+class MessageWatch final : public ConditionWatch {
+ public:
+  MessageWatch(const Condition& condition, World& world)
+      : mailbox_(
+            world.bus_of_channel(condition.subject).open_mailbox(condition.subject, Bus::default_mailbox_capacity)) {}
+  int count_new(World&) override {
+    int count = 0;
+    while (mailbox_->take()) ++count;
+    return count;
+  }
+  void visit_state(StateArchive& archive) override {
+    std::vector<Message> unread = mailbox_->unread();
+    archive.unhashed(unread);
+    if (archive.restoring()) mailbox_->set_unread(std::move(unread));
+  }
+
+ private:
+  std::unique_ptr<Mailbox> mailbox_;
+};
+
+}  // namespace
+
+std::unique_ptr<ConditionWatch> make_watch(const Condition& condition, World& world, const Zones& zones) {
+  switch (condition.kind) {
+    case Condition::Kind::enters:
+    case Condition::Kind::leaves:
+    case Condition::Kind::inside:
+      return std::make_unique<ZoneWatch>(condition, zones);
+    case Condition::Kind::faster:
+      return std::make_unique<SpeedWatch>(condition);
+    case Condition::Kind::message:
+      return std::make_unique<MessageWatch>(condition, world);
+    case Condition::Kind::touches:
+      return make_touch_watch(condition, world);
+    case Condition::Kind::none:
+    case Condition::Kind::fires:
+      break;
+  }
+  return nullptr;
+}
+
+}  // namespace sim

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "sim/script/event_config.hpp"
+#include "sim/state/state_archive.hpp"
+
+namespace sim {
+
+class World;
+class Zones;
+
+/// Sees when the condition of an event becomes true.
+class ConditionWatch {
+ public:
+  virtual ~ConditionWatch() = default;
+  /// How often it became true since the last call; called once in each step.
+  virtual int count_new(World& world) = 0;
+  virtual void visit_state(StateArchive& archive) = 0;
+};
+
+/// Null when there is nothing to watch: no condition, or one of another event.
+std::unique_ptr<ConditionWatch> make_watch(const Condition& condition, World& world, const Zones& zones);
+
+}  // namespace sim

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/director/touch_watch.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "sim/world/world.hpp"
+
+namespace sim {
+
+namespace {
+
+class TouchWatch final : public ConditionWatch {
+ public:
+  explicit TouchWatch(const Condition& condition) : condition_(condition) {}
+
+  int count_new(World& world) override {
+    if (generation_ != world.generation()) choose_groups(world);
+    const auto parts = world.physics().parts();
+    std::set<std::pair<std::int64_t, std::int64_t>> touching;
+    for (const ContactReport& contact : world.physics().contacts()) {
+      const int a = parts[static_cast<std::size_t>(contact.parts[0])].group;
+      const int b = parts[static_cast<std::size_t>(contact.parts[1])].group;
+      if (matches(a, b) || matches(b, a)) touching.insert(std::minmax(whose_.at(a), whose_.at(b)));
+    }
+    const auto is_new = [&](const auto& pair) { return !touching_.contains(pair); };
+    const auto count = std::count_if(touching.begin(), touching.end(), is_new);
+    touching_ = std::move(touching);
+    return static_cast<int>(count);
+  }
+
+  void visit_state(StateArchive& archive) override { archive(touching_); }
+
+ private:
+  void choose_groups(World& world) {
+    generation_ = world.generation();
+    first_.clear();
+    second_.clear();
+    whose_.clear();
+    for (const auto& vehicle : world.vehicles()) {
+      whose_[vehicle->group()] = 2 * static_cast<std::int64_t>(vehicle->number());
+      consider(vehicle->name(), vehicle->group(), true);
+    }
+    for (const auto& [name, object] : world.objects()) {
+      whose_[object.group] = 2 * object.number + 1;
+      const auto is_plane = [](const PartConfig& part) { return part.shape == "plane"; };
+      const auto& shapes = object.config.parts;
+      consider(name, object.group, !std::all_of(shapes.begin(), shapes.end(), is_plane));
+    }
+    // A group that came may have the number of one that went, whose watch ended with it; watching twice does no harm.
+    const bool any_first = condition_.subject == "any";
+    for (const int group : any_first ? second_ : first_) world.physics().watch_contacts(group);
+  }
+
+  void consider(const std::string& name, int group, bool any) {
+    if (condition_.subject == "any" ? any : condition_.subject == name) first_.insert(group);
+    if (condition_.object == "any" ? any : condition_.object == name) second_.insert(group);
+  }
+
+  bool matches(int a, int b) const { return a != b && first_.contains(a) && second_.contains(b); }
+
+  const Condition& condition_;
+  std::uint64_t generation_ = ~std::uint64_t{0};
+  std::set<int> first_, second_;
+  // A group's number is used again when something comes for something that went: then it is another touch.
+  std::map<int, std::int64_t> whose_;
+  std::set<std::pair<std::int64_t, std::int64_t>> touching_;
+};
+
+}  // namespace
+
+std::unique_ptr<ConditionWatch> make_touch_watch(const Condition& condition, World&) {
+  return std::make_unique<TouchWatch>(condition);
+}
+
+}  // namespace sim

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "sim/director/condition_watch.hpp"
+
+namespace sim {
+
+/// Of `NAME touches NAME`.  `any`: every vehicle and object but those made of planes, which everything stands on.
+std::unique_ptr<ConditionWatch> make_touch_watch(const Condition& condition, World& world);
+
+}  // namespace sim

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/event/event_queue.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace sim {
+
+void EventQueue::schedule(Event event) {
+  event.sequence = next_sequence_++;
+  insert(std::move(event));
+}
+
+void EventQueue::insert(Event event) {
+  Entry entry{event.due, event.sequence, event.stamp, event.device, event.kind, Entry::no_payload};
+  if (!event.payload.empty()) {
+    if (free_payloads_.empty()) {
+      free_payloads_.push_back(static_cast<int>(payloads_.size()));
+      payloads_.emplace_back();
+    }
+    entry.payload = free_payloads_.back();
+    free_payloads_.pop_back();
+    payloads_[static_cast<std::size_t>(entry.payload)] = std::move(event.payload);
+  }
+  ++size_;
+  if (const std::int64_t slice = slice_of(event.due); slice > reached_) {
+    const auto [found, is_new] = slices_.try_emplace(slice);
+    if (is_new && !spare_.empty()) {
+      found->second = std::move(spare_.back());
+      spare_.pop_back();
+    }
+    found->second.push_back(entry);
+  } else {
+    late_.push_back(entry);
+    std::push_heap(late_.begin(), late_.end(), Later());
+  }
+}
+
+/// Appends what is due up to the end of this slice, sorted.
+void EventQueue::reach(std::int64_t slice) {
+  if (slice <= reached_) return;
+  reached_ = slice;
+  if (slices_.empty() || slices_.begin()->first > slice) return;
+  sorted_.erase(sorted_.begin(), sorted_.begin() + static_cast<std::ptrdiff_t>(next_));
+  next_ = 0;
+  while (!slices_.empty() && slices_.begin()->first <= slice) {
+    std::vector<Entry>& entries = slices_.begin()->second;
+    const auto old = static_cast<std::ptrdiff_t>(sorted_.size());
+    sorted_.insert(sorted_.end(), entries.begin(), entries.end());
+    std::sort(sorted_.begin() + old, sorted_.end(), Earlier());
+    entries.clear();
+    constexpr std::size_t most_spare = 256;
+    if (spare_.size() < most_spare) spare_.push_back(std::move(entries));
+    slices_.erase(slices_.begin());
+  }
+}
+
+Event EventQueue::take(const Entry& entry) {
+  Event event{entry.due, entry.sequence, entry.device, entry.kind, entry.stamp, {}};
+  if (entry.payload != Entry::no_payload) {
+    event.payload = std::exchange(payloads_[static_cast<std::size_t>(entry.payload)], {});
+    free_payloads_.push_back(entry.payload);
+  }
+  --size_;
+  return event;
+}
+
+bool EventQueue::take_due(Time now, Event& event) {
+  reach(slice_of(now));
+  const Entry* const first = next_ < sorted_.size() ? &sorted_[next_] : nullptr;
+  if (!late_.empty() && (first == nullptr || Earlier()(late_.front(), *first))) {
+    if (late_.front().due > now) return false;
+    std::pop_heap(late_.begin(), late_.end(), Later());
+    event = take(late_.back());
+    late_.pop_back();
+    return true;
+  }
+  if (first == nullptr || first->due > now) return false;
+  event = take(*first);
+  ++next_;
+  return true;
+}
+
+void EventQueue::forget_device(int device) {
+  const auto of_device = [&](const Entry& entry) {
+    if (entry.device != device) return false;
+    take(entry);
+    return true;
+  };
+  sorted_.erase(sorted_.begin(), sorted_.begin() + static_cast<std::ptrdiff_t>(next_));
+  next_ = 0;
+  std::erase_if(sorted_, of_device);
+  if (std::erase_if(late_, of_device) > 0) std::make_heap(late_.begin(), late_.end(), Later());
+  for (auto& [slice, entries] : slices_) std::erase_if(entries, of_device);
+}
+
+template <typename Use>
+void EventQueue::for_each(const Use& use) const {
+  for (std::size_t i = next_; i < sorted_.size(); ++i) use(sorted_[i]);
+  for (const Entry& entry : late_) use(entry);
+  for (const auto& [slice, entries] : slices_)
+    for (const Entry& entry : entries) use(entry);
+}
+
+/// How they are stored depends on their history; the order of delivery is what counts.
+void EventQueue::visit_state(StateArchive& archive) {
+  archive.unhashed(reached_, next_sequence_);
+  if (archive.restoring()) {
+    std::vector<Event> events;
+    archive(events);
+    const std::int64_t reached = reached_;
+    const std::uint64_t next_sequence = next_sequence_;
+    *this = {};
+    reached_ = reached;
+    next_sequence_ = next_sequence;
+    for (Event& event : events) {
+      if (event.device < 0 && event.device != Event::of_acoustics) archive.fail("an event of nobody");
+      insert(std::move(event));
+    }
+    return;
+  }
+  std::vector<Entry> ordered;
+  ordered.reserve(size_);
+  for_each([&](const Entry& entry) { ordered.push_back(entry); });
+  std::sort(ordered.begin(), ordered.end(), Earlier());
+  auto size = static_cast<std::uint64_t>(ordered.size());  // as archive(std::vector<Event>) has it
+  archive(size);
+  for (const Entry& entry : ordered) {
+    Event event{entry.due, entry.sequence, entry.device, entry.kind, entry.stamp, {}};
+    // Lent, for a hash of many camera images copies none.
+    Bytes* const payload =
+        entry.payload != Entry::no_payload ? &payloads_[static_cast<std::size_t>(entry.payload)] : nullptr;
+    if (payload != nullptr) std::swap(event.payload, *payload);
+    archive(event);
+    if (payload != nullptr) std::swap(event.payload, *payload);
+  }
+}
+
+}  // namespace sim

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/geometry/mesh.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <utility>
+
+#include "sim/config/message_text.hpp"
+#include "sim/base/whole_file.hpp"
+
+namespace sim {
+namespace {
+
+constexpr double max_mesh_coordinate_m = 1e7;  // as far as a part may be
+
+/// Words separated by white space; knows the ends of lines.
+class Words {
+ public:
+  explicit Words(std::string_view text) : whole_(text), text_(text) {}
+  /// The next word of the line; empty at its end.
+  std::string_view in_line() {
+    while (!text_.empty() && (text_[0] == ' ' || text_[0] == '\t' || text_[0] == '\r')) text_.remove_prefix(1);
+    return take();
+  }
+  /// The next word of the text; empty at its end.
+  std::string_view any() {
+    while (!text_.empty() && is_space(text_[0])) text_.remove_prefix(1);
+    return take();
+  }
+  /// Goes to the next line; false at the end of the text.
+  bool next_line() {
+    const auto end = text_.find('\n');
+    if (end == std::string_view::npos) return false;
+    text_.remove_prefix(end + 1);
+    return true;
+  }
+  /// The number of the line of the last word.
+  std::ptrdiff_t line() const {
+    return 1 + std::count(whole_.begin(), whole_.end() - static_cast<std::ptrdiff_t>(text_.size()), '\n');
+  }
+
+ private:
+  static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v'; }
+  std::string_view take() {
+    std::size_t length = 0;
+    while (length < text_.size() && !is_space(text_[length])) ++length;
+    const std::string_view word = text_.substr(0, length);
+    text_.remove_prefix(length);
+    return word;
+  }
+  std::string_view whole_, text_;
+};
+
+/// A file that a world names is not quoted: the line says enough to whoever may read it.
+[[noreturn]] void fail_in_line(const Words& words, const std::string& text) {
+  throw MeshError("is not a mesh: line " + std::to_string(words.line()) + ": " + text);
+}
+
+double number_from(std::string_view word, const Words& words, const char* what = "number") {
+  if (!word.empty() && word[0] == '+') word.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (word.empty() || error != std::errc{} || end != word.data() + word.size())
+    fail_in_line(words, std::string("must have a ") + what + " here");
+  return value;
+}
+
+Vector3d checked_vertex(const Vector3d& p) {
+  if (!p.allFinite()) throw MeshError("has a vertex that is not finite");
+  return p + Vector3d::Zero();  // -0 and 0 are one place
+}
+
+/// Gives equal vertices one number: STL repeats each vertex in every triangle.
+class Welder {
+ public:
+  explicit Welder(Mesh& mesh) : mesh_(mesh) {}
+  std::uint32_t number_of(const Vector3d& vertex) {
+    const Vector3d p = checked_vertex(vertex);
+    const auto [at, added] =
+        numbers_.try_emplace({p.x(), p.y(), p.z()}, static_cast<std::uint32_t>(mesh_.vertices_m.size()));
+    if (added) mesh_.vertices_m.push_back(p);
+    return at->second;
+  }
+
+ private:
+  Mesh& mesh_;
+  std::map<std::array<double, 3>, std::uint32_t> numbers_;
+};
+
+void add_triangle(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  if (a == b || b == c || c == a) return;
+  if (mesh.triangles.size() >= max_mesh_triangles)
+    throw MeshError("has more than 4 million triangles: make a coarser one for collision");
+  mesh.triangles.push_back({a, b, c});
+}
+
+Mesh parse_binary_stl(std::string_view bytes, std::uint32_t count) {
+  Mesh mesh;
+  Welder welder(mesh);
+  mesh.triangles.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    float numbers[12];  // a normal, which is not used, and three vertices
+    std::memcpy(numbers, bytes.data() + 84 + 50 * std::size_t{i}, sizeof numbers);
+    std::uint32_t corner[3];
+    for (int k = 0; k < 3; ++k)
+      corner[k] = welder.number_of({numbers[3 + 3 * k], numbers[4 + 3 * k], numbers[5 + 3 * k]});
+    add_triangle(mesh, corner[0], corner[1], corner[2]);
+  }
+  return mesh;
+}
+
+Mesh parse_ascii_stl(std::string_view text) {
+  Mesh mesh;
+  Welder welder(mesh);
+  Words words(text);
+  words.next_line();  // `solid` and a name that may be anything
+  std::vector<std::uint32_t> corners;
+  bool ended = false;
+  for (auto word = words.any(); !word.empty(); word = words.any()) {
+    ended = word == "endsolid";
+    if (word == "facet") {
+      words.next_line();  // the normal is not used
+    } else if (word == "vertex") {
+      const double x = number_from(words.any(), words);
+      const double y = number_from(words.any(), words);
+      const double z = number_from(words.any(), words);
+      corners.push_back(welder.number_of({x, y, z}));
+    } else if (word == "endfacet") {
+      if (corners.size() != 3) throw MeshError("has a facet without three vertices");
+      add_triangle(mesh, corners[0], corners[1], corners[2]);
+      corners.clear();
+    } else if (word == "endsolid" || word == "solid") {
+      if (!words.next_line()) break;
+    } else if (word != "outer" && word != "loop" && word != "endloop") {
+      fail_in_line(words, "unknown word");
+    }
+  }
+  if (!corners.empty()) throw MeshError("ends inside a facet");
+  if (!ended) throw MeshError("is cut off: it ends without 'endsolid'");
+  return mesh;
+}
+
+Mesh not_empty(Mesh mesh) {
+  if (mesh.triangles.empty()) throw MeshError("has no triangles");
+  const auto has_area = [&](const auto& t) {
+    const Vector3d &a = mesh.vertices_m[t[0]], &b = mesh.vertices_m[t[1]], &c = mesh.vertices_m[t[2]];
+    return (b - a).cross(c - a).squaredNorm() > 0;
+  };
+  if (std::none_of(mesh.triangles.begin(), mesh.triangles.end(), has_area))
+    throw MeshError("has no triangle with an area");
+  return mesh;
+}
+
+/// A corner of an OBJ face is `7`, `7/1`, `7//3` or `-1`; only the vertex counts.
+std::uint32_t obj_index(std::string_view word, const Words& words, std::size_t vertices) {
+  const double number = number_from(word.substr(0, word.find('/')), words, "vertex number");
+  const double index = number < 0 ? static_cast<double>(vertices) + number : number - 1;
+  if (number != std::floor(number) || !(index >= 0 && index < static_cast<double>(vertices)))
+    fail_in_line(words, "must have numbers of the " + std::to_string(vertices) + " vertices so far");
+  return static_cast<std::uint32_t>(index);
+}
+
+}  // namespace
+
+Mesh load_mesh(const std::string& path, double scale) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
+  if (extension != ".stl" && extension != ".obj") throw MeshError("must end in .stl or .obj");
+  const std::string bytes = whole_file<MeshError>(path);
+  Mesh mesh = extension == ".stl" ? parse_stl(bytes) : parse_obj(bytes);
+  for (Vector3d& p : mesh.vertices_m) {
+    p = checked_vertex(p * scale);
+    if (p.cwiseAbs().maxCoeff() > max_mesh_coordinate_m)
+      throw MeshError("has a vertex more than 1e7 m from its origin, at " + number_text(p.cwiseAbs().maxCoeff()) +
+                      " m");
+  }
+  return mesh;
+}
+
+Mesh parse_stl(std::string_view bytes) {
+  std::uint32_t count = 0;
+  if (bytes.size() >= 84) std::memcpy(&count, bytes.data() + 80, 4);
+  const bool size_fits = bytes.size() >= 84 && bytes.size() == 84 + 50 * std::size_t{count};
+  // Some binary files begin with `solid` too: the size decides first.
+  if (!size_fits && bytes.substr(0, 5) == "solid") return not_empty(parse_ascii_stl(bytes));
+  if (bytes.size() < 84) throw MeshError("is not a mesh: too short for an STL file");
+  if (count > max_mesh_triangles && bytes.size() >= 84 + 50 * std::size_t{count})
+    throw MeshError("has more than 4 million triangles: make a coarser one for collision");
+  if (bytes.size() < 84 + 50 * std::size_t{count})
+    throw MeshError("says it has " + std::to_string(count) + " triangles, but there is room for " +
+                    std::to_string((bytes.size() - 84) / 50));
+  return not_empty(parse_binary_stl(bytes, count));
+}
+
+Mesh parse_obj(std::string_view text) {
+  Mesh mesh;
+  Words words(text);
+  do {
+    const std::string_view word = words.in_line();
+    if (word == "v") {
+      const double x = number_from(words.in_line(), words);
+      const double y = number_from(words.in_line(), words);
+      const double z = number_from(words.in_line(), words);
+      mesh.vertices_m.push_back(checked_vertex({x, y, z}));
+    } else if (word == "f") {
+      std::vector<std::uint32_t> corners;
+      for (auto corner = words.in_line(); !corner.empty(); corner = words.in_line())
+        corners.push_back(obj_index(corner, words, mesh.vertices_m.size()));
+      if (corners.size() < 3) throw MeshError("has a face with fewer than three vertices");
+      for (std::size_t i = 2; i < corners.size(); ++i) add_triangle(mesh, corners[0], corners[i - 1], corners[i]);
+    }
+  } while (words.next_line());
+  return not_empty(std::move(mesh));
+}
+
+bool is_closed(const Mesh& mesh) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges, reversed;
+  for (const auto& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      edges.emplace_back(t[k], t[(k + 1) % 3]);
+      reversed.emplace_back(t[(k + 1) % 3], t[k]);
+    }
+  std::sort(edges.begin(), edges.end());
+  std::sort(reversed.begin(), reversed.end());
+  return edges == reversed;
+}
+
+MeshSolid solid_of(const Mesh& mesh) {
+  // Sums the tetrahedra between each triangle and a point near the mesh (not the origin: a mesh far from it
+  // would lose digits).  The integral of x x^T over one is det/120 (sum of p p^T + s s^T), with s the sum of
+  // its corners.
+  const Vector3d near = mesh.vertices_m.empty() ? Vector3d::Zero() : mesh.vertices_m.front();
+  double volume = 0;
+  Vector3d first = Vector3d::Zero();
+  Matrix3d second = Matrix3d::Zero();
+  for (const auto& t : mesh.triangles) {
+    const Vector3d a = mesh.vertices_m[t[0]] - near, b = mesh.vertices_m[t[1]] - near, c = mesh.vertices_m[t[2]] - near;
+    const double det = a.dot(b.cross(c));
+    const Vector3d sum = a + b + c;
+    volume += det / 6;
+    first += det / 24 * sum;
+    second += det / 120 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
+  }
+  MeshSolid solid;
+  solid.volume_m3 = volume;
+  if (volume == 0) return solid;
+  const Vector3d centroid = first / volume;
+  second -= volume * centroid * centroid.transpose();
+  solid.centroid_m = near + centroid;
+  solid.inertia = second.trace() * Matrix3d::Identity() - second;
+  return solid;
+}
+
+void turn_inside_out(Mesh& mesh) {
+  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+}
+
+}  // namespace sim

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/config/param_reader.hpp"
+#include "sim/base/math.hpp"
+
+namespace sim {
+
+enum class ZoneShape { box, sphere, cylinder, polygon };
+
+/// What a zone does to those inside it.
+enum class ZoneFlag { gps_denied, radio_denied };
+
+/// A named region of the world, for events, denied services and rules.  Nothing collides with it.
+struct ZoneConfig {
+  std::string name;
+  ZoneShape shape = ZoneShape::box;
+  Vector3d position_m = Vector3d::Zero();
+  Vector3d rpy_rad = Vector3d::Zero();
+  Vector3d size_m = Vector3d::Ones();  ///< box
+  double radius_m = 1;                 ///< sphere, cylinder
+  double height_m = 1;                 ///< cylinder, along z
+  std::vector<Vector3d> points_m;      ///< polygon: corners in the zone's xy-plane
+  double low_m = -1e9;                 ///< polygon: between these heights in the zone's frame
+  double high_m = 1e9;
+  bool gps_denied = false;
+  bool radio_denied = false;
+  std::optional<double> speed_limit_mps;
+  bool finish = false;
+
+  void read(ParamReader& in);
+};
+
+/// A zone as placed.  Its border belongs to it.
+class Zone {
+ public:
+  explicit Zone(const ZoneConfig& config);
+  bool contains(const Vector3d& p_W) const;
+  const ZoneConfig& config() const { return config_; }
+
+ private:
+  bool inside_polygon(const Vector3d& p_Z) const;
+
+  ZoneConfig config_;
+  Pose X_ZW_;
+};
+
+/// All zones of a world, in the order of the file.
+class Zones {
+ public:
+  explicit Zones(const std::vector<ZoneConfig>& configs);
+  /// Whether a service is denied at a place.
+  bool denied(ZoneFlag flag, const Vector3d& p_W) const;
+  const std::vector<Zone>& all() const { return all_; }
+  /// -1 when there is none.
+  int index_of(const std::string& name) const;
+
+ private:
+  std::vector<Zone> all_;
+  std::vector<int> gps_denied_, radio_denied_;  ///< numbers in all_; most worlds have none
+};
+
+}  // namespace sim

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "sim/state/state_archive.hpp"
+
+namespace sim {
+
+/// Images larger than this are refused, in files and of cameras.
+inline constexpr int max_image_side_px = 8192;
+inline constexpr int max_image_pixels = 16'000'000;
+
+/// Values of pixels, row by row from the top, each row from left to right, `channels` side by side.
+template <typename T>
+struct Image {
+  int width = 0;
+  int height = 0;
+  int channels = 1;
+  std::vector<T> data;
+
+  Image() = default;
+  Image(int width_, int height_, int channels_) : width(width_), height(height_), channels(channels_), data(size()) {}
+
+  std::size_t size() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(channels);
+  }
+  T* at(int column, int row) { return data.data() + offset(column, row); }
+  const T* at(int column, int row) const { return data.data() + offset(column, row); }
+
+  void visit_state(StateArchive& archive) {
+    archive(width, height, channels, data);
+    if (archive.restoring() && (width < 0 || height < 0 || channels < 0 || data.size() != size()))
+      archive.fail("an image that has not as many values as pixels");
+  }
+
+ private:
+  std::size_t offset(int column, int row) const {
+    return (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)) *
+           static_cast<std::size_t>(channels);
+  }
+};
+
+/// Grey or RGB in sRGB, as files have them.
+using Image8 = Image<std::uint8_t>;
+/// Depth in millimetres, or labels.
+using Image16 = Image<std::uint16_t>;
+/// Light in linear measure (RGB, 1 is white), or depth in metres.
+using FloatImage = Image<float>;
+
+/// Light of an sRGB level, 0 to 1 (IEC 61966-2-1).
+float linear_from_srgb(std::uint8_t level);
+/// The sRGB level of light; less than 0 counts as 0, more than 1 as 1.
+std::uint8_t srgb_from_linear(float light);
+/// How bright linear RGB looks (ITU-R BT.709).
+inline float luminance(const float* rgb) {
+  return 0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2];
+}
+
+/// A picture of depth for people: near is bright, black is nothing; logarithmic between the nearest and the farthest.
+Image8 picture_of_depth(const FloatImage& depth_m);
+/// A picture of labels for people: each has a color of its own, 0 is black.
+Image8 picture_of_labels(const Image16& labels);
+/// The color of a label, the same in every picture.
+std::array<std::uint8_t, 3> label_color(std::uint16_t label);
+
+}  // namespace sim

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+
+#include "sim/image/image_file.hpp"
+
+namespace sim {
+
+/// As RGB, transparent pixels over black.  Throws ImageError.
+Image8 decode_png(std::span<const std::byte> bytes);
+
+}  // namespace sim

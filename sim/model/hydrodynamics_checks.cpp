@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/model/hydrodynamics_checks.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "sim/config/message_text.hpp"
+
+namespace sim {
+
+namespace {
+
+constexpr const char* axes[] = {"surge", "sway", "heave", "roll", "pitch", "yaw"};
+constexpr char rows[] = "XYZKMN";
+constexpr char states[] = "uvwpqr";
+
+const char* key_of_added_mass(const ParamReader& in) {
+  return in.has("added_mass") || !in.has("derivatives") ? "added_mass" : "derivatives";
+}
+
+std::string derivative_name(const DerivativeTerm& term) {
+  std::string name{rows[term.row], '_', states[term.first]};
+  if (term.second >= 0) name += states[term.second];
+  return name;
+}
+
+template <typename Matrix>
+double smallest_eigenvalue(const Matrix& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Matrix>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[0];
+}
+
+/// False: below zero by more than the rounding of its numbers.
+bool not_negative(double eigenvalue, const Matrix6d& matrix) {
+  return eigenvalue >= -1e-9 * matrix.cwiseAbs().maxCoeff();
+}
+
+void check_added_mass(const Matrix6d& A, ParamReader& in) {
+  const char* key = key_of_added_mass(in);
+  for (int i = 0; i < 6; ++i) {
+    if (A(i, i) >= 0) continue;
+    in.error(key, std::string("the added mass in ") + axes[i] + " must be >= 0, got " + number_text(A(i, i)) +
+                      ": papers print derivatives such as " + rows[i] + "_" + states[i] +
+                      "dot, which are its negative");
+    return;
+  }
+  const double scale = A.cwiseAbs().maxCoeff();
+  for (int i = 0; i < 6; ++i)
+    for (int j = i + 1; j < 6; ++j) {
+      if (std::abs(A(i, j) - A(j, i)) <= 1e-6 * scale) continue;
+      in.error(key, std::string("the added mass must be symmetric, got ") + number_text(A(i, j)) + " between " +
+                        axes[i] + " and " + axes[j] + " and " + number_text(A(j, i)) + " the other way");
+      return;
+    }
+  const double least = smallest_eigenvalue(A);
+  if (!not_negative(least, A))
+    in.error(key, "the matrix of added mass has a negative eigenvalue, " + number_text(least) +
+                      ": its couplings are too large for its diagonal");
+}
+
+void check_inertia(const HydrodynamicsConfig& config, ParamReader& in) {
+  const Matrix3d& I = config.inertia_kgm2;
+  if ((I - I.transpose()).cwiseAbs().maxCoeff() > 1e-9 * I.cwiseAbs().maxCoeff()) {
+    in.error("inertia_kgm2", "'inertia_kgm2' must be symmetric");
+    return;
+  }
+  const double least = smallest_eigenvalue(I);
+  if (!(least > 0))
+    in.error("inertia_kgm2",
+             "'inertia_kgm2' about the centre of mass must be positive definite, its smallest eigenvalue is " +
+                 number_text(least) + "; see 'inertia_about'");
+}
+
+void check_damping(const char* key, const Matrix6d& damping, ParamReader& in) {
+  for (int i = 0; i < 6; ++i)
+    if (!(damping(i, i) >= 0))
+      in.error(key, std::string("'") + key + "' must be >= 0 in " + axes[i] + ", got " + number_text(damping(i, i)) +
+                        ": negative, it would push the vehicle on; papers print derivatives, which are its negative");
+}
+
+/// That no combination of motions is driven: what damping takes is nu' D nu, of which only the symmetric part counts.
+void check_damping_couplings(const HydrodynamicsConfig& config, ParamReader& in) {
+  const Matrix6d& D = config.linear_damping;
+  if (!(D.diagonal().minCoeff() >= 0)) return;  // was said
+  const double least = smallest_eigenvalue(Matrix6d((D + D.transpose()) / 2));
+  if (!not_negative(least, D))
+    in.error("linear_damping", "the symmetric part of 'linear_damping' has a negative eigenvalue, " +
+                                   number_text(least) + ": there are motions that it would push on");
+}
+
+void check_waterline(const WaterlineConfig& plane, ParamReader& in) {
+  const double alone = plane.heave_Npm * plane.pitch_Nmprad, coupled = plane.heave_pitch_N * plane.heave_pitch_N;
+  if (!(alone > coupled))
+    in.error("waterline", "'heave_pitch_N' squared must stay below 'heave_Npm' times 'pitch_Nmprad', got " +
+                              number_text(coupled) + " and " + number_text(alone) +
+                              ": heaving and pitching at once, it would be pushed over");
+}
+
+void check_derivatives(const HydrodynamicsConfig& config, ParamReader& in) {
+  for (const DerivativeTerm& term : config.derivatives) {
+    const bool brakes = term.row == term.first && (term.second < 0 || (term.second == term.first && term.absolute));
+    if (brakes && term.coefficient > 0)
+      in.error("derivatives", "'" + derivative_name(term) + "' must be <= 0, got " + number_text(term.coefficient) +
+                                  ": positive, it would push the vehicle on");
+  }
+}
+
+}  // namespace
+
+void check_coefficients(const HydrodynamicsConfig& config, ParamReader& in) {
+  if (in.describing() || config.model != "coefficients" || !(config.mass_kg > 0)) return;
+  check_damping("linear_damping", config.linear_damping, in);
+  check_damping("quadratic_damping", config.quadratic_damping, in);
+  check_damping_couplings(config, in);
+  check_derivatives(config, in);
+  if (config.waterline) check_waterline(*config.waterline, in);
+  if (in.has("inertia_kgm2")) check_inertia(config, in);
+  check_added_mass(config.added_mass, in);
+}
+
+std::vector<std::string> doubts_about(const HydrodynamicsConfig& config, const std::string& who) {
+  std::vector<std::string> doubts;
+  const double above = config.center_of_buoyancy_m.z() - config.center_of_mass_m.z();
+  if (!config.waterline && above > 0)
+    doubts.push_back(config.place.text() + ": " + who + ": its centre of mass lies " + number_text(above) +
+                     " m above its centre of buoyancy, so that it turns over; is 'frame' " + config.frame + " right?");
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> principal(config.inertia_kgm2);
+  const Vector3d moments = principal.eigenvalues();  // growing
+  if (moments[2] > (1 + 1e-9) * (moments[0] + moments[1]))
+    doubts.push_back(config.place.text() + ": " + who + ": no solid has its principal moments of inertia, " +
+                     number_text(moments[0]) + ", " + number_text(moments[1]) + " and " + number_text(moments[2]) +
+                     " kg m^2: none is larger than the sum of the others");
+  return doubts;
+}
+
+}  // namespace sim

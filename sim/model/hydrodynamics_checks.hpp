@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/model/hydrodynamics_config.hpp"
+
+namespace sim {
+
+/// Reports what no vehicle can have: mass that is not positive definite, added mass that is not symmetric or negative,
+/// damping that drives.  For numbers that were read without errors.
+void check_coefficients(const HydrodynamicsConfig& config, ParamReader& in);
+
+/// What is possible but most likely a mistake, a line each: `body 'auv1/hull': ...`.
+std::vector<std::string> doubts_about(const HydrodynamicsConfig& config, const std::string& who);
+
+}  // namespace sim

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/model/physics_config.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "sim/config/message_text.hpp"
+
+namespace sim {
+
+void PhysicsConfig::read(ParamReader& in) {
+  in.read("step_s", step_s, above_to(0, 1), "time of one step; a whole number of microseconds");
+  if (std::abs(step_s * 1e6 - std::round(step_s * 1e6)) > 1e-6 || step_s < 1e-6)
+    in.error("step_s", "'step_s' must be a whole number of microseconds, got " + number_text(step_s) + " s");
+  in.read("gravity_mps2", gravity_mps2, any_number(), "gravity, downwards");
+  in.read_choice("solver", solver, {"auto", "step", "quick"},
+                 "step: exact; quick: iterative; auto: quick for large islands, step for the others");
+  in.read("quick_above_rows", quick_above_rows, at_least(0),
+          "auto: islands with more constraint rows are stepped by quick");
+  in.read("quick_iterations", quick_iterations, between(1, 10000), "iterations of the quick solver");
+  in.read("erp", erp, between(0, 1), "part of a joint's or contact's error put right in each step");
+  in.read("cfm", cfm, between(0, 1), "softness of joints and contacts, (m/s)/N s");
+  in.read("contact_max_correcting_velocity_mps", contact_max_correcting_velocity_mps, above(0),
+          "speed at which parts that overlap are pushed apart");
+  in.read("contact_surface_layer_m", contact_surface_layer_m, between(0, 1),
+          "depth to which parts at rest sink in, which keeps contacts from flickering");
+  in.read("max_contacts_per_pair", max_contacts_per_pair, between(1, 256), "contact points of two parts");
+  in.read_choice("space", space, {"sap", "quadtree", "hash", "simple"}, "how parts near each other are found");
+  in.read_choice("rays", rays, {"embree", "ode"},
+                 "how rays find parts: embree is fast; ode, one ray at a time, is there to compare");
+  in.read("max_speed_mps", max_speed_mps, above(0), "a body faster than this stops the run");
+  in.read("max_distance_m", max_distance_m, above(0), "a body farther from the origin than this stops the run");
+}
+
+void ContactConfig::read(ParamReader& in) {
+  in.require("between");
+  in.declare("material", "any");
+  in.read_references("between", between, "material", "two materials; any stands for every one");
+  if (between.size() != 2) {
+    in.error("between", "'between' must name two materials, got " + std::to_string(between.size()));
+    between = {"any", "any"};
+  }
+  in.read("friction", friction, at_least(0), "Coulomb's coefficient of friction");
+  in.read("bounce", bounce, sim::between(0, 1), "coefficient of restitution");
+  in.read("bounce_velocity_mps", bounce_velocity_mps, at_least(0), "slower impacts do not bounce");
+  in.read("soft_erp", soft_erp, sim::between(0, 1), "erp of these contacts, instead of the world's");
+  in.read("soft_cfm", soft_cfm, sim::between(0, 1), "cfm of these contacts, instead of the world's");
+  in.read("rolling_friction_m", rolling_friction_m, at_least(0), "lever of rolling resistance");
+  in.read("spinning_friction_m", spinning_friction_m, at_least(0), "lever of resistance to spinning on the spot");
+  in.read("slip", slip, at_least(0), "speed of slip by force, (m/s)/N");
+}
+
+namespace {
+
+/// Rays are followed in single precision first, and a part whose size squared is infinite there would hide others.
+Rule part_length() {
+  return between(1e-6, 1e7);
+}
+
+/// A key of another shape is a mistake: it would do nothing.
+void check_keys_of_shape(ParamReader& in, const std::string& shape) {
+  const auto only_for = [&](const char* key, std::initializer_list<const char*> shapes) {
+    if (in.has(key) && std::find(shapes.begin(), shapes.end(), shape) == shapes.end())
+      in.error(key, std::string("'") + key + "' is not for shape " + shape);
+  };
+  only_for("size_m", {"box"});
+  only_for("radius_m", {"sphere", "capsule", "cylinder"});
+  only_for("length_m", {"capsule", "cylinder"});
+  only_for("mesh", {"mesh"});
+  only_for("scale", {"mesh"});
+  only_for("terrain", {"terrain"});
+  only_for("mass_kg", {"box", "sphere", "capsule", "cylinder", "mesh"});
+  for (const char* key : {"displaces", "drag_coefficient", "added_mass_coefficient"})
+    only_for(key, {"box", "sphere", "capsule", "cylinder", "mesh"});
+  only_for("density_kgpm3", {"box", "sphere", "capsule", "cylinder", "mesh"});
+}
+
+}  // namespace
+
+void PartConfig::read(ParamReader& in) {
+  if (!in.describing()) {
+    place = in.node()->place;
+    if (place.file) directory = std::filesystem::path(*place.file).parent_path().string();
+  }
+  in.read("name", name, "name of the part");
+  in.read_choice("shape", shape, {"box", "sphere", "capsule", "cylinder", "plane", "mesh", "terrain"},
+                 "shape of the part");
+  in.read("size_m", size_m, part_length(), "box: lengths along x, y and z");
+  in.read("radius_m", radius_m, part_length(), "sphere, capsule, cylinder");
+  in.read("length_m", length_m, part_length(), "capsule (without its caps) and cylinder: length along z");
+  in.read_path("mesh", mesh, PathUse::read, "mesh: an STL or OBJ file, relative to this file");
+  in.read("scale", scale, above(0), "mesh: its numbers times this are metres");
+  in.read("terrain", terrain, "terrain: its heights; see docs/terrain.md");
+  in.read("position_m", position_m, any_place(), "centre of the part in the frame of the body");
+  in.read_deg("rpy_deg", rpy_rad, "roll, pitch and yaw of the part in the frame of the body");
+  in.read("mass_kg", mass_kg, between(1e-9, 1e12), "mass; a part with neither mass nor density weighs nothing");
+  in.read("density_kgpm3", density_kgpm3, between(1e-6, 1e9), "density, instead of a mass");
+  in.read_reference("material", material, "material", "decides friction and bounce, see contacts of the world");
+  in.read_reference("category", category, "category", "what others see in the part: whether it collides, stops rays");
+  in.read_references("collides_with", collides_with, "category",
+                     "categories it collides with, if they want to as well; none: all");
+  in.read("color", color, "color in pictures and viewers, #rrggbb; none: the material's");
+  read_water_keys(in);
+  if (in.describing()) return;
+  check_keys_of_shape(in, shape);
+  if (mass_kg && density_kgpm3) in.error("density_kgpm3", "give 'mass_kg' or 'density_kgpm3', not both");
+  if (shape == "mesh" && mesh.empty()) in.error("a part of shape mesh needs the key 'mesh'");
+  if (shape == "terrain" && !terrain) in.error("a part of shape terrain needs the key 'terrain'");
+  if (!color.empty() && !parse_color(color)) in.error("color", "'color' must look like #rrggbb, got '" + color + "'");
+}
+
+void PartConfig::read_water_keys(ParamReader& in) {
+  if (!in.describing()) displaces_was_given = in.has("displaces");
+  in.read("displaces", displaces, "water lifts and brakes the part; false: hollow, or there for the looks");
+  read_drag_coefficient(in);
+  in.read("added_mass_coefficient", added_mass_coefficient, between(0, 100),
+          "in water: added mass over the mass of the water displaced; 0.5 is that of a sphere");
+}
+
+void PartConfig::read_drag_coefficient(ParamReader& in) {
+  const char* key = "drag_coefficient";
+  const char* meaning =
+      "in water, by projected area: one number, or three along x, y and z of the part; none: that of the shape";
+  if (in.describing()) {
+    ParamInfo info;
+    info.key = key;
+    info.type = "number or " + type_text(ParamKind::numbers);
+    info.rule = at_least(0).text();
+    info.initial = "[]";
+    info.meaning = meaning;
+    return in.describe(std::move(info));
+  }
+  if (in.has(key) && in.node()->find(key)->kind == ConfigNode::Kind::scalar) {
+    drag_coefficient.resize(1);
+    in.read(key, drag_coefficient[0], at_least(0), meaning);
+  } else {
+    in.read(key, drag_coefficient, at_least(0), meaning);
+  }
+  const std::size_t count = drag_coefficient.size();
+  if (count > 3 || count == 2)
+    in.error(key, "'drag_coefficient' must be one number or three, got " + std::to_string(count));
+}
+
+void BodyConfig::read(ParamReader& in) {
+  if (!in.describing()) place = in.node()->place;
+  in.require("name");
+  in.read_name("name", name, "name of the body");
+  in.read("position_m", position_m, any_place(), "origin of the body's frame in the frame of the vehicle");
+  in.read_deg("rpy_deg", rpy_rad, "roll, pitch and yaw of the body's frame in the frame of the vehicle");
+  in.read_list("parts", parts, "part", "shapes that move as one");
+  in.read("kinematic", kinematic, "a device moves it, such as naive_drive; it pushes others and no force moves it");
+  in.read("hydrodynamics", hydrodynamics, "mass and forces in water by published coefficients, see docs/marine.md");
+}
+
+void JointAxisConfig::read(ParamReader& in) {
+  in.read("axis", axis, any_number(), "direction in the frame of the vehicle, of any length");
+  if (axis.norm() < 1e-9) {
+    in.error("axis", "'axis' must not be zero");
+    axis = Vector3d::UnitZ();
+  }
+  in.read("low_stop", low_stop, any_number(), "lowest angle in rad, or position of a slider in m");
+  in.read("high_stop", high_stop, any_number(), "highest angle in rad, or position of a slider in m");
+  if (low_stop && high_stop && *low_stop > *high_stop)
+    in.error("low_stop", "'low_stop' must not be above 'high_stop', got " + number_text(*low_stop) + " and " +
+                             number_text(*high_stop));
+  in.read("motor_velocity", motor_velocity, any_number(), "speed of the motor at the start, rad/s or m/s");
+  in.read("motor_max_force", motor_max_force, at_least(0), "N m, or N of a slider; 0: no motor until a device sets it");
+  in.read("bounce", bounce, between(0, 1), "restitution at the stops");
+  in.read("erp", erp, between(0, 1), "error reduction of the joint, instead of the world's");
+  in.read("cfm", cfm, between(0, 1), "softness of the motor");
+  in.read("stop_erp", stop_erp, between(0, 1), "error reduction at the stops");
+  in.read("stop_cfm", stop_cfm, between(0, 1), "softness of the stops");
+  in.read("fudge_factor", fudge_factor, between(0, 1), "part of the motor's force that may push away from a stop");
+  in.read("suspension_erp", suspension_erp, between(0, 1), "hinge2: spring of the suspension");
+  in.read("suspension_cfm", suspension_cfm, between(0, 1), "hinge2: damping of the suspension");
+}
+
+namespace {
+
+void check_axes(ParamReader& in, const JointConfig& joint) {
+  const bool two_axes = joint.type == "hinge2" || joint.type == "universal";
+  if (two_axes &&
+      joint.axis1.axis.cross(joint.axis2.axis).norm() < 1e-6 * joint.axis1.axis.norm() * joint.axis2.axis.norm())
+    in.error("axis2", "the axes of a " + joint.type + " must not be parallel");
+  if (!two_axes && in.has("axis2")) in.error("axis2", "a " + joint.type + " has no second axis");
+  if (joint.type == "slider") return;
+  // ODE measures angles from -pi to pi; a stop beyond would never act.
+  for (const auto& stop : {joint.axis1.low_stop, joint.axis1.high_stop, joint.axis2.low_stop, joint.axis2.high_stop})
+    if (stop && std::abs(*stop) > std::numbers::pi)
+      in.error("stops of an angle must lie between -pi and pi, got " + number_text(*stop));
+}
+
+}  // namespace
+
+void JointConfig::read(ParamReader& in) {
+  in.require("name");
+  in.read_name("name", name, "name of the joint");
+  in.read_choice("type", type, {"fixed", "ball", "hinge", "hinge2", "universal", "slider"}, "kind of joint");
+  in.require("bodies");
+  in.read_references("bodies", bodies, "body",
+                     "two bodies, or a body and world; the joint counts how the second moves on the first");
+  if (!in.describing() && bodies.size() != 2)
+    in.error("bodies", "'bodies' must name two bodies, got " + std::to_string(bodies.size()));
+  else if (bodies.size() == 2 && bodies[0] == bodies[1])
+    in.error("bodies", "a joint needs two different bodies");
+  else if (bodies.size() == 2 && (bodies[0] == "world" || (type == "hinge2" && bodies[1] == "world")))
+    in.error("bodies", bodies[0] == "world" ? "'world' can only be the second body" : "a hinge2 cannot join the world");
+  in.read("anchor_m", anchor_m, any_number(), "point of the joint in the frame of the vehicle");
+  axis1.read(in);
+  in.read("axis2", axis2, "second axis of hinge2 (the wheel's) and universal: the same keys");
+  in.read("motor", motor, "ball: it has motor and stops about x, y and z of the vehicle's frame; others have theirs");
+  if (!in.describing() && motor && type != "ball")
+    in.error("motor", "'motor' is for a ball; the axes of a " + type + " have theirs without it");
+  if (!in.describing()) check_axes(in, *this);
+}
+
+}  // namespace sim

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/config/param_reader.hpp"
+#include "sim/model/hydrodynamics_config.hpp"
+#include "sim/base/math.hpp"
+#include "sim/scene/material.hpp"
+#include "sim/terrain/terrain_config.hpp"
+
+namespace sim {
+
+/// `physics:` of a world.
+struct PhysicsConfig {
+  double step_s = 0.01;           ///< a whole number of microseconds
+  double gravity_mps2 = 9.80665;  ///< downwards (ISO 80000-3 standard gravity)
+  std::string solver = "auto";    ///< auto, step, quick
+  int quick_above_rows = 100;     ///< auto: QuickStep for islands with more constraint rows
+  int quick_iterations = 20;
+  double erp = 0.2;
+  double cfm = 1e-9;
+  double contact_max_correcting_velocity_mps = 1.0;
+  double contact_surface_layer_m = 0.0005;
+  int max_contacts_per_pair = 8;
+  std::string space = "sap";    ///< sap, quadtree, hash, simple
+  std::string rays = "embree";  ///< embree, ode: which library follows rays
+  double max_speed_mps = 1000;  ///< a body faster than this has exploded
+  double max_distance_m = 1e7;  ///< a body farther from the origin than this has exploded
+
+  void read(ParamReader& in);
+};
+
+/// What happens where two materials touch.  `any` stands for every
+/// material.  An entry that names both materials wins over one that says `any`; among equals the last one wins.
+struct ContactConfig {
+  std::vector<std::string> between = {"any", "any"};  ///< two names of materials, or `any`
+  double friction = 0.8;                              ///< Coulomb coefficient, along the slip (dContactApprox1)
+  double bounce = 0;                                  ///< coefficient of restitution, 0 to 1
+  double bounce_velocity_mps = 0.1;                   ///< slower impacts do not bounce
+  std::optional<double> soft_erp;                     ///< unset: the world's erp
+  std::optional<double> soft_cfm;                     ///< unset: the world's cfm
+  double rolling_friction_m = 0;                      ///< rolling resistance as a lever, m (ODE's rho)
+  double spinning_friction_m = 0;                     ///< resistance to spinning about the normal (ODE's rhoN)
+  double slip = 0;                                    ///< force dependent slip, (m/s)/N (ODE's slip1 and slip2)
+
+  void read(ParamReader& in);
+  bool operator==(const ContactConfig&) const = default;
+};
+
+/// A solid: shape, mass, material, and its pose in the body frame.
+struct PartConfig {
+  std::string name;
+  std::string shape = "box";           ///< box, sphere, capsule, cylinder, plane, mesh, terrain
+  Vector3d size_m = Vector3d::Ones();  ///< box: x, y, z
+  double radius_m = 0.5;               ///< sphere, capsule, cylinder
+  double length_m = 1.0;               ///< along z: capsule without its caps, cylinder
+  std::string mesh;                    ///< mesh: STL or OBJ file, relative to the YAML file
+  double scale = 1.0;                  ///< mesh
+  std::optional<TerrainConfig> terrain;
+  Vector3d position_m = Vector3d::Zero();
+  Vector3d rpy_rad = Vector3d::Zero();
+  std::optional<double> mass_kg;
+  std::optional<double> density_kgpm3;  ///< instead of mass_kg
+  std::string material = "default";
+  std::string category = "solid";
+  std::vector<std::string> collides_with;  ///< categories; empty: all.  A plane with normal +z of its frame.
+  std::string color;                       ///< in pictures and viewers: #rrggbb; empty: the material's
+  // In water, for a free body without coefficients of its own.
+  bool displaces = true;                 ///< a solid that water lifts and brakes
+  bool displaces_was_given = false;      ///< `displaces` is written
+  std::vector<double> drag_coefficient;  ///< one, or along x, y and z of the part; empty: that of the shape
+  double added_mass_coefficient = 0.5;   ///< added mass over the mass of the water displaced; 0.5: of a sphere
+
+  SourcePlace place;      ///< where the part was written, for errors found while building
+  std::string directory;  ///< of the YAML file, where mesh files are looked up
+
+  void read(ParamReader& in);
+
+ private:
+  void read_water_keys(ParamReader& in);
+  void read_drag_coefficient(ParamReader& in);
+};
+
+/// Parts that move as one.
+struct BodyConfig {
+  std::string name;
+  Vector3d position_m = Vector3d::Zero();  ///< of the body frame B in the vehicle frame V
+  Vector3d rpy_rad = Vector3d::Zero();
+  std::vector<PartConfig> parts;
+  bool kinematic = false;                            ///< a device moves it; no force does
+  std::optional<HydrodynamicsConfig> hydrodynamics;  ///< its mass is that of the body, whatever the parts weigh
+  SourcePlace place;                                 ///< where the body was written, for errors found while building
+
+  void read(ParamReader& in);
+};
+
+/// Parameters of one axis of a joint.
+struct JointAxisConfig {
+  Vector3d axis = Vector3d::UnitZ();  ///< in the vehicle frame
+  std::optional<double> low_stop;     ///< rad, or m of a slider
+  std::optional<double> high_stop;
+  double motor_velocity = 0;   ///< rad/s, or m/s of a slider
+  double motor_max_force = 0;  ///< N m, or N of a slider; 0: no motor
+  std::optional<double> bounce, cfm, stop_erp, stop_cfm, fudge_factor, suspension_erp, suspension_cfm, erp;
+
+  void read(ParamReader& in);
+};
+
+struct JointConfig {
+  std::string name;
+  std::string type = "hinge";            ///< fixed, ball, hinge, hinge2, universal, slider
+  std::vector<std::string> bodies;       ///< two names; the second may be `world`
+  Vector3d anchor_m = Vector3d::Zero();  ///< in the vehicle frame
+  JointAxisConfig axis1;                 ///< of a ball with a motor: of all its axes
+  JointAxisConfig axis2;                 ///< hinge2 and universal
+  bool motor = false;                    ///< ball: it has one, about x, y and z of the vehicle frame
+
+  void read(ParamReader& in);
+};
+
+}  // namespace sim

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/ode/ode_library.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include "sim/physics/physics_world.hpp"
+#include "sim/base/step_memory.hpp"
+
+namespace sim {
+namespace {
+
+std::atomic<std::int64_t> message_count = 0;
+
+std::string formatted(const char* text, va_list arguments) {
+  char buffer[512];
+  std::vsnprintf(buffer, sizeof buffer, text, arguments);
+  return buffer;
+}
+
+// "LCP internal error, s <= 0" comes by the hundred from stacks of boxes that stand well: say it once.
+void on_message(int, const char* text, va_list arguments) {
+  if (message_count++ == 0) spdlog::debug("ODE: {} (further messages are only counted)", formatted(text, arguments));
+}
+
+[[noreturn]] void on_error(int, const char* text, va_list arguments) {
+  throw PhysicsFault("ODE: " + formatted(text, arguments));
+}
+
+// ODE asks for memory of each body, geom and joint by itself, and walks through them several times in a step.
+constexpr std::size_t largest_object_bytes = 4096;
+
+void* allocate(std::size_t bytes) {
+  return bytes <= largest_object_bytes ? allocate_for_steps(bytes) : std::malloc(bytes);
+}
+
+void free(void* memory, std::size_t bytes) {
+  bytes <= largest_object_bytes ? free_for_steps(memory, bytes) : std::free(memory);
+}
+
+void* reallocate(void* memory, std::size_t old_bytes, std::size_t new_bytes) {
+  void* const grown = allocate(new_bytes);
+  if (memory != nullptr) std::memcpy(grown, memory, std::min(old_bytes, new_bytes));
+  if (memory != nullptr) free(memory, old_bytes);
+  return grown;
+}
+
+struct Library {
+  Library() {
+    dSetAllocHandler(allocate);
+    dSetReallocHandler(reallocate);
+    dSetFreeHandler(free);
+    dInitODE2(0);
+    dSetMessageHandler(on_message);
+    dSetDebugHandler(on_error);
+    dSetErrorHandler(on_error);
+  }
+  ~Library() { dCloseODE(); }
+};
+
+}  // namespace
+
+void start_ode() {
+  static const Library library;
+  // Per thread; does nothing where ODE was built without thread-local data.
+  dAllocateODEDataForThread(dAllocateMaskAll);
+}
+
+std::int64_t ode_messages() {
+  return message_count;
+}
+
+}  // namespace sim

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sim/rays/embree_library.hpp"
+#include "sim/rays/ray_shape.hpp"
+#include "sim/rays/triangle_scene.hpp"
+#include "sim/rays/world_scene.hpp"
+
+namespace sim {
+
+/// Rays by Embree.  Embree only finds, in single precision, what a ray may hit; where it does is computed in double by
+/// RayShape and TriangleScene.  So an answer depends on nothing but the ray and the parts: not on the processor, on
+/// which other rays are cast with it, or on how the tree over the parts came about.
+class EmbreeScene final : public WorldScene {
+ public:
+  explicit EmbreeScene(const SceneMoves& moves) : moves_(moves) { moving_.moves = true; }
+
+  void add_group(int group) override;
+  void add_part(int number, const ScenePart& part) override;
+  void close_group(int group) override;
+  void remove_group(int group, std::span<const int> parts) override;
+
+  void prepare() const override;
+  bool concurrent() const override { return true; }
+
+  std::optional<RayHit> cast(const Vector3d& origin_W, const Vector3d& direction_W, double range_max_m,
+                             const RayFilter& filter) const override;
+  void cast_fan(const Fan& fan, const RayFilter& filter, std::span<RayHit> hits) const override;
+  void cast(std::span<const Ray> rays, const RayFilter& filter, std::span<RayHit> hits) const override;
+  void find_blocked(std::span<const Ray> rays, const RayFilter& filter, std::span<std::uint8_t> blocked) const override;
+
+ private:
+  struct Query;
+
+  /// Shapes under one tree.
+  struct Layer {
+    /// Planes have no end, and for few shapes a tree does not pay.
+    bool few() const { return shapes.size() <= 4 || shapes.front().kind == RayShape::Kind::plane; }
+
+    bool moves = false;
+    std::vector<RayShape> shapes;
+    std::vector<dGeomID> geoms;  // of each
+    EmbreeSceneHandle scene;
+    EmbreeGeometryHandle geometry;
+    Vector3d origin_W = Vector3d::Zero();  // what the tree counts from
+    double radius_m = 0;                   // of the sphere around the origin with all shapes in it
+    std::uint64_t seen = ~std::uint64_t{0};
+    bool changed = false;     // shapes came or went
+    double travelled_m = 0;   // sum over shapes since the tree was built
+    double half_width_m = 0;  // sum over shapes
+  };
+  struct Part {
+    ScenePart part;
+    Layer* layer = nullptr;  // null: rays do not see it
+    std::size_t at = 0;      // in the layer
+  };
+  /// The triangles of a mesh and how many parts have it.
+  struct SharedMesh {
+    std::unique_ptr<TriangleScene> triangles;
+    int users = 0;
+  };
+
+  void add_shape(int number);
+  Layer& layer_of(const RayShape& shape, const ScenePart& part);
+  void remove_shape(Part& part);
+  void refresh(Layer& layer, std::uint64_t moves) const;
+  static void follow_geoms(Layer& layer);
+  static void choose_origin(Layer& layer);
+  static void build(Layer& layer);
+  static void bounds_of(const RTCBoundsFunctionArguments* arguments);
+  static void intersect(const RTCIntersectFunctionNArguments* arguments);
+  static void find_occluded(const RTCOccludedFunctionNArguments* arguments);
+  static unsigned cast_at(const RayShape& shape, RayPacket& rays, unsigned lanes);
+  static unsigned blocked_by(const RayShape& shape, RayPacket& rays, unsigned lanes);
+  void cast_packet(RayPacket& rays, unsigned lanes, const RayFilter& filter) const;
+  unsigned blocked_packet(RayPacket& rays, unsigned lanes, const RayFilter& filter) const;
+  /// What is found quickly comes first: terrain takes longest, and least so for rays that already end near.
+  std::array<const Layer*, 4> in_order() const { return {&planes_, &moving_, &fixed_, &terrain_}; }
+  RayHit hit_of(const RayPacket& rays, int lane) const;
+
+  const SceneMoves& moves_;
+  std::vector<Part> parts_;
+  std::vector<std::vector<int>> open_;  // by group: parts not yet seen
+  std::map<const Mesh*, SharedMesh> meshes_;
+  /// Terrain: large meshes that do not move.
+  mutable Layer planes_, moving_, fixed_, terrain_;
+};
+
+}  // namespace sim

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <bit>
+#include <cmath>
+
+#include "sim/rays/ray_shape.hpp"
+
+namespace sim {
+
+/// A packet of rays in single precision, as Embree wants it, to find what a ray may hit.  Each ray starts where it
+/// enters the sphere around all there is to hit, so that no number is larger than that sphere.
+class FloatRays {
+ public:
+  /// How far a float ray may be from the true one, as a part of the radius.  Its origin and its direction are rounded
+  /// (2^-24 each, over up to two radii), and the tests of Embree's boxes add a few roundings more: about 15 in all.
+  static constexpr double rounding = 1e-6;
+
+  explicit FloatRays(double radius_m)
+      : margin_m_(static_cast<float>(2 * rounding * radius_m)), square_radius_m2_(radius_m * radius_m) {}
+
+  /// Takes over the rays of `lanes` (bits), seen from the centre of the sphere: x of all lanes, y, z.  The other lanes
+  /// hold any numbers.  Rays that pass the sphere or end before it are left out.  A lone ray is not packed.
+  void aim(const double (&from)[3][RayPacket::size], const double (&direction)[3][RayPacket::size],
+           const double (&range_m)[RayPacket::size], unsigned lanes) {
+    if (std::has_single_bit(lanes)) {
+      count_ = 1;
+      const int lane = std::countr_zero(lanes);
+      set_start(lane, {from[0][lane], from[1][lane], from[2][lane]},
+                {direction[0][lane], direction[1][lane], direction[2][lane]});
+      fill_one(lane, from, direction, range_m[lane]);
+      return;
+    }
+    count_ = RayPacket::size;
+    static const auto best = __builtin_cpu_supports("avx2") ? aim_all_avx2 : aim_all_sse2;
+    best(*this, from, direction, range_m, lanes);
+  }
+
+  /// Embree's tfar of a ray whose nearest hit is at `range_m`: long enough for all that could be nearer.
+  float limit_m(int lane, double range_m) const {
+    return static_cast<float>(range_m - start_m_[lane]) * (1 + 0x1p-21f) + margin_m_;
+  }
+
+  /// Two hits may be in the wrong order by rounding when their tfar differ by less.
+  float margin_m() const { return margin_m_; }
+  double start_m(int lane) const { return start_m_[lane]; }
+
+  /// `context` starts a struct of the caller's, which the callbacks get.
+  void intersect(RTCScene scene, RTCIntersectContext& context) {
+    if (none()) return;
+    if (count_ == 1)
+      rtcIntersect1(scene, &context, reinterpret_cast<RTCRayHit*>(data_));
+    else
+      rtcIntersect8(valid_, scene, &context, reinterpret_cast<RTCRayHit8*>(data_));
+  }
+  void find_occluded(RTCScene scene, RTCIntersectContext& context) {
+    if (none()) return;
+    if (count_ == 1)
+      rtcOccluded1(scene, &context, reinterpret_cast<RTCRay*>(data_));
+    else
+      rtcOccluded8(valid_, scene, &context, reinterpret_cast<RTCRay8*>(data_));
+  }
+
+ private:
+  /// A ray starts where it enters the sphere, or a little before its origin: the rounded origin must not lie behind a
+  /// surface that the true one is in front of.  NaN, which no ray passes on, when it misses the sphere.
+  void set_start(int lane, const Vector3d& from, const Vector3d& direction) {
+    start_m_[lane] = -margin_m_;
+    if (from.squaredNorm() <= square_radius_m2_) return;
+    const double along = -from.dot(direction);
+    const double rest = square_radius_m2_ - (from + along * direction).squaredNorm();
+    start_m_[lane] = along > 0 && rest >= 0 ? along - std::sqrt(rest) - margin_m_ : std::nan("");
+  }
+  void fill_one(int lane, const double (&from)[3][RayPacket::size], const double (&direction)[3][RayPacket::size],
+                double range_m) {
+    // As RTCRay has it: origin, tnear, direction, time, tfar, mask, id, flags.
+    float sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      data_[axis] = static_cast<float>(from[axis][lane] + start_m_[lane] * direction[axis][lane]);
+      data_[4 + axis] = static_cast<float>(direction[axis][lane]);
+      sum += data_[axis] + data_[4 + axis];
+    }
+    RTCRay& ray = *reinterpret_cast<RTCRay*>(data_);
+    ray.tnear = ray.time = 0;
+    ray.tfar = limit_m(lane, range_m);
+    ray.mask = ~0u;
+    ray.id = static_cast<unsigned>(lane);
+    ray.flags = 0;
+    // Written so that NaN is left out.
+    valid_[0] = ray.tfar >= 0 && std::abs(sum) < std::numeric_limits<float>::infinity() ? -1 : 0;
+  }
+  using Aim = void(FloatRays& out, const double (&from)[3][RayPacket::size],
+                   const double (&direction)[3][RayPacket::size], const double (&range_m)[RayPacket::size],
+                   unsigned lanes);
+  static Aim aim_all, aim_all_sse2, aim_all_avx2;
+  bool none() const {
+    int any = 0;
+    for (unsigned i = 0; i < count_; ++i) any |= valid_[i];
+    return any == 0;
+  }
+
+  alignas(64) float data_[sizeof(RTCRayHit8) / sizeof(float)];
+  alignas(64) int valid_[RayPacket::size];
+  double start_m_[RayPacket::size];
+  unsigned count_ = RayPacket::size;
+  float margin_m_;
+  double square_radius_m2_;
+};
+
+}  // namespace sim

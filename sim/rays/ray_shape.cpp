@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/rays/ray_shape.hpp"
+
+#include <ode/ode.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+
+#include "sim/ode/ode_math.hpp"
+#include "sim/rays/triangle_scene.hpp"
+
+namespace sim {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+using Kind = RayShape::Kind;
+
+// The functions below are written without branches, so that the compiler makes one loop over all lanes of them.
+#define SHOAL_INLINE [[gnu::always_inline]] inline
+
+/// The part of a ray inside a convex body; empty when enter > leave.
+struct Inside {
+  double enter, leave;
+};
+
+SHOAL_INLINE double larger(double a, double b) {
+  return a > b ? a : b;
+}
+SHOAL_INLINE double smaller(double a, double b) {
+  return a < b ? a : b;
+}
+
+/// A ray as seen from the shape.
+struct LocalRay {
+  double x, y, z, vx, vy, vz;
+};
+
+SHOAL_INLINE LocalRay to_local(const RayShape& shape, const RayPacket& rays, int lane) {
+  const double x = rays.origin[0][lane] - shape.center[0];
+  const double y = rays.origin[1][lane] - shape.center[1];
+  const double z = rays.origin[2][lane] - shape.center[2];
+  const double vx = rays.direction[0][lane], vy = rays.direction[1][lane], vz = rays.direction[2][lane];
+  const auto& a = shape.axes;
+  return {a[0] * x + a[1] * y + a[2] * z,    a[3] * x + a[4] * y + a[5] * z,    a[6] * x + a[7] * y + a[8] * z,
+          a[0] * vx + a[1] * vy + a[2] * vz, a[3] * vx + a[4] * vy + a[5] * vz, a[6] * vx + a[7] * vy + a[8] * vz};
+}
+
+/// Cuts off what lies outside -half..half along one axis.  A ray along the face (0 / 0) counts as inside: a comparison
+/// with NaN changes nothing.
+SHOAL_INLINE Inside cut(Inside in, double from, double direction, double half) {
+  const double inverse = 1 / (direction + 0.0);  // -0 becomes 0, as `ahead` has it
+  const double ahead = direction < 0 ? -half : half;
+  const double enter = (-ahead - from) * inverse, leave = (ahead - from) * inverse;
+  return {larger(enter, in.enter), smaller(leave, in.leave)};
+}
+
+SHOAL_INLINE Inside in_box(const RayShape& shape, const LocalRay& r) {
+  Inside in{-infinity, infinity};
+  in = cut(in, r.x, r.vx, shape.size[0]);
+  in = cut(in, r.y, r.vy, shape.size[1]);
+  return cut(in, r.z, r.vz, shape.size[2]);
+}
+
+/// From the point of the ray that is nearest to the centre: what is far away loses no digits to squares.
+SHOAL_INLINE Inside in_sphere(double x, double y, double z, double vx, double vy, double vz, double square_radius) {
+  const double along = -(x * vx + y * vy + z * vz);
+  const double px = x + along * vx, py = y + along * vy, pz = z + along * vz;
+  const double rest = square_radius - (px * px + py * py + pz * pz);
+  const double half = std::sqrt(larger(rest, 0));
+  return {rest < 0 ? infinity : along - half, rest < 0 ? -infinity : along + half};
+}
+
+SHOAL_INLINE Inside in_cylinder(const RayShape& shape, const LocalRay& r) {
+  const double a = r.vx * r.vx + r.vy * r.vy;
+  const double inverse = 1 / a;
+  const double along = -(r.x * r.vx + r.y * r.vy) * inverse;
+  const double cross = r.x * r.vy - r.y * r.vx;
+  // A ray along the axis has no direction in the plane; then the distance of its origin counts.
+  const double distance = a > 0 ? cross * cross * inverse : r.x * r.x + r.y * r.y;
+  const double rest = shape.size[1] - distance;
+  const double half = std::sqrt(larger(rest, 0) * inverse);
+  const double enter = a > 0 ? along - half : -infinity, leave = a > 0 ? along + half : infinity;
+  return cut({rest < 0 ? infinity : enter, rest < 0 ? -infinity : leave}, r.z, r.vz, shape.size[2]);
+}
+
+/// The union of a cylinder and two spheres is convex.
+SHOAL_INLINE Inside in_capsule(const RayShape& shape, const LocalRay& r) {
+  const Inside middle = in_cylinder(shape, r);
+  const Inside low = in_sphere(r.x, r.y, r.z + shape.size[2], r.vx, r.vy, r.vz, shape.size[1]);
+  const Inside high = in_sphere(r.x, r.y, r.z - shape.size[2], r.vx, r.vy, r.vz, shape.size[1]);
+  // A missed cylinder may have enter > leave with either anywhere.
+  const bool through = middle.enter <= middle.leave;
+  return {smaller(smaller(through ? middle.enter : infinity, low.enter), high.enter),
+          larger(larger(through ? middle.leave : -infinity, low.leave), high.leave)};
+}
+
+SHOAL_INLINE double range_of(const Inside& in) {
+  const double range = in.enter >= 0 ? in.enter : in.leave;
+  return in.enter <= in.leave && range >= 0 ? range : infinity;
+}
+
+template <Kind kind>
+SHOAL_INLINE double range_to(const RayShape& shape, const RayPacket& rays, int lane) {
+  if constexpr (kind == Kind::sphere) {
+    const double x = rays.origin[0][lane] - shape.center[0];
+    const double y = rays.origin[1][lane] - shape.center[1];
+    const double z = rays.origin[2][lane] - shape.center[2];
+    return range_of(
+        in_sphere(x, y, z, rays.direction[0][lane], rays.direction[1][lane], rays.direction[2][lane], shape.size[1]));
+  } else if constexpr (kind == Kind::plane) {
+    const double height = shape.axes[6] * (rays.origin[0][lane] - shape.center[0]) +
+                          shape.axes[7] * (rays.origin[1][lane] - shape.center[1]) +
+                          shape.axes[8] * (rays.origin[2][lane] - shape.center[2]);
+    const double rate = shape.axes[6] * rays.direction[0][lane] + shape.axes[7] * rays.direction[1][lane] +
+                        shape.axes[8] * rays.direction[2][lane];
+    const double range = -height / rate;
+    return range >= 0 ? range : infinity;
+  } else {
+    const LocalRay ray = to_local(shape, rays, lane);
+    if constexpr (kind == Kind::box) return range_of(in_box(shape, ray));
+    if constexpr (kind == Kind::capsule) return range_of(in_capsule(shape, ray));
+    if constexpr (kind == Kind::cylinder) return range_of(in_cylinder(shape, ray));
+  }
+}
+
+/// Most shapes that a tree proposes are missed by far, which costs less to find out.
+SHOAL_INLINE bool passes_by(const RayShape& shape, const RayPacket& rays, int lane) {
+  const double x = rays.origin[0][lane] - shape.center[0];
+  const double y = rays.origin[1][lane] - shape.center[1];
+  const double z = rays.origin[2][lane] - shape.center[2];
+  const double vx = rays.direction[0][lane], vy = rays.direction[1][lane], vz = rays.direction[2][lane];
+  const double along = x * vx + y * vy + z * vz;
+  const double px = x - along * vx, py = y - along * vy, pz = z - along * vz;
+  return px * px + py * py + pz * pz > shape.misses_beyond_m2;
+}
+
+template <Kind kind>
+SHOAL_INLINE void ranges_to(const RayShape& shape, const RayPacket& rays, unsigned lanes,
+                            double (&range_m)[RayPacket::size]) {
+  if (std::popcount(lanes) > 2) {
+    for (int lane = 0; lane < RayPacket::size; ++lane) range_m[lane] = range_to<kind>(shape, rays, lane);
+  } else {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      range_m[lane] = passes_by(shape, rays, lane) ? infinity : range_to<kind>(shape, rays, lane);
+    }
+  }
+}
+
+SHOAL_INLINE void ranges_to_any(const RayShape& shape, const RayPacket& rays, unsigned lanes,
+                                double (&range_m)[RayPacket::size]) {
+  switch (shape.kind) {
+    case Kind::box:
+      return ranges_to<Kind::box>(shape, rays, lanes, range_m);
+    case Kind::sphere:
+      return ranges_to<Kind::sphere>(shape, rays, lanes, range_m);
+    case Kind::capsule:
+      return ranges_to<Kind::capsule>(shape, rays, lanes, range_m);
+    case Kind::cylinder:
+      return ranges_to<Kind::cylinder>(shape, rays, lanes, range_m);
+    case Kind::plane:
+      return ranges_to<Kind::plane>(shape, rays, lanes, range_m);
+    case Kind::mesh:
+      break;
+  }
+}
+
+SHOAL_INLINE void see_all_from(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
+                               double (&direction)[3][RayPacket::size]) {
+  const auto& a = shape.axes;
+  const auto& c = shape.center;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < RayPacket::size; ++i) {
+      from[axis][i] = a[3 * axis] * (rays.origin[0][i] - c[0]) + a[3 * axis + 1] * (rays.origin[1][i] - c[1]) +
+                      a[3 * axis + 2] * (rays.origin[2][i] - c[2]);
+      direction[axis][i] = a[3 * axis] * rays.direction[0][i] + a[3 * axis + 1] * rays.direction[1][i] +
+                           a[3 * axis + 2] * rays.direction[2][i];
+    }
+}
+
+#undef SHOAL_INLINE
+
+void ranges_sse2(const RayShape& shape, const RayPacket& rays, unsigned lanes, double (&range_m)[RayPacket::size]) {
+  ranges_to_any(shape, rays, lanes, range_m);
+}
+
+void see_sse2(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
+              double (&direction)[3][RayPacket::size]) {
+  see_all_from(shape, rays, from, direction);
+}
+
+// Equal bits: AVX2 alone brings no fused multiply-add.
+
+[[gnu::target("avx2")]] void ranges_avx2(const RayShape& shape, const RayPacket& rays, unsigned lanes,
+                                         double (&range_m)[RayPacket::size]) {
+  ranges_to_any(shape, rays, lanes, range_m);
+}
+
+[[gnu::target("avx2")]] void see_avx2(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
+                                      double (&direction)[3][RayPacket::size]) {
+  see_all_from(shape, rays, from, direction);
+}
+
+}  // namespace
+
+void find_ranges(const RayShape& shape, const RayPacket& rays, unsigned lanes, double (&range_m)[RayPacket::size]) {
+  static const auto best = __builtin_cpu_supports("avx2") ? ranges_avx2 : ranges_sse2;
+  best(shape, rays, lanes, range_m);
+}
+
+void see_from(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
+              double (&direction)[3][RayPacket::size]) {
+  static const auto best = __builtin_cpu_supports("avx2") ? see_avx2 : see_sse2;
+  best(shape, rays, from, direction);
+}
+
+Vector3d RayShape::half_extents_W() const {
+  const auto turned = [&](double x, double y, double z) {
+    return Vector3d(x * axis_W(0).cwiseAbs() + y * axis_W(1).cwiseAbs() + z * axis_W(2).cwiseAbs());
+  };
+  switch (kind) {
+    case Kind::sphere:
+      return Vector3d::Constant(size[0]);
+    case Kind::capsule:
+      return turned(0, 0, size[2]) + Vector3d::Constant(size[0]);
+    case Kind::cylinder:
+      return turned(0, 0, size[2]) + size[0] * (1 - axis_W(2).array().square()).max(0).sqrt().matrix();
+    default:
+      return turned(size[0], size[1], size[2]);
+  }
+}
+
+double RayShape::reach_m() const {
+  switch (kind) {
+    case Kind::sphere:
+      return size[0];
+    case Kind::capsule:
+      return size[0] + size[2];
+    case Kind::cylinder:
+      return std::sqrt(size[1] + size[2] * size[2]);
+    default:
+      return std::sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2]);
+  }
+}
+
+namespace {
+
+/// Kind and sizes.
+void take_sizes(RayShape& shape, int number, const ScenePart& part, const TriangleScene* mesh) {
+  const auto round = [&](Kind kind, double radius_m, double length_m) {
+    shape.kind = kind;
+    shape.size = {radius_m, radius_m * radius_m, length_m / 2};
+  };
+  dReal radius = 0, length = 0;
+  dVector3 lengths;
+  if (mesh != nullptr) {
+    shape.kind = Kind::mesh;
+    const Vector3d half = mesh->half_extents_m();
+    shape.size = {half.x(), half.y(), half.z()};
+    return;
+  }
+  switch (dGeomGetClass(part.geom)) {
+    case dBoxClass:
+      dGeomBoxGetLengths(part.geom, lengths);
+      shape.kind = Kind::box;
+      shape.size = {lengths[0] / 2, lengths[1] / 2, lengths[2] / 2};
+      break;
+    case dSphereClass:
+      round(Kind::sphere, dGeomSphereGetRadius(part.geom), 0);
+      break;
+    case dCapsuleClass:
+      dGeomCapsuleGetParams(part.geom, &radius, &length);
+      round(Kind::capsule, radius, length);
+      break;
+    case dCylinderClass:
+      dGeomCylinderGetParams(part.geom, &radius, &length);
+      round(Kind::cylinder, radius, length);
+      break;
+    case dPlaneClass:
+      shape.kind = Kind::plane;
+      break;
+    default:
+      throw std::logic_error("part " + std::to_string(number) + " has a shape without a surface for rays");
+  }
+}
+
+}  // namespace
+
+RayShape make_ray_shape(int number, const ScenePart& part, const TriangleScene* mesh) {
+  RayShape shape;
+  shape.part = number;
+  shape.group = part.group;
+  shape.category = part.category;
+  shape.material = part.material;
+  shape.transmits = part.transmits;
+  shape.mesh = mesh;
+  take_sizes(shape, number, part, mesh);
+  // With room for rounding, over any distance that there is.
+  if (shape.kind != Kind::plane) shape.misses_beyond_m2 = std::pow(1.001 * shape.reach_m() + 1e-3, 2);
+  return shape;
+}
+
+void follow(RayShape& shape, dGeomID geom) {
+  if (shape.kind == Kind::plane) {
+    dVector4 plane;
+    dGeomPlaneGetParams(geom, plane);
+    for (int i = 0; i < 3; ++i) {
+      shape.axes[6 + i] = plane[i];
+      shape.center[i] = plane[i] * plane[3];
+    }
+    return;
+  }
+  const dReal* p = dGeomGetPosition(geom);
+  std::copy_n(p, 3, shape.center.begin());
+  if (shape.kind == Kind::sphere) return;
+  const dReal* R = dGeomGetRotation(geom);
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < 3; ++i) shape.axes[3 * axis + i] = R[4 * i + axis];
+  if (shape.kind != Kind::mesh) return;
+  const Vector3d c = shape.mesh->center_m();
+  for (int i = 0; i < 3; ++i)
+    shape.center[i] += shape.axes[i] * c.x() + shape.axes[3 + i] * c.y() + shape.axes[6 + i] * c.z();
+}
+
+Vector3d normal_at(const RayShape& shape, const Vector3d& point_W) {
+  const Vector3d to_point = point_W - shape.center_W();
+  if (shape.kind == Kind::plane) return shape.axis_W(2);
+  if (shape.kind == Kind::sphere) return to_point.normalized();
+  const Vector3d x = shape.axis_W(0), y = shape.axis_W(1), z = shape.axis_W(2);
+  const double height = z.dot(to_point);
+  if (shape.kind == Kind::capsule)
+    return (to_point - std::clamp(height, -shape.size[2], shape.size[2]) * z).normalized();
+  const double end = std::abs(height) - shape.size[2];
+  const Vector3d up = height < 0 ? Vector3d(-z) : z;
+  if (shape.kind == Kind::cylinder) {
+    const Vector3d out = to_point - height * z;
+    const double distance = out.norm();
+    return end > distance - shape.size[0] ? up : Vector3d(out / distance);
+  }
+  // The face of the box that the point is on, or next to by rounding.
+  const double px = x.dot(to_point), py = y.dot(to_point);
+  const double over_x = std::abs(px) - shape.size[0], over_y = std::abs(py) - shape.size[1];
+  if (over_x >= over_y && over_x >= end) return px < 0 ? Vector3d(-x) : x;
+  if (over_y >= end) return py < 0 ? Vector3d(-y) : y;
+  return up;
+}
+
+}  // namespace sim

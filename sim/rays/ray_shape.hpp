@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "sim/base/math.hpp"
+#include "sim/geometry/box_grid.hpp"
+#include "sim/scene/scene.hpp"
+#include "sim/rays/world_scene.hpp"
+
+namespace sim {
+
+class TriangleScene;
+
+/// A part as rays meet it: its shape where it is now, in the world, and what it lets through.
+struct alignas(32) RayShape {
+  enum class Kind : std::uint8_t { box, sphere, capsule, cylinder, plane, mesh };
+
+  std::array<double, 3> center{};  ///< plane: any point of it
+  std::array<double, 9>
+      axes{};  ///< x, y and z axis of the shape in the world, one after the other; plane: z is its normal
+  /// Box and mesh: half lengths.  Round ones: radius, radius squared, half length.
+  std::array<double, 3> size{};
+  int part = -1;
+  int group = -1;
+  std::uint32_t category = 0;
+  int material = 0;
+  Kind kind = Kind::box;
+  std::uint8_t transmits = 0;
+  const TriangleScene* mesh = nullptr;
+  /// A ray whose line passes the centre at more than this, squared, misses.
+  double misses_beyond_m2 = std::numeric_limits<double>::infinity();
+
+  bool stops(const RayFilter& filter) const {
+    return group != filter.exclude_group && (category & filter.categories) != 0 &&
+           (transmits & static_cast<std::uint8_t>(filter.kind)) == 0;
+  }
+  Vector3d center_W() const { return {center[0], center[1], center[2]}; }
+  Vector3d axis_W(int number) const { return {axes[3 * number], axes[3 * number + 1], axes[3 * number + 2]}; }
+  /// The farthest that it reaches from its centre.  Not of a plane.
+  double reach_m() const;
+  /// How far it reaches from its centre along the axes of the world.  Not of a plane.
+  Vector3d half_extents_W() const;
+};
+
+/// Kind and sizes of the part's geom; `mesh` is of the part's mesh, if it has one.
+/// Throws std::logic_error for a geom that rays know nothing of.
+RayShape make_ray_shape(int number, const ScenePart& part, const TriangleScene* mesh);
+/// Takes over the pose of the geom.
+void follow(RayShape& shape, dGeomID geom);
+
+/// Up to eight rays on their way, one to a lane, and what each has hit so far.
+struct alignas(64) RayPacket {
+  static constexpr int size = 8;
+  static constexpr int no_part = std::numeric_limits<int>::max();
+
+  double origin[3][size];     ///< x of all lanes, y of all lanes, z
+  double direction[3][size];  ///< of unit length
+  double range_m[size];       ///< of the nearest hit; at first the longest range
+  const RayShape* shape[size];
+  std::uint32_t triangle[size];  ///< of a hit mesh
+  int part[size];
+  bool coherent = false;  ///< neighbours go nearly the same way
+
+  void set(int lane, const Vector3d& origin_W, const Vector3d& direction_W, double range_max_m) {
+    for (int i = 0; i < 3; ++i) {
+      origin[i][lane] = origin_W[i];
+      direction[i][lane] = direction_W[i];
+    }
+    range_m[lane] = range_max_m;
+    part[lane] = no_part;
+  }
+  /// Every lane that is not in use has to hold numbers, too.
+  void repeat(int from, int to) {
+    for (int i = 0; i < 3; ++i) {
+      origin[i][to] = origin[i][from];
+      direction[i][to] = direction[i][from];
+    }
+    range_m[to] = -1;
+    part[to] = no_part;
+  }
+  /// Of two hits at one range that of the lower part counts.
+  bool nearer(int lane, double range, int number) const {
+    return range < range_m[lane] || (range == range_m[lane] && number < part[lane]);
+  }
+  void hit(int lane, double range, const RayShape& by, std::uint32_t triangle_number = 0) {
+    range_m[lane] = range;
+    shape[lane] = &by;
+    part[lane] = by.part;
+    triangle[lane] = triangle_number;
+  }
+  Vector3d origin_W(int lane) const { return {origin[0][lane], origin[1][lane], origin[2][lane]}; }
+  Vector3d direction_W(int lane) const { return {direction[0][lane], direction[1][lane], direction[2][lane]}; }
+};
+
+/// Where each lane of `lanes` (bits) meets the shape, which is no mesh: in front of its origin where it enters, or
+/// where it leaves when it begins inside; infinity when it misses.  The bits are the same however many lanes there are.
+/// Other elements of `range_m` are left or filled with anything.
+void find_ranges(const RayShape& shape, const RayPacket& rays, unsigned lanes, double (&range_m)[RayPacket::size]);
+/// All lanes in the frame of the shape, which is no plane: x of all lanes, y, z.
+void see_from(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
+              double (&direction)[3][RayPacket::size]);
+/// Outward normal of a shape that is no mesh, at a point on it.
+Vector3d normal_at(const RayShape& shape, const Vector3d& point_W);
+
+}  // namespace sim

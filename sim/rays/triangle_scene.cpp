@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/rays/triangle_scene.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+#include "sim/rays/float_rays.hpp"
+
+namespace sim {
+
+/// Rays in the frame of the mesh, from its centre.  Callbacks know it by its first member.
+struct TriangleScene::Query {
+  Query(const TriangleScene& scene_, const RayShape& shape, const RayPacket& rays_, unsigned lanes)
+      : scene(scene_), rays(rays_), floats(scene_.radius_m_) {
+    rtcInitIntersectContext(&context);
+    if (rays.coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    see_from(shape, rays, from, direction);
+    floats.aim(from, direction, rays.range_m, lanes);
+    for (int i = 0; i < RayPacket::size; ++i) {
+      nearest[i] = std::numeric_limits<float>::infinity();
+      found[i] = 0;
+    }
+  }
+  Vector3d from_M(int lane) const { return {from[0][lane], from[1][lane], from[2][lane]}; }
+  Vector3d direction_M(int lane) const { return {direction[0][lane], direction[1][lane], direction[2][lane]}; }
+  /// So near to the start that rounding may hide on which side of it the triangle is.
+  bool at_start(float tfar) const { return tfar <= 4 * floats.margin_m(); }
+  void note(int lane, float tfar, std::uint32_t triangle);
+
+  RTCIntersectContext context;
+  const TriangleScene& scene;
+  const RayPacket& rays;
+  unsigned hit = 0;  // lanes
+  double from[3][RayPacket::size], direction[3][RayPacket::size];
+  FloatRays floats;
+
+  /// Triangles that a ray hits at about the same range: those that share the edge or the corner that it hits.  Which
+  /// of them is the nearest is found in double when all are known; what Embree finds first must not count.
+  struct Candidate {
+    float tfar;
+    std::uint32_t triangle;
+    bool operator<(const Candidate& other) const {
+      return tfar != other.tfar ? tfar < other.tfar : triangle < other.triangle;
+    }
+  };
+  static constexpr int most = 8;
+  Candidate candidates[RayPacket::size][most];
+  int found[RayPacket::size];
+  float nearest[RayPacket::size];
+};
+
+void TriangleScene::Query::note(int lane, float tfar, std::uint32_t triangle) {
+  Candidate* const all = candidates[lane];
+  int& count = found[lane];
+  if (tfar + floats.margin_m() < nearest[lane]) count = 0;
+  nearest[lane] = std::min(nearest[lane], tfar);
+  if (count < most) {
+    all[count++] = {tfar, triangle};
+    return;
+  }
+  // The last of them gives way, whatever the order in which they come.
+  Candidate* const last = std::max_element(all, all + most);
+  *last = std::min(*last, Candidate{tfar, triangle});
+}
+
+TriangleScene::TriangleScene(const Mesh& mesh) : mesh_(mesh), scene_(rtcNewScene(embree_device())) {
+  check_embree();
+  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::max()), high = -low;
+  for (const Vector3d& vertex : mesh.vertices_m) {
+    low = low.cwiseMin(vertex);
+    high = high.cwiseMax(vertex);
+  }
+  if (mesh.vertices_m.empty()) low = high = Vector3d::Zero();
+  center_m_ = (low + high) / 2;
+  half_extents_m_ = (high - low) / 2;
+  radius_m_ = half_extents_m_.norm();
+
+  const EmbreeGeometryHandle geometry(rtcNewGeometry(embree_device(), RTC_GEOMETRY_TYPE_TRIANGLE));
+  auto* vertices =
+      static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                  3 * sizeof(float), std::max<std::size_t>(1, mesh.vertices_m.size())));
+  check_embree();
+  for (const Vector3d& vertex : mesh.vertices_m)
+    for (int i = 0; i < 3; ++i) *vertices++ = static_cast<float>(vertex[i] - center_m_[i]);
+  if (!mesh.triangles.empty())
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
+                               sizeof mesh.triangles[0], mesh.triangles.size());
+  rtcSetGeometryIntersectFilterFunction(geometry.get(), filter_cast);
+  rtcSetGeometryOccludedFilterFunction(geometry.get(), filter_blocked);
+  rtcCommitGeometry(geometry.get());
+  rtcAttachGeometry(scene_.get(), geometry.get());
+  // Robust: no ray slips through between two triangles.
+  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+  commit_alone(scene_.get());
+}
+
+/// Range to the plane of the triangle, and within what the triangle takes up along the ray: of a triangle seen
+/// edge-on the plane alone says little.
+double TriangleScene::find_range(const Vector3d& from_M, const Vector3d& direction_M, std::uint32_t triangle) const {
+  const auto& corners = mesh_.triangles[triangle];
+  const Vector3d from = from_M + center_m_;
+  const Vector3d a = mesh_.vertices_m[corners[0]] - from, b = mesh_.vertices_m[corners[1]] - from,
+                 c = mesh_.vertices_m[corners[2]] - from;
+  const Vector3d normal = (b - a).cross(c - a);
+  const double rate = normal.dot(direction_M);
+  const double da = a.dot(direction_M), db = b.dot(direction_M), dc = c.dot(direction_M);
+  const double low = std::min(std::min(da, db), dc), high = std::max(std::max(da, db), dc);
+  return rate == 0 ? (low + high) / 2 : std::clamp(normal.dot(a) / rate, low, high);
+}
+
+void TriangleScene::filter_cast(const RTCFilterFunctionNArguments* arguments) {
+  Query& query = *reinterpret_cast<Query*>(arguments->context);
+  const unsigned n = arguments->N;
+  for (unsigned i = 0; i < n; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    const int lane = static_cast<int>(RTCRayN_id(arguments->ray, n, i));
+    const std::uint32_t triangle = RTCHitN_primID(arguments->hit, n, i);
+    float& tfar = RTCRayN_tfar(arguments->ray, n, i);
+    if (query.at_start(tfar) && !(query.scene.find_range(query.from_M(lane), query.direction_M(lane), triangle) >= 0)) {
+      arguments->valid[i] = 0;
+      continue;
+    }
+    query.note(lane, tfar, triangle);
+    // In double it is looked at after this query.
+    __builtin_prefetch(&query.scene.mesh_.triangles[triangle]);
+    // Long enough for all candidates.
+    tfar = query.nearest[lane] + query.floats.margin_m();
+  }
+}
+
+unsigned TriangleScene::cast(const RayShape& shape, RayPacket& rays, unsigned lanes) const {
+  Query query(*this, shape, rays, lanes);
+  query.floats.intersect(scene_.get(), query.context);
+  for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
+    const int lane = std::countr_zero(rest);
+    for (int i = 0; i < query.found[lane]; ++i)
+      for (const std::uint32_t corner : mesh_.triangles[query.candidates[lane][i].triangle])
+        __builtin_prefetch(&mesh_.vertices_m[corner]);
+  }
+  unsigned hit = 0;
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    for (int i = 0; i < query.found[lane]; ++i) {
+      const auto [tfar, triangle] = query.candidates[lane][i];
+      if (tfar > query.nearest[lane] + query.floats.margin_m()) continue;
+      const double range_m = find_range(query.from_M(lane), query.direction_M(lane), triangle);
+      // Of two triangles at one range the lower number counts.
+      const bool same = range_m == rays.range_m[lane] && rays.part[lane] == shape.part;
+      if (!(range_m >= 0) || !(rays.nearer(lane, range_m, shape.part) || (same && triangle < rays.triangle[lane])))
+        continue;
+      rays.hit(lane, range_m, shape, triangle);
+      hit |= 1u << lane;
+    }
+  }
+  return hit;
+}
+
+void TriangleScene::filter_blocked(const RTCFilterFunctionNArguments* arguments) {
+  Query& query = *reinterpret_cast<Query*>(arguments->context);
+  const unsigned n = arguments->N;
+  for (unsigned i = 0; i < n; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    const int lane = static_cast<int>(RTCRayN_id(arguments->ray, n, i));
+    const float tfar = RTCRayN_tfar(arguments->ray, n, i);
+    const double limit_m = query.rays.range_m[lane];
+    bool blocked = true;
+    // In the middle of the ray rounding decides nothing.
+    if (query.at_start(tfar) || tfar + 4 * query.floats.margin_m() >= query.floats.limit_m(lane, limit_m)) {
+      const double range_m =
+          query.scene.find_range(query.from_M(lane), query.direction_M(lane), RTCHitN_primID(arguments->hit, n, i));
+      blocked = range_m >= 0 && range_m <= limit_m;
+    }
+    if (blocked) query.hit |= 1u << lane;
+    arguments->valid[i] = blocked ? -1 : 0;
+  }
+}
+
+unsigned TriangleScene::find_blocked(const RayShape& shape, const RayPacket& rays, unsigned lanes) const {
+  Query query(*this, shape, rays, lanes);
+  query.floats.find_occluded(scene_.get(), query.context);
+  return query.hit;
+}
+
+Vector3d TriangleScene::normal(std::uint32_t triangle) const {
+  const auto& corners = mesh_.triangles[triangle];
+  const Vector3d& a = mesh_.vertices_m[corners[0]];
+  return (mesh_.vertices_m[corners[1]] - a).cross(mesh_.vertices_m[corners[2]] - a).normalized();
+}
+
+}  // namespace sim

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "sim/base/math.hpp"
+#include "sim/geometry/mesh.hpp"
+#include "sim/rays/embree_library.hpp"
+#include "sim/rays/ray_shape.hpp"
+
+namespace sim {
+
+/// The triangles of a mesh as rays find them, for all parts that have this mesh, wherever they are.  Embree finds in
+/// single precision which triangles a ray may hit; where is computed in double from the mesh's own vertices.
+class TriangleScene {
+ public:
+  /// Keeps a reference to the mesh.
+  explicit TriangleScene(const Mesh& mesh);
+
+  /// Of the box around the mesh, in its frame.
+  const Vector3d& center_m() const { return center_m_; }
+  const Vector3d& half_extents_m() const { return half_extents_m_; }
+
+  /// Notes nearer hits on the part `shape` in the packet; returns the lanes (bits) that have one.
+  unsigned cast(const RayShape& shape, RayPacket& rays, unsigned lanes) const;
+  /// The lanes of `lanes` that hit the part within their range.
+  unsigned find_blocked(const RayShape& shape, const RayPacket& rays, unsigned lanes) const;
+  /// Of unit length, in the frame of the mesh.
+  Vector3d normal(std::uint32_t triangle) const;
+
+ private:
+  struct Query;
+  static void filter_cast(const RTCFilterFunctionNArguments* arguments);
+  static void filter_blocked(const RTCFilterFunctionNArguments* arguments);
+  double find_range(const Vector3d& from_M, const Vector3d& direction_M, std::uint32_t triangle) const;
+
+  const Mesh& mesh_;
+  Vector3d center_m_ = Vector3d::Zero(), half_extents_m_ = Vector3d::Zero();
+  double radius_m_ = 0;
+  EmbreeSceneHandle scene_;
+};
+
+}  // namespace sim

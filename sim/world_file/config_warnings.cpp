@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world_file/config_warnings.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/config/message_text.hpp"
+#include "sim/device/device_registry.hpp"
+
+namespace sim {
+
+namespace {
+
+/// Rounding of step_s * rate_hz.
+constexpr double close_to_one = 1 + 1e-9;
+
+class ConfigCheck {
+ public:
+  ConfigCheck(const WorldConfig& world, const ConfigNode& root, Warnings& warnings)
+      : world_(world), root_(root), warnings_(warnings) {}
+
+  void check_rates() const {
+    std::set<const VehicleConfig*> seen;  // asked, never iterated
+    for (const VehicleInstance& vehicle : world_.vehicles)
+      if (seen.insert(vehicle.config.get()).second)
+        for (const DeviceConfig& device : vehicle.config->devices)
+          check_device(device, "vehicle '" + vehicle.name + "': device '" + device.name + "'");
+    if (root_.find("state_rate_hz") != nullptr)
+      check_rate("'state_rate_hz'", world_.state_rate_hz, place_of(root_, "state_rate_hz"), "");
+    const ConfigNode* run = root_.find("run");
+    if (run != nullptr && run->find("track_rate_hz") != nullptr)
+      check_rate("'track_rate_hz'", world_.run.track_rate_hz, place_of(*run, "track_rate_hz"), "run");
+  }
+
+  void check_metrics() const {
+    const std::set<std::string> spoken = channels_of(world_);
+    for (const MetricConfig& metric : world_.metrics) {
+      const std::string who = "metric '" + metric.name + "'";
+      const double end_s = world_.run.duration_s;
+      if (end_s > 0 && metric.from_s >= end_s)
+        warnings_.warn(metric.place, who,
+                       "'from_s' " + number_text(metric.from_s) + " is not before the end of the run at " +
+                           number_text(end_s) + " s: nothing counts");
+      // What programs publish is not known here.
+      if (metric.channel.empty() || !world_.processes.empty()) continue;
+      if (spoken.contains(metric.channel) || metric.channel.starts_with("sim.")) continue;
+      warnings_.warn(metric.place, who,
+                     "nothing in this world publishes on '" + metric.channel + "'" + truth_hint(metric.channel) +
+                         ", and it starts no programs: only one started by hand can");
+    }
+  }
+
+  void check_events() const {
+    const double end_s = world_.run.duration_s;
+    for (const EventConfig& event : world_.events) {
+      const bool late = !event.at_s.empty() &&
+                        std::all_of(event.at_s.begin(), event.at_s.end(), [&](double at_s) { return at_s > end_s; });
+      if (end_s > 0 && late)
+        warnings_.warn(event.place, "event '" + event.name + "'",
+                       "it is for " + number_text(*std::min_element(event.at_s.begin(), event.at_s.end())) +
+                           " s, and the run ends at " + number_text(end_s) + " s");
+    }
+  }
+
+ private:
+  void check_device(const DeviceConfig& device, const std::string& who) const {
+    if (device.device_type == nullptr) return;
+    const auto place = [&](const char* key) { return device.source ? place_of(*device.source, key) : device.place; };
+    if (device.device_type->reports()) {
+      const bool given = device.source && device.source->find("rate_hz") != nullptr;
+      check_rate(given ? "'rate_hz'" : "its usual rate", device.rate_hz, place("rate_hz"), who);
+      return;
+    }
+    for (const char* key : {"rate_hz", "phase_s", "truth", "channel"})
+      if (device.source && device.source->find(key) != nullptr)
+        warnings_.warn(
+            place(key), who,
+            "'" + std::string(key) + "' has no effect: a device of type '" + device.type + "' publishes no reports");
+  }
+
+  void check_rate(const std::string& what, double rate_hz, const SourcePlace& place, const std::string& who) const {
+    const double step_s = world_.physics.step_s;
+    if (rate_hz * step_s <= close_to_one) return;
+    warnings_.warn(place, who,
+                   what + " of " + number_text(rate_hz) + " Hz is above that of the steps: it becomes " +
+                       number_text(std::round(1e6 / step_s) / 1e6) + " Hz with 'step_s' " + number_text(step_s));
+  }
+
+  /// Of a channel on which a device would speak if it were told to.
+  std::string truth_hint(const std::string& channel) const {
+    for (const VehicleInstance& vehicle : world_.vehicles)
+      for (const DeviceConfig& device : vehicle.config->devices)
+        if (device.device_type != nullptr && device.device_type->reports() &&
+            device_channel(world_.channels, vehicle.name, device, ChannelKind::truth) == channel)
+          return " (device '" + device.name + "' needs 'truth: true')";
+    return "";
+  }
+
+  const WorldConfig& world_;
+  const ConfigNode& root_;
+  Warnings& warnings_;
+};
+
+void add_published(const std::vector<Action>& actions, std::set<std::string>& channels) {
+  for (const Action& action : actions) {
+    if (action.kind == ActionKind::publish) channels.insert(action.channel);
+    for (const std::vector<Action>& choice : action.choices) add_published(choice, channels);
+  }
+}
+
+}  // namespace
+
+std::set<std::string> channels_of(const WorldConfig& world) {
+  std::set<std::string> channels;
+  for (const VehicleInstance& vehicle : world.vehicles)
+    for (const DeviceConfig& device : vehicle.config->devices) {
+      if (device.device_type == nullptr || !device.device_type->reports()) continue;
+      channels.insert(device_channel(world.channels, vehicle.name, device, ChannelKind::report));
+      if (device.truth) channels.insert(device_channel(world.channels, vehicle.name, device, ChannelKind::truth));
+    }
+  for (const EventConfig& event : world.events) add_published(event.actions, channels);
+  return channels;
+}
+
+void warn_of_config(const WorldConfig& world, const ConfigNode& root, Warnings& warnings) {
+  const ConfigCheck check(world, root, warnings);
+  check.check_rates();
+  check.check_metrics();
+  check.check_events();
+}
+
+}  // namespace sim

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "sim/config/warnings.hpp"
+#include "sim/world_file/world_config.hpp"
+
+namespace sim {
+
+/// Warns of what a world file says that will not be as it says: rates above that of the steps, keys without effect,
+/// metrics of channels on which nobody speaks or that begin after the end, events after the end.  `root`: what `world`
+/// was read from.  Call when the vehicles are known and there were no errors.
+void warn_of_config(const WorldConfig& world, const ConfigNode& root, Warnings& warnings);
+
+/// The channels on which the world itself speaks: reports and truths of its devices, and what its events publish.
+std::set<std::string> channels_of(const WorldConfig& world);
+
+}  // namespace sim

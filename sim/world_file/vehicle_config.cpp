@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world_file/vehicle_config.hpp"
+
+namespace sim {
+
+void VehicleConfig::read(ParamReader& in) {
+  in.require("shoal");
+  in.read("shoal", shoal, between(1, 1), "version of the file format");
+  in.read("vehicle", vehicle, "name of this kind of vehicle");
+  in.read("description", description, "one sentence for people");
+  in.read_raw("parameters", parameters, "default of each ${name} used in the file");
+  in.read_list("materials", materials, "material", "materials this vehicle brings");
+  for (const MaterialConfig& material : materials) in.declare("material", material.name);
+  in.read_list("contacts", contacts, "contact", "what happens where two materials touch");
+  in.read("categories", categories, "categories of parts this vehicle brings");
+  for (const std::string& category : categories) in.declare("category", category);
+  in.read("self_collision", self_collision, "parts of this vehicle collide with each other");
+  in.read("actuator_latency_s", actuator_latency_s, between(0, 1e6),
+          "from command to effect, added to the latency of each actuator");
+  in.read("clock", clock, "by which its devices stamp their reports; without it: true time");
+  in.require("bodies");
+  in.read_list("bodies", bodies, "body", "parts that move as one; the first carries the vehicle frame");
+  if (in.has("bodies") && bodies.empty()) in.error("bodies", "'bodies' must have at least one body");
+  declare_bodies(in);
+  in.read_list("joints", joints, "joint", "what ties bodies together");
+  for (const JointConfig& joint : joints) in.declare("joint", joint.name);
+  in.read_list("devices", devices, "device", "sensors and actuators; keys by type, see docs/devices.md");
+  for (const DeviceConfig& device : devices) in.declare("device", device.name);
+}
+
+void VehicleConfig::declare_bodies(ParamReader& in) const {
+  for (const BodyConfig& body : bodies) {
+    in.declare("body", body.name);
+    for (const PartConfig& part : body.parts)
+      if (!part.name.empty()) in.declare("part", body.name + "/" + part.name);
+  }
+  in.declare("body", "world");  // for joints
+}
+
+}  // namespace sim

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world_file/world_config.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <ctime>
+#include <set>
+
+#include "sim/bus/bus.hpp"
+#include "sim/config/message_text.hpp"
+
+namespace sim {
+
+void OriginConfig::read(ParamReader& in) {
+  in.read("latitude_deg", position.latitude_deg, between(-90, 90), "WGS84 latitude of the world's origin");
+  in.read("longitude_deg", position.longitude_deg, between(-180, 180), "WGS84 longitude of the world's origin");
+  in.read("height_m", position.height_m, any_number(), "height of the world's origin over the ellipsoid");
+}
+
+void RunConfig::read(ParamReader& in) {
+  in.read("duration_s", duration_s, between(0, 1e9), "simulated time of the run; 0: until told to quit");
+  in.read("speed", speed, between(0, 1e6), "times real time, at least 0.001; 0: as fast as possible");
+  if (speed > 0 && speed < 1e-3) in.error("speed", "'speed' must be 0 (as fast as possible) or from 0.001 to 1e6");
+  in.read("seed", seed, at_least(0), "of every random stream");
+  in.read("track_rate_hz", track_rate_hz, between(1e-3, 1e6), "samples per second of the tracks in the results");
+  in.read("hash_every_steps", hash_every_steps, between(0, 1e9), "steps from hash to hash on sim.hash; 0: none");
+}
+
+void ChannelConfig::read(ParamReader& in) {
+  in.read("report", report, "of a device's reports; {vehicle} {device} {VEHICLE} {DEVICE} are replaced");
+  in.read("command", command, "of a device's commands");
+  in.read("truth", truth, "of a device's readings without errors");
+}
+
+namespace {
+
+/// Words that mean something else where names are used.
+void refuse_reserved(ParamReader& in, const std::string& name) {
+  if (name == "any" || name == "world" || name == "sim")
+    in.error("name", "'" + name + "' cannot be a name: it is a word");
+}
+
+}  // namespace
+
+void ObjectConfig::read(ParamReader& in) {
+  if (in.node() != nullptr) {
+    place = in.node()->place;
+    source = std::make_shared<const ConfigNode>(*in.node());
+  }
+  in.require("name");
+  in.read_name("name", name, "name of the object, unique in the world");
+  refuse_reserved(in, name);
+  in.read("position_m", position_m, any_place(), "place in the world");
+  in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
+  in.read("fixed", fixed, "it never moves");
+  in.read("present", present, "false: it is not there until an event adds it");
+  in.read("count", count, between(1, 100000), "how many; named NAME1, NAME2, ...");
+  in.read("placement", placement, "where the instances stand when there is a count");
+  in.require("parts");
+  in.read_list("parts", parts, "part", "what it is made of");
+  if (in.has("parts") && in.child("parts")->items.empty() && in.child("parts")->kind != ConfigNode::Kind::scalar)
+    in.error("parts", "'parts' must have at least one part");
+}
+
+void VehicleEntry::read(ParamReader& in) {
+  if (in.node() != nullptr) place = in.node()->place;
+  in.require("name");
+  in.read_name("name", name, "name of the vehicle, unique in the world; part of its channels");
+  refuse_reserved(in, name);
+  in.read_path("file", file, PathUse::looked_up,
+               "vehicle file, beside the world file, in ../vehicles or shipped (shoal list)");
+  if (in.has("file")) file_place = in.child("file")->place;
+  in.read_raw("model", model, "the vehicle itself, as in a vehicle file, instead of a file");
+  in.read("position_m", position_m, any_place(), "place of the vehicle frame in the world");
+  in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
+  in.read("count", count, between(1, 100000), "how many; named NAME1, NAME2, ...");
+  in.read("placement", placement, "where the instances stand when there is a count");
+  in.read_raw("parameters", parameters, "values of the vehicle file's ${names}; ${index} counts from 1");
+  in.read_reference("bus", bus, "bus", "bus of its own, named in `buses`; unset: the world's");
+  in.read_raw("overrides", overrides,
+              "dotted path: value, such as devices.lidar.rate_hz: 5; NAME3/devices.lidar.rate_hz: one of a count");
+  if (!in.describing() && in.has("file") == in.has("model"))
+    in.error(in.has("file") ? "needs either 'file' or 'model', not both" : "needs either 'file' or 'model'");
+}
+
+void BusConfig::read(ParamReader& in) {
+  in.require("name");
+  in.read_name("name", name, "name of the bus");
+  in.require("lcm_url");
+  in.read("lcm_url", lcm_url, "LCM URL, such as udpm://239.255.76.67:7668?ttl=0; each bus has its own port");
+  if (in.has("lcm_url") && lcm_url.empty()) in.error("lcm_url", "'lcm_url' must not be empty");
+}
+
+void ProcessConfig::read(ParamReader& in) {
+  in.require("name");
+  in.read_name("name", name, "name of the process in messages");
+  in.require("command");
+  in.read("command", command, "program and its arguments; {lcm_url} and {run} are replaced");
+  in.read("client", client, "the name it joins the lockstep with; the run then waits for it");
+  in.read_reference("bus", bus, "bus", "its LCM URL is that of this bus, named in `buses`; unset: the world's");
+  in.read_choice(
+      "on_exit", on_exit, {"continue", "end", "ignore"},
+      "when it ends before the run; continue: the run goes on, and fails if the program failed; end: the run "
+      "ends with exit code 1; ignore: the run goes on, and a failure does not count");
+  if (in.has("command") && command.empty() && in.child("command")->scalar.empty())
+    in.error("command", "'command' must name a program");
+}
+
+void LockstepConfig::read(ParamReader& in) {
+  in.read("timeout_s", timeout_s, between(0.001, 1e6), "wall time to wait for a client's acknowledgement");
+  in.read("join_timeout_s", join_timeout_s, between(0.001, 1e6), "wall time to wait for launched clients to join");
+  in.read_choice(
+      "on_timeout", on_timeout, {"wait", "pause", "continue", "end"},
+      "when a client does not answer in timeout_s: wait for it for ever, pause the world, continue without "
+      "it, end the run with exit code 5; it then counts for all clients, and timeout_s is the longest that they "
+      "may ask for; unset: each client may say its own when it joins");
+  agreed = in.has("on_timeout");
+}
+
+void LimitsConfig::read(ParamReader& in) {
+  in.read("vehicles", vehicles, between(0, 1000000), "vehicles at any one time, when clients bring more");
+  in.read("objects", objects, between(0, 10000000), "objects at any one time, when scripts or clients bring more");
+  in.read("bodies_per_vehicle", bodies_per_vehicle, between(1, 100000), "of a vehicle that a client brings");
+  in.read("devices_per_vehicle", devices_per_vehicle, between(0, 100000), "of a vehicle that a client brings");
+  in.read("parts", parts, between(1, 100000), "of one vehicle or object that comes while the world runs");
+  in.read("spawns_per_client", spawns_per_client, between(0, 100000000),
+          "spawn requests of one client in a run; of all clients together ten times as many");
+  in.read("rewinds_per_client", rewinds_per_client, between(0, 100000000),
+          "rewind and restore requests of one client in a run; of all clients together ten times as many");
+  in.read("step_cpu_s", step_cpu_s, between(0, 1e6),
+          "CPU time of a step, of the thread that simulates: the run ends after a step that took longer; 0: no limit");
+}
+
+namespace {
+
+/// Microseconds since 1970 of `2026-01-01T00:00:00Z`; false when the text is not of that form.
+bool parse_utc(const std::string& text, std::int64_t& utime) {
+  std::tm tm{};
+  char end = 0;
+  if (std::sscanf(text.c_str(), "%4d-%2d-%2dT%2d:%2d:%2d%c", &tm.tm_year, &tm.tm_mon, &tm.tm_mday, &tm.tm_hour,
+                  &tm.tm_min, &tm.tm_sec, &end) != 7 ||
+      end != 'Z' || text.size() != 20)
+    return false;
+  tm.tm_year -= 1900;
+  tm.tm_mon -= 1;
+  const std::tm wanted = tm;
+  const std::time_t seconds = timegm(&tm);
+  if (tm.tm_mday != wanted.tm_mday || tm.tm_mon != wanted.tm_mon || tm.tm_hour != wanted.tm_hour) return false;
+  utime = static_cast<std::int64_t>(seconds) * 1000000;
+  return true;
+}
+
+/// What events may name.  Before they are read, for they name each other.
+void declare_for_events(ParamReader& in, const WorldConfig& world) {
+  std::set<std::string> objects;
+  for (const ObjectConfig& object : world.objects)
+    for (int i = 1; i <= object.count; ++i)
+      objects.insert(object.count == 1 ? object.name : object.name + std::to_string(i));
+  const ConfigNode* events = in.describing() ? nullptr : in.child("events");
+  if (events != nullptr) {
+    for (std::string& name : names_added_by(*events)) objects.insert(std::move(name));
+    for (const ConfigNode& event : events->items)
+      if (const ConfigNode* name = event.find("name"); name != nullptr) in.declare("event", name->scalar);
+  }
+  const std::vector<std::string> known = in.declared("object");
+  std::set<std::string> movable(objects);
+  for (const std::string& name : objects)
+    if (!std::binary_search(known.begin(), known.end(), name)) in.declare("object", name);
+  for (const std::string& name : in.declared("vehicle")) movable.insert(name);
+  for (const std::string& name : movable) in.declare(movable_kind, name);
+}
+
+void read_script(ParamReader& in, WorldConfig& world) {
+  in.read_list("zones", world.zones, "zone", "regions, for events, denied services and rules");
+  for (const ZoneConfig& zone : world.zones) in.declare("zone", zone.name);
+  in.read_list("actors", world.actors, "actor", "objects that move along paths");
+  for (const ActorConfig& actor : world.actors) in.declare("actor", actor.name);
+  declare_for_events(in, world);
+  in.read_list("events", world.events, "event", "what happens when, see docs/living_worlds.md");
+}
+
+}  // namespace
+
+void WorldConfig::read(ParamReader& in) {
+  in.require("shoal");
+  in.read("shoal", shoal, between(1, 1), "version of the file format");
+  in.read("name", name, "name of the world");
+  in.read("description", description, "one sentence for people");
+  in.read("origin", origin, "where the world lies on the earth");
+  in.read("epoch", epoch, "UTC of simulated time 0, as 2026-01-01T00:00:00Z");
+  if (!parse_utc(epoch, epoch_us))
+    in.error("epoch", "'epoch' must be a UTC time such as 2026-01-01T00:00:00Z, got '" + epoch + "'");
+  in.read("physics", physics, "how bodies move");
+  in.read("medium", medium, "water and air, see docs/medium.md");
+  in.read("acoustics", acoustics, "how the water carries sound between devices, see docs/acoustics.md");
+  in.declare("material", "default");
+  in.declare("category", "solid");
+  in.read_list("materials", materials, "material", "materials of this world");
+  for (const MaterialConfig& material : materials) in.declare("material", material.name);
+  in.read_list("contacts", contacts, "contact",
+               "what happens where two materials touch; both named wins over any, then the last one");
+  in.read("categories", categories, "categories of parts, beside `solid`; at most 30");
+  for (const std::string& category : categories) in.declare("category", category);
+  if (categories.size() > 30) in.error("categories", "'categories' must have at most 30 names");
+  in.read("light", light, "sun and sky, for pictures; see docs/cameras.md");
+  in.read("channels", channels, "names of the channels");
+  in.read("run", run, "how a run goes when the command line says nothing else");
+  in.read("state_rate_hz", state_rate_hz, between(0, 1e6), "of sim.state and sim.clock; 0: never");
+  in.read_paths("plugins", plugins,
+                "libraries with devices, beside this file or installed; only with --launch or --plugin");
+  in.read_list("objects", objects, "object", "things without devices");
+  for (const ObjectConfig& object : objects) in.declare("object", object.name);
+  in.read_list("buses", buses, "bus", "buses beside the world's, for vehicles that hear each other by modem only");
+  for (const BusConfig& bus : buses) in.declare("bus", bus.name);
+  for (std::size_t i = 0; i < buses.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (buses[i].lcm_url == buses[j].lcm_url)
+        in.error("buses", "buses '" + buses[j].name + "' and '" + buses[i].name + "' have the same 'lcm_url'");
+  in.read_list("vehicles", vehicle_entries, "vehicle", "vehicles, by file or model");
+  for (const VehicleEntry& entry : vehicle_entries) {
+    if (entry.count == 1) in.declare("vehicle", entry.name);
+    for (int i = 1; entry.count > 1 && i <= entry.count; ++i) in.declare("vehicle", entry.name + std::to_string(i));
+  }
+  read_script(in, *this);
+  in.read_list("processes", processes, "process", "external programs, started only with --launch");
+  for (const ProcessConfig& process : processes) in.declare("process", process.name);
+  in.read("lockstep", lockstep, "waiting for clients");
+  in.read("limits", limits, "what may come while the world runs");
+  declare_position_errors(in);
+  in.read_list("metrics", metrics, "metric", "figures that score the run");
+  for (const MetricConfig& metric : metrics) in.declare("metric", metric.name);
+  declare_figures(in, metrics);
+  in.read_list("pass", pass, "rule", "the run passes when every rule holds; else exit code 1");
+}
+
+void declare_surfaces(ParamReader& in, const WorldConfig& world, const VehicleConfig* vehicle) {
+  std::set<std::string> materials{"default"}, categories{"solid"};
+  const auto gather = [&](const auto& from) {
+    for (const MaterialConfig& material : from.materials) materials.insert(material.name);
+    categories.insert(from.categories.begin(), from.categories.end());
+  };
+  gather(world);
+  if (vehicle != nullptr) gather(*vehicle);
+  for (const std::string& name : materials) in.declare("material", name);
+  for (const std::string& name : categories) in.declare("category", name);
+}
+
+std::string device_channel(const ChannelConfig& channels, const std::string& vehicle, const DeviceConfig& device,
+                           ChannelKind kind) {
+  if (kind == ChannelKind::command) return channel_name(channels.command, vehicle, device.name);
+  if (kind == ChannelKind::truth) return channel_name(channels.truth, vehicle, device.name);
+  return channel_name(device.channel.empty() ? channels.report : device.channel, vehicle, device.name);
+}
+
+std::string channel_error(const std::string& channel, bool taken) {
+  if (channel.empty() || channel.size() > Bus::max_channel_length)
+    return "a channel must have 1 to 63 characters, got " + std::to_string(channel.size()) + ": '" + channel + "'";
+  if (taken) return "channel '" + channel + "' is used twice";
+  if (channel.starts_with("sim.")) return "channel '" + channel + "' belongs to the simulator: sim.*";
+  return {};
+}
+
+std::string channel_name(const std::string& pattern, const std::string& vehicle, const std::string& device) {
+  const auto upper = [](std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::toupper(c); });
+    return text;
+  };
+  std::string name = pattern;
+  const std::pair<std::string, std::string> parts[] = {
+      {"{vehicle}", vehicle}, {"{device}", device}, {"{VEHICLE}", upper(vehicle)}, {"{DEVICE}", upper(device)}};
+  for (const auto& [key, text] : parts)
+    for (std::size_t at = name.find(key); at != std::string::npos; at = name.find(key, at + text.size()))
+      name.replace(at, key.size(), text);
+  return name;
+}
+
+}  // namespace sim

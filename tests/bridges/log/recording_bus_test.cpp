@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridges/log/recording_bus.hpp"
+
+#include <gtest/gtest.h>
+#include <lcm/eventlog.h>
+
+#include <filesystem>
+#include <fstream>
+#include <queue>
+#include <random>
+#include <sstream>
+
+#include "bridges/log/event_log.hpp"
+#include "bridges/lcm/lcm_bus.hpp"
+#include "tests/bridges/lcm/lcm_test_support.hpp"
+
+namespace bridges {
+namespace {
+
+using lcm_test::await;
+using lcm_test::bytes_of;
+using lcm_test::ScratchFolder;
+using lcm_test::text_of;
+using namespace std::chrono_literals;
+
+constexpr std::int64_t epoch = 1'700'000'000'000'000;
+
+std::string contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+void write(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+/// Hands every mailbox what the test put in, and keeps no message that was published.
+class ScriptedBus final : public sim::Bus {
+ public:
+  std::queue<sim::Message> incoming;
+  int published = 0;
+
+  void publish(std::string_view, std::span<const std::byte>, sim::Time) override { ++published; }
+  std::unique_ptr<sim::Mailbox> open_mailbox(const std::string&, std::size_t) override {
+    return std::make_unique<Box>(incoming);
+  }
+  sim::BusCounts counts() const override { return {}; }
+
+ private:
+  struct Box final : sim::Mailbox {
+    explicit Box(const std::queue<sim::Message>& scripted) : messages(scripted) {}
+    std::optional<sim::Message> take() override {
+      if (messages.empty()) return std::nullopt;
+      sim::Message message = messages.front();
+      messages.pop();
+      return message;
+    }
+    std::uint64_t dropped() const override { return 0; }
+    void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) override {
+      if (!messages.empty()) flag->store(true);
+    }
+    std::queue<sim::Message> messages;
+  };
+};
+
+void run(sim::Bus& inner, const std::string& path) {
+  RecordingBus bus(inner, path, epoch);
+  for (int i = 0; i < 1000; ++i) {
+    bus.publish("a.b", bytes_of(std::string(static_cast<std::size_t>(i % 50), 'x')), sim::Time(i * 10'000));
+    bus.end_of_step();
+  }
+  EXPECT_EQ(bus.recorded(), 1000u);
+  EXPECT_EQ(bus.error().value_or(""), "");
+}
+
+std::vector<LogEvent> read_all(EventLogReader& reader) {
+  std::vector<LogEvent> events;
+  while (auto event = reader.next()) events.push_back(std::move(*event));
+  return events;
+}
+
+TEST(RecordingBus, EqualRunsLeaveEqualFiles) {
+  const ScratchFolder folder;
+  ScriptedBus bus;
+  run(bus, folder.file("one.lcm"));
+  run(bus, folder.file("two.lcm"));
+  EXPECT_EQ(bus.published, 2000);
+  EXPECT_EQ(contents(folder.file("one.lcm")), contents(folder.file("two.lcm")));
+}
+
+TEST(RecordingBus, StampsEpochPlusSimulatedTimeAndNeverGoesBack) {
+  const ScratchFolder folder;
+  ScriptedBus inner;
+  {
+    RecordingBus bus(inner, folder.file("log"), epoch);
+    bus.publish("a", bytes_of("1"), sim::Time(0));
+    bus.publish("a", bytes_of("2"), sim::Time(2'500'000));
+    bus.publish("a", bytes_of("3"), sim::Time(1'000'000));
+  }
+  EventLogReader reader(folder.file("log"));
+  const auto events = read_all(reader);
+  ASSERT_EQ(events.size(), 3u);
+  EXPECT_EQ(events[0].utime, epoch);
+  EXPECT_EQ(events[1].utime, epoch + 2'500'000);
+  EXPECT_EQ(events[2].utime, epoch + 2'500'000);
+  EXPECT_TRUE(reader.problems().empty());
+}
+
+TEST(RecordingBus, IsWrittenWhileASimulatedSecondLasts) {
+  const ScratchFolder folder;
+  ScriptedBus inner;
+  RecordingBus bus(inner, folder.file("log"), epoch);
+  bus.publish("a", bytes_of("1"), sim::Time(0));
+  bus.end_of_step();
+  bus.publish("a", bytes_of("2"), sim::Time(1000));
+  // A run at a thousandth of real time: nothing more comes for a long while of wall time.
+  constexpr std::size_t event_bytes = 28 + 1 + 1;
+  const auto size = [&] { return std::filesystem::file_size(folder.file("log")); };
+  EXPECT_TRUE(await(
+      [&] {
+        bus.end_of_step();
+        return size() == 2 * event_bytes;
+      },
+      5s))
+      << size() << " bytes were written";
+}
+
+TEST(RecordingBus, LcmReadsTheLog) {
+  const ScratchFolder folder;
+  ScriptedBus inner;
+  run(inner, folder.file("log"));
+  lcm_eventlog_t* log = lcm_eventlog_create(folder.file("log").c_str(), "r");
+  ASSERT_NE(log, nullptr);
+  int count = 0;
+  while (lcm_eventlog_event_t* event = lcm_eventlog_read_next_event(log)) {
+    EXPECT_EQ(event->eventnum, count);
+    EXPECT_EQ(event->timestamp, epoch + count * 10'000);
+    EXPECT_EQ(std::string(event->channel, static_cast<std::size_t>(event->channellen)), "a.b");
+    EXPECT_EQ(event->datalen, count % 50);
+    lcm_eventlog_free_event(event);
+    ++count;
+  }
+  lcm_eventlog_destroy(log);
+  EXPECT_EQ(count, 1000);
+}
+
+TEST(RecordingBus, RecordsWhatIsAdmittedAndNotWhatIsTaken) {
+  const ScratchFolder folder;
+  ScriptedBus inner;
+  inner.incoming.push({"a.cmd", bytes_of("thrown away"), true});
+  inner.incoming.push({"a.cmd", bytes_of("handed over"), true});
+  {
+    RecordingBus bus(inner, folder.file("log"), epoch);
+    sim::MailGate gate(bus);
+    const auto first = gate.open_mailbox("a.cmd");
+    const auto second = gate.open_mailbox("a.cmd");
+    gate.collect();
+    ASSERT_EQ(gate.waiting().size(), 2u);
+    gate.waiting().erase(gate.waiting().begin());
+    bus.set_time(sim::Time(70));
+    bus.admitted(gate.admit());
+  }
+  EventLogReader reader(folder.file("log"));
+  const auto events = read_all(reader);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(text_of(events[0].payload), "handed over");
+  EXPECT_EQ(events[0].utime, epoch + 70);
+}
+
+TEST(RecordingBus, AMessageThatComesBackFromTheNetworkIsRecordedOnce) {
+  const ScratchFolder folder;
+  RecordingBus bus(std::make_unique<LcmBus>("memq://"), folder.file("log"), epoch);
+  const auto mailbox = bus.open_mailbox("a");
+  bus.publish("a", bytes_of("x"), sim::Time(0));
+  bus.end_of_step();
+  EXPECT_TRUE(await([&] { return mailbox->take().has_value(); }));
+  EXPECT_EQ(bus.recorded(), 1u);
+}
+
+TEST(RecordingBus, AFullDiskIsReportedOnceAndTheRunGoesOn) {
+  ScriptedBus inner;
+  RecordingBus bus(inner, "/dev/full", epoch, Existing::overwrite);
+  const sim::Bytes payload(100'000);
+  for (int i = 0; i < 100; ++i) bus.publish("a", payload, sim::Time(i));
+  EXPECT_EQ(bus.error().value_or(""), "/dev/full: cannot record: No space left on device");
+  EXPECT_EQ(inner.published, 100);
+  EXPECT_LT(bus.recorded(), 100u);
+}
+
+TEST(RecordingBus, AFullDiskIsReportedAlsoWhenItShowsAtTheEnd) {
+  ScriptedBus inner;
+  RecordingBus bus(inner, "/dev/full", epoch, Existing::overwrite);
+  bus.publish("a", bytes_of("x"), sim::Time(0));
+  EXPECT_FALSE(bus.error());
+  bus.close();
+  EXPECT_EQ(bus.error().value_or(""), "/dev/full: cannot record: No space left on device");
+}
+
+TEST(RecordingBus, NothingStaysInMemoryForLong) {
+  const ScratchFolder folder;
+  ScriptedBus inner;
+  RecordingBus bus(inner, folder.file("log"), epoch);
+  bus.publish("a", bytes_of("x"), sim::Time(1'000'000));
+  EXPECT_TRUE(await([&] { return std::filesystem::file_size(folder.file("log")) == 30; }, 3s)) << "once a second";
+  bus.publish("a", bytes_of("x"), sim::Time(2'000'000));  // too early, if this machine is fast
+  EXPECT_TRUE(await(
+      [&] {
+        bus.hand_over();
+        return std::filesystem::file_size(folder.file("log")) == 2 * 30;
+      },
+      3s))
+      << "a run that stands still asks for it";
+}
+
+TEST(RecordingBus, OverwritesOnlyWhenTold) {
+  const ScratchFolder folder;
+  ScriptedBus inner;
+  write(folder.file("log"), "precious");
+  try {
+    RecordingBus bus(inner, folder.file("log"), epoch);
+    FAIL();
+  } catch (const BusError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              folder.file("log") + ": exists already; choose another name or pass --overwrite");
+  }
+  EXPECT_EQ(contents(folder.file("log")), "precious");
+  { RecordingBus bus(inner, folder.file("log"), epoch, Existing::overwrite); }
+  EXPECT_EQ(contents(folder.file("log")), "");
+  EXPECT_THROW(RecordingBus(inner, folder.file("no/such/folder"), epoch), BusError);
+}
+
+TEST(EventLog, ATruncatedLastEventEndsTheReading) {
+  const ScratchFolder folder;
+  ScriptedBus inner;
+  run(inner, folder.file("log"));
+  const std::string whole = contents(folder.file("log"));
+  for (const std::size_t cut : {1, 10, 40, 60, 75}) {
+    write(folder.file("cut"), whole.substr(0, whole.size() - cut));
+    EventLogReader reader(folder.file("cut"));
+    EXPECT_EQ(read_all(reader).size(), 999u);  // the last one has 28 + 3 + 49 bytes
+    ASSERT_EQ(reader.problems().size(), 1u);
+    EXPECT_EQ(reader.problems()[0], "byte " + std::to_string(whole.size() - 80) + ": the last event is cut off (" +
+                                        std::to_string(80 - cut) + " bytes)");
+  }
+}
+
+TEST(EventLog, SkipsGarbageAndReportsIt) {
+  const ScratchFolder folder;
+  ScriptedBus inner;
+  run(inner, folder.file("log"));
+  const std::string whole = contents(folder.file("log"));
+  const std::size_t third = 31 + 32;  // the first two have 0 and 1 bytes of payload
+  write(folder.file("bad"), whole.substr(0, third) + "rubbish" + whole.substr(third));
+  EventLogReader reader(folder.file("bad"));
+  EXPECT_EQ(read_all(reader).size(), 1000u);
+  ASSERT_EQ(reader.problems().size(), 1u);
+  EXPECT_EQ(reader.problems()[0], "byte 63: 7 bytes that are no event were skipped");
+}
+
+TEST(EventLog, ADamagedLengthCostsOneEvent) {
+  const ScratchFolder folder;
+  ScriptedBus inner;
+  run(inner, folder.file("log"));
+  std::string log = contents(folder.file("log"));
+  log[24] = 0x70;  // the first event's data length
+  write(folder.file("bad"), log);
+  EventLogReader reader(folder.file("bad"));
+  EXPECT_EQ(read_all(reader).size(), 999u);
+  ASSERT_EQ(reader.problems().size(), 1u);
+  EXPECT_EQ(reader.problems()[0], "byte 0: 31 bytes of a damaged event were skipped");
+}
+
+TEST(EventLog, SurvivesFlippedBits) {
+  const ScratchFolder folder;
+  ScriptedBus inner;
+  run(inner, folder.file("log"));
+  const std::string whole = contents(folder.file("log")).substr(0, 4000);
+  std::mt19937 random(1);
+  for (int i = 0; i < 500; ++i) {
+    std::string log = whole;
+    for (int flips = 0; flips < 5; ++flips) log[random() % log.size()] ^= static_cast<char>(1 << random() % 8);
+    write(folder.file("bad"), log);
+    EventLogReader reader(folder.file("bad"));
+    EXPECT_LE(read_all(reader).size(), 80u);
+  }
+}
+
+TEST(EventLog, AnEmptyFileHasNoEventsAndAMissingOneIsAnError) {
+  const ScratchFolder folder;
+  write(folder.file("empty"), "");
+  EventLogReader reader(folder.file("empty"));
+  EXPECT_FALSE(reader.next());
+  EXPECT_TRUE(reader.problems().empty());
+  EXPECT_THROW(EventLogReader(folder.file("missing")), BusError);
+  EXPECT_THROW(EventLogReader("/dev/null"), BusError);
+}
+
+}  // namespace
+}  // namespace bridges

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridges/log/run_journal.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "shoal/sim_hash_t.hpp"
+#include "tests/devices/comms/port_fixture.hpp"
+
+namespace {
+
+using bridges::RunJournal;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+sim::Bytes bytes(const std::string& text) {
+  const auto* begin = reinterpret_cast<const std::byte*>(text.data());
+  return {begin, begin + text.size()};
+}
+
+/// A world with a ball, and a journal that publishes on its bus.
+struct Journalled {
+  explicit Journalled(int hash_every_steps = 10)
+      : test("shoal: 1\nrun: {hash_every_steps: " + std::to_string(hash_every_steps) +
+             "}\nphysics: {step_s: 0.01}\nobjects: [{name: ball, position_m: [0, 0, 5], parts: [{shape: sphere, "
+             "radius_m: 0.1, mass_kg: 1}]}]\n") {
+    journal.attach(test.world);
+  }
+
+  void step() {
+    test.world.step();
+    journal.after_step();
+  }
+  /// `step:bus:channel:text` of every letter that was published.
+  std::vector<std::string> letters() {
+    std::vector<std::string> all;
+    for (const shoal::sim_mail_t& message : mail.take_all()) {
+      sequences.push_back(message.sequence);
+      for (const shoal::sim_letter_t& letter : message.letter)
+        all.push_back(std::to_string(letter.step) + ":" + letter.bus + ":" + letter.channel + ":" +
+                      std::string(letter.data.begin(), letter.data.end()));
+    }
+    return all;
+  }
+
+  test::TestWorld test;
+  RunJournal journal{test.bus};
+  test::Listener<shoal::sim_mail_t> mail{test, "sim.mail"};
+  test::Listener<shoal::sim_hash_t> hashes{test, "sim.hash"};
+  std::vector<std::int64_t> sequences;
+};
+
+TEST(RunJournal, LettersKnowTheStepThatBeginsWhenTheyAreHandedOver) {
+  Journalled run;
+  run.journal.letter("", "a", bytes("early"));
+  run.journal.start();
+  run.journal.after_step();
+  EXPECT_THAT(run.letters(), ElementsAre("-1::a:early"));
+  run.journal.letter("", "a", bytes("one"));
+  const std::vector<sim::MailGate::Mail> mail{{"b", bytes("two")}, {"c", bytes("")}};
+  run.journal.admitted("reef", mail);
+  EXPECT_THAT(run.letters(), IsEmpty());
+  run.step();
+  EXPECT_THAT(run.letters(), ElementsAre("0::a:one", "0:reef:b:two", "0:reef:c:"));
+  run.step();
+  EXPECT_THAT(run.letters(), IsEmpty());
+  run.journal.letter("", "a", bytes("last"));
+  run.journal.finish();
+  EXPECT_THAT(run.letters(), ElementsAre("2::a:last"));
+  EXPECT_THAT(run.sequences, ElementsAre(0, 1, 2));
+}
+
+TEST(RunJournal, MuchMailIsSpreadOverSeveralMessages) {
+  Journalled run;
+  run.journal.start();
+  const sim::Bytes large(600'000);
+  for (int i = 0; i < 3; ++i) run.journal.letter("", "image", large);
+  run.step();
+  EXPECT_EQ(run.letters().size(), 3u);
+  EXPECT_THAT(run.sequences, ElementsAre(0, 1, 2));
+}
+
+TEST(RunJournal, HashesAreThoseOfTheWorldAtEveryNthStepAndAtTheEnd) {
+  Journalled run(10);
+  run.journal.start();
+  run.journal.after_step();
+  std::vector<std::int64_t> expected{static_cast<std::int64_t>(run.test.world.state_hash())};
+  for (int i = 0; i < 25; ++i) {
+    run.step();
+    if (i == 9 || i == 19 || i == 24) expected.push_back(static_cast<std::int64_t>(run.test.world.state_hash()));
+  }
+  run.journal.finish();
+  run.journal.finish();
+  std::vector<std::int64_t> steps, hashes;
+  for (const shoal::sim_hash_t& message : run.hashes.take_all()) {
+    steps.push_back(message.step);
+    hashes.push_back(message.hash);
+    EXPECT_FALSE(message.part.empty());
+  }
+  EXPECT_THAT(steps, ElementsAre(0, 10, 20, 25));
+  EXPECT_EQ(hashes, expected);
+}
+
+TEST(RunJournal, TheHashOfTheRunIsTheLastOfTheParts) {
+  Journalled run(10);
+  run.journal.start();
+  std::int64_t expected = 0;
+  for (int i = 0; i < 10; ++i) run.step();
+  expected = static_cast<std::int64_t>(run.test.world.run_hash());
+  const auto messages = run.hashes.take_all();
+  ASSERT_EQ(messages.size(), 1u);
+  ASSERT_EQ(messages[0].part.size(), messages[0].part_hash.size());
+  EXPECT_EQ(messages[0].part.back(), "run hash");
+  EXPECT_EQ(messages[0].part_hash.back(), expected);
+}
+
+TEST(RunJournal, NoneAreAskedFor) {
+  Journalled run(0);
+  run.journal.start();
+  for (int i = 0; i < 20; ++i) run.step();
+  run.journal.finish();
+  EXPECT_THAT(run.hashes.take_all(), IsEmpty());
+}
+
+TEST(RunJournal, AListenerHearsOfEveryLetter) {
+  Journalled run;
+  std::vector<std::string> heard;
+  run.journal.set_listener([&](std::int64_t step, const RunJournal::Letter& letter) {
+    heard.push_back(std::to_string(step) + ":" + letter.bus + ":" + letter.channel);
+  });
+  run.journal.start();
+  run.step();
+  run.journal.letter("reef", "a", bytes("x"));
+  shoal::sim_control_request_t request{};
+  request.command = "remove";
+  run.journal.request(request);
+  EXPECT_THAT(heard, ElementsAre("1:reef:a", "1::sim.control"));
+}
+
+TEST(RunJournal, MutedItWritesNothingAndItsPortsReadWhatTheyReadBefore) {
+  const auto end = std::make_shared<test::PortEnd>();
+  Journalled run(1);
+  const sim::PortOpener open =
+      run.journal.wrap([&](const std::string&, const std::string&) { return std::make_unique<test::FakePort>(end); });
+  const auto port = open("pty", "/nowhere/a");
+  run.journal.start();
+  end->to_world = "hello";
+  EXPECT_EQ(port->read(), bytes("hello"));
+  run.step();
+  EXPECT_THAT(run.letters(), ElementsAre("0:serial:/nowhere/a:hello"));
+  run.hashes.take_all();
+
+  run.journal.mute(true);
+  run.journal.serial_mail().add(1, "/nowhere/a", bytes("again"));
+  end->to_world = "later";
+  EXPECT_EQ(port->read(), bytes("again"));
+  port->write(bytes("unheard"));
+  run.journal.letter("", "a", bytes("x"));
+  run.step();
+  EXPECT_THAT(run.letters(), IsEmpty());
+  EXPECT_THAT(run.hashes.take_all(), IsEmpty());
+  EXPECT_EQ(end->from_world, "");
+
+  run.journal.mute(false);
+  EXPECT_EQ(port->read(), bytes("later"));
+  run.step();
+  EXPECT_THAT(run.letters(), ElementsAre("2:serial:/nowhere/a:later"));
+}
+
+TEST(RunJournal, ABranchCountsOnFromWhereItBegan) {
+  Journalled run;
+  run.journal.start();
+  for (int i = 0; i < 3; ++i) {
+    run.journal.letter("", "a", bytes("x"));
+    run.step();
+  }
+  run.letters();
+  run.journal.begin_branch(1, 2);
+  run.journal.letter("", "a", bytes("x"));
+  run.step();
+  const auto messages = run.mail.take_all();
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_EQ(messages[0].sequence, 2);
+  EXPECT_EQ(messages[0].branch, 1);
+}
+
+TEST(SerialMail, IsReadAtItsStepOnly) {
+  bridges::SerialMail mail;
+  mail.add(3, "a", bytes("three"));
+  mail.add(5, "a", bytes("five"));
+  mail.add(5, "a", bytes("more"));
+  mail.add(7, "a", bytes("seven"));
+  EXPECT_EQ(mail.read("b", 3), bytes(""));
+  EXPECT_EQ(mail.read("a", 2), bytes(""));
+  EXPECT_EQ(mail.read("a", 3), bytes("three"));
+  EXPECT_EQ(mail.read("a", 3), bytes(""));
+  EXPECT_EQ(mail.read("a", 5), bytes("five"));
+  EXPECT_EQ(mail.read("a", 5), bytes("more"));
+  EXPECT_EQ(mail.read("a", 8), bytes(""));
+}
+
+}  // namespace

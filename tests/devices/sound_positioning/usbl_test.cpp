@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include "shoal/transponder_t.hpp"
+#include "shoal/usbl_t.hpp"
+#include "tests/devices/navigation/immersed_sensor_fixture.hpp"
+
+namespace {
+
+using shoal::usbl_t;
+using test::marine_world;
+
+std::string transponder(const std::string& name, const std::string& position_m, const std::string& more = "") {
+  return "  - {name: " + name + ", position_m: " + position_m +
+         ", model: {shoal: 1, vehicle: box, bodies: [{name: hull, hydrodynamics: {model: none}, parts: [{shape: box, "
+         "size_m: [0.2, 0.2, 0.2], mass_kg: 1}]}], devices: [{name: t, type: transponder, rate_hz: 10" +
+         more + "}]}}\n";
+}
+std::string usbl_world(const std::string& keys, const std::string& others, const std::string& objects = "[]",
+                       const std::string& medium = "{water: {surface_m: 0}}") {
+  return marine_world("type: usbl" + keys, "[0, 0, -10]", objects, others, medium);
+}
+
+TEST(Usbl, MeasuresRangeAndDirectionByThe345Triangle) {
+  test::TestWorld test(usbl_world("", transponder("deep", "[30, 40, -130]") + transponder("air", "[30, 0, 1]") +
+                                          transponder("far", "[2000, 0, -10]")));
+  test::Listener<usbl_t> truths(test, "r1.s.truth");
+  test::Listener<shoal::transponder_t> answers(test, "deep.t");
+  test.run_for(0.9);
+  const auto all = truths.take_all();
+  ASSERT_EQ(all.size(), 1u);
+  const usbl_t& fix = all[0];
+  EXPECT_EQ(fix.target, "deep/t");
+  EXPECT_NEAR(fix.range_m, 130, 1e-9);
+  EXPECT_NEAR(fix.azimuth_rad, std::atan2(4, 3), 1e-9);
+  EXPECT_NEAR(fix.elevation_rad, -std::atan2(120, 50), 1e-9);
+  EXPECT_NEAR(fix.position_m[0], 30, 1e-9);
+  EXPECT_NEAR(fix.position_m[1], 40, 1e-9);
+  EXPECT_NEAR(fix.position_m[2], -120, 1e-9);
+  const auto answer = answers.last();
+  EXPECT_EQ(answer.answers, 1);
+  EXPECT_EQ(answer.asked_by, "r1/s");
+}
+
+TEST(Usbl, AnswersTakeTheTimeOfSoundThereAndBack) {
+  test::TestWorld test(usbl_world(", ping_period_s: 0.1", transponder("t", "[600, 0, -10]", ", turnaround_s: 0.05")));
+  test::Listener<usbl_t> fixes(test, "r1.s");
+  test.run_for(5);
+  const auto all = fixes.take_all();
+  const double sound_mps = test.world.medium().sound_speed_mps({0, 0, -10});
+  ASSERT_GE(all.size(), 3u);
+  // Times are whole microseconds: that of the ping's arrival, and of the answer's.
+  EXPECT_NEAR(all[0].travel_time_s, 1200 / sound_mps, 1.1e-6);
+  // The first ping is at the first sample, at 10 ms; an answer is heard when its 10 ms are over, and reported at the
+  // next sample.
+  const double first_s = static_cast<double>(all[0].utime - test.world.epoch_us()) * 1e-6;
+  const double heard_s = 1200 / sound_mps + 0.05 + 0.01;
+  EXPECT_NEAR(first_s, 0.01 + heard_s + 0.005, 0.0051);
+  // The next ping is sent when the answer is in: at the same sample.
+  EXPECT_NEAR(static_cast<double>(all[1].utime - all[0].utime) * 1e-6, heard_s + 0.005, 0.0051);
+}
+
+TEST(Usbl, BothMayMoveWhileTheSoundIsUnderWay) {
+  test::TestWorld test(usbl_world("", transponder("t", "[750, 0, -10]", ", turnaround_s: 0.1"), "[]",
+                                  "{water: {surface_m: 0, sound_speed_mps: 1500}}"));
+  const double own_mps = 10, target_mps = -4;
+  test::set_velocity(test, {own_mps, 0, 0});
+  for (const auto& [name, body] : test.world.find_vehicle("t")->bodies())
+    body->set_velocity_W({target_mps, 0, 0}, sim::Vector3d::Zero());
+  test::Listener<usbl_t> truths(test, "r1.s.truth");
+  test.run_for(1.3);
+  const usbl_t fix = truths.last();
+  // Along one line, at 1500 m/s.  The ping leaves after one step, 10 ms, and meets a target that comes to meet it; its
+  // answer begins 0.1 s later, and meets a sensor that comes to meet it.
+  const double at_ping_m = 750 + (target_mps - own_mps) * 0.01;
+  const double out_s = at_ping_m / (1500 - target_mps);
+  const double at_answer_m = at_ping_m + (target_mps - own_mps) * (out_s + 0.1);
+  const double back_s = at_answer_m / (1500 + own_mps);
+  EXPECT_NEAR(fix.travel_time_s, out_s + back_s, 1.1e-6);            // two times are whole microseconds
+  EXPECT_NEAR(fix.range_m, 1500 * (out_s + back_s) / 2, 20 * 1e-6);  // in one the ends move by 10 and 4 um
+  EXPECT_NEAR(fix.azimuth_rad, 0, 1e-9);
+}
+
+TEST(Usbl, TellsTheDirectionInItsAxesWhenTheAnswerArrives) {
+  test::TestWorld test(
+      usbl_world("", transponder("t", "[300, 0, -10]"), "[]", "{water: {surface_m: 0, sound_speed_mps: 1500}}"));
+  const double turn_radps = 1.5;
+  for (const auto& [name, body] : test.world.find_vehicle("r1")->bodies())
+    body->set_velocity_W(sim::Vector3d::Zero(), {0, 0, turn_radps});
+  test::Listener<usbl_t> truths(test, "r1.s.truth");
+  test.run_for(0.5);
+  // Ping after 10 ms, 0.2 s there, 20 ms of turnaround, 0.2 s back; it turned all the while, with the error of the
+  // integration of a turn in steps of 10 ms: (w dt)^2 / 12 of the angle.
+  const double turned_rad = turn_radps * (0.01 + 0.2 + 0.02 + 0.2);
+  EXPECT_NEAR(truths.last().azimuth_rad, -turned_rad, turned_rad * 2e-5 + 2e-6);
+}
+
+TEST(Usbl, AWrongSpeedOfSoundScalesTheRange) {
+  test::TestWorld test(usbl_world(", assumed_sound_speed_mps: 1450", transponder("t", "[100, 0, -10]")));
+  test::Listener<usbl_t> fixes(test, "r1.s");
+  test.run_for(0.5);
+  // 1 us is 0.7 mm.
+  EXPECT_NEAR(fixes.last().range_m, 100 * 1450 / test.world.medium().sound_speed_mps({0, 0, -10}), 1e-3);
+}
+
+TEST(Usbl, AWallHidesWhatIsBehindItAndAnotherNetworkIsSilent) {
+  const std::string wall =
+      "[{name: wall, fixed: true, position_m: [20, 0, -10], parts: [{shape: box, size_m: [0.1, 2, 2]}]}]";
+  const std::string others = transponder("behind", "[40, 0, -10]") + transponder("beside", "[0, 40, -10]") +
+                             transponder("strange", "[0, -30, -10]", ", network: other");
+  const auto targets = [&](const char* acoustics) {
+    test::TestWorld test(usbl_world("", others, wall) + acoustics);
+    test::Listener<usbl_t> fixes(test, "r1.s");
+    test.run_for(0.5);
+    std::vector<std::string> names;
+    for (const auto& fix : fixes.take_all()) names.push_back(fix.target);
+    return names;
+  };
+  EXPECT_THAT(targets(""), testing::ElementsAre("beside/t"));
+  EXPECT_THAT(targets("acoustics: {occlusion: false}\n"), testing::UnorderedElementsAre("behind/t", "beside/t"));
+}
+
+TEST(Usbl, WorksUnderWaterOnly) {
+  const std::string other = transponder("t", "[20, 0, -30]");
+  test::TestWorld test(marine_world("type: usbl", "[0, 0, -10]", "[]", other, "{water: {surface_m: -20}}"));
+  test::Listener<usbl_t> fixes(test, "r1.s");
+  test.run_for(1.5);
+  EXPECT_EQ(fixes.take_all().size(), 0u);
+  EXPECT_THAT(test::error_of_world(marine_world("type: usbl", "[0, 0, -10]", "[]", other, "{}")),
+              testing::HasSubstr("vehicle 'r1': device 's': a device of type 'usbl' needs water"));
+}
+
+std::vector<std::string> first_targets(const std::string& yaml, double within_s = 0.5) {
+  test::TestWorld test(yaml);
+  test::Listener<usbl_t> fixes(test, "r1.s");
+  test.run_for(within_s);
+  std::vector<std::string> names;
+  for (const auto& fix : fixes.take_all()) names.push_back(fix.target);
+  return names;
+}
+
+TEST(Transponder, SeveralAnswerAtATimeUnlessTheyShareABand) {
+  const auto ring = [](const std::string& more) {
+    return transponder("e", "[100, 0, -10]", more) + transponder("n", "[0, 100, -10]", more) +
+           transponder("w", "[-100, 0, -10]", more) + transponder("s", "[0, -100, -10]", more);
+  };
+  EXPECT_THAT(first_targets(usbl_world("", ring(""))), testing::UnorderedElementsAre("e/t", "n/t", "w/t", "s/t"));
+  // All answers come at once: the receiver takes one.
+  EXPECT_EQ(first_targets(usbl_world("", ring(", answer_frequency_Hz: 30000"))).size(), 1u);
+}
+
+TEST(Transponder, HearsPingsOnItsFrequencyThatAreLoudEnough) {
+  const auto heard = [](const std::string& keys, const std::string& more) {
+    return !first_targets(usbl_world(keys, transponder("t", "[100, 0, -10]", more))).empty();
+  };
+  EXPECT_TRUE(heard(", frequency_Hz: 20000", ", frequency_Hz: 20000"));
+  EXPECT_FALSE(heard(", frequency_Hz: 20000", ""));
+  EXPECT_FALSE(heard("", ", code: A, network: lbl"));
+  // 100 m take 15 log10(100) = 30 dB and 0.6 dB; the noise at 26 kHz in 1 kHz is some 60 dB, and 6 dB are needed.
+  EXPECT_FALSE(heard(", source_level_dB: 80", ""));
+  EXPECT_FALSE(heard("", ", source_level_dB: 80"));
+  EXPECT_TRUE(heard(", source_level_dB: 120", ", source_level_dB: 120"));
+}
+
+TEST(Usbl, ErrorsHaveTheSpreadAskedFor) {
+  test::TestWorld test(
+      usbl_world(", ping_period_s: 0.01, range_noise: {gaussian_std: 0.5}, azimuth_noise: {gaussian_std: 0.01}",
+                 transponder("t", "[1, 0, -10]", ", turnaround_s: 0")));
+  test::Listener<usbl_t> fixes(test, "r1.s"), truths(test, "r1.s.truth");
+  test.run_for(40);
+  std::vector<double> ranges, azimuths;
+  // Far enough from zero that nothing is cut off: the range is compared as a share of those above it.
+  for (const auto& fix : fixes.take_all()) {
+    ranges.push_back(fix.range_m);
+    azimuths.push_back(fix.azimuth_rad);
+  }
+  const auto in_azimuth = test::statistics(azimuths);
+  ASSERT_GT(in_azimuth.count, 1000);
+  EXPECT_NEAR(in_azimuth.std, 0.01, 4 * 0.01 / std::sqrt(2 * in_azimuth.count));
+  double above = 0;
+  for (const double range_m : ranges) above += range_m > 1.5 ? 1 : 0;  // one standard deviation: 15.87 %
+  const double n = in_azimuth.count;
+  EXPECT_NEAR(above / n, 0.1587, 4 * std::sqrt(0.1587 * 0.8413 / n));
+  EXPECT_NEAR(truths.last().range_m, 1, 1e-9);
+}
+
+TEST(Usbl, TranspondersComeAndGoWithTheirVehicles) {
+  test::TestWorld test(usbl_world(", ping_period_s: 0.1", transponder("t", "[100, 0, -10]")));
+  test::Listener<usbl_t> fixes(test, "r1.s");
+  test.run_for(0.5);
+  EXPECT_GE(fixes.take_all().size(), 2u);
+  test.world.remove_vehicle("t");  // with an answer on its way
+  test.run_for(0.3);
+  fixes.take_all();
+  test.run_for(0.5);
+  EXPECT_EQ(fixes.take_all().size(), 0u);
+}
+
+TEST(Transponder, ASilentOneDoesNotAnswer) {
+  // It waits for answers from as far as its range, 0.2 s.
+  test::TestWorld test(usbl_world(", ping_period_s: 0.1, range_max_m: 120", transponder("t", "[100, 0, -10]")));
+  test::Listener<usbl_t> fixes(test, "r1.s");
+  test.world.set_fault("t/t", {});  // silent
+  test.run_for(0.5);
+  EXPECT_EQ(fixes.take_all().size(), 0u);
+  test.world.clear_faults("t/t");
+  test.run_for(0.5);
+  EXPECT_GE(fixes.take_all().size(), 2u);
+}
+
+TEST(Usbl, SaysWhatIsWrongWithItsParameters) {
+  EXPECT_THAT(test::error_of_world(usbl_world(", range_max_m: 0", transponder("t", "[1, 0, 0]", ", turnaround_s: -1"))),
+              testing::AllOf(testing::HasSubstr("'range_max_m' must be > 0"),
+                             testing::HasSubstr("'turnaround_s' must be >= 0 and <= 10, got -1")));
+}
+
+}  // namespace

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world_file/config_warnings.hpp"
+
+#include <gmock/gmock.h>
+
+#include "tests/devices/world_fixture.hpp"
+#include "tests/sim/medium/log_capture.hpp"
+
+namespace {
+
+using testing::HasSubstr;
+
+/// What is warned of while a world is read; not what only building it shows.
+std::string warnings_of_file(const std::string& yaml) {
+  const test_support::LogCapture log;
+  sim::load_world_text(yaml, "worlds/test.yaml", test::LoadedTestWorld::with_messages({}));
+  return log.text();
+}
+
+std::string world(const std::string& devices, const std::string& more = "") {
+  return "shoal: 1\nphysics: {step_s: 0.01}\nrun: {duration_s: 300}\n"
+         "vehicles:\n  - name: r1\n    model:\n      shoal: 1\n      vehicle: box\n"
+         "      bodies: [{name: hull, parts: [{shape: box, mass_kg: 1}]}]\n"
+         "      devices:\n" +
+         devices + more;
+}
+
+TEST(ConfigWarnings, TellOfARateAboveThatOfTheSteps) {
+  EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: 300}\n")),
+            "worlds/test.yaml:11:43: vehicle 'r1': device 'imu': 'rate_hz' of 300 Hz is above that of the steps: it "
+            "becomes 100 Hz with 'step_s' 0.01\n");
+}
+
+TEST(ConfigWarnings, AreSilentAboutTheRateOfTheSteps) {
+  EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: 100}\n")), "");
+  EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: 0}\n")), "");
+}
+
+TEST(ConfigWarnings, TellOfAUsualRateAboveThatOfTheSteps) {
+  std::string yaml = world("        - {name: imu, type: imu}\n");
+  yaml.replace(yaml.find("0.01"), 4, "0.02");
+  EXPECT_THAT(warnings_of_file(yaml),
+              HasSubstr("worlds/test.yaml:11:11: vehicle 'r1': device 'imu': its usual rate of 100 Hz is above"));
+}
+
+TEST(ConfigWarnings, TellOfRatesOfTheWorldAboveThatOfTheSteps) {
+  std::string yaml = world("        []\n", "state_rate_hz: 200\n");
+  yaml.replace(yaml.find("duration_s: 300"), 15, "track_rate_hz: 1000");
+  EXPECT_THAT(warnings_of_file(yaml), HasSubstr("worlds/test.yaml:12:16: 'state_rate_hz' of 200 Hz is above"));
+  EXPECT_THAT(warnings_of_file(yaml), HasSubstr("worlds/test.yaml:3:22: run: 'track_rate_hz' of 1000 Hz is above"));
+}
+
+TEST(ConfigWarnings, TellOnceOfAKindOfVehicle) {
+  std::string yaml = world("        - {name: imu, type: imu, rate_hz: 300}\n");
+  yaml.replace(yaml.find("    model:"), 10, "    count: 20\n    model:");
+  const std::string text = warnings_of_file(yaml);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1);
+}
+
+TEST(ConfigWarnings, TellOfKeysOfReportsOfADeviceThatReportsNothing) {
+  EXPECT_EQ(warnings_of_file(world("        - {name: push, type: body_wrench, rate_hz: 10}\n")),
+            "worlds/test.yaml:11:52: vehicle 'r1': device 'push': 'rate_hz' has no effect: a device of type "
+            "'body_wrench' publishes no reports\n");
+}
+
+TEST(ConfigWarnings, TellOfAMetricOfAChannelOnWhichNobodySpeaks) {
+  const std::string gps = "        - {name: gps, type: gps}\n";
+  const auto metric = [&](const std::string& channel, const std::string& more = "") {
+    return warnings_of_file(world(gps, "metrics:\n  - {name: error, vehicle: r1, channel: " + channel + "}\n" + more));
+  };
+  EXPECT_EQ(metric("r1.estimate"),
+            "worlds/test.yaml:13:5: metric 'error': nothing in this world publishes on 'r1.estimate', and it starts no "
+            "programs: only one started by hand can\n");
+  EXPECT_THAT(metric("r1.gps.truth"), HasSubstr("(device 'gps' needs 'truth: true')"));
+  EXPECT_EQ(metric("r1.gps"), "");
+  EXPECT_EQ(metric("r1.estimate", "processes: [{name: p, command: [some_program]}]\n"), "");
+  EXPECT_EQ(metric("r1.estimate",
+                   "events: [{name: e, at: 1, do: [{publish: r1.estimate, type: shoal.utime_t, value: {}}]}]\n"),
+            "");
+}
+
+TEST(ConfigWarnings, TellOfMetricsAndEventsAfterTheEnd) {
+  const std::string gps = "        - {name: gps, type: gps}\n";
+  EXPECT_THAT(warnings_of_file(world(gps, "metrics: [{name: error, vehicle: r1, channel: r1.gps, from_s: 300}]\n")),
+              HasSubstr("'from_s' 300 is not before the end of the run at 300 s: nothing counts"));
+  EXPECT_THAT(warnings_of_file(world(gps, "events: [{name: late, at: [310, 320], do: [{log: late}]}]\n")),
+              HasSubstr("event 'late': it is for 310 s, and the run ends at 300 s"));
+  EXPECT_EQ(warnings_of_file(world(gps, "events: [{name: some, at: [10, 320], do: [{log: late}]}]\n")), "");
+}
+
+}  // namespace

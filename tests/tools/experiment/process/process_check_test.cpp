@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/process/process_check.hpp"
+
+#include <gmock/gmock.h>
+
+#include "tests/devices/world_fixture.hpp"
+#include "tests/sim/medium/log_capture.hpp"
+
+namespace {
+
+using testing::HasSubstr;
+
+/// A world with vehicles auv, boat1 and boat2, and these processes: a name and a command each.
+sim::LoadedWorld world(const std::vector<std::pair<std::string, std::string>>& processes,
+                       const std::string& more = "") {
+  std::string yaml = "shoal: 1\nprocesses:\n";
+  for (const auto& [name, command] : processes)
+    yaml += "  - {name: " + name + ", client: " + name + ", command: [" + command + "]}\n";
+  yaml += "vehicles:\n";
+  for (const char* name : {"auv", "boat1", "boat2"})
+    yaml += std::string("  - {name: ") + name + ", position_m: [0, 0, " +
+            (name[0] == 'a'   ? "0"
+             : name[4] == '1' ? "10"
+                              : "20") +
+            "], model: {shoal: 1, vehicle: ball, bodies: [{name: hull, parts: [{shape: sphere, mass_kg: 1}]}]}}\n";
+  return sim::load_world_text(yaml + more, "worlds/test.yaml", test::LoadedTestWorld::with_messages({}));
+}
+
+std::string warnings_of(const std::vector<std::pair<std::string, std::string>>& processes,
+                        const std::string& more = "") {
+  const sim::LoadedWorld loaded = world(processes, more);
+  const test_support::LogCapture log;
+  sim::Warnings warnings;
+  tools::warn_of_processes(loaded, warnings);
+  return log.text();
+}
+
+std::string craft(const std::string& name, const std::string& options) {
+  return "shoal-coop-craft, --name, " + name + ", " + options;
+}
+
+TEST(ProcessCheck, TellsOfTwoInOneSlot) {
+  EXPECT_EQ(warnings_of({{"boat1", craft("boat1", "--slot, 0/2")}, {"boat2", craft("boat2", "--slot, 0/2")}}),
+            "worlds/test.yaml:4:85: process 'boat2': its slot 0/2 is also that of process 'boat1': their packets "
+            "collide\n");
+  EXPECT_EQ(warnings_of({{"boat1", craft("boat1", "--slot, 0/2")}, {"boat2", craft("boat2", "--slot=1/2")}}), "");
+}
+
+TEST(ProcessCheck, TellsOfSlotsOfCyclesThatRunThroughEachOther) {
+  // Cycles of 10 and 15 s have 5 s in common: slots of 5 s meet, wherever they begin.
+  EXPECT_THAT(warnings_of({{"boat1", craft("boat1", "--slot, 0/2, --slot-s, \"5\"")},
+                           {"boat2", craft("boat2", "--slot, 1/3, --slot-s, \"5\"")}}),
+              HasSubstr("its slot 1/3 meets that of process 'boat1' (0/2), whose cycle has another length"));
+  // Every second turn of a cycle of 20 s is one of 10 s: 0 to 5 s of each 10, and 5 to 10 s of each 20.
+  EXPECT_EQ(warnings_of({{"boat1", craft("boat1", "--slot, 0/2, --slot-s, \"5\"")},
+                         {"boat2", craft("boat2", "--slot, 1/4, --slot-s, \"5\"")}}),
+            "");
+}
+
+TEST(ProcessCheck, TellsOfSomebodyToFollowWhoIsNotThere) {
+  EXPECT_THAT(warnings_of({{"boat1", craft("boat1", "--behaviour, \"follow:auw,0,30\"")}}),
+              HasSubstr("process 'boat1': it is to follow 'auw', and there is no such vehicle"));
+}
+
+TEST(ProcessCheck, TellsOfSomebodyToFollowWhoNeverSends) {
+  const std::string follower = craft("boat1", "--behaviour, \"follow:auv,0,30\"");
+  EXPECT_THAT(warnings_of({{"auv", "shoal-coop-auv, --name, auv"}, {"boat1", follower}}),
+              HasSubstr("it is to follow 'auv', whose program sends nothing: it has neither --slot nor --random-s"));
+  EXPECT_EQ(warnings_of({{"auv", "shoal-coop-auv, --name, auv, --slot, 0/1"}, {"boat1", follower}}), "");
+  EXPECT_EQ(warnings_of({{"auv", "shoal-coop-auv, --name, auv, --random-s, \"20\""}, {"boat1", follower}}), "");
+  EXPECT_EQ(warnings_of({{"auv", "another_program"}, {"boat1", follower}}), "") << "it may well speak";
+}
+
+TEST(ProcessCheck, TellsOfAClientThatJoinsByAnotherName) {
+  EXPECT_THAT(warnings_of({{"boat1", craft("boat2", "--slot, 0/2")}}),
+              HasSubstr("process 'boat1': the run waits for client 'boat1', and it joins as 'boat2'"));
+}
+
+TEST(ProcessCheck, TellsOfAMetricOfAChannelOnWhichNoneOfThemSpeaks) {
+  const std::string metric = "metrics: [{name: error, vehicle: auv, channel: auv.estimat}]\n";
+  EXPECT_THAT(
+      warnings_of({{"auv", "shoal-coop-auv, --name, auv"}}, metric),
+      HasSubstr("metric 'error': no device and no program of this world publishes on 'auv.estimat'; did you mean "
+                "'auv.estimate'?"));
+  EXPECT_EQ(warnings_of({{"auv", "shoal-coop-auv, --name, auv"}, {"other", "another_program"}}, metric), "");
+}
+
+TEST(ProcessCheck, TellsOfAProgramThatIsNotThere) {
+  const auto missing = [](const std::string& program) {
+    const sim::LoadedWorld loaded = world({{"auv", program}});
+    const test_support::LogCapture log;
+    sim::Warnings warnings;
+    tools::warn_of_missing_programs(loaded, warnings);
+    return log.text();
+  };
+  EXPECT_EQ(missing("shoal-coop-auw, --name, auv"),
+            "worlds/test.yaml:3:40: process 'auv': there is no program 'shoal-coop-auw' beside shoal or in PATH\n");
+  EXPECT_THAT(missing("/nowhere/program"), HasSubstr("process 'auv': there is no program '/nowhere/program'"));
+  EXPECT_EQ(missing("sh, -c, \"true\""), "");
+  EXPECT_EQ(missing("/bin/sh"), "");
+}
+
+}  // namespace

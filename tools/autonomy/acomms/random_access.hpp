@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "sim/random/random.hpp"
+
+namespace autonomy {
+
+/// Sends when it likes (ALOHA): at intervals that scatter about a mean, so that two senders that met once do not meet
+/// again and again.
+class RandomAccess {
+ public:
+  /// Intervals are uniform in `mean_s` (1 - jitter) to `mean_s` (1 + jitter).  Senders of different `name` differ with
+  /// one seed.  Throws std::invalid_argument unless mean_s > 0 and 0 <= jitter <= 1.
+  RandomAccess(double mean_s, double jitter, std::uint64_t seed, std::string_view name);
+
+  /// Whether to send now.  The first time is within one mean interval of the first call, and so is the next one after
+  /// the clock was set back.
+  bool take_turn(std::int64_t utime);
+
+ private:
+  double mean_s_;
+  double jitter_;
+  sim::Random random_;
+  std::int64_t turns_ = 0;
+  std::optional<std::int64_t> next_utime_;
+};
+
+}  // namespace autonomy

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/autonomy/filters/pose2.hpp"
+
+namespace autonomy {
+
+/// Where a vehicle is and how it moves, in the plane.
+struct Motion {
+  std::int64_t utime = 0;
+  Vector2d p_W = Vector2d::Zero();
+  Vector2d v_W = Vector2d::Zero();  ///< over ground
+};
+
+/// What the helm is asked for.
+struct Course {
+  double speed_mps = 0;
+  double heading_rad = 0;  ///< counter-clockwise from east
+};
+
+/// Decides on course and speed by the vehicle's own estimate of its motion.
+class HelmBehaviour {
+ public:
+  virtual ~HelmBehaviour() = default;
+  virtual Course steer(const Motion& own) = 0;
+  /// A copy, as it is now: a program goes back with the world.
+  virtual std::unique_ptr<HelmBehaviour> clone() const = 0;
+  /// What another vehicle said of itself.
+  virtual void hear(const std::string& /*vehicle*/, const Motion& /*other*/) {}
+  virtual bool finished() const { return false; }
+  /// What is to be said of it at the end of a run; empty: nothing.
+  virtual std::string remark() const { return {}; }
+};
+
+/// Along the legs of a route, the first of which begins where it is first asked.  A leg is followed by line of sight:
+/// towards the point on it that is `lookahead_m` ahead.  A current across leaves an offset of lookahead * tan(drift
+/// angle).
+class RouteBehaviour final : public HelmBehaviour {
+ public:
+  struct Params {
+    double speed_mps = 1.5;
+    double lookahead_m = 15;
+    double reached_m = 5;  ///< a waypoint counts as reached so near, or when the line across the leg in it is passed
+    bool loop = false;     ///< else it stops after the last one
+  };
+  /// Throws std::invalid_argument without waypoints.
+  RouteBehaviour(std::vector<Vector2d> waypoints_W, const Params& params);
+  Course steer(const Motion& own) override;
+  std::unique_ptr<HelmBehaviour> clone() const override { return std::make_unique<RouteBehaviour>(*this); }
+  bool finished() const override { return current_ >= waypoints_W_.size(); }
+  std::size_t current() const { return current_; }
+
+ private:
+  bool is_reached(const Vector2d& p_W) const;
+
+  Params params_;
+  std::vector<Vector2d> waypoints_W_;
+  std::size_t current_ = 0;
+  std::optional<Vector2d> from_W_;
+  double heading_rad_ = 0;
+};
+
+/// Round and round a point, counter-clockwise.
+class CircleBehaviour final : public HelmBehaviour {
+ public:
+  struct Params {
+    Vector2d centre_W = Vector2d::Zero();
+    double radius_m = 30;
+    double speed_mps = 1.5;
+    double lookahead_m = 15;
+  };
+  explicit CircleBehaviour(const Params& params) : params_(params) {}
+  Course steer(const Motion& own) override;
+  std::unique_ptr<HelmBehaviour> clone() const override { return std::make_unique<CircleBehaviour>(*this); }
+
+ private:
+  Params params_;
+};
+
+/// Straight to a place, and then round it.
+class HoldBehaviour final : public HelmBehaviour {
+ public:
+  /// `hold`: the circle round the place.
+  explicit HoldBehaviour(const CircleBehaviour::Params& hold);
+  Course steer(const Motion& own) override;
+  std::unique_ptr<HelmBehaviour> clone() const override { return std::make_unique<HoldBehaviour>(*this); }
+
+ private:
+  RouteBehaviour way_;
+  CircleBehaviour circle_;
+};
+
+/// At a place beside or behind another vehicle, as that one last said where it is and how it moves.
+class FollowBehaviour final : public HelmBehaviour {
+ public:
+  struct Params {
+    std::string vehicle;  ///< name of the other
+    double ahead_m = 0;   ///< of the other, along its course; negative: behind
+    double left_m = 30;
+    double speed_max_mps = 2;
+    double lookahead_m = 15;
+    double catch_up_per_s = 0.05;  ///< of the distance along the course, added to the other's speed
+    double forget_s = 300;         ///< without news for so long it stands still; also when they are so far ahead
+  };
+  explicit FollowBehaviour(const Params& params) : params_(params) {}
+  /// News of the other; older ones than it has are of no use, unless by more than a minute: then its clock was set.
+  void hear(const std::string& vehicle, const Motion& other) override;
+  /// Stands still until it has heard of the other.
+  Course steer(const Motion& own) override;
+  std::unique_ptr<HelmBehaviour> clone() const override { return std::make_unique<FollowBehaviour>(*this); }
+  std::string remark() const override;
+  /// Where it wants to be.
+  std::optional<Vector2d> place_W(std::int64_t utime) const;
+
+ private:
+  Params params_;
+  std::optional<Motion> other_;
+  double other_course_rad_ = 0;
+};
+
+/// Waypoints that cross the line between two points: `legs` of them, `amplitude_m` to its sides in turn, left first,
+/// evenly spaced, and then the end of the line.
+std::vector<Vector2d> zigzag(const Vector2d& from_W, const Vector2d& to_W, double amplitude_m, int legs);
+
+}  // namespace autonomy

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "tools/autonomy/filters/pose2.hpp"
+
+namespace autonomy {
+
+/// Leads through a list of waypoints, over and over.
+class WaypointFollower {
+ public:
+  struct Params {
+    double reached_m = 1.0;   ///< nearer than this a waypoint counts as reached
+    double give_up_s = 30.0;  ///< a waypoint that came no nearer for so long is skipped: something stands on it
+  };
+
+  /// Throws std::invalid_argument without waypoints.
+  WaypointFollower(std::vector<Vector2d> waypoints_W, const Params& params);
+  explicit WaypointFollower(std::vector<Vector2d> waypoints_W) : WaypointFollower(std::move(waypoints_W), Params()) {}
+
+  /// Where to go now, seen from the rover: in its body frame.  `now_s` only ever grows.
+  Vector2d goal_B(const Pose2& pose, double now_s);
+  std::size_t current() const { return current_; }
+  int reached() const { return reached_; }
+  int given_up() const { return given_up_; }
+
+ private:
+  void next(double now_s);
+
+  Params params_;
+  std::vector<Vector2d> waypoints_W_;
+  std::size_t current_ = 0;
+  double nearest_m_;
+  double nearest_at_s_ = 0;
+  int reached_ = 0;
+  int given_up_ = 0;
+};
+
+}  // namespace autonomy

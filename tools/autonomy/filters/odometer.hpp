@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tools/autonomy/filters/pose2.hpp"
+
+namespace autonomy {
+
+/// A move in the body frame at its beginning.
+struct Increment {
+  double forward_m = 0;
+  double left_m = 0;
+  double turn_rad = 0;
+};
+
+/// Turns the sums that odometry reports into the moves between them, and into a pose of its own.
+class Odometer {
+ public:
+  explicit Odometer(const Pose2& start) : start_(start) {}
+
+  /// `p_0`, `theta_rad`: pose relative to the start.  Returns the move since the last call.
+  Increment update(const Vector2d& p_0, double theta_rad);
+  /// Start pose plus odometry: where the rover would believe to be without any other sensor.
+  Pose2 pose() const { return {start_.p_W + turned(p_0_, start_.yaw_rad), start_.yaw_rad + theta_rad_}; }
+
+ private:
+  Pose2 start_;
+  Vector2d p_0_ = Vector2d::Zero();
+  double theta_rad_ = 0;
+};
+
+}  // namespace autonomy

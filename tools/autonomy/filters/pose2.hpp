@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+namespace autonomy {
+
+using Vector2d = Eigen::Vector2d;
+
+/// A pose in the plane of the world: east, north, and yaw counter-clockwise from east.
+struct Pose2 {
+  Vector2d p_W = Vector2d::Zero();
+  double yaw_rad = 0;
+};
+
+/// Forward speed and turn rate, as a differential drive takes them.
+struct Twist {
+  double forward_mps = 0;
+  double turn_radps = 0;
+};
+
+/// A vector turned counter-clockwise.
+inline Vector2d turned(const Vector2d& v, double angle_rad) {
+  const double c = std::cos(angle_rad);
+  const double s = std::sin(angle_rad);
+  return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
+}
+
+}  // namespace autonomy

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <iostream>
+#include <stdexcept>
+
+#include "shoal/utime_t.hpp"
+#include "sim/base/math.hpp"
+#include "tools/autonomy/filters/balance.hpp"
+#include "tools/autonomy/filters/balance_model.hpp"
+#include "tools/autonomy/programs/program.hpp"
+
+namespace {
+
+struct Options {
+  std::string name;
+  std::string speeds;
+  double balanced_lean_deg = -9.926;
+  autonomy::Balance::Params balance;
+  autonomy::Participation participation;
+};
+
+/// What it knows: all of it goes back with the world.
+struct State {
+  autonomy::Balance balance;
+  std::optional<std::int64_t> began_utime = {}, fell_utime = {};
+  std::size_t next_speed = 0;
+};
+
+int balance(const Options& options) {
+  State state{autonomy::Balance(options.balance)};
+  autonomy::Balance& balance = state.balance;
+  const std::vector<autonomy::SpeedPoint> speeds =
+      autonomy::read_option("--speeds", [&] { return autonomy::parse_speeds(options.speeds); });
+  shoal::Client client(options.name, options.participation.lcm_url);
+
+  const auto take = [&](const auto& message) { balance.receive(message); };
+  const std::string prefix = options.name + ".";
+  client.subscribe<shoal::inclination_t>(prefix + "inclinometer", take, shoal::Finite::required);
+  client.subscribe<shoal::wheel_encoder_t>(prefix + "encoder", take, shoal::Finite::required);
+  client.subscribe<shoal::twist_command_t>(prefix + "balance.cmd", take, shoal::Finite::required);
+
+  const int exit_code = autonomy::take_part(client, options.participation, state, [&](std::int64_t utime) {
+    if (!state.began_utime) state.began_utime = utime;
+    const double now_s = static_cast<double>(utime - *state.began_utime) * 1e-6;
+    for (std::size_t& next = state.next_speed; next < speeds.size() && speeds[next].from_s <= now_s; ++next)
+      balance.drive(speeds[next].forward_mps, speeds[next].turn_radps);
+
+    const auto torques = balance.step();
+    if (!torques) return;
+    const auto publish = [&](const char* motor, double torque_Nm) {
+      shoal::joint_servo_command_t command{};
+      command.utime = utime;
+      command.mode = 2;
+      command.effort = torque_Nm;
+      client.publish(prefix + motor, command);
+    };
+    publish("left_motor.cmd", torques->left_Nm);
+    publish("right_motor.cmd", torques->right_Nm);
+    if (!balance.fallen() || state.fell_utime) return;
+    state.fell_utime = utime;
+    std::cerr << options.name << ": fell after " << now_s << " s\n";
+    shoal::utime_t fell{};
+    fell.utime = utime;
+    client.publish(prefix + "fallen", fell);
+  });
+  if (!state.fell_utime) std::cerr << options.name << ": did not fall\n";
+  return exit_code;
+}
+
+void add_gains(CLI::App& app, Options& options) {
+  autonomy::Balance::Params& gains = options.balance;
+  const auto number = [&app](const char* option, double& value, double low, double high, const char* meaning) {
+    autonomy::add_number(app, option, value, "NUMBER", low, high, meaning);
+  };
+  number("--balanced-lean", options.balanced_lean_deg, -45, 45,
+         "deg forward where its centre of mass is over its axle");
+  number("--kp", gains.kp_Nm_per_rad, 0, 1e4, "torque of both wheels for the error of the lean, N m/rad");
+  number("--kd", gains.kd_Nms_per_rad, 0, 1e4, "torque for the rate of the lean, N m s/rad");
+  number("--kv", gains.kv_rad_per_mps, 0, 10, "wanted lean for the error of the speed, rad/(m/s)");
+  number("--ki", gains.ki_rad_per_m, 0, 10, "wanted lean for the integral of that error, rad/m");
+  number("--max-lean", gains.max_lean_rad, 0.01, 0.7, "of the wanted lean, from the balanced one, rad");
+  number("--max-acceleration", gains.max_acceleration_mps2, 0.01, 10, "of the wanted speed, m/s^2");
+  number("--turn-gain", gains.turn_gain_Nms_per_rad, 0, 1e4, "torque between the wheels for the turn rate, N m s/rad");
+  number("--turn-ki", gains.turn_ki_Nm_per_rad, 0, 1e4, "torque between the wheels for its integral, N m/rad");
+  number("--rate-filter", gains.rate_filter_s, 0, 1, "time constant of the low pass on the rate of the lean, s");
+  number("--speed-filter", gains.speed_filter_s, 0, 1, "time constant of the low pass on speed and turn rate, s");
+  number("--wheel-radius", gains.wheel_radius_m, 0.01, 10, "m");
+  number("--track", gains.track_m, 0.01, 10, "between the wheels, m");
+  number("--max-torque", gains.max_torque_Nm, 0.1, 1e4, "of each wheel, N m");
+}
+
+int run(int argc, char** argv) {
+  Options options;
+  options.participation.period_s = 0.01;
+  CLI::App app{"Balances a vehicle on two wheels, such as the Segway RMP, in lockstep with `shoal run`.",
+               "shoal-balance"};
+  autonomy::add_name(app, options.name, "vehicle to balance");
+  bool tell_margin = false;
+  app.add_flag("--delay-margin", tell_margin,
+               "print how late the torque of a Segway RMP may come with these gains, and end");
+  app.add_option("--speeds", options.speeds,
+                 "such as \"10:0.5;20:-0.5;30:0:0.3\": from 10 s on 0.5 m/s, ..., from 30 s on turn at 0.3 rad/s")
+      ->type_name("SPEEDS");
+  add_gains(app, options);
+  options.participation.add_options(app);
+  autonomy::set_help_end(
+      app, {"shoal-balance --name segway1 --speeds \"5:0.5;15:-0.5;25:0\"", "shoal-balance --delay-margin"},
+      "It reads NAME.inclinometer and NAME.encoder, and drives as shoal.twist_command_t on "
+      "NAME.balance.cmd says; it publishes NAME.left_motor.cmd and NAME.right_motor.cmd, and "
+      "NAME.fallen when it fell.  Start it beside `shoal run worlds/segway.yaml --await segway1`.  "
+      "docs/segway.md explains the gains.");
+  if (const auto exit_code = autonomy::parse(app, argc, argv)) return *exit_code;
+  options.balance.period_s = options.participation.period_s;
+  options.balance.balanced_lean_rad = sim::degrees_to_radians(options.balanced_lean_deg);
+  if (tell_margin) {
+    const autonomy::DelayMargin margin = autonomy::delay_margin(options.balance);
+    std::cout << "it swings at " << margin.frequency_radps << " rad/s when the torque comes " << 1e3 * margin.delay_s
+              << " ms late\n";
+    return autonomy::exit_ok;
+  }
+  if (options.name.empty()) throw std::invalid_argument("--name is required");
+  return balance(options);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return autonomy::run_program("shoal-balance", [&] { return run(argc, argv); });
+}

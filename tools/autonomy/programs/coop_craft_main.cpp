@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <iostream>
+
+#include "tools/autonomy/programs/coop_craft.hpp"
+#include "tools/autonomy/programs/marine_options.hpp"
+#include "tools/autonomy/programs/program.hpp"
+
+namespace {
+
+int drive(const autonomy::CoopCraft::Params& params, const autonomy::MarineOptions& marine,
+          const autonomy::Participation& participation) {
+  autonomy::CoopCraft craft(params, marine.make(params.name));
+  shoal::Client client(params.name, participation.lcm_url);
+  const auto listen = [&]<class Message>(const char* device) {
+    client.subscribe<Message>(params.name + device, [&](const Message& message) { craft.receive(message); });
+  };
+  listen.operator()<shoal::gps_data_t>(".gps");
+  listen.operator()<shoal::acoustic_received_t>(".modem");
+  const int exit_code = autonomy::take_part(client, participation, craft, [&](std::int64_t) {
+    const autonomy::CoopCraft::Decision decision = craft.step();
+    if (decision.helm) client.publish(params.name + ".autopilot.cmd", *decision.helm);
+    if (decision.estimate) client.publish(params.name + ".estimate", *decision.estimate);
+    if (!decision.remark.empty()) std::cerr << params.name << ": " << decision.remark << '\n';
+    if (decision.send) client.publish(params.name + ".modem.cmd", *decision.send);
+  });
+  const autonomy::CoopCraft::Counts& counts = craft.counts();
+  std::cerr << params.name << ": " << counts.sent << " frames sent, " << counts.heard << " heard, " << counts.bad_frames
+            << " bad\n";
+  if (counts.relayed > 0) std::cerr << params.name << ": " << counts.relayed << " states came by relay\n";
+  if (const std::string remark = craft.behaviour().remark(); !remark.empty())
+    std::cerr << params.name << ": " << remark << '\n';
+  return exit_code;
+}
+
+int run(int argc, char** argv) {
+  autonomy::CoopCraft::Params craft;
+  autonomy::MarineOptions marine;
+  autonomy::Participation participation;
+  participation.period_s = 0.5;
+  CLI::App app{"Steers a surface craft that sends its GPS position by acoustic modem.", "shoal-coop-craft"};
+  autonomy::add_name(app, craft.name, "vehicle to steer")->required();
+  autonomy::add_id(app, "--id", craft.id, "of the vehicle in its frames")->capture_default_str();
+  autonomy::add_number(app, "--transducer-depth", craft.transducer_depth_m, "M", 0, 1000, "of its modem");
+  marine.add_options(app);
+  participation.add_options(app);
+  autonomy::set_help_end(
+      app,
+      {"shoal-coop-craft --name boat1 --behaviour circle:100,50,40 --slot 0/2",
+       "shoal-coop-craft --name boat2 --behaviour follow:auv,0,-60 --speed 2 --slot 1/3"},
+      "It reads NAME.gps and NAME.modem; it publishes NAME.autopilot.cmd, .modem.cmd and .estimate.");
+  if (const auto exit_code = autonomy::parse(app, argc, argv)) return *exit_code;
+  craft.period_s = participation.period_s;
+  craft.access = marine.access();
+  return drive(craft, marine, participation);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return autonomy::run_program("shoal-coop-craft", [&] { return run(argc, argv); });
+}

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "shoal/gps_data_t.hpp"
+#include "shoal/swarm_position_t.hpp"
+#include "tools/autonomy/filters/ekf.hpp"
+#include "tools/autonomy/behaviours/obstacle_avoidance.hpp"
+#include "tools/autonomy/filters/odometer.hpp"
+#include "tools/autonomy/acomms/position_reports.hpp"
+#include "tools/autonomy/behaviours/waypoint_follower.hpp"
+
+namespace autonomy {
+
+/// The autonomy of one rover of the cooperative experiment.  A rover with GPS tells the others where it is; a
+/// rover without finds its place from odometry and from sightings of those that told.  A pure function of the
+/// messages in their order: it knows no clock and no bus.
+class CoopRover {
+ public:
+  struct Params {
+    std::string name;
+    Pose2 start;
+    std::vector<Vector2d> waypoints_W;
+    double speed_mps = 0.8;
+    double start_position_std_m = 0.1;
+    double start_yaw_std_rad = 0.03;
+    double seen_std_m = 0.15;  ///< of each coordinate of a sighting
+    double report_period_s = 1.0;
+  };
+  struct Outgoing {
+    std::string channel;
+    std::vector<std::byte> payload;
+  };
+
+  /// Throws std::invalid_argument without waypoints.
+  explicit CoopRover(const Params& params);
+
+  /// The devices whose reports it wants, on NAME.DEVICE.
+  static std::span<const std::string_view> devices();
+  /// A report of one of those.  Throws shoal::MessageError on bytes it cannot use.
+  void receive(std::string_view device, std::span<const std::byte> payload);
+  /// All reports up to `utime` are in: what to publish now.
+  std::vector<Outgoing> step(std::int64_t utime);
+
+  const Ekf& filter() const { return filter_; }
+  const WaypointFollower& follower() const { return follower_; }
+
+ private:
+  void receive_odometry(std::span<const std::byte> payload);
+  void receive_gps(const shoal::gps_data_t& fix);
+  void receive_sightings(const shoal::swarm_position_t& seen);
+  void receive_scan(std::span<const std::byte> payload);
+  /// How far the rover drove and turned from the last odometry to `utime`.
+  Increment since_odometry(std::int64_t utime) const;
+
+  Twist drive(std::int64_t utime);
+  bool report_is_due(std::int64_t utime) const;
+  std::vector<std::byte> report() const;
+  std::vector<std::byte> pose_message(const Pose2& pose) const;
+  std::string channel(std::string_view name) const { return params_.name + "." + std::string(name); }
+
+  Params params_;
+  Odometer odometer_;
+  Ekf filter_;
+  WaypointFollower follower_;
+  ObstacleAvoidance avoidance_;
+  PositionReports reports_;
+
+  std::optional<std::int64_t> odometry_utime_;
+  Twist measured_;
+  std::optional<double> gps_std_m_;
+  std::optional<std::int64_t> reported_utime_;
+  std::int64_t scan_utime_ = 0;
+  Scan scan_;
+};
+
+}  // namespace autonomy

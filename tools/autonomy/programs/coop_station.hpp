@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "shoal/estimate_t.hpp"
+#include "shoal/gps_data_t.hpp"
+#include "shoal/modem_received_t.hpp"
+#include "shoal/modem_send_t.hpp"
+#include "tools/autonomy/acomms/acoustic_frame.hpp"
+#include "tools/autonomy/acomms/channel_access.hpp"
+#include "tools/autonomy/filters/pose2.hpp"
+
+namespace autonomy {
+
+/// A station that sends a vehicle out of its hearing to places, by radio and whoever passes its messages on.  It says
+/// an order in each of its turns until a state of the vehicle tells that it was obeyed or refused, or the next one is
+/// due.  A pure
+/// function of its reports in their order; its time is that of their stamps, the station's own clock.
+class CoopStation {
+ public:
+  struct TimedOrder {
+    double at_s = 0;  ///< after the first report
+    Vector2d p_W = Vector2d::Zero();
+    double depth_m = 0;
+    double speed_mps = 1.5;
+  };
+  struct Params {
+    std::string name;
+    int id = 200;   ///< in its frames
+    int to_id = 0;  ///< of the vehicle that gets the orders
+    std::vector<TimedOrder> orders;
+    ChannelAccess::Params access;
+  };
+  struct Decision {
+    std::optional<shoal::estimate_t> knowledge;  ///< for NAME.knowledge: where the vehicle was, by its newest state
+    std::optional<shoal::modem_send_t> send;     ///< for NAME.radio.cmd
+    std::string news;                            ///< to be said; empty: nothing
+  };
+  struct Counts {
+    int sent = 0;
+    int states = 0;  ///< of its vehicle
+    int bad_frames = 0;
+    int orders = 0;  ///< that were due
+    int obeyed = 0;
+    int refused = 0;
+  };
+
+  /// Throws std::invalid_argument when there are more than 255 orders, they are not in the order of their times, or one
+  /// does not fit into a frame.
+  explicit CoopStation(const Params& params);
+
+  void receive(const shoal::gps_data_t& fix);
+  void receive(const shoal::modem_received_t& packet);
+  /// All reports up to now are in: what to do.
+  Decision step();
+
+  const Counts& counts() const { return counts_; }
+
+ private:
+  void note_time(std::int64_t utime);
+  AcousticOrder order(int number) const;
+  void note_answer(const AcousticState& state);
+
+  Params params_;
+  ChannelAccess access_;
+  std::int64_t utime_ = 0;  ///< newest stamp
+  std::optional<std::int64_t> first_utime_;
+  std::optional<AcousticState> state_;  ///< newest
+  bool has_news_ = false;
+  int answered_ = 0;          ///< number of the order that the vehicle obeyed or refused last
+  int last_obeyed_ = 0;       ///< the largest number that was
+  std::vector<int> refused_;  ///< numbers, rising
+  std::string news_;
+  Counts counts_;
+};
+
+/// Orders as on the command line: `120:500,200,15;600:900,-100,20,1.2`, each the time in s, east, north and depth in m,
+/// and speed in m/s, without which it is `speed_mps`.  Throws std::invalid_argument with what is wrong.
+std::vector<CoopStation::TimedOrder> parse_orders(const std::string& text, double speed_mps);
+
+}  // namespace autonomy

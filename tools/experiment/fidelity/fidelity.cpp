@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/fidelity/fidelity.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "shoal/message_writer.hpp"
+#include "sim/bus/in_process_bus.hpp"
+#include "sim/config/message_text.hpp"
+#include "sim/device/device_registry.hpp"
+#include "sim/world_file/load_world.hpp"
+#include "sim/world/world.hpp"
+
+namespace tools {
+
+namespace {
+
+constexpr double deg = std::numbers::pi / 180;
+constexpr double bottom_m = 11000;  ///< below the start of a vehicle
+
+std::string list_of(std::initializer_list<double> values) {
+  std::string text = "[";
+  for (const double value : values) text += (text.size() > 1 ? ", " : "") + sim::number_text(value);
+  return text + "]";
+}
+
+sim::Vector3d flipped(const sim::Vector3d& v) {
+  return {v.x(), -v.y(), -v.z()};
+}
+
+FidelityState state_of(const sim::Body& body) {
+  const sim::Pose X_WB = body.X_WB();
+  const sim::Matrix3d R = X_WB.linear();
+  const sim::Vector3d p = X_WB.translation(), v = flipped(R.transpose() * body.v_WB_W()),
+                      w = flipped(R.transpose() * body.w_WB_W());
+  const double pitch = std::asin(std::clamp(-R(2, 0), -1.0, 1.0));
+  const double yaw = std::atan2(R(1, 0), R(0, 0));
+  return {p.y(), p.x(), -p.z(), std::atan2(R(2, 1), R(2, 2)), -pitch, std::numbers::pi / 2 - yaw, v.x(), v.y(), v.z(),
+          w.x(), w.y(), w.z()};
+}
+
+/// The velocity that a row starts with.  Vehicles of several bodies start as one solid.
+void set_velocity(const sim::Vehicle& vehicle, const FidelityState& start) {
+  const sim::Body& first = vehicle.base();
+  const sim::Matrix3d R = first.X_WB().linear();
+  const sim::Vector3d v = R * flipped({start[6], start[7], start[8]}),
+                      w = R * flipped({start[9], start[10], start[11]});
+  const sim::Vector3d origin = first.X_WB().translation();
+  for (const auto& [name, body] : vehicle.bodies())
+    body->set_velocity_W(v + w.cross(body->X_WB().translation() - origin), w);
+}
+
+/// `fields` with the numbers of a row in place of the names of columns.
+void fill_in(sim::ConfigNode& node, const FidelityReference& reference, const std::vector<double>& row, double scale) {
+  for (sim::ConfigNode& item : node.items) fill_in(item, reference, row, scale);
+  for (sim::ConfigNode::Entry& entry : node.entries) fill_in(entry.value, reference, row, scale);
+  if (node.kind != sim::ConfigNode::Kind::scalar || node.scalar.empty()) return;
+  const bool number = std::string("+-.0123456789").find(node.scalar.front()) != std::string::npos;
+  if (!number && !node.quoted)
+    node = sim::scalar_node(sim::number_text(scale * row[reference.column(node.scalar)]), node.place);
+}
+
+/// `a, b, c`
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> words(1);
+  for (const char c : text) {
+    if (c == ',')
+      words.emplace_back();
+    else if (c != ' ')
+      words.back() += c;
+  }
+  return words;
+}
+
+/// Devices of the inputs are there and take their messages.  Throws ConfigError.
+void check_inputs(const FidelityCase& of, const sim::Vehicle& vehicle) {
+  const std::string who = "vehicle '" + vehicle.name() + "'";
+  for (const FidelityInput& input : of.inputs) {
+    std::vector<std::string> names;
+    const sim::DeviceConfig* found = nullptr;
+    for (const sim::DeviceConfig& device : vehicle.config().devices) {
+      if (device.name == input.device) found = &device;
+      names.push_back(device.name);
+    }
+    if (found == nullptr)
+      sim::throw_config_error(input.place, who,
+                              "there is no device '" + input.device + "'; devices: " + sim::list_text(names));
+    const std::string& messages = found->device_type->command_messages;
+    const std::vector<std::string> taken = words_of(messages);
+    if (std::find(taken.begin(), taken.end(), input.message) == taken.end())
+      sim::throw_config_error(input.place, who + ": device '" + input.device + "'",
+                              (messages.empty() ? "takes no messages" : "takes " + messages) + ", not '" +
+                                  sim::shortened(sim::printable(input.message)) + "'");
+  }
+}
+
+void send_inputs(const FidelityCase& of, const FidelityReference& reference, const std::vector<double>& row,
+                 const std::string& vehicle, sim::World& world) {
+  for (const FidelityInput& input : of.inputs) {
+    sim::ConfigNode fields = input.fields;
+    if (!input.column.empty()) fields = sim::map_node("value", sim::scalar_node(input.column, input.place));
+    fill_in(fields, reference, row, input.scale);
+    sim::Diagnostics diagnostics;
+    const sim::Bytes bytes = shoal::encode_own_message(input.message, fields, diagnostics);
+    diagnostics.throw_if_any();
+    world.publish(vehicle + "." + input.device + ".cmd", bytes);
+  }
+}
+
+double norm_of(const FidelityState& a, const FidelityState& b, std::size_t from) {
+  return std::hypot(a[from] - b[from], a[from + 1] - b[from + 1], a[from + 2] - b[from + 2]);
+}
+
+void compare(FidelityResult& result) {
+  double position = 0, velocity = 0, turn = 0, heading = 0;
+  for (std::size_t i = 0; i < result.t.size(); ++i) {
+    const FidelityState &a = result.theirs[i], &b = result.ours[i];
+    const double apart = norm_of(a, b, 0);
+    position += apart * apart;
+    result.position_max_m = std::max(result.position_max_m, apart);
+    velocity += std::pow(norm_of(a, b, 6), 2);
+    turn += std::pow(norm_of(a, b, 9), 2);
+    heading += std::pow(std::remainder(a[5] - b[5], 2 * std::numbers::pi), 2);
+    if (i > 0) result.path_m += norm_of(a, result.theirs[i - 1], 0);
+  }
+  const auto count = static_cast<double>(result.t.size());
+  result.position_rms_m = std::sqrt(position / count);
+  result.velocity_rms_mps = std::sqrt(velocity / count);
+  result.turn_rms_degps = std::sqrt(turn / count) / deg;
+  result.heading_rms_deg = std::sqrt(heading / count) / deg;
+  const auto check = [&](const char* name, double value, const std::optional<double>& bar) {
+    // Not `value > bar`: a value that is no number has missed it.
+    if (bar && !(value <= *bar))
+      result.missed.push_back(std::string(name) + " " + sim::number_text(value) + " > " + sim::number_text(*bar));
+  };
+  check("position_rms_m", result.position_rms_m, result.of.bars.position_rms_m);
+  check("position_max_m", result.position_max_m, result.of.bars.position_max_m);
+  check("velocity_rms_mps", result.velocity_rms_mps, result.of.bars.velocity_rms_mps);
+  check("heading_rms_deg", result.heading_rms_deg, result.of.bars.heading_rms_deg);
+}
+
+std::int64_t steps_to(double t, double step_s, const FidelityReference& reference) {
+  const auto steps = static_cast<std::int64_t>(std::llround(t / step_s));
+  if (std::abs(static_cast<double>(steps) * step_s - t) > 1e-7)
+    sim::throw_config_error(
+        {sim::intern_file_name(reference.file), 0, 0}, "",
+        "a step of " + sim::number_text(step_s) + " s does not meet the row at t = " + sim::number_text(t) + " s");
+  return steps;
+}
+
+FidelityState state_of(const FidelityCase& of, const FidelityReference& reference, const std::vector<double>& row) {
+  FidelityState state;
+  for (std::size_t i = 0; i < state.size(); ++i) state[i] = row[reference.column(fidelity_states[i])];
+  state[2] -= of.trim_heave_m;
+  state[4] -= of.trim_pitch_rad;
+  return state;
+}
+
+/// All of the tree as if it were written there.
+void set_places(sim::ConfigNode& node, const sim::SourcePlace& place) {
+  node.place = place;
+  for (sim::ConfigNode& item : node.items) set_places(item, place);
+  for (sim::ConfigNode::Entry& entry : node.entries) {
+    entry.place = place;
+    set_places(entry.value, place);
+  }
+}
+
+/// Of the vehicle in its world: that of its file.
+std::string vehicle_name(const FidelityCase& of) {
+  std::string name = std::filesystem::path(of.vehicle).stem().string();
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-') c = '_';
+  return name;
+}
+
+/// What the case and the options change of the vehicle, those of the options last.
+sim::ConfigNode overrides_of(const FidelityCase& of, const FidelityOptions& options, sim::Diagnostics& diagnostics) {
+  sim::ConfigNode overrides = of.overrides;
+  overrides.kind = sim::ConfigNode::Kind::map;
+  for (const auto& [path, value] : options.overrides) {
+    const sim::SourcePlace place{sim::intern_file_name("--override " + path), 0, 0};
+    sim::ConfigNode node = sim::parse_config_text(value, *place.file, diagnostics);
+    set_places(node, place);
+    std::erase_if(overrides.entries, [&key = path](const auto& known) { return known.key == key; });
+    overrides.entries.push_back({path, place, node});
+  }
+  return overrides;
+}
+
+/// The same errors, with the case behind the place that each begins with.
+[[noreturn]] void throw_for_case(const FidelityCase& of, const sim::ConfigError& error) {
+  std::vector<std::string> lines = error.lines();
+  for (std::string& line : lines) {
+    const std::size_t end = line.find(": ");
+    line.insert(end == std::string::npos ? 0 : end + 2, "case '" + of.name + "': ");
+  }
+  throw sim::ConfigError(lines);
+}
+
+FidelityResult run(const FidelityCase& of, const FidelityOptions& options) {
+  if (std::error_code error; !std::filesystem::is_regular_file(of.vehicle, error))
+    sim::throw_config_error(of.vehicle_place, "", "there is no vehicle file '" + of.vehicle + "'");
+  const FidelityReference reference = read_fidelity_reference(of.reference);
+  const std::string file = of.place.file != nullptr ? *of.place.file : of.name;
+  const sim::LoadedWorld loaded = sim::load_world_tree(fidelity_world(of, reference, options), file);
+  sim::InProcessBus bus;
+  sim::World world(loaded.config, bus);
+  const sim::Vehicle& vehicle = *world.vehicles().front();
+  check_inputs(of, vehicle);
+  set_velocity(vehicle, state_of(of, reference, reference.rows.front()));
+
+  FidelityResult result;
+  result.of = of;
+  result.step_s = options.step_s.value_or(of.step_s);
+  for (std::size_t k = 0; k < reference.rows.size(); ++k) {
+    const std::vector<double>& row = reference.rows[k];
+    for (std::int64_t end = steps_to(row[0], result.step_s, reference); world.step_number() < end;) world.step();
+    result.t.push_back(row[0]);
+    result.theirs.push_back(state_of(of, reference, row));
+    result.ours.push_back(state_of(vehicle.base()));
+    send_inputs(of, reference, row, vehicle.name(), world);
+  }
+  compare(result);
+  return result;
+}
+
+}  // namespace
+
+sim::ConfigNode fidelity_world(const FidelityCase& of, const FidelityReference& reference,
+                               const FidelityOptions& options) {
+  const FidelityState start = state_of(of, reference, reference.rows.front());
+  // No bottom is near; that there is none at all would be said of every case.
+  const std::string text = "shoal: 1\nname: " + of.name +
+                           "\nphysics: {step_s: " + sim::number_text(options.step_s.value_or(of.step_s)) +
+                           "}\nmedium: {water: {}}\nobjects:\n  - name: far_bottom\n    fixed: true\n    position_m: " +
+                           list_of({0, 0, -start[2] - bottom_m}) +
+                           "\n    parts: [{shape: plane}]\nvehicles:\n  - name: " + vehicle_name(of) +
+                           "\n    file: ''\n    position_m: " + list_of({start[1], start[0], -start[2]}) +
+                           "\n    rpy_deg: " + list_of({start[3] / deg, -start[4] / deg, 90 - start[5] / deg}) + "\n";
+  sim::Diagnostics diagnostics;
+  sim::ConfigNode world = sim::parse_config_text(text, of.name, diagnostics);
+  set_places(world, of.place);
+  sim::ConfigNode& vehicle = world.find("vehicles")->items.front();
+  const std::filesystem::path folder =
+      of.place.file != nullptr ? std::filesystem::path(*of.place.file).parent_path() : "";
+  vehicle.find("file")->scalar = std::filesystem::path(of.vehicle).lexically_proximate(folder).string();
+  vehicle.entries.push_back({"overrides", of.place, overrides_of(of, options, diagnostics)});
+  for (const sim::ConfigNode::Entry& change : of.world.entries)
+    sim::set_config_path(world, change.key, change.value, change.place, diagnostics);
+  diagnostics.throw_if_any();
+  return world;
+}
+
+FidelityResult run_fidelity_case(const FidelityCase& of, const FidelityOptions& options) {
+  try {
+    return run(of, options);
+  } catch (const sim::ConfigError& error) {
+    throw_for_case(of, error);
+  }
+}
+
+}  // namespace tools

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+namespace tools {
+
+/// Takes values out of a JSON object that may hold anything.  Errors are std::runtime_error: file, key, rule, value.
+class JsonReader {
+ public:
+  /// `where`: file, and the place in it when that is not its top.
+  JsonReader(const nlohmann::ordered_json& json, std::string where) : json_(json), where_(std::move(where)) {
+    if (!json.is_object()) throw std::runtime_error(where_ + ": must be an object, got " + json.type_name());
+  }
+
+  bool has(const char* key) const { return json_.contains(key); }
+  const nlohmann::ordered_json& at(const char* key) const {
+    if (!has(key)) throw std::runtime_error(where_ + ": has no '" + key + "'");
+    return json_.at(key);
+  }
+  std::string text(const char* key) const { return get<std::string>(key, at(key).is_string(), "text"); }
+  double number(const char* key) const { return get<double>(key, at(key).is_number(), "a number"); }
+  std::int64_t whole(const char* key) const {
+    return get<std::int64_t>(key, at(key).is_number_integer(), "a whole number");
+  }
+  bool boolean(const char* key) const { return get<bool>(key, at(key).is_boolean(), "true or false"); }
+  const nlohmann::ordered_json& list(const char* key) const {
+    if (!at(key).is_array()) wrong(key, "a list");
+    return at(key);
+  }
+  const nlohmann::ordered_json& object(const char* key) const {
+    if (!at(key).is_object()) wrong(key, "an object");
+    return at(key);
+  }
+  const std::string& where() const { return where_; }
+
+ private:
+  template <typename T>
+  T get(const char* key, bool fits, const char* rule) const {
+    if (!fits) wrong(key, rule);
+    return at(key).get<T>();
+  }
+  [[noreturn]] void wrong(const char* key, const char* rule) const {
+    throw std::runtime_error(where_ + ": '" + key + "' must be " + rule + ", got " + at(key).type_name());
+  }
+
+  const nlohmann::ordered_json& json_;
+  std::string where_;
+};
+
+/// Parses a file.  Throws std::runtime_error with its name and the reason.
+nlohmann::ordered_json read_json_file(const std::string& path);
+
+}  // namespace tools

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tools {
+
+struct PlayOptions {
+  std::string log;                 ///< a record of shoal run --record
+  std::string lcm_url;             ///< empty: LCM_DEFAULT_URL, then the default
+  std::vector<std::string> await;  ///< lockstep clients to wait for; empty: whoever comes first
+  double join_timeout_s = 30;      ///< wall time to wait for them; 0: nobody is waited for
+  std::optional<double> until_s;   ///< simulated time; without it to the end of the record
+  double speed = 0;                ///< times real time; 0: as fast as possible
+  bool compare = false;            ///< answers that differ from the record are an error
+  bool quiet = false;              ///< no progress
+};
+
+/// What came of playing a record.
+struct PlayOutcome {
+  std::string text;   ///< for people, lines
+  int exit_code = 0;  ///< 0, or 1 when `compare` found a difference; 128 + signal when one ended it
+};
+
+/// Gives the messages of a record to programs as its run did, without a world: in lockstep to those that join, each at
+/// its own period, and on the bus to those that only listen.  What they publish changes nothing and is compared with
+/// the record.  Throws RunError: 2 options, 4 bus (also another simulator on it) or record, 5 nobody came, or a client
+/// did not answer.
+PlayOutcome play(const PlayOptions& options);
+
+}  // namespace tools

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "bridges/log/event_log.hpp"
+
+namespace tools {
+
+/// Reads an LCM event log in a thread of its own, a few blocks ahead of who looks at the events.
+class ReadAhead {
+ public:
+  /// Throws bridges::BusError when the file cannot be opened.
+  explicit ReadAhead(const std::string& path);
+  ~ReadAhead();
+  ReadAhead(const ReadAhead&) = delete;
+  ReadAhead& operator=(const ReadAhead&) = delete;
+
+  /// In the order of the file; the view holds until the next call.  False at the end.
+  bool next(bridges::LogEventView& event);
+
+ private:
+  struct Event {
+    std::int64_t number, utime;
+    std::uint64_t offset;
+    std::size_t begin, channel_bytes, payload_bytes;  // in the block
+  };
+  struct Block {
+    std::vector<Event> events;
+    std::vector<std::byte> bytes;
+    bool last = false;
+  };
+
+  void read();
+  void fill(Block& block);
+  bool wait_for_block();
+
+  bridges::EventLogReader file_;
+  Block current_;  // that is looked at
+  std::size_t at_ = 0;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<Block> ready_, used_;  // on the way to the reader of events, and back for its memory
+  bool stop_ = false;
+  std::thread thread_;
+};
+
+}  // namespace tools

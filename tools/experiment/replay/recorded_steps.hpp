@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "bridges/log/event_log.hpp"
+#include "tools/experiment/replay/replay_log.hpp"
+
+namespace tools {
+
+/// Gives the messages of a record step by step, in the order in which the run had them: what came to the world from
+/// outside before a step, then what the simulator published at its end.  Messages of the run itself (lockstep,
+/// requests, sim.mail, sim.hash, sim.snapshot) are left out, and so is the first sim.info.
+class RecordedSteps {
+ public:
+  /// The payload is readable until the call returns.
+  using Use = std::function<void(std::string_view channel, std::span<const std::byte> payload)>;
+
+  /// `log` must outlive this and be a record (its stamps are simulated time).
+  explicit RecordedSteps(const ReplayLog& log);
+
+  /// What came from outside after `step` and before the next one.
+  void mail_after(std::int64_t step, const Use& use);
+  /// What the simulator published up to the end of `step`; steps must not go back.
+  void published_at(std::int64_t step, const Use& use);
+
+ private:
+  bool is_copy_of_mail();
+
+  const ReplayLog& log_;
+  bridges::EventLogReader file_;
+  bridges::LogEventView event_;
+  bool has_event_ = false;  // that is not yet given
+  bool skipped_info_ = false;
+  std::size_t next_mail_ = 0, next_copy_ = 0;  // of the letters
+};
+
+/// A message by which a run is run, not one of the world: programs are not given those of a record.
+bool is_of_the_handshake(std::string_view channel);
+
+}  // namespace tools

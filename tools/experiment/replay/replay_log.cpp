@@ -1,0 +1,431 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/replay/replay_log.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "bridges/log/event_log.hpp"
+#include "bridges/log/run_journal.hpp"
+#include "bridges/control/run_notices.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/sim_hash_t.hpp"
+#include "shoal/sim_mail_t.hpp"
+#include "shoal/sim_notice_t.hpp"
+#include "shoal/sim_snapshot_t.hpp"
+#include "shoal/sim_state_t.hpp"
+#include "sim/config/message_text.hpp"
+#include "tools/experiment/files/notice_text.hpp"
+#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/snapshot/snapshot_pieces.hpp"
+
+namespace tools {
+
+namespace {
+
+constexpr std::size_t most_problems = 20;
+/// Where nothing comes for so long, nobody looks for what was lost.
+constexpr std::size_t most_since_mail = 1'000'000;
+
+/// The big-endian number behind the fingerprint and `index` others.
+std::int64_t number_at(std::span<const std::byte> payload, std::size_t index) {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < 8; ++i) value = value << 8 | std::to_integer<std::uint64_t>(payload[8 + 8 * index + i]);
+  return static_cast<std::int64_t>(value);
+}
+
+/// The program that wrote a sim.info of any version, such as `shoal 0.4.0 (a1b2c3d)`: the first members are the same in
+/// all of them.  Empty: it cannot be made out.
+std::string version_in(std::span<const std::byte> payload) {
+  std::size_t at = 8 + 8;  // fingerprint, utime
+  const auto text = [&]() -> std::string {
+    if (payload.size() < at + 4) return "";
+    std::uint32_t size = 0;
+    for (std::size_t i = 0; i < 4; ++i) size = size << 8 | std::to_integer<std::uint32_t>(payload[at + i]);
+    at += 4;
+    if (size == 0 || payload.size() - at < size) {
+      at = payload.size();
+      return "";
+    }
+    const std::string found(reinterpret_cast<const char*>(payload.data()) + at, size - 1);
+    at += size;
+    return found;
+  };
+  text();       // world
+  at += 8 + 8;  // seed, step
+  text();       // resolved_config
+  const std::string versions = text();
+  const std::string first = versions.substr(0, versions.find('\n'));
+  return first.starts_with("shoal ") ? sim::shortened(sim::printable(first)) : "";
+}
+
+class Reader {
+ public:
+  explicit Reader(const std::string& path) : file_(path) { log_.path = path; }
+
+  ReplayLog read() {
+    bridges::LogEventView event;
+    while (file_.next(event)) {
+      count(event.channel);
+      if (event.channel != "sim.notice") {  // which may stand behind the end of a step
+        last_stamp_ = event.utime;
+        ends_whole_ = false;
+      }
+      if (!informed_ && event.channel == "sim.info") version_ = version_in(event.payload);
+      if (!event.channel.starts_with("sim.")) {
+        if (informed_ && log_.own_stamps && since_mail_.size() < most_since_mail)
+          since_mail_.push_back({last_, step_of(event.utime)});
+        continue;
+      }
+      try {
+        take(event);
+      } catch (const shoal::MessageError& error) {
+        problem(fmt::format("byte {}: {}: {}", event.offset, event.channel, error.what()));
+      }
+    }
+    for (const Count& count : counts_) log_.events.emplace(count.channel, count.events);
+    for (const std::string& text : file_.problems()) problem(text);
+    if (!informed_) fail_without_info();
+    note_missing_pieces();
+    leave_out_what_is_not_whole();
+    narrow_holes();
+    for (const Hole& hole : holes_) tell(hole);
+    return std::move(log_);
+  }
+
+ private:
+  /// A message, by the place of its channel in counts_.
+  struct Came {
+    std::size_t channel;
+    std::int64_t step;
+  };
+  /// Numbers of sim.mail that are missing, and the steps between which they were published.
+  struct Hole {
+    std::int64_t first, last;
+    std::int64_t from_step, to_step;
+    std::vector<Came> came = {};  ///< of a record: all messages in it since the sim.mail before
+  };
+
+  /// In microseconds.  Without signs on the way: a damaged stamp may overflow.
+  std::int64_t since_start(std::int64_t utime) const {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(utime) -
+                                     static_cast<std::uint64_t>(log_.info.epoch_utime));
+  }
+  std::int64_t step_of(std::int64_t utime) const { return since_start(utime) / log_.info.step_us; }
+
+  /// A record holds what came from outside beside sim.mail: where a channel has just as many messages more than letters
+  /// as came in the holes, those tell of the steps that the holes are about.
+  void narrow_holes() {
+    if (!log_.own_stamps) return;
+    std::map<std::string, std::int64_t, std::less<>> unknown;  // of the channels that letters came on
+    std::set<std::pair<std::string, std::int64_t>> letters;
+    for (const ReplayLog::Letter& letter : log_.letters) {
+      if (!log_.events.contains(letter.channel)) continue;
+      unknown.try_emplace(letter.channel, log_.events.at(letter.channel)).first->second -= 1;
+      letters.emplace(letter.channel, letter.step);
+    }
+    for (Hole& hole : holes_)
+      std::erase_if(hole.came, [&](const Came& came) {
+        const std::string& channel = counts_[came.channel].channel;
+        return !unknown.contains(channel) || letters.contains({channel, came.step});
+      });
+    for (const Hole& hole : holes_)
+      for (const Came& came : hole.came) unknown.at(counts_[came.channel].channel) -= 1;
+    for (Hole& hole : holes_) {
+      std::erase_if(hole.came, [&](const Came& came) { return unknown.at(counts_[came.channel].channel) != 0; });
+      if (hole.came.empty() || hole.last - hole.first + 1 > static_cast<std::int64_t>(hole.came.size())) continue;
+      hole.from_step = hole.came.front().step;
+      hole.to_step = hole.came.back().step;
+    }
+  }
+
+  /// The last events are of a step whose letters come behind its messages: where the log breaks off between the two the
+  /// step cannot be run again.
+  void leave_out_what_is_not_whole() {
+    // In a record all of a step stands before anything of a later one.
+    std::int64_t stamped = step_of(last_stamp_);
+    // There is a sim.info every 10 s: a stamp that is far beyond is damaged.
+    if (stamped > log_.last_step + 2 + 10'000'000 / log_.info.step_us) stamped = log_.last_step;
+    if (log_.own_stamps) whole_step_ = std::max(whole_step_, stamped - 1);
+    const std::int64_t known = std::max(log_.last_step, log_.own_stamps ? stamped : 0);
+    log_.last_step = std::max(whole_step_, log_.begin_step());
+    // Behind the end of a step may stand what came for the next.
+    if (known > log_.last_step || (log_.own_stamps && !ends_whole_))
+      log_.cut = fmt::format("the log breaks off in step {}: what stands behind step {} is left out",
+                             std::max(known, log_.last_step + 1), log_.last_step);
+  }
+
+  void tell(const Hole& hole) {
+    const auto& [first, last, from, to, came] = hole;
+    log_.holes.push_back(
+        first == last && from == to ? fmt::format("sim.mail {} (of step {}) is missing", first, from)
+        : first == last             ? fmt::format("sim.mail {} (of a step from {} to {}) is missing", first, from, to)
+                        : fmt::format("sim.mail {} to {} (of steps from {} to {}) are missing", first, last, from, to));
+    log_.proven_step = std::min({log_.proven_step.value_or(from), from, log_.last_step});
+  }
+
+  [[noreturn]] void fail(const std::string& what) const { throw std::runtime_error(log_.path + ": " + what); }
+
+  [[noreturn]] void fail_without_info() const {
+    if (log_.events.empty()) fail("holds no event that can be read");
+    if (!version_.empty())
+      fail(fmt::format("was written by {}, whose sim.info this one, shoal {}, cannot read", version_, short_version()));
+    if (log_.events.contains("sim.info"))
+      fail("its sim.info cannot be read: another version of Shoal wrote it, or it is damaged" +
+           (log_.problems.empty() ? std::string() : " (" + log_.problems.front() + ")"));
+    fail("holds no sim.info, which tells of the world: it is no log of a run, or covers less than 10 s of one");
+  }
+
+  void problem(const std::string& text) {
+    if (log_.problems.size() < most_problems) log_.problems.push_back(text);
+  }
+
+  struct Count {
+    std::string channel;
+    std::uint64_t events = 0;
+    std::size_t next = 0;  ///< the channel that came after this one the last time
+  };
+
+  /// Steps are like each other: the channel is mostly the one that came after this one before, and the names need not
+  /// be looked for.
+  void count(std::string_view channel) {
+    std::size_t found = counts_.empty() ? 0 : counts_[last_].next;
+    if (counts_.empty() || counts_[found].channel != channel) {
+      const auto known = by_name_.find(channel);
+      found = known != by_name_.end() ? known->second : counts_.size();
+      if (known == by_name_.end()) by_name_.emplace(counts_.emplace_back(Count{std::string(channel)}).channel, found);
+      counts_[last_].next = found;
+    }
+    ++counts_[found].events;
+    last_ = found;
+  }
+
+  void take(const bridges::LogEventView& event) {
+    if (event.channel == "sim.info") return take_info(event);
+    if (event.channel == "sim.mail") return take_mail(event);
+    if (event.channel == "sim.hash") return take_hash(event);
+    if (event.channel == "sim.snapshot") return take_snapshot(event);
+    if (event.channel == "sim.state") take_state(event);
+    if (event.channel == "sim.notice") take_notice(event);
+  }
+
+  void take_notice(const bridges::LogEventView& event) {
+    if (log_.notices.size() >= bridges::RunNotices::max_kept) return;
+    const auto notice = shoal::decode<shoal::sim_notice_t>(event.payload, shoal::Finite::any);
+    const double time_s = informed_ ? 1e-6 * static_cast<double>(since_start(notice.utime)) : 0;
+    log_.notices.push_back(sim::shortened(
+        sim::printable(notice_text({time_s, notice.kind, notice.client, notice.signer, notice.text})), 300));
+  }
+
+  void take_state(const bridges::LogEventView& event) {
+    if (shoal::fingerprint(event.payload) != shoal::sim_state_t::getHash() || event.payload.size() < 24) return;
+    const std::int64_t step = number_at(event.payload, 1);
+    if (!informed_ || !is_time_of(step, number_at(event.payload, 0))) return;  // of somebody else
+    note_step(step);
+    published_ = true;
+    if (event.utime != number_at(event.payload, 0)) log_.own_stamps = false;
+  }
+
+  /// What the run, or this branch, begins with: what came before is not needed to run it again.
+  void take_snapshot(const bridges::LogEventView& event) {
+    const auto message = shoal::decode<shoal::sim_snapshot_t>(event.payload, shoal::Finite::any);
+    check_stamp(event, message.utime, message.step);
+    if (informed_ && message.branch != branch_)
+      throw shoal::MessageError(fmt::format("is of branch {}, but the log is of branch {}", message.branch, branch_));
+    const std::optional<sim::Bytes> bytes = pieces_.add(message);
+    if (!bytes || !informed_) return;
+    try {
+      begin_with(snapshot_from_bytes(*bytes, "sim.snapshot"), message);
+    } catch (const SnapshotFileError& error) {
+      log_.bad_snapshot = error.what();
+    }
+  }
+
+  void begin_with(Snapshot snapshot, const shoal::sim_snapshot_t& message) {
+    const shoal::sim_info_t& info = log_.info;
+    if (snapshot.step != message.step || snapshot.seed != info.seed || snapshot.step_us != info.step_us ||
+        snapshot.epoch_us != info.epoch_utime || snapshot.resolved_world != info.resolved_config)
+      throw SnapshotFileError("sim.snapshot: is of another world, seed, epoch or step than sim.info tells of");
+    log_.goes_back = log_.goes_back || published_;
+    whole_step_ = message.step - 1;
+    log_.snapshot = std::move(snapshot);
+    log_.bad_snapshot.clear();
+    log_.letters.clear();
+    log_.hashes.clear();
+    holes_.clear();
+    next_sequence_ = message.mail_sequence;
+    mail_step_ = log_.last_step = message.step;
+  }
+
+  void note_missing_pieces() {
+    const std::string missing = pieces_.missing();
+    if (!missing.empty()) log_.bad_snapshot = "sim.snapshot: " + missing;
+  }
+
+  void note_step(std::int64_t step) {
+    if (!std::exchange(stepped_, true)) log_.first_step = step;
+    if (step < log_.last_step) log_.goes_back = true;
+    log_.last_step = std::max(log_.last_step, step);
+  }
+
+  bool is_time_of(std::int64_t step, std::int64_t utime) const {
+    if (step < 0 || step > 1'000'000'000'000) return false;
+    // Without signs: the numbers are a stranger's, and may overflow.
+    const std::uint64_t since = static_cast<std::uint64_t>(step) * static_cast<std::uint64_t>(log_.info.step_us);
+    return static_cast<std::uint64_t>(utime) == static_cast<std::uint64_t>(log_.info.epoch_utime) + since;
+  }
+
+  /// A stamp that is not that of its step is of another run, or of another epoch.
+  void check_stamp(const bridges::LogEventView& event, std::int64_t utime, std::int64_t step) const {
+    if (!informed_) return;
+    const shoal::sim_info_t& info = log_.info;
+    if (!is_time_of(step, utime))
+      fail(fmt::format("byte {}: {} is stamped {} at step {}, which is no time of this run (epoch {}, step {} us)",
+                       event.offset, event.channel, utime, step, info.epoch_utime, info.step_us));
+  }
+
+  void take_info(const bridges::LogEventView& event) {
+    auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
+    if (event.utime != info.utime) log_.own_stamps = false;
+    if (!informed_) {
+      if (info.step_us < 1 || info.step_us > 10'000'000)
+        throw shoal::MessageError("step_us must be from 1 to 10000000, got " + std::to_string(info.step_us));
+      informed_ = true;
+      branch_ = info.branch;
+      log_.info = std::move(info);
+      check_stamp(event, log_.info.utime, log_.info.step);
+      check_sequence(log_.info.mail_sequence, log_.info.step);
+      note_step(log_.info.step);
+      whole_step_ = log_.info.step - 1;  // its own letters come behind it
+      return;
+    }
+    const shoal::sim_info_t& first = log_.info;
+    const bool same_run = info.world == first.world && info.seed == first.seed && info.step_us == first.step_us &&
+                          info.epoch_utime == first.epoch_utime && info.resolved_config == first.resolved_config;
+    if (!same_run || (info.branch <= branch_ && info.step < log_.last_step))
+      fail(fmt::format("holds two runs: another begins at byte {} (world '{}', seed {}); cut it in two", event.offset,
+                       info.world, info.seed));
+    check_stamp(event, info.utime, info.step);
+    const bool goes_back = info.branch > branch_;
+    if (goes_back) begin_branch(info);
+    check_sequence(info.mail_sequence, info.step);
+    mail_step_ = std::max(mail_step_, info.step - 1);
+    note_step(info.step);
+    whole_step_ = goes_back ? info.step : std::max(whole_step_, info.step - 1);
+  }
+
+  /// The run went back: what came later on the branch before is not part of this one.
+  void begin_branch(const shoal::sim_info_t& info) {
+    branch_ = info.branch;
+    if (log_.last_step > info.step) log_.goes_back = true;
+    std::erase_if(log_.letters, [&](const ReplayLog::Letter& letter) { return letter.step >= info.step; });
+    log_.hashes.erase(log_.hashes.upper_bound(info.step), log_.hashes.end());
+    const bool before_snapshot = info.step < log_.begin_step();
+    if (before_snapshot) {
+      log_.snapshot.reset();
+      log_.bad_snapshot = fmt::format("sim.snapshot: the log goes back to step {}, before its snapshot", info.step);
+    }
+    log_.last_step = info.step;
+    mail_step_ = std::min(mail_step_, info.step);
+    // What is missing of the part that was left is not missed.
+    std::erase_if(holes_, [&](const Hole& hole) { return hole.first >= info.mail_sequence; });
+    if (!holes_.empty()) holes_.back().last = std::min(holes_.back().last, info.mail_sequence - 1);
+    next_sequence_ = std::min(next_sequence_, info.mail_sequence);  // a larger one is a hole
+    if (before_snapshot) holes_.push_back({0, std::max<std::int64_t>(info.mail_sequence - 1, 0), 0, info.step});
+  }
+
+  /// `next`: the number of the first sim.mail that may still come.
+  void check_sequence(std::int64_t next, std::int64_t step) {
+    if (next > next_sequence_) {
+      holes_.push_back({next_sequence_, next - 1, mail_step_, step, since_mail_});
+      next_sequence_ = next;
+    }
+  }
+
+  void take_mail(const bridges::LogEventView& event) {
+    auto mail = shoal::decode<shoal::sim_mail_t>(event.payload, shoal::Finite::any);
+    check_stamp(event, mail.utime, mail.step);
+    if (mail.branch != branch_ && informed_)
+      throw shoal::MessageError(fmt::format("is of branch {}, but the log is of branch {}", mail.branch, branch_));
+    if (mail.sequence < next_sequence_)
+      throw shoal::MessageError(fmt::format("number {} comes a second time", mail.sequence));
+    check_sequence(mail.sequence, mail.step);
+    next_sequence_ = mail.sequence + 1;
+    since_mail_.clear();
+    for (shoal::sim_letter_t& letter : mail.letter) {
+      if (letter.step > mail.step || (!log_.letters.empty() && letter.step < log_.letters.back().step))
+        throw shoal::MessageError(fmt::format("a letter of step {} is out of order", letter.step));
+      const auto* begin = reinterpret_cast<const std::byte*>(letter.data.data());
+      log_.letters.push_back({letter.step, std::move(letter.bus), std::move(letter.channel),
+                              sim::Bytes(begin, begin + letter.data.size())});
+    }
+    mail_step_ = mail.step;
+    note_whole(mail.step);
+  }
+
+  void take_hash(const bridges::LogEventView& event) {
+    auto message = shoal::decode<shoal::sim_hash_t>(event.payload, shoal::Finite::any);
+    check_stamp(event, message.utime, message.step);
+    check_sequence(message.mail_sequence, message.step);
+    since_mail_.clear();
+    ReplayLog::Hashes& hashes = log_.hashes[message.step];
+    hashes.whole = static_cast<std::uint64_t>(message.hash);
+    hashes.after_letters =
+        std::any_of(log_.letters.rbegin(), log_.letters.rend(), [&](const ReplayLog::Letter& letter) {
+          return letter.step == message.step && letter.bus != bridges::RunJournal::serial_bus;
+        });
+    hashes.parts.clear();
+    hashes.run.reset();
+    for (std::size_t i = 0; i < message.part.size(); ++i) {
+      const auto hash = static_cast<std::uint64_t>(message.part_hash[i]);
+      if (message.part[i] == bridges::RunJournal::run_hash_part)
+        hashes.run = hash;
+      else
+        hashes.parts.push_back({std::move(message.part[i]), hash});
+    }
+    mail_step_ = std::max(mail_step_, message.step);  // all that came up to here was in those before
+    note_whole(message.step);
+    published_ = true;
+  }
+
+  /// What is known of this step ends with this message.
+  void note_whole(std::int64_t step) {
+    note_step(step);
+    whole_step_ = std::max(whole_step_, step);
+    ends_whole_ = true;
+  }
+
+  bridges::EventLogReader file_;
+  SnapshotPieces pieces_;
+  ReplayLog log_;
+  std::deque<Count> counts_;  // whose names do not move
+  std::unordered_map<std::string_view, std::size_t> by_name_;
+  std::size_t last_ = 0;  // in counts_
+  std::vector<Hole> holes_;
+  std::vector<Came> since_mail_;
+  bool informed_ = false, stepped_ = false, published_ = false;
+  std::int32_t branch_ = 0;
+  std::int64_t next_sequence_ = 0;
+  std::int64_t mail_step_ = 0;    // up to which no sim.mail is missing behind the last one
+  std::int64_t whole_step_ = -1;  // up to which all letters and messages are there
+  std::int64_t last_stamp_ = 0;   // of the last event
+  bool ends_whole_ = false;       // that event ended a step
+  std::string version_;           // that wrote a sim.info which cannot be read; empty: none did
+};
+
+}  // namespace
+
+ReplayLog read_replay_log(const std::string& path) {
+  return Reader(path).read();
+}
+
+}  // namespace tools

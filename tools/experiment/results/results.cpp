@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/results/results.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "tools/experiment/files/gnuplot.hpp"
+#include "tools/experiment/files/notice_text.hpp"
+#include "tools/experiment/results/results_world.hpp"
+#include "tools/experiment/results/run_pictures.hpp"
+
+namespace tools {
+
+namespace {
+
+/// Corners of a box, or a circle, as a closed line on the ground.
+std::string outline_of(const sim::PartConfig& part, const sim::Pose& X_WB) {
+  const sim::Pose X_WP = X_WB * sim::make_pose(part.position_m, part.rpy_rad);
+  std::string text;
+  const auto add = [&](double x, double y) {
+    const sim::Vector3d p = X_WP * sim::Vector3d(x, y, 0);
+    text += fmt::format("{:.4f} {:.4f}\n", p.x(), p.y());
+  };
+  if (part.shape == "box") {
+    const double x = part.size_m.x() / 2;
+    const double y = part.size_m.y() / 2;
+    add(x, y), add(-x, y), add(-x, -y), add(x, -y), add(x, y);
+  } else if (part.shape == "sphere" || part.shape == "cylinder" || part.shape == "capsule") {
+    for (int i = 0; i <= 24; ++i)
+      add(part.radius_m * std::cos(i * std::numbers::pi / 12), part.radius_m * std::sin(i * std::numbers::pi / 12));
+  }
+  return text.empty() ? text : text + "\n";
+}
+
+std::runtime_error cannot_write(const std::string& path, const std::string& reason) {
+  return std::runtime_error("cannot write results to '" + path + "': " + reason);
+}
+
+void write_file(const std::string& path, const std::string& text) {
+  remove_link(path);
+  std::ofstream out(path, std::ios::binary);
+  out << text << std::flush;
+  if (!out) throw cannot_write(path, std::strerror(errno));
+}
+
+}  // namespace
+
+Judgement Summary::judgement() const {
+  const bool rules_hold =
+      std::all_of(verdicts.begin(), verdicts.end(), [](const Scoring::Verdict& v) { return v.passed; });
+  if (!rules_hold || (event && !event->passed)) return Judgement::failed;
+  if (ended_by_hand()) return Judgement::not_judged;
+  if (exit_code != 0) return Judgement::failed;
+  return verdicts.empty() && !event ? Judgement::not_judged : Judgement::passed;
+}
+
+std::string Summary::why_not_judged() const {
+  if (!ended_by_hand()) return no_verdicts;
+  std::string how = "ended by quit";
+  if (ended == "signal") {
+    const char* name = sigabbrev_np(exit_code - 128);
+    how = name != nullptr ? fmt::format("ended by SIG{}", name) : "ended by a signal";
+  } else if (ended == "rewound") {
+    how = "left for another branch";
+  }
+  const std::string of = duration_s > 0 ? fmt::format(" of {:.10g}", duration_s) : "";
+  return fmt::format("{} at {:.10g}{} s", how, sim_time_s, of);
+}
+
+void Summary::judge_processes() {
+  for (const Process& process : processes)
+    if (process.failed)
+      verdicts.push_back(
+          {fmt::format("process '{}' must not fail; it {} at {:.2f} s", process.name, process.how, process.sim_time_s),
+           false});
+}
+
+void Summary::judge_clients() {
+  for (const bridges::LockstepSummary& client : clients)
+    if (client.contradictions > 0)
+      verdicts.push_back(
+          {fmt::format("client '{}' must give one answer to each tick; another program gave {} different "
+                       "one{} in its name",
+                       client.client, client.contradictions, client.contradictions == 1 ? "" : "s"),
+           false});
+}
+
+void Summary::fail(int code, const std::string& how_ended, const std::string& why) {
+  exit_code = code;
+  ended = how_ended;
+  error = why;
+}
+
+namespace {
+
+/// Of the first hundred pairs: a swarm in a heap has thousands.
+nlohmann::ordered_json contacts_json(const std::vector<FirstContacts::Contact>& contacts) {
+  constexpr std::size_t most = 100;
+  auto json = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < std::min(most, contacts.size()); ++i)
+    json.push_back({{"vehicle", contacts[i].first},
+                    {"with", contacts[i].second},
+                    {"first_s", contacts[i].first_s},
+                    {"count", contacts[i].count}});
+  return json;
+}
+
+}  // namespace
+
+std::string Summary::to_json() const {
+  nlohmann::ordered_json json;
+  json["world"] = world;
+  json["description"] = description;
+  json["seed"] = seed;
+  json["steps"] = steps;
+  json["sim_time_s"] = sim_time_s;
+  json["duration_s"] = duration_s;
+  json["wall_s"] = wall_s;
+  json["real_time_factor"] = real_time_factor();
+  json["run_hash"] = fmt::format("{:016x}", run_hash);
+  json["state_hash"] = fmt::format("{:016x}", state_hash);
+  json["messages"] = messages;
+  json["dropped_messages"] = dropped_messages;
+  json["bad_messages"] = bad_messages;
+  json["quick_steps"] = quick_steps;
+  json["metrics"] = nlohmann::ordered_json::object();
+  for (const auto& [name, value] : metrics) json["metrics"][name] = value;  // NaN becomes null
+  json["rules"] = nlohmann::ordered_json::array();
+  for (const Scoring::Verdict& verdict : verdicts)
+    json["rules"].push_back({{"rule", verdict.rule}, {"passed", verdict.passed}});
+  json["contacts"] = contacts_json(contacts);
+  json["contact_pairs"] = contacts.size();
+  json["processes"] = nlohmann::ordered_json::array();
+  for (const Process& process : processes)
+    json["processes"].push_back(
+        {{"name", process.name}, {"how", process.how}, {"sim_time_s", process.sim_time_s}, {"failed", process.failed}});
+  if (!clients.empty()) json["clients"] = nlohmann::ordered_json::array();
+  for (const bridges::LockstepSummary& client : clients)
+    json["clients"].push_back({{"name", client.client},
+                               {"ticks", client.ticks},
+                               {"repeated_ticks", client.repeated_ticks},
+                               {"messages_sent_again", client.messages_sent_again},
+                               {"messages_asked_for", client.messages_asked_for},
+                               {"messages_repeated", client.messages_repeated},
+                               {"timeouts", client.timeouts},
+                               {"contradictions", client.contradictions},
+                               {"ended", client.ended.empty() ? "with the run" : client.ended}});
+  json["control"] = {{"needs_key", needs_key}, {"refused_requests", refused_requests}, {"notice_count", notice_count}};
+  json["control"]["notices"] = notices_json(notices);
+  for (const auto& [vehicle, record] : zones) {
+    auto& entry = json["zones"][vehicle];
+    entry["finish_s"] = record.finish_s ? nlohmann::ordered_json(*record.finish_s) : nlohmann::ordered_json();
+    entry["speeding_s"] = record.speeding_s;
+  }
+  if (acoustics) {
+    json["acoustics"] = {{"sent", acoustics->sent}, {"received", acoustics->received}, {"unsent", acoustics->unsent}};
+    json["acoustics"]["lost"] = nlohmann::ordered_json::object();
+    for (const auto& [cause, count] : acoustics->lost)
+      if (count > 0) json["acoustics"]["lost"][cause] = count;
+  }
+  json["modem_dropped_messages"] = modem_dropped_messages;
+  json["serial_dropped_bytes"] = serial_dropped_bytes;
+  if (event) json["event"] = {{"text", event->text}, {"passed", event->passed}};
+  json["judged"] = judged();
+  if (!judged()) json["not_judged"] = why_not_judged();
+  json["passed"] = nullptr;
+  if (const auto flag = as_flag(judgement())) json["passed"] = *flag;
+  json["ended"] = ended;
+  json["error"] = error;
+  json["exit_code"] = exit_code;
+  json["shoal"] = version;
+  if (branch > 0) json["branch"] = branch;
+  if (!snapshot.empty()) json["snapshot"] = snapshot;
+  if (!snapshot.empty()) json["metrics_from_s"] = from_s;
+  // A client may call itself anything: what is not UTF-8 in its name must not cost the summary.
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string Summary::to_text() const {
+  std::string text = fmt::format(
+      "world {}  seed {}\n"
+      "  {} steps, {:.2f} s simulated in {:.2f} s: {:.1f} x real time\n"
+      "  {} messages, {} dropped, {} bad\n",
+      world, seed, steps, sim_time_s, wall_s, real_time_factor(), messages, dropped_messages, bad_messages);
+  if (!snapshot.empty())
+    text += fmt::format("  {:.2f} s of it here, from {}; metrics count from {:.2f} s\n", stepped_s, snapshot, from_s);
+  if (branch > 0) text += fmt::format("  branch {}: the run went back\n", branch);
+  if (quick_steps > 0)
+    text += fmt::format("  {} steps used QuickStep, for an island of bodies was too large\n", quick_steps);
+  if (acoustics) {
+    text += fmt::format("  acoustic packets: {} sent, {} received", acoustics->sent, acoustics->received);
+    for (const auto& [cause, count] : acoustics->lost)
+      if (count > 0) text += fmt::format(", {} lost ({})", count, cause);
+    if (acoustics->unsent > 0) text += fmt::format(", {} not sent", acoustics->unsent);
+    text += '\n';
+  }
+  if (modem_dropped_messages > 0)
+    text += fmt::format("  {} messages were dropped from full queues of modems\n", modem_dropped_messages);
+  if (serial_dropped_bytes > 0) text += fmt::format("  {} bytes were fetched from no port\n", serial_dropped_bytes);
+  text += contacts_text(contacts);
+  std::size_t width = 28;
+  for (const auto& [name, value] : metrics) width = std::max(width, name.size());
+  for (const auto& [name, value] : metrics)
+    text += fmt::format("  {:<{}} {}\n", name, width, std::isnan(value) ? "none" : fmt::format("{:.4g}", value));
+  for (const Scoring::Verdict& verdict : verdicts)
+    text += fmt::format("  {}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.rule);
+  for (const Process& process : processes)
+    text += fmt::format("  process '{}' {} at {:.2f} s\n", process.name, process.how, process.sim_time_s);
+  for (const bridges::RunNotice& notice : notices) text += "  " + notice_text(notice) + "\n";
+  if (refused_requests > 0)
+    text += fmt::format("  {} requests without the key of the run were refused\n", refused_requests);
+  for (const auto& [vehicle, record] : zones) {
+    if (record.finish_s) text += fmt::format("  {} finished at {:.2f} s\n", vehicle, *record.finish_s);
+    if (record.speeding_s > 0) text += fmt::format("  {} was too fast for {:.2f} s\n", vehicle, record.speeding_s);
+  }
+  if (event) text += fmt::format("  ended by an event, {}: {}\n", event->passed ? "passed" : "FAILED", event->text);
+  if (!judged())
+    text += ended_by_hand() ? fmt::format("  {}: not judged\n", why_not_judged())
+                            : fmt::format("  not judged: {}\n", why_not_judged());
+  text += fmt::format("  run hash {:016x}, state hash {:016x}\n", run_hash, state_hash);
+  return text;
+}
+
+namespace {
+
+/// Rules and metrics come in dozens, zones and contacts with vehicles.
+std::size_t room_for_summary(const sim::World& world) {
+  return (std::size_t{256} << 10) + 512 * world.vehicles().size();
+}
+
+/// The folder, made where it is not there.
+std::string made(const std::string& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) throw cannot_write(directory, error.message());
+  return directory;
+}
+
+}  // namespace
+
+void write_summary(const std::string& directory, const Summary& summary) {
+  const std::string path = directory + "/summary.json";
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (!error) {
+    write_file(path + ".part", summary.to_json());
+    std::filesystem::rename(path + ".part", path, error);
+  }
+  if (error) throw cannot_write(path, error.message());
+}
+
+void try_to_write_summary(const std::string& directory, const Summary& summary) {
+  try {
+    write_summary(directory, summary);
+  } catch (const std::exception& error) {
+    spdlog::debug("{}", error.what());
+  }
+}
+
+void write_results_world(const std::string& directory, const sim::ConfigNode& resolved) {
+  write_file(directory + "/world.yaml", sim::to_yaml(resolved));
+}
+
+Results::Results(const std::string& directory, const sim::World& world, bool pictures)
+    : directory_(made(directory)),
+      summary_file_(directory, room_for_summary(world)),
+      world_(world),
+      pictures_(pictures) {
+  std::error_code error;
+  const std::string path = directory + "/tracks.csv";
+  remove_link(path);
+  tracks_ = error ? nullptr : std::fopen(path.c_str(), "w");
+  if (tracks_ == nullptr) throw cannot_write(path, error ? error.message() : std::strerror(errno));
+  // What an earlier run left would be taken for this one's, which may be killed.
+  for (const char* picture : run_pictures) std::filesystem::remove(directory + "/" + picture, error);
+  for (const char* file : {"summary.json", "metrics.csv", "errors.csv"})
+    if (!std::filesystem::is_directory(directory + "/" + file, error))
+      std::filesystem::remove(directory + "/" + file, error);
+  std::fprintf(tracks_, "time_s,vehicle,x_m,y_m,z_m,yaw_rad\n");
+  const double step_s = sim::to_seconds(world.step_time());
+  every_steps_ = std::max<std::int64_t>(1, std::llround(1.0 / (world.config().run.track_rate_hz * step_s)));
+  steps_per_second_ = std::max<std::int64_t>(1, std::llround(1.0 / step_s));
+  write_outlines();
+}
+
+Results::~Results() {
+  if (tracks_ != nullptr) std::fclose(tracks_);
+}
+
+void Results::after_step() {
+  if (world_.step_number() % steps_per_second_ == 0 && std::fflush(tracks_) != 0 && !error_)
+    error_ = cannot_write(directory_ + "/tracks.csv", std::strerror(errno)).what();
+  if (world_.step_number() % every_steps_ != 0) return;
+  for (const auto& vehicle : world_.vehicles()) {
+    const sim::Pose X_WV = vehicle->X_WV();
+    const sim::Vector3d p = X_WV.translation();
+    const int written = std::fprintf(tracks_, "%.6f,%s,%.6f,%.6f,%.6f,%.6f\n", sim::to_seconds(world_.now()),
+                                     vehicle->name().c_str(), p.x(), p.y(), p.z(), sim::yaw_of(X_WV.linear()));
+    if (written < 0 && !error_) error_ = cannot_write(directory_ + "/tracks.csv", std::strerror(errno)).what();
+  }
+}
+
+void Results::write(const std::string& file, const std::string& text) const {
+  write_file(directory_ + "/" + file, text);
+}
+
+void Results::write_outlines() const {
+  std::string text;
+  for (const auto& [name, object] : world_.objects())
+    for (const sim::PartConfig& part : object.config.parts) text += outline_of(part, object.body->X_WB());
+  write("outlines.dat", text.empty() ? "0 0\n" : text);
+}
+
+void Results::write_errors(const std::string& directory, const Scoring& scoring) const {
+  std::string text =
+      "time_s,metric,error_m,estimate_x_m,estimate_y_m,truth_x_m,truth_y_m,estimate_z_m,truth_z_m,travelled_m,sigma_m,"
+      "nees\n";
+  for (const Scoring::Track& track : scoring.tracks())
+    for (const ErrorSample& sample : *track.samples)
+      text += fmt::format("{:.6f},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.3f},{:.6f},{:.6f}\n",
+                          sample.time_s, track.metric, sample.error_m, sample.estimate_m.x(), sample.estimate_m.y(),
+                          sample.truth_m.x(), sample.truth_m.y(), sample.estimate_m.z(), sample.truth_m.z(),
+                          sample.travelled_m, sample.sigma_m, sample.nees);
+  write_file(directory + "/errors.csv", text);
+}
+
+void Results::write_metrics(const std::string& directory, const Summary& summary) const {
+  std::string text = "metric,value\n";
+  for (const auto& [name, value] : summary.metrics) text += fmt::format("{},{:.9g}\n", name, value);
+  write_file(directory + "/metrics.csv", text);
+}
+
+void Results::drop_branch() {
+  std::error_code error;
+  if (!kept_.empty()) std::filesystem::remove_all(kept_, error);
+  kept_.clear();
+}
+
+void Results::begin_branch(sim::Time back_to, bool ours) {
+  kept_.clear();
+  const std::string path = directory_ + "/tracks.csv";
+  const auto cannot_cut = [&] { return cannot_write(path, std::strerror(errno)); };
+  if (std::fflush(tracks_) != 0) throw cannot_cut();
+  std::ifstream in(path);
+  std::string line;
+  std::uintmax_t keep = 0;
+  // Times are written with all their digits.
+  for (bool first = true; std::getline(in, line); first = false) {
+    if (!first && (!ours || std::strtod(line.c_str(), nullptr) > sim::to_seconds(back_to) + 1e-7)) break;
+    keep += line.size() + 1;
+  }
+  std::error_code error;
+  std::filesystem::resize_file(path, keep, error);
+  if (error) throw cannot_write(path, error.message());
+  if (std::fseek(tracks_, 0, SEEK_END) != 0) throw cannot_cut();
+}
+
+void Results::keep_branch(const Summary& left, const Scoring& scoring, const sim::ConfigNode& resolved) {
+  const std::string directory = directory_ + "/branch" + std::to_string(left.branch);
+  std::error_code error;
+  if (!std::filesystem::exists(directory, error)) kept_ = directory;
+  write_summary(directory, left);
+  write_metrics(directory, left);
+  write_errors(directory, scoring);
+  write_file(directory + "/world.yaml", sim::to_yaml(resolved));
+  if (std::fflush(tracks_) != 0) throw cannot_write(directory_ + "/tracks.csv", std::strerror(errno));
+  std::filesystem::copy_file(directory_ + "/tracks.csv", directory + "/tracks.csv",
+                             std::filesystem::copy_options::overwrite_existing, error);
+  if (error) throw cannot_write(directory + "/tracks.csv", error.message());
+}
+
+void Results::close_tracks() {
+  const bool bad = std::ferror(tracks_) != 0;
+  const bool closed = std::fclose(std::exchange(tracks_, nullptr)) == 0;
+  if (bad || !closed)
+    throw std::runtime_error(error_.value_or(
+        cannot_write(directory_ + "/tracks.csv", closed ? "an earlier write failed" : std::strerror(errno)).what()));
+}
+
+void Results::finish(const Summary& summary, const Scoring& scoring, const sim::ConfigNode& resolved,
+                     const std::function<bool()>& give_up) {
+  std::optional<std::string> first_error;
+  const auto attempt = [&](const auto& write_it) {
+    try {
+      write_it();
+    } catch (const std::exception& error) {
+      if (!first_error) first_error = error.what();
+    }
+  };
+  attempt([&] { summary_file_.write(summary.to_json()); });
+  attempt([&] { close_tracks(); });
+  attempt([&] { write_metrics(directory_, summary); });
+  attempt([&] { write_errors(directory_, scoring); });
+  attempt([&] { write_results_world(directory_, resolved); });
+  attempt([&] { plot(summary, scoring, give_up); });
+  if (first_error) throw std::runtime_error(*first_error);
+}
+
+void Results::plot(const Summary& summary, const Scoring& scoring, const std::function<bool()>& give_up) const {
+  if (summary.steps == 0 || error_ || !pictures_) return;
+  // The script names its files without a directory, so that the folder can be moved and plotted again.
+  write("plot.gp", run_pictures_script(world_, scoring));
+  const bool plotted = run_gnuplot(directory_, "plot.gp", std::chrono::seconds(30), give_up);
+  if (!plotted && !give_up() && summary.ended != "signal")
+    spdlog::warn("no pictures: gnuplot failed, see {}/plot.log", directory_);
+}
+
+}  // namespace tools

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/results/run_record.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "tools/experiment/files/json_reader.hpp"
+
+namespace tools {
+
+namespace {
+
+constexpr std::uintmax_t most_bytes = std::uintmax_t{64} << 20;
+
+std::map<std::string, std::optional<double>> read_figures(const JsonReader& in) {
+  std::map<std::string, std::optional<double>> figures;
+  for (const auto& [name, value] : in.object("metrics").items()) {
+    if (!value.is_number() && !value.is_null())
+      throw std::runtime_error(in.where() + ": 'metrics': '" + name + "' must be a number or null, got " +
+                               value.type_name());
+    figures[name] = value.is_null() ? std::nullopt : std::optional<double>(value.get<double>());
+  }
+  return figures;
+}
+
+/// Older versions wrote that a run had passed though nothing was judged.
+Judgement judgement_in(const JsonReader& in, bool has_rules) {
+  if (in.at("passed").is_null()) return Judgement::not_judged;
+  const bool passed = in.boolean("passed");
+  const bool judged = in.has("judged") ? in.boolean("judged") : has_rules;
+  return passed && !judged ? Judgement::not_judged : judgement_of(passed);
+}
+
+}  // namespace
+
+std::string read_whole_file(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) throw std::runtime_error(path + ": is a folder");
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw std::runtime_error(path + ": cannot be read: " + std::strerror(errno));
+  const auto size = std::filesystem::file_size(path, error);
+  if (!error && size > most_bytes) throw std::runtime_error(path + ": is larger than 64 MB");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+nlohmann::ordered_json read_json_file(const std::string& path) {
+  try {
+    return nlohmann::ordered_json::parse(read_whole_file(path));
+  } catch (const nlohmann::json::exception& error) {
+    throw std::runtime_error(path + ": is no JSON: " + error.what());
+  }
+}
+
+RunRecord read_run(const std::string& directory) {
+  const std::string path = directory + "/summary.json";
+  const auto json = read_json_file(path);
+  const JsonReader in(json, path);
+  RunRecord run;
+  run.directory = directory;
+  run.world = in.text("world");
+  if (in.has("description")) run.description = in.text("description");
+  run.seed = in.whole("seed");
+  run.steps = in.whole("steps");
+  run.sim_time_s = in.number("sim_time_s");
+  run.wall_s = in.number("wall_s");
+  run.state_hash = in.text("state_hash");
+  if (in.has("run_hash")) run.run_hash = in.text("run_hash");
+  run.messages = in.whole("messages");
+  run.dropped_messages = in.whole("dropped_messages");
+  run.bad_messages = in.whole("bad_messages");
+  run.quick_steps = in.whole("quick_steps");
+  if (in.has("modem_dropped_messages")) run.modem_dropped_messages = in.whole("modem_dropped_messages");
+  run.metrics = read_figures(in);
+  for (const auto& item : in.list("rules")) {
+    const JsonReader rule(item, path + ": rules");
+    run.rules.push_back({rule.text("rule"), rule.boolean("passed")});
+  }
+  for (const auto& item : in.list("processes")) {
+    const JsonReader process(item, path + ": processes");
+    run.processes.push_back({process.text("name"), process.text("how"), process.number("sim_time_s"),
+                             process.has("failed") && process.boolean("failed")});
+  }
+  if (in.has("contacts"))
+    for (const auto& item : in.list("contacts")) {
+      const JsonReader contact(item, path + ": contacts");
+      run.contacts.push_back(
+          {contact.text("vehicle"), contact.text("with"), contact.number("first_s"), contact.whole("count")});
+    }
+  if (in.has("event")) {
+    const JsonReader event(in.object("event"), path + ": event");
+    run.event = RunRecord::Rule{event.text("text"), event.boolean("passed")};
+  }
+  run.judgement = judgement_in(in, !run.rules.empty() || run.event);
+  if (run.judgement == Judgement::not_judged)
+    run.not_judged = in.has("not_judged") ? in.text("not_judged") : "it had no rules";
+  run.ended = in.text("ended");
+  run.error = in.text("error");
+  run.exit_code = static_cast<int>(in.whole("exit_code"));
+  if (in.has("shoal")) run.version = in.text("shoal");
+  return run;
+}
+
+}  // namespace tools

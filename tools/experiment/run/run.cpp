@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/run/run.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "bridges/base/bus_error.hpp"
+#include "tools/experiment/results/results_world.hpp"
+#include "tools/experiment/files/run_error.hpp"
+#include "tools/experiment/snapshot/run_identity.hpp"
+#include "tools/experiment/run/run_ports.hpp"
+
+namespace tools {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+}  // namespace
+
+Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
+    : loaded_(loaded),
+      options_(options),
+      files_(files_text(loaded.resolved)),
+      buses_(loaded.config, options),
+      others_(buses_.networks(), options.lcm_shared),
+      journal_(buses_.outer()),
+      world_(loaded.config, buses_.outer(),
+             options.serial_ports ? journal_.wrap(serial_ports_of(loaded.config, options)) : sim::PortOpener(),
+             [this](const std::string& name) -> sim::Bus& { return buses_.of(name); }),
+      lockstep_(world_, control_),
+      service_(buses_.outer(), buses_.network(), world_, control_, lockstep_,
+               {sim::to_yaml(loaded.resolved), version_text(), build_text(), files_}),
+      scoring_(world_),
+      mail_(buses_, journal_, service_, lockstep_),
+      branch_log_(buses_, journal_, options.record, options.overwrite),
+      time_(world_, control_, scoring_, service_, mail_, time_options(),
+            {[this](std::int64_t to_step, bool ours) { leave_branch(to_step, ours); }, [this] { stay(); },
+             [this](bool ours) { begin_branch(ours); }}),
+      duration_s_(options.duration_s.value_or(loaded.config.run.duration_s)),
+      progress_(duration_s_, options.quiet || !spdlog::should_log(spdlog::level::info)),
+      programs_(loaded.config, options, buses_) {
+  journal_.attach(world_);
+  journal_.set_heard([this] { return heard() || buses_.gate().reads("sim.hash"); });
+  service_.use_journal(journal_);
+  service_.use_others(others_);
+  world_.use_threads(options.threads);
+  lockstep_.add_line(buses_.network(), buses_.gate());
+  for (const sim::BusConfig& bus : loaded.config.buses) {
+    service_.serve_vehicles(buses_.network(bus.name));
+    lockstep_.add_line(buses_.network(bus.name), buses_.gate(bus.name), bus.name);
+  }
+  control_.speed = options.speed.value_or(loaded.config.run.speed);
+  control_.paused = options.paused;
+  if (options.from) {
+    try {
+      time_.go_on_from(*options.from);
+    } catch (const std::runtime_error& error) {
+      throw RunError(2, "configuration", options.from_file + ": " + error.what());
+    }
+    // What came before is not in this run's log, and a gap says so.
+    journal_.begin_branch(control_.branch, 1);
+  }
+  if (!options.results.empty()) {
+    results_ = std::make_unique<Results>(options.results, world_, options.pictures);
+    write_results_world(options.results, loaded.resolved);
+  }
+  make_key();
+  if (!options.quiet) scoring_.contacts().set_say([this](const std::string& line) { progress_.say(line); });
+  progress_.restart(world_.now());
+  plan_snapshots();
+  if (options.keys && !options.quiet && TerminalKeys::possible()) {
+    keys_ = std::make_unique<RunKeys>(
+        time_, control_, [this](const std::string& text) { progress_.say(text); },
+        [this](const std::string& text) { progress_.ask(text); });
+    progress_.say(RunKeys::help());
+  }
+}
+
+void Run::make_key() {
+  const bool from_elsewhere = buses_.over_lcm() && buses_.leave_machine();
+  if (from_elsewhere && options_.open_control)
+    spdlog::warn("--open-control: whoever reaches the network of this run may control it");
+  if (!buses_.over_lcm() || options_.open_control || (!from_elsewhere && !options_.control_key)) return;
+  key_file_ = std::make_unique<RunKeyFile>(options_.results);
+  lockstep_.guard().require(key_file_->key());
+  programs_.set_run_key(key_file_->key().text());
+  spdlog::info("control of this run needs its key: shoal control --run {}, or SHOAL_RUN_KEY", key_file_->folder());
+}
+
+TimeControl::Options Run::time_options() const {
+  constexpr double usual_rewind_s = 60;
+  const bool somebody_can_ask =
+      options_.bus != "none" || (options_.keys && !options_.quiet && TerminalKeys::possible());
+  TimeControl::Options time;
+  time.rewind_s = options_.rewind_s.value_or(somebody_can_ask ? usual_rewind_s : 0);
+  time.most_bytes = static_cast<std::size_t>(options_.rewind_MB * 1e6);
+  time.directory = options_.snapshots;
+  if (time.directory.empty() && !options_.results.empty()) time.directory = options_.results + "/snapshots";
+  time.overwrite = options_.overwrite;
+  time.resolved_world = sim::to_yaml(loaded_.resolved);
+  time.files = files_;
+  time.version = short_version();
+  return time;
+}
+
+void Run::obey() {
+  service_.handle_requests();
+  if (keys_) keys_->read();
+  if (!time_.broken().empty()) throw RunError(3, "fault", time_.broken());
+}
+
+Summary Run::go() {
+  Summary summary;
+  const Clock::time_point begin = Clock::now();
+  try {
+    start_clients();
+    loop();
+    summary.ended = how_ended();
+    if (caught_signal() != 0) summary.exit_code = 128 + caught_signal();
+  } catch (const RunError& error) {
+    summary.fail(error.exit_code, error.ended, error.what());
+  } catch (const sim::PhysicsFault& error) {
+    summary.fail(3, "fault", error.what());
+  } catch (const bridges::LockstepTimeout& error) {
+    summary.fail(5, "timeout", error.what());
+  } catch (const std::exception& error) {
+    summary.fail(4, "error", error.what());
+  }
+  progress_.clear();
+  summary.wall_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  finish(summary);
+  return summary;
+}
+
+std::string Run::how_ended() const {
+  if (caught_signal() != 0) return "signal";
+  if (world_.ended()) return "event";
+  return control_.quit ? "quit" : "duration";
+}
+
+bool Run::wanted() const {
+  return caught_signal() == 0 && !control_.quit;
+}
+
+void Run::start_clients() {
+  if (const auto other = others_.look([this](std::chrono::milliseconds time) { buses_.wait(time); })) {
+    alone_ = false;
+    throw RunError(4, "bus",
+                   *other +
+                       "; clients and reports of the two would mix: choose another port with --lcm-url, or share "
+                       "this one with --lcm-shared");
+  }
+  service_.publish_info();  // a log tells of its run from the first event
+  if (options_.from) publish_snapshot();
+  buses_.end_of_step();
+  await(programs_.start());
+}
+
+void Run::await(const std::vector<std::string>& clients) {
+  const auto begin = Clock::now();
+  const auto deadline = begin + std::chrono::duration<double>(loaded_.config.lockstep.join_timeout_s);
+  for (const std::string& client : clients) {
+    bool said = false;
+    while (!lockstep_.has(client) && wanted()) {
+      service_.handle_requests();
+      check_programs();
+      check_bus();
+      if (programs_.is_gone(client)) break;
+      if (Clock::now() > deadline)
+        throw RunError(5, "timeout",
+                       "lockstep: client '" + client + "' has not joined within " +
+                           fmt::format("{:g} s", loaded_.config.lockstep.join_timeout_s));
+      if (!said && Clock::now() - begin > std::chrono::seconds(1)) {
+        spdlog::info("waiting for '{}' to join the lockstep", client);
+        said = true;
+      }
+      buses_.wait(std::chrono::milliseconds(20));
+    }
+  }
+}
+
+void Run::loop() {
+  journal_.start();
+  end_of_step();
+  const sim::Time end = duration_s_ > 0 ? sim::from_seconds(duration_s_) : sim::Time::max();
+  while (wanted() && !world_.ended() && world_.now() < end) {
+    obey();
+    if (time_.take_moved()) synchronized_ = false;
+    if (!control_.may_step()) {
+      progress_.update(world_.now(), messages(), control_, true);
+      check_programs();
+      check_bus();
+      buses_.hand_over_record();
+      buses_.wait(std::chrono::milliseconds(20));
+      continue;
+    }
+    if (synchronized_) pace();
+    if (!control_.may_step() || time_.has_moved()) continue;
+    if (synchronized_)
+      step();
+    else
+      synchronize();
+  }
+}
+
+void Run::step() {
+  admit_mail();
+  watch_.begin();
+  world_.step();
+  watch_.end();
+  ++steps_taken_;
+  control_.step_taken();
+  end_of_step();
+  check_step_time();
+  if (const auto error = buses_.record_error()) throw RunError(4, "bus", *error);
+  if (results_)
+    if (const auto error = results_->error()) throw RunError(4, "bus", *error);
+  if (world_.step_number() % 100 == 0) check_bus();
+  // Looking for dead children costs a system call; ten times a simulated second will do.
+  if (world_.step_number() % 10 == 0) check_programs();
+  progress_.update(world_.now(), messages(), control_, false);
+}
+
+void Run::check_step_time() {
+  if (const auto warning = watch_.take_warning()) {
+    progress_.clear();
+    spdlog::warn("{}", *warning);
+  }
+  if (const auto why = watch_.beyond_limit()) throw RunError(5, "limit", *why);
+}
+
+void Run::admit_mail() {
+  buses_.set_time(world_.now());
+  buses_.admit(
+      [this](const std::string& bus, std::span<const sim::MailGate::Mail> mail) { journal_.admitted(bus, mail); });
+}
+
+void Run::end_of_step() {
+  service_.publish_step();
+  journal_.after_step();
+  if (steps_taken_ > 0) scoring_.after_step();
+  if (results_ && steps_taken_ > 0) results_->after_step();
+  buses_.end_of_step();
+  time_.after_step();
+  if (const auto oldest = time_.oldest_step()) branch_log_.mark(world_.step_number(), *oldest);
+  take_snapshots();
+  if (time_.stop_when_there()) progress_.restart(world_.now());
+  synchronize();
+}
+
+void Run::synchronize() {
+  const auto outcome = lockstep_.synchronize([this](std::chrono::milliseconds time) { buses_.wait(time); },
+                                             [this] {
+                                               obey();
+                                               if (control_.paused)
+                                                 progress_.update(world_.now(), messages(), control_, true);
+                                               check_programs();
+                                               check_bus();
+                                               buses_.hand_over_record();
+                                               return caught_signal() == 0 && !time_.has_moved();
+                                             });
+  synchronized_ = outcome == bridges::LockstepOutcome::done && !time_.has_moved();
+}
+
+void Run::pace() {
+  const sim::Time next = world_.now() + world_.step_time();
+  for (auto wait = pacer_.until(next, control_); wait.count() > 0 && wanted() && control_.may_step();
+       wait = pacer_.until(next, control_)) {
+    if (wait > std::chrono::milliseconds(2)) {
+      buses_.hand_over_record();
+      const auto nap = std::chrono::duration_cast<std::chrono::milliseconds>(wait) - std::chrono::milliseconds(1);
+      buses_.wait(std::min(nap, std::chrono::milliseconds(20)));
+    } else {
+      std::this_thread::sleep_for(wait);
+    }
+    obey();
+    if (time_.has_moved()) return;
+  }
+}
+
+void Run::check_bus() const {
+  if (const auto lost = buses_.lost_connection()) throw RunError(4, "bus", *lost);
+}
+
+RunPrograms::Clients Run::clients(bool goes_on) {
+  return {[this, goes_on](const std::string& client) {
+            if (goes_on) service_.handle_requests();  // its last may be that it leaves
+            return lockstep_.has_left(client);
+          },
+          [this](const std::string& client) {
+            progress_.clear();
+            service_.client_gone(client);
+            return !lockstep_.has(client);
+          }};
+}
+
+void Run::check_programs() {
+  programs_.check(world_.now(), clients(true));
+}
+
+std::uint64_t Run::messages() const {
+  const sim::BusCounts counts = buses_.counts();
+  return counts.published + counts.received;
+}
+
+}  // namespace tools

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <set>
+#include <string>
+
+#include "bridges/lockstep/lockstep_service.hpp"
+#include "bridges/control/other_simulators.hpp"
+#include "bridges/log/run_journal.hpp"
+#include "bridges/control/sim_service.hpp"
+#include "sim/run/run_control.hpp"
+#include "tools/experiment/run/branch_log.hpp"
+#include "tools/experiment/run/pacer.hpp"
+#include "tools/experiment/terminal/progress.hpp"
+#include "tools/experiment/results/results.hpp"
+#include "tools/experiment/run/run_buses.hpp"
+#include "tools/experiment/run/run_key_file.hpp"
+#include "tools/experiment/run/run_keys.hpp"
+#include "tools/experiment/run/run_mail.hpp"
+#include "tools/experiment/run/run_programs.hpp"
+#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/score/scoring.hpp"
+#include "tools/experiment/run/step_watch.hpp"
+#include "tools/experiment/run/time_control.hpp"
+
+namespace tools {
+
+/// One run of a world: its parts, and the loop over steps.
+class Run {
+ public:
+  /// Both must outlive this.  Throws ConfigError, BusError, std::runtime_error.
+  Run(const sim::LoadedWorld& loaded, const RunOptions& options);
+  /// From the first step to the summary.
+  Summary go();
+
+ private:
+  /// Makes the key of the run when control of it needs one.
+  void make_key();
+  void start_clients();
+  void await(const std::vector<std::string>& clients);
+  void loop();
+  void step();
+  /// Hands what has come from outside to the world, and writes it down.
+  void admit_mail();
+  void end_of_step();
+  TimeControl::Options time_options() const;
+  void leave_branch(std::int64_t to_step, bool ours);
+  void stay();
+  void begin_branch(bool ours);
+  /// What the run goes on from: a log that begins here can be run again.
+  void publish_snapshot();
+  bool heard();
+  /// Which steps are nearest to the times of --snapshot-at.  Throws RunError for one that the run cannot come to.
+  void plan_snapshots();
+  void take_snapshots();
+  void tell_missed_snapshots() const;
+  /// Requests and keys.
+  void obey();
+  void synchronize();
+  /// Waits until the next step is due, answering requests meanwhile.
+  void pace();
+  void check_bus() const;
+  /// Reports steps that take very long.  Throws RunError for one beyond the limit of the world.
+  void check_step_time();
+  /// `goes_on`: requests may still change the world.
+  RunPrograms::Clients clients(bool goes_on);
+  void check_programs();
+  bool wanted() const;
+  std::string how_ended() const;
+  std::uint64_t messages() const;
+  void finish(Summary& summary);
+  void add_figures(Summary& summary);
+  void write_results(Summary& summary);
+
+  const sim::LoadedWorld& loaded_;
+  const RunOptions& options_;
+  const std::string files_;  ///< hashes of those that the world names
+  RunBuses buses_;
+  bridges::OtherSimulators others_;  ///< are asked before the world is built
+  sim::RunControl control_;
+  bridges::RunJournal journal_;
+  sim::World world_;
+  bridges::LockstepService lockstep_;
+  bridges::SimService service_;
+  Scoring scoring_;
+  RunMail mail_;
+  BranchLog branch_log_;
+  TimeControl time_;
+  double duration_s_;
+  Progress progress_;
+  Pacer pacer_;
+  RunPrograms programs_;
+  StepWatch watch_{world_};
+  bool synchronized_ = true;              ///< the clients have answered the present step
+  bool alone_ = true;                     ///< no other simulator was found at the start
+  std::unique_ptr<RunKeyFile> key_file_;  ///< null: control needs no key
+  std::unique_ptr<Results> results_;
+  std::unique_ptr<RunKeys> keys_;          ///< null: no terminal
+  std::int64_t steps_taken_ = 0;           ///< in this process
+  std::set<std::int64_t> snapshot_steps_;  ///< still to come
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace tools

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/run/run_buses.hpp"
+
+#include <filesystem>
+#include <thread>
+
+#include "bridges/base/bus_error.hpp"
+#include "bridges/lcm/bus_reach.hpp"
+#include "sim/bus/in_process_bus.hpp"
+
+namespace tools {
+
+namespace {
+
+/// A pipe without a reader would stop the run for good, a terminal or a disk would get a log that nobody wants there.
+void check_record(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return;
+  const bool folder = std::filesystem::is_directory(status);
+  throw bridges::BusError(path + ": cannot record: it is " +
+                          (folder ? "a folder" : "not a regular file; --special-files allows pipes and devices"));
+}
+
+}  // namespace
+
+RunBuses::RunBuses(const sim::WorldConfig& world, const RunOptions& options) {
+  main_ = open(options.lcm_url, options);
+  if (!options.record.empty() && !options.special_files) check_record(options.record);
+  if (!options.record.empty())
+    main_.recorder = std::make_unique<bridges::RecordingBus>(
+        *main_.network, options.record, world.epoch_us,
+        options.overwrite ? bridges::Existing::overwrite : bridges::Existing::refuse);
+  main_.close_gate();
+  std::map<std::string, std::string> names{{main_.lcm ? main_.lcm->url() : "", "the world's"}};
+  for (const sim::BusConfig& bus : world.buses) {
+    Line line = open(bus.lcm_url, options);
+    if (line.lcm) {
+      const auto [other, fresh] = names.emplace(line.lcm->url(), "bus '" + bus.name + "'");
+      if (!fresh)
+        throw bridges::BusError("bus '" + bus.name + "' and " + other->second + " have the same LCM URL " +
+                                line.lcm->url());
+    }
+    if (main_.recorder) line.recorder = std::make_unique<bridges::RecordingBus>(*line.network, *main_.recorder);
+    line.close_gate();
+    others_.emplace(bus.name, std::move(line));
+  }
+}
+
+RunBuses::Line RunBuses::open(const std::string& url, const RunOptions& options) {
+  Line line;
+  if (options.bus == "none") {
+    line.network = std::make_unique<sim::InProcessBus>();
+    return line;
+  }
+  bridges::LcmBusOptions lcm_options;
+  lcm_options.arrivals = arrivals_;
+  auto lcm = std::make_unique<bridges::LcmBus>(url, lcm_options);
+  line.lcm = lcm.get();
+  line.network = std::move(lcm);
+  return line;
+}
+
+std::string RunBuses::url(const std::string& name) const {
+  const Line& line = name.empty() ? main_ : others_.at(name);
+  return line.lcm ? line.lcm->url() : "";
+}
+
+bool RunBuses::leave_machine() const {
+  bool leave = false;
+  for_each([&](const Line& line) { leave = leave || (line.lcm && bridges::leaves_machine(line.lcm->url())); });
+  return leave;
+}
+
+std::vector<bridges::OtherSimulators::BusToAsk> RunBuses::networks() const {
+  std::vector<bridges::OtherSimulators::BusToAsk> networks;
+  for_each([&](const Line& line) {
+    if (line.lcm) networks.push_back({line.lcm->url(), line.lcm});
+  });
+  return networks;
+}
+
+void RunBuses::admit(const Admitted& admitted) {
+  const auto hand_over = [&](const std::string& name, Line& line) {
+    const std::vector<sim::MailGate::Mail>& mail = line.gate->admit();
+    if (mail.empty()) return;
+    if (line.recorder && !muted_) line.recorder->admitted(mail);
+    admitted(name, mail);
+  };
+  hand_over("", main_);
+  for (auto& [name, line] : others_) hand_over(name, line);
+}
+
+void RunBuses::wait(std::chrono::milliseconds time) {
+  if (over_lcm())
+    arrivals_->wait(time);
+  else
+    std::this_thread::sleep_for(time);
+}
+
+void RunBuses::end_of_step() {
+  outer().end_of_step();
+  for (auto& [name, line] : others_) line.outer().end_of_step();
+}
+
+void RunBuses::set_time(sim::Time at) {
+  if (main_.recorder) main_.recorder->set_time(at);
+}
+
+std::optional<std::string> RunBuses::lost_connection() const {
+  std::optional<std::string> lost;
+  for_each([&](const Line& line) {
+    if (line.lcm && !line.lcm->connected() && !lost) lost = "the connection to " + line.lcm->url() + " was lost";
+  });
+  return lost;
+}
+
+std::optional<std::string> RunBuses::record_error() const {
+  return main_.recorder ? main_.recorder->error() : std::nullopt;
+}
+
+void RunBuses::close_record() {
+  if (main_.recorder) main_.recorder->close();
+}
+
+void RunBuses::hand_over_record() {
+  if (main_.recorder) main_.recorder->hand_over();
+}
+
+RunBuses::RecordMark RunBuses::record_mark() const {
+  return main_.recorder ? RecordMark{main_.recorder->recorded(), main_.recorder->bytes()} : RecordMark{};
+}
+
+void RunBuses::prepare_record(const std::string& path, const RecordMark& mark, bool overwrite) {
+  if (!main_.recorder) return;
+  main_.recorder->prepare(path, mark.events, mark.bytes,
+                          overwrite ? bridges::Existing::overwrite : bridges::Existing::refuse);
+}
+
+void RunBuses::branch_record() {
+  if (main_.recorder) main_.recorder->go_on();
+}
+
+void RunBuses::give_up_record() {
+  if (main_.recorder) main_.recorder->give_up();
+}
+
+void RunBuses::set_muted(bool muted) {
+  muted_ = muted;
+  for_each([&](const Line& line) {
+    line.mute->set_muted(true);  // what waits in the network goes as well
+    line.gate->collect();
+    line.gate->waiting().clear();
+    line.mute->set_muted(muted);
+  });
+}
+
+sim::BusCounts RunBuses::counts() const {
+  sim::BusCounts sum;
+  for_each([&](const Line& line) {
+    const sim::BusCounts counts = line.gate->counts();
+    sum.published += counts.published;
+    sum.received += counts.received;
+    sum.dropped_outgoing += counts.dropped_outgoing;
+    sum.dropped_incoming += counts.dropped_incoming;
+  });
+  return sum;
+}
+
+}  // namespace tools

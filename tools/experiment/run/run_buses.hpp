@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bridges/lcm/lcm_bus.hpp"
+#include "bridges/control/other_simulators.hpp"
+#include "bridges/log/recording_bus.hpp"
+#include "sim/bus/bus.hpp"
+#include "sim/bus/mail_gate.hpp"
+#include "sim/world_file/world_config.hpp"
+#include "tools/experiment/run/mute_bus.hpp"
+#include "tools/experiment/run/runner.hpp"
+
+namespace tools {
+
+/// The buses of a run: the world's, and those that vehicles have to themselves.  With a record, all are written into
+/// one log.
+class RunBuses {
+ public:
+  /// Throws BusError.
+  RunBuses(const sim::WorldConfig& world, const RunOptions& options);
+
+  /// The world's bus, recorded, behind its gate.
+  sim::Bus& outer() { return main_.outer(); }
+  /// The world's bus without the record.
+  sim::Bus& network(const std::string& name = {}) { return name.empty() ? *main_.network : *others_.at(name).network; }
+  /// The bus of a name in `buses:`, recorded, behind its gate; empty: the world's.
+  sim::Bus& of(const std::string& name) { return name.empty() ? main_.outer() : others_.at(name).outer(); }
+  /// The gate of a bus; empty: the world's.
+  sim::MailGate& gate(const std::string& name = {}) { return name.empty() ? *main_.gate : *others_.at(name).gate; }
+  /// The begin of a step: hands over what has come on every bus, the world's first, then by name, and tells of it.
+  using Admitted = std::function<void(const std::string& bus, std::span<const sim::MailGate::Mail> mail)>;
+  void admit(const Admitted& admitted);
+
+  bool over_lcm() const { return main_.lcm != nullptr; }
+  /// Whether other machines can be heard on any of them.
+  bool leave_machine() const;
+  /// LCM URL of a bus; empty when it is none.
+  std::string url(const std::string& name) const;
+  /// Those over LCM, without record and gate.
+  std::vector<bridges::OtherSimulators::BusToAsk> networks() const;
+  /// Waits for a message on any bus, up to `time`.
+  void wait(std::chrono::milliseconds time);
+  void end_of_step();
+  /// The step that begins, for what the record receives.
+  void set_time(sim::Time at);
+  /// What went wrong with a connection or the record.
+  std::optional<std::string> lost_connection() const;
+  std::optional<std::string> record_error() const;
+  void close_record();
+  /// Lets the record be written as far as it is; for a run that stands still.
+  void hand_over_record();
+  /// Where the record is.
+  struct RecordMark {
+    std::uint64_t events = 0, bytes = 0;
+  };
+  RecordMark record_mark() const;
+  /// Makes another record, which begins with the present one's up to a mark.  Throws BusError.
+  void prepare_record(const std::string& path, const RecordMark& mark, bool overwrite);
+  /// Goes on with the record that was prepared, or removes it.
+  void branch_record();
+  void give_up_record();
+  /// While muted nothing goes to the networks and into the record, and what comes in is thrown away.  What waits at the
+  /// gates is thrown away at both calls.
+  void set_muted(bool muted);
+  /// Of all buses.
+  sim::BusCounts counts() const;
+
+ private:
+  struct Line {
+    std::unique_ptr<sim::Bus> network;
+    bridges::LcmBus* lcm = nullptr;  ///< the same, when it is LCM
+    std::unique_ptr<bridges::RecordingBus> recorder;
+    std::unique_ptr<MuteBus> mute;
+    std::unique_ptr<sim::MailGate> gate;
+    sim::Bus& outer() { return *gate; }
+    void close_gate() {
+      mute = std::make_unique<MuteBus>(recorder ? static_cast<sim::Bus&>(*recorder) : *network);
+      gate = std::make_unique<sim::MailGate>(*mute);
+    }
+  };
+  Line open(const std::string& url, const RunOptions& options);
+  template <typename Use>
+  void for_each(Use&& use) const {
+    use(main_);
+    for (const auto& [name, line] : others_) use(line);
+  }
+
+  std::shared_ptr<bridges::Arrivals> arrivals_ = std::make_shared<bridges::Arrivals>();
+  bool muted_ = false;
+  Line main_;
+  std::map<std::string, Line, std::less<>> others_;  // destroyed before the main one, whose log they write
+};
+
+}  // namespace tools

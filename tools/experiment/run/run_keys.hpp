@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "sim/run/run_control.hpp"
+#include "tools/experiment/terminal/key_sequences.hpp"
+#include "tools/experiment/terminal/terminal_keys.hpp"
+#include "tools/experiment/run/time_control.hpp"
+
+namespace tools {
+
+/// What each key does to a run.
+class RunKeys {
+ public:
+  /// `say` shows a line of words, `ask` an unfinished line.  All must outlive this.
+  using Show = std::function<void(const std::string& text)>;
+  RunKeys(TimeControl& time, sim::RunControl& control, Show say, Show ask);
+
+  /// One or two lines that name all keys.
+  static std::string help();
+  /// Obeys the keys that were pressed.
+  void read();
+  void press(char key);
+
+ private:
+  void obey(char key);
+  void answer(char key);
+  void change_speed(double factor);
+  std::string run_state() const;
+
+  TimeControl& time_;
+  sim::RunControl& control_;
+  Show say_, ask_;
+  TerminalKeys keys_;
+  KeySequences sequences_;
+  bool asking_ = false;
+  std::string answer_;
+};
+
+}  // namespace tools

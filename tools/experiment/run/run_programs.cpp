@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/run/run_programs.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include "tools/experiment/files/run_error.hpp"
+#include "tools/experiment/run/run_name.hpp"
+
+namespace tools {
+
+RunPrograms::RunPrograms(const sim::WorldConfig& config, const RunOptions& options, RunBuses& buses)
+    : config_(config), options_(options), buses_(buses) {}
+
+std::vector<std::string> RunPrograms::start() {
+  std::vector<std::string> awaited = options_.await;
+  if (!options_.launch) {
+    if (!config_.processes.empty() && !options_.quiet)
+      spdlog::info("the world names {} processes; --launch starts them", config_.processes.size());
+    return awaited;
+  }
+  for (sim::ProcessConfig process : config_.processes) {
+    for (std::string& argument : process.command) argument = with_run_name(argument, options_.name);
+    try {
+      processes_.start(process, buses_.url(process.bus), options_.results);
+    } catch (const std::runtime_error& error) {
+      throw RunError(4, "process", error.what());
+    }
+    if (!process.client.empty()) awaited.push_back(process.client);
+  }
+  return awaited;
+}
+
+std::vector<ProcessGroup::Exit> RunPrograms::reap(const Clients& clients) {
+  std::vector<ProcessGroup::Exit> exits = processes_.reap();
+  for (ProcessGroup::Exit& exit : exits) {
+    if (exit.failed || exit.client.empty() || clients.has_left(exit.client)) continue;
+    exit.failed = true;
+    exit.how += " before the last tick of client '" + exit.client + "', which did not leave";
+  }
+  return exits;
+}
+
+void RunPrograms::check(sim::Time now, const Clients& clients) {
+  if (processes_.empty()) return;
+  for (const ProcessGroup::Exit& exit : reap(clients)) {
+    const std::string text = "process '" + exit.name + "' " + exit.how;
+    note(exit, now);
+    if (exit.ends_run) throw RunError(1, "process", text + "; the world says the run ends with it");
+    const bool goes_on = clients.gone(exit.client);
+    if (exit.failed && !exit.ignored)
+      spdlog::error("{}; {}", text,
+                    goes_on ? "the run goes on without it, and fails" : "its `on_timeout` decides what follows");
+    else
+      spdlog::info("{}", text);
+    gone_.insert(exit.client);
+  }
+}
+
+void RunPrograms::note(const ProcessGroup::Exit& exit, sim::Time now) {
+  ended_.push_back({exit.name, exit.how, sim::to_seconds(now), exit.failed && !exit.ignored});
+}
+
+void RunPrograms::note_last(sim::Time now, const Clients& clients) {
+  if (processes_.empty()) return;
+  for (const ProcessGroup::Exit& exit : reap(clients)) note(exit, now);
+}
+
+}  // namespace tools

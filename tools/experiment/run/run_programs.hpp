@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "sim/world_file/world_config.hpp"
+#include "tools/experiment/process/process_group.hpp"
+#include "tools/experiment/results/results.hpp"
+#include "tools/experiment/run/run_buses.hpp"
+
+namespace tools {
+
+/// The programs that a world names: started, awaited, watched.
+class RunPrograms {
+ public:
+  /// All must outlive this.
+  RunPrograms(const sim::WorldConfig& config, const RunOptions& options, RunBuses& buses);
+
+  /// What the programs get as SHOAL_RUN_KEY; empty: none.
+  void set_run_key(const std::string& text) { processes_.set_run_key(text); }
+  /// Starts the programs when the options say so.  Returns the lockstep clients to wait for.  Throws RunError.
+  std::vector<std::string> start();
+  /// What the lockstep knows of its clients, by name.
+  struct Clients {
+    /// It asked to leave, and takes no part any more.
+    std::function<bool(const std::string& client)> has_left;
+    /// Its process is gone.  Says whether the run goes on without it at once; else its `on_timeout` decides.
+    std::function<bool(const std::string& client)> gone;
+  };
+
+  /// Looks for programs that have ended.  A client that ended before its last tick and did not leave has failed,
+  /// whatever its exit code.  Throws RunError when the world says that the run ends with one.
+  void check(sim::Time now, const Clients& clients);
+  /// The run is about to end, and to tell the programs: notes those that have ended by themselves.
+  void note_last(sim::Time now, const Clients& clients);
+  bool is_gone(const std::string& client) const { return gone_.contains(client); }
+  /// Lets those that take part in the lockstep end by themselves.
+  void await_clients() { processes_.await_clients(); }
+  void stop() { processes_.stop(); }
+  /// Those that ended before the run did.
+  const std::vector<Summary::Process>& ended() const { return ended_; }
+
+ private:
+  std::vector<ProcessGroup::Exit> reap(const Clients& clients);
+  void note(const ProcessGroup::Exit& exit, sim::Time now);
+
+  const sim::WorldConfig& config_;
+  const RunOptions& options_;
+  RunBuses& buses_;
+  ProcessGroup processes_;
+  std::vector<Summary::Process> ended_;
+  std::set<std::string, std::less<>> gone_;
+};
+
+}  // namespace tools

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <spdlog/spdlog.h>
+
+#include "devices/comms/message_modem.hpp"
+#include "devices/common/serial_port.hpp"
+#include "sim/acoustics/channel.hpp"
+#include "tools/experiment/run/run.hpp"
+
+namespace tools {
+
+namespace {
+
+/// One that came while the run was ending counts as well.
+void note_signal(Summary& summary) {
+  if (caught_signal() != 0 && summary.exit_code <= 1 && summary.error.empty())
+    summary.fail(128 + caught_signal(), "signal", "");
+}
+
+/// All that the world names, or somebody who was started by hand.
+bool programs_take_part(const sim::WorldConfig& world, const RunOptions& options) {
+  return world.processes.empty() || options.launch || !options.await.empty();
+}
+
+}  // namespace
+
+void Run::finish(Summary& summary) {
+  const OrderlyEnd orderly;
+  programs_.note_last(world_.now(), clients(false));
+  if (alone_) {    // else the bus is another simulator's
+    admit_mail();  // what came after the last step is in the log: the journal says that it came from outside
+    journal_.finish(summary.ended != "fault" && summary.ended != "error");
+    lockstep_.publish_end([this](std::chrono::milliseconds time) { buses_.wait(time); },
+                          std::chrono::milliseconds(caught_signal() == 0 ? 1000 : 200));
+    if (caught_signal() == 0) programs_.await_clients();
+  }
+  programs_.stop();
+  buses_.close_record();
+  if (const auto error = buses_.record_error(); error && summary.exit_code == 0) summary.fail(4, "bus", *error);
+  add_figures(summary);
+  sim::Warnings warnings;
+  if (summary.steps > 0 && programs_take_part(loaded_.config, options_)) scoring_.warn_of_silence(warnings);
+  // A rule, a program, or the event that ended it.
+  if (summary.exit_code == 0 && summary.judgement() == Judgement::failed) summary.exit_code = 1;
+  note_signal(summary);
+  if (results_) write_results(summary);
+  tell_missed_snapshots();
+}
+
+void Run::add_figures(Summary& summary) {
+  const sim::BusCounts counts = buses_.counts();
+  summary.world = loaded_.config.name;
+  summary.description = loaded_.config.description;
+  summary.seed = loaded_.config.run.seed;
+  summary.branch = control_.branch;
+  summary.snapshot = options_.from_file;
+  summary.from_s = time_.scores_from_s();
+  summary.stepped_s = sim::to_seconds(world_.step_time() * steps_taken_);
+  summary.version = short_version();
+  summary.steps = world_.step_number();
+  summary.sim_time_s = sim::to_seconds(world_.now());
+  summary.duration_s = duration_s_;
+  summary.state_hash = world_.state_hash();
+  summary.run_hash = world_.run_hash();
+  summary.messages = counts.published + counts.received;
+  summary.dropped_messages = counts.dropped_incoming + counts.dropped_outgoing + lockstep_.dropped_messages();
+  summary.bad_messages =
+      world_.counts().bad_messages + service_.bad_messages() + lockstep_.bad_messages() + scoring_.bad_messages();
+  summary.quick_steps = world_.physics().quick_steps();
+  const LinkCounts links = link_counts(world_, "", "");
+  if (!world_.acoustics().transducers().empty()) summary.acoustics = links;
+  summary.modem_dropped_messages = world_.shared<devices::MessageModems>().dropped_from_queues();
+  summary.serial_dropped_bytes = devices::serial_dropped_bytes(world_);
+  summary.metrics = scoring_.figures();
+  summary.verdicts = scoring_.verdicts();
+  summary.processes = programs_.ended();
+  summary.clients = lockstep_.summaries();
+  summary.needs_key = lockstep_.guard().requires_key();
+  summary.refused_requests = service_.refused_requests();
+  summary.notices = service_.notices().all();
+  summary.notice_count = service_.notices().count();
+  summary.event = world_.ended();
+  for (const auto& [vehicle, record] : world_.zone_records()) summary.zones[vehicle] = record;
+  // Without the programs that a world names there is nothing to judge.
+  const bool took_part = programs_take_part(loaded_.config, options_);
+  if (!took_part && !summary.verdicts.empty())
+    summary.no_verdicts = "its programs took no part: see --launch and --await";
+  if (!took_part) summary.verdicts.clear();
+  const auto rules = static_cast<std::ptrdiff_t>(summary.verdicts.size());
+  summary.contacts = scoring_.contacts().all();
+  summary.judge_processes();
+  summary.judge_clients();
+  // A rule is about the whole run; a program that failed has failed.
+  if (summary.ended_by_hand()) summary.verdicts.erase(summary.verdicts.begin(), summary.verdicts.begin() + rules);
+}
+
+void Run::write_results(Summary& summary) {
+  const int exit_code = summary.exit_code;
+  const int signals = caught_signals();
+  try {
+    results_->finish(summary, scoring_, loaded_.resolved, [&] { return caught_signals() != signals; });
+  } catch (const std::exception& error) {
+    if (summary.exit_code <= 1 && summary.error.empty()) summary.fail(4, "bus", error.what());
+  }
+  note_signal(summary);
+  if (summary.exit_code == exit_code) return;
+  try {
+    results_->write_summary_again(summary);
+  } catch (const std::exception& error) {
+    spdlog::debug("{}", error.what());
+  }
+}
+
+}  // namespace tools

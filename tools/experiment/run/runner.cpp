@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/run/runner.hpp"
+
+#include <filesystem>
+#include <optional>
+
+#include "sim/config/diagnostics.hpp"
+#include "tools/experiment/process/process_check.hpp"
+#include "tools/experiment/results/results_lock.hpp"
+#include "tools/experiment/run/run.hpp"
+#include "tools/experiment/files/run_error.hpp"
+
+namespace tools {
+
+Summary run_world(const sim::LoadedWorld& loaded, const RunOptions& options) {
+  Summary summary;
+  summary.world = loaded.config.name;
+  summary.seed = loaded.config.run.seed;
+  summary.version = short_version();
+  const auto fail = [&](int exit_code, const std::string& ended, const char* error) {
+    summary.fail(exit_code, ended, error);
+    if (!options.results.empty()) try_to_write_summary(options.results, summary);
+  };
+  std::optional<ResultsLock> lock;
+  try {
+    if (!options.results.empty()) lock.emplace(options.results);
+  } catch (const RunError& error) {  // nothing in there is touched: it is another's
+    summary.fail(error.exit_code, error.ended, error.what());
+    return summary;
+  }
+  // An old summary would be taken for this run's if this one were killed.
+  std::error_code ignored;
+  if (!options.results.empty()) std::filesystem::remove(options.results + "/summary.json", ignored);
+  try {
+    if (options.launch && options.bus == "none")
+      throw RunError(2, "configuration", "--launch needs the LCM bus: processes cannot attach to --bus none");
+    if (options.launch || !options.await.empty()) {
+      sim::Warnings warnings;
+      warn_of_processes(loaded, warnings);
+    }
+    return Run(loaded, options).go();
+  } catch (const sim::ConfigError& error) {
+    fail(2, "configuration", error.what());
+    throw;
+  } catch (const RunError& error) {
+    fail(error.exit_code, error.ended, error.what());
+  } catch (const std::exception& error) {  // bus, record, serial port or results could not be opened
+    fail(4, "bus", error.what());
+  }
+  return summary;
+}
+
+}  // namespace tools

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/run/step_watch.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <ctime>
+
+namespace tools {
+
+namespace {
+
+double thread_cpu_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// A step below this is quick enough for anybody, however short it is in simulated time.
+constexpr double slow_step_s = 0.02;
+constexpr double slow_times = 5;
+constexpr int slow_steps_to_warn = 3;
+/// A heap of a few bodies has fewer rows; other work than physics was slow then.
+constexpr int many_rows = 500;
+
+}  // namespace
+
+void StepWatch::begin() {
+  begun_s_ = thread_cpu_s();
+}
+
+void StepWatch::end() {
+  last_s_ = thread_cpu_s() - begun_s_;
+  const double times = last_s_ / sim::to_seconds(world_.step_time());
+  const bool slow = last_s_ > slow_step_s && times > slow_times && times > 10 * said_times_;
+  slow_steps_ = slow && world_.physics().last_step().largest_island_rows >= many_rows ? slow_steps_ + 1 : 0;
+  if (slow_steps_ >= slow_steps_to_warn) warn_ = times;
+}
+
+std::optional<std::string> StepWatch::beyond_limit() const {
+  const double limit_s = world_.config().limits.step_cpu_s;
+  if (limit_s <= 0 || last_s_ <= limit_s) return std::nullopt;
+  return fmt::format("step {} took {:.3g} s of CPU time, more than 'limits: step_cpu_s' {:g} allows{}",
+                     world_.step_number(), last_s_, limit_s, slow_island());
+}
+
+std::optional<std::string> StepWatch::take_warning() {
+  if (!warn_) return std::nullopt;
+  said_times_ = *std::exchange(warn_, std::nullopt);
+  slow_steps_ = 0;
+  return fmt::format("step {} took {:.3g} s of CPU time, {:.0f} times as long as it simulates{}; see docs/warnings.md",
+                     world_.step_number(), last_s_, said_times_, slow_island());
+}
+
+/// `: 200 bodies are solved together, with 9801 constraint rows: 'a', 'b', 'c', ...`
+std::string StepWatch::slow_island() const {
+  constexpr std::size_t max_names = 3;
+  const sim::IslandInfo island = world_.physics().largest_island();
+  if (island.rows < many_rows) return "";
+  std::string names;
+  for (std::size_t i = 0; i < std::min(max_names, island.bodies.size()); ++i)
+    names += (i > 0 ? ", '" : "'") + island.bodies[i] + "'";
+  return fmt::format(
+      ": {} bodies touch or are joined and are solved together, with {} contacts in all and {} rows: {}{}",
+      island.body_count, world_.physics().last_step().contacts, island.rows, names,
+      island.body_count > max_names ? ", ..." : "");
+}
+
+}  // namespace tools

@@ -1,0 +1,440 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/run/time_control.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "sim/config/message_text.hpp"
+#include "sim/state/state_archive.hpp"
+#include "sim/base/state_hash.hpp"
+
+namespace tools {
+
+namespace {
+
+constexpr int most_files = 1000;
+constexpr const char* suffix = ".snapshot";
+/// Between two snapshots for going back at least this many times what the last one cost (the steps after it take
+/// longer too, for their memory is not in the caches any more): in a run that is much faster
+/// than real time they are further apart, and the steps between them take the less time to work out again.
+constexpr int rest_per_snapshot = 80;
+/// A client whose last tick is further before the step that the world goes back to gets a list that is not whole:
+/// running all that again would take too long.
+constexpr std::int64_t longest_lead_s = 60;
+
+/// One run of bytes that the ring can compare part by part, and back.  Its last bytes tell the three sizes.
+constexpr std::size_t trailer_bytes = 3 * sizeof(std::uint64_t);
+
+sim::Bytes joined(const sim::Bytes& state, const sim::Bytes& scores, const sim::Bytes& owners) {
+  sim::Bytes all;
+  all.reserve(state.size() + scores.size() + owners.size() + 64);
+  for (const sim::Bytes* part : {&state, &scores, &owners}) all.insert(all.end(), part->begin(), part->end());
+  auto trailer = sim::StateArchive::saver();
+  trailer.section("sizes");
+  for (const sim::Bytes* part : {&state, &scores, &owners}) {
+    std::uint64_t size = part->size();
+    trailer(size);
+  }
+  trailer.end();
+  const sim::Bytes sizes = trailer.take_bytes();
+  all.insert(all.end(), sizes.begin(), sizes.end());
+  return all;
+}
+
+std::uint64_t hash_of(const sim::Bytes& bytes) {
+  sim::StateHash hash;
+  hash.add_bytes(bytes.data(), bytes.size());
+  return hash.value();
+}
+
+/// The line where two texts part.
+std::string first_difference(const std::string& there, const std::string& here) {
+  std::size_t begin = 0;
+  int line = 1;
+  while (begin < there.size() && begin < here.size()) {
+    const std::size_t end_there = std::min(there.find('\n', begin), there.size());
+    const std::size_t end_here = std::min(here.find('\n', begin), here.size());
+    const std::string a = there.substr(begin, end_there - begin);
+    const std::string b = here.substr(begin, end_here - begin);
+    if (a != b) return fmt::format("line {}: '{}' there, '{}' here", line, sim::shortened(a), sim::shortened(b));
+    begin = end_here + 1;
+    ++line;
+  }
+  return fmt::format("line {}: one is longer", line);
+}
+
+}  // namespace
+
+TimeControl::TimeControl(sim::World& world, sim::RunControl& control, Scoring& scoring, bridges::SimService& service,
+                         RunMail& mail, Options options, Hooks hooks)
+    : world_(world),
+      control_(control),
+      scoring_(scoring),
+      service_(service),
+      mail_(mail),
+      options_(std::move(options)),
+      hooks_(std::move(hooks)),
+      steps_per_second_(std::max<std::int64_t>(1, std::llround(1e6 / static_cast<double>(world.step_time().count())))),
+      ring_(std::llround(options_.rewind_s * static_cast<double>(steps_per_second_)), options_.most_bytes) {
+  service_.set_time_machine(this);
+  if (options_.rewind_s > 0) mail_.keep(options_.most_bytes, [this] { forget_all(); });
+}
+
+TimeControl::Saved TimeControl::save(History history) const {
+  Saved saved;
+  saved.state = world_.snapshot();
+  auto scores = sim::StateArchive::saver();
+  scoring_.visit_state(scores, history);
+  scores.end();
+  saved.scores = scores.take_bytes();
+  auto owners = sim::StateArchive::saver();
+  owners.section("owners");
+  service_.visit_state(owners);
+  owners.end();
+  saved.owners = owners.take_bytes();
+  return saved;
+}
+
+void TimeControl::load(const Saved& saved, History history) {
+  world_.restore(saved.state);
+  load_beside(saved, history);
+}
+
+void TimeControl::load_beside(const Saved& saved, History history) {
+  auto scores = sim::StateArchive::restorer(saved.scores);
+  scoring_.visit_state(scores, history);
+  scores.end();
+  auto owners = sim::StateArchive::restorer(saved.owners);
+  owners.section("owners");
+  service_.visit_state(owners);
+  owners.end();
+}
+
+void TimeControl::after_step() {
+  if (options_.rewind_s <= 0) return;
+  const std::int64_t step = world_.step_number();
+  const bool due = step % steps_per_second_ == 0 || ring_.size() == 0;
+  if (!due) return;
+  const auto begin = Clock::now();
+  if (ring_.size() > 0 && begin < not_before_) return;
+  try {
+    const Saved saved = save(History::length);
+    ring_.add(step, joined(saved.state, saved.scores, saved.owners), mail_.bytes());
+  } catch (const sim::SnapshotError& error) {
+    spdlog::warn("this run cannot go back: {}", error.what());
+    options_.rewind_s = 0;
+    return forget_all();
+  }
+  mail_.forget_before(*ring_.oldest());
+  const auto end = Clock::now();
+  not_before_ = end + rest_per_snapshot * (end - begin);
+}
+
+void TimeControl::forget_all() {
+  ring_.forget_after(-1);
+  mail_.forget_from(-1);
+}
+
+bool TimeControl::stop_when_there() {
+  const bool there = control_.until && world_.now() >= *control_.until;
+  const bool fired =
+      !control_.until_event.empty() && world_.event_firings(control_.until_event).value_or(0) > control_.until_firings;
+  if (!there && !fired) return false;
+  control_.forget_until();
+  control_.set_paused(true);
+  return true;
+}
+
+std::optional<std::string> TimeControl::obey(const std::string& command, const std::string& text, double value) {
+  const auto run_on = [&] {
+    if (!text.empty() && text != "run")
+      throw std::runtime_error("'rewind' takes the text 'run' or none, got '" + sim::shortened(sim::printable(text)) +
+                               "'");
+    return text == "run";
+  };
+  if (command == "snapshot") return write_snapshot(text);
+  if (command == "restore") return restore(text, value == 1);
+  if (command == "rewind") return rewind(value, run_on());
+  if (command == "until") return text.empty() ? run_until(value) : run_until_event(text);
+  if (command == "where") {
+    const std::string waits = service_.waits_for();
+    return place() + (waits.empty() ? "" : ", " + waits) + what_is_kept();
+  }
+  if (command == "pause" || command == "resume") {
+    control_.set_paused(command == "pause");
+    return place();
+  }
+  if (command == "step") return step(value);
+  if (command == "speed") return set_speed(value);
+  return std::nullopt;
+}
+
+std::string TimeControl::step(double count) {
+  if (!(count >= 1 && count <= 1e9 && count == std::floor(count)))
+    throw std::runtime_error(fmt::format("'step' needs a whole number of steps from 1 to 1e9, got {}", count));
+  control_.add_steps(static_cast<std::int64_t>(count));
+  return place() + fmt::format(", takes {} step{}", control_.single_steps, control_.single_steps == 1 ? "" : "s");
+}
+
+std::string TimeControl::set_speed(double times) {
+  if (times != 0 && !(times >= 1e-3 && times <= 1e6))
+    throw std::runtime_error(
+        fmt::format("'speed' must be 0 (as fast as possible) or from 0.001 to 1e6, got {}", times));
+  control_.set_speed(times);
+  return place() + (times > 0 ? fmt::format(", {:g} x real time", times) : ", as fast as possible");
+}
+
+std::string TimeControl::place() const {
+  return fmt::format("step {}, {:.6g} s, branch {}{}", world_.step_number(), sim::to_seconds(world_.now()),
+                     control_.branch, control_.paused ? ", paused" : "");
+}
+
+std::string TimeControl::what_is_kept() const {
+  const auto oldest = ring_.oldest();
+  if (!oldest) return "";
+  return fmt::format("; can go back to {:.6g} s, which takes {:.2f} MB", sim::to_seconds(world_.step_time() * *oldest),
+                     static_cast<double>(bytes()) / 1e6);
+}
+
+std::string TimeControl::run_until(double time_s) {
+  if (!(time_s > sim::to_seconds(world_.now()) && time_s <= 1e9))
+    throw std::runtime_error(fmt::format("'until' needs a time after now ({:.6g} s) and at most 1e9 s, got {}",
+                                         sim::to_seconds(world_.now()), time_s));
+  control_.forget_until();
+  control_.until = sim::from_seconds(time_s);
+  control_.set_paused(false);
+  return place() + fmt::format(", runs until {:.6g} s", time_s);
+}
+
+std::string TimeControl::run_until_event(const std::string& name) {
+  const auto firings = world_.event_firings(name);
+  if (!firings)
+    throw std::runtime_error("'until' needs a time or the name of an event of the world, got '" +
+                             sim::shortened(sim::printable(name)) + "'");
+  control_.forget_until();
+  control_.until_event = name;
+  control_.until_firings = *firings;
+  control_.set_paused(false);
+  return place() + ", runs until event '" + name + "' fires";
+}
+
+std::string TimeControl::rewind(double seconds, bool run_on) {
+  if (options_.rewind_s <= 0) throw std::runtime_error("this run keeps no snapshots to go back to: see --rewind-s");
+  if (!(seconds > 0 && seconds <= 1e9))
+    throw std::runtime_error(fmt::format("'rewind' needs a value above 0, in seconds, got {}", seconds));
+  const double steps = seconds * 1e6 / static_cast<double>(world_.step_time().count());
+  if (std::llround(steps) < 1)
+    throw std::runtime_error(fmt::format("'rewind' by {} s is less than half a step of {:.6g} s", seconds,
+                                         sim::to_seconds(world_.step_time())));
+  if (world_.step_number() == first_step_) throw std::runtime_error("the run is at its begin: it cannot go back");
+  // Who wants to go back further than it has come goes to the begin.
+  const std::int64_t target = std::max<std::int64_t>(world_.step_number() - std::llround(steps), first_step_);
+  auto base = ring_.newest_until(mail_.needed_from(target, longest_lead_s * steps_per_second_));
+  if (!base) base = ring_.newest_until(target);  // some client will lack reports
+  if (!base) {
+    const double oldest_s = sim::to_seconds(sim::Time{ring_.oldest().value_or(0) * world_.step_time().count()});
+    throw std::runtime_error(fmt::format("cannot go back {:.6g} s from {:.6g} s: what is kept begins at {:.6g} s",
+                                         seconds, sim::to_seconds(world_.now()), oldest_s));
+  }
+  go_back(*base, target, run_on);
+  return place();
+}
+
+void TimeControl::go_back(std::int64_t base, std::int64_t target, bool run_on) {
+  travel(
+      [&] {
+        const sim::Bytes all = ring_.get(base);
+        std::uint64_t sizes[3];
+        std::memcpy(sizes, all.data() + all.size() - trailer_bytes, trailer_bytes);
+        const auto at = [&](std::uint64_t offset) { return all.begin() + static_cast<std::ptrdiff_t>(offset); };
+        load({{at(0), at(sizes[0])},
+              {at(sizes[0]), at(sizes[0] + sizes[1])},
+              {at(sizes[0] + sizes[1]), at(sizes[0] + sizes[1] + sizes[2])}},
+             History::length);
+        simulate_again(target);
+        ring_.forget_after(target);
+        mail_.forget_from(target);
+        written_.erase(written_.upper_bound(target), written_.end());
+      },
+      target, run_on, true);
+}
+
+void TimeControl::simulate_again(std::int64_t to_step) {
+  mail_.begin_again(world_.step_number());
+  while (world_.step_number() < to_step) {
+    mail_.deliver(world_.step_number());
+    world_.step();
+    service_.publish_step();  // metrics may count it; nobody else hears it
+    scoring_.after_step();
+    if (world_.step_number() < to_step) mail_.pass(world_.step_number());
+  }
+}
+
+void TimeControl::travel(const std::function<void()>& work, std::int64_t to_step, bool run_on, bool ours) {
+  const Saved before = save(History::whole);
+  try {
+    if (hooks_.leaving) hooks_.leaving(to_step, ours);
+  } catch (const std::exception&) {
+    if (hooks_.stayed) hooks_.stayed();
+    throw;
+  }
+  mail_.begin_again(world_.step_number());
+  try {
+    work();
+  } catch (const std::exception&) {
+    put_back(before);
+    throw;
+  }
+  mail_.end_again();
+  ++control_.branch;
+  control_.forget_until();
+  control_.set_paused(!run_on);
+  moved_ = true;
+  try {
+    if (hooks_.arrived) hooks_.arrived(ours);
+  } catch (const std::exception& error) {  // half of the run is there: it cannot go on
+    broken_ = error.what();
+    throw;
+  }
+}
+
+void TimeControl::put_back(const Saved& before) {
+  try {
+    load(before, History::whole);
+  } catch (const std::exception& error) {
+    broken_ = error.what();
+  }
+  mail_.end_again();
+  if (hooks_.stayed) hooks_.stayed();
+}
+
+void TimeControl::go_on_from(const Snapshot& snapshot) {
+  if (snapshot.step_us != world_.step_time().count() || snapshot.epoch_us != world_.epoch_us())
+    throw std::runtime_error(fmt::format(
+        "the snapshot has a step of {} us and an epoch of {}, this world {} us and {}: they cannot be changed",
+        snapshot.step_us, snapshot.epoch_us, world_.step_time().count(), world_.epoch_us()));
+  world_.restore(snapshot.state);
+  first_step_ = world_.step_number();
+  options_.scores_from_s = snapshot.from_s;
+  try {
+    load_beside({{}, snapshot.scores, snapshot.owners}, History::whole);
+  } catch (const sim::SnapshotError&) {
+    throw std::runtime_error("the metrics of the snapshot are others than this world's: `metrics` cannot be changed");
+  }
+}
+
+Snapshot TimeControl::snapshot() const {
+  Snapshot s;
+  s.version = options_.version;
+  s.world = world_.config().name;
+  s.resolved_world = options_.resolved_world;
+  s.files = options_.files;
+  s.seed = world_.config().run.seed;
+  s.epoch_us = world_.epoch_us();
+  s.step_us = world_.step_time().count();
+  s.step = world_.step_number();
+  s.branch = control_.branch;
+  s.from_s = options_.scores_from_s;
+  s.state_hash = world_.state_hash();
+  for (const auto& vehicle : world_.vehicles()) s.vehicles.push_back(vehicle->name());
+  Saved saved = save(History::whole);
+  s.state = std::move(saved.state);
+  s.scores = std::move(saved.scores);
+  s.owners = std::move(saved.owners);
+  return s;
+}
+
+std::string TimeControl::path_of(const std::string& name) const {
+  if (options_.directory.empty())
+    throw std::runtime_error("this run has no directory for snapshots: see --snapshots and --results");
+  const bool good =
+      !name.empty() && name.size() <= 100 && name.front() != '.' && std::all_of(name.begin(), name.end(), [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-' || c == '_';
+      });
+  if (!good)
+    throw std::runtime_error(
+        "a snapshot has a file name of 1 to 100 letters, digits, '.', '-' and '_', not beginning with '.', got '" +
+        sim::shortened(sim::printable(name)) + "'");
+  return options_.directory + "/" + name + (name.ends_with(suffix) ? "" : suffix);
+}
+
+std::string TimeControl::write_snapshot(const std::string& name) {
+  if (files_ >= most_files)
+    throw std::runtime_error(fmt::format("this run wrote {} snapshots that were asked for already", most_files));
+  const std::string text = write_file(name);
+  ++files_;
+  return text;
+}
+
+std::string TimeControl::write_file(const std::string& name) {
+  const std::string path =
+      path_of(!name.empty() ? name : fmt::format("branch{}_step{}", control_.branch, world_.step_number()));
+  std::error_code error;
+  std::filesystem::create_directories(options_.directory, error);
+  if (!options_.overwrite && std::filesystem::exists(path, error))
+    throw std::runtime_error(path + ": exists already; choose another name");
+  const Snapshot written = snapshot();
+  tools::write_snapshot(path, written);
+  written_[written.step] = hash_of(written.state);
+  return place() + ": " + path;
+}
+
+std::string TimeControl::write_planned_snapshot() {
+  return write_file("");
+}
+
+std::string TimeControl::restore(const std::string& name, bool run_on) {
+  const std::string path = path_of(name);
+  const Snapshot snapshot = read_snapshot(path);
+  check_version(snapshot, path, options_.version);
+  if (snapshot.resolved_world != options_.resolved_world)
+    throw std::runtime_error(path + ": is of another world or other values: " +
+                             first_difference(snapshot.resolved_world, options_.resolved_world));
+  if (snapshot.files != options_.files)
+    throw std::runtime_error(
+        path + ": its world used other files than this run: " + first_difference(snapshot.files, options_.files));
+  if (!mail_.clients().empty()) {
+    restore_with_clients(snapshot, path, run_on);
+    return place();
+  }
+  travel(
+      [&] {
+        load({snapshot.state, snapshot.scores, snapshot.owners}, History::whole);
+        options_.scores_from_s = snapshot.from_s;
+        forget_all();
+        after_step();
+        first_step_ = std::min(first_step_, snapshot.step);
+        written_ = {{snapshot.step, hash_of(snapshot.state)}};
+      },
+      snapshot.step, run_on, false);
+  return place();
+}
+
+/// A file holds nothing of programs: they can only go where they have been in this run.
+void TimeControl::restore_with_clients(const Snapshot& snapshot, const std::string& path, bool run_on) {
+  const auto refuse = [&](const std::string& why) {
+    throw std::runtime_error(
+        fmt::format("{}: {}, and the lockstep clients ({}) cannot go where they have not been or "
+                    "what is forgotten: use 'rewind', or go on from the file in a new run, with "
+                    "'shoal run --from'",
+                    path, why, sim::shortened(mail_.clients())));
+  };
+  const auto written = written_.find(snapshot.step);
+  if (written == written_.end() || written->second != hash_of(snapshot.state))
+    refuse("was not written by this run on its way to " + place());
+  // Unlike rewind(): from later on some client would lack reports.  At the start of the run nobody had any.
+  const std::int64_t needed = mail_.needed_from(snapshot.step, longest_lead_s * steps_per_second_);
+  const auto base = ring_.newest_until(std::max(needed, first_step_));
+  if (!base)
+    refuse(ring_.oldest() ? fmt::format("its {:.6g} s are too early for what this run remembers, from {:.6g} s on",
+                                        snapshot.time_s(), sim::to_seconds(world_.step_time() * *ring_.oldest()))
+                          : "this run remembers nothing (see --rewind-s)");
+  go_back(*base, snapshot.step, run_on);
+}
+
+}  // namespace tools

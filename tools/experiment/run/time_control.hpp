@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "bridges/control/sim_service.hpp"
+#include "bridges/control/time_machine.hpp"
+#include "sim/run/run_control.hpp"
+#include "sim/world/world.hpp"
+#include "tools/experiment/run/run_mail.hpp"
+#include "tools/experiment/score/scoring.hpp"
+#include "tools/experiment/snapshot/snapshot_file.hpp"
+#include "tools/experiment/snapshot/snapshot_ring.hpp"
+
+namespace tools {
+
+/// Moves a running world in time: keeps snapshots of the last seconds and the mail since then, goes back to any step
+/// of them, writes snapshot files and goes on from them, and stops the run at a time or event.
+///
+/// Going back begins a new branch: RunControl::branch grows by one.
+class TimeControl final : public bridges::TimeMachine {
+ public:
+  struct Options {
+    double rewind_s = 0;  ///< how far back a run can go; 0: not at all
+    std::size_t most_bytes = std::size_t{64} << 20;
+    std::string directory;       ///< of snapshot files; empty: none can be asked for
+    bool overwrite = false;      ///< snapshot files may replace others
+    std::string resolved_world;  ///< YAML
+    std::string files;           ///< files_text() of it
+    std::string version;         ///< of shoal
+    double scores_from_s = 0;    ///< since when the scores count
+  };
+  /// What the run does when the world goes elsewhere in time.
+  struct Hooks {
+    /// Before: the branch is as it was left.  `ours`: the new one begins at a step that this run has been at.  The
+    /// world stays where it is when this throws.
+    std::function<void(std::int64_t to_step, bool ours)> leaving;
+    std::function<void()> stayed;            ///< the world is where it was after all
+    std::function<void(bool ours)> arrived;  ///< after
+  };
+
+  /// All must outlive this.
+  TimeControl(sim::World& world, sim::RunControl& control, Scoring& scoring, bridges::SimService& service,
+              RunMail& mail, Options options, Hooks hooks);
+
+  /// Call before the first step, and after each.
+  void after_step();
+  /// Pauses a run that has come where `until` said.  True: it did so now.
+  bool stop_when_there();
+
+  /// All that concerns time: pause, resume, step, speed, until, rewind, snapshot, restore and where.  Throws
+  /// std::runtime_error that says why it was refused.
+  std::optional<std::string> obey(const std::string& command, const std::string& text, double value) override;
+  /// Takes so many steps, a whole number, and stands still.
+  std::string step(double count);
+  /// Times real time; 0: as fast as possible.
+  std::string set_speed(double times);
+  /// Goes back by so many seconds, at most to where this run began.
+  std::string rewind(double seconds, bool run_on);
+  /// Runs to a time, or up to the next time an event fires, and pauses there.
+  std::string run_until(double time_s);
+  std::string run_until_event(const std::string& name);
+  /// Writes a file into the directory of snapshots; an empty name makes one of the step.  Whoever talks to the run can
+  /// ask for 1000 of them.
+  std::string write_snapshot(const std::string& name);
+  /// The same for what the command line asked for, without a limit.
+  std::string write_planned_snapshot();
+  /// Goes on from a file in the directory of snapshots.  With lockstep clients it goes back there as rewind() does, so
+  /// that they are where they were: to files that this run wrote on its way here, and while it remembers that step.
+  std::string restore(const std::string& name, bool run_on);
+
+  /// Begins a run with a snapshot.  Throws std::runtime_error when it does not fit.
+  void go_on_from(const Snapshot& snapshot);
+  double scores_from_s() const { return options_.scores_from_s; }
+  /// The world as it is.
+  Snapshot snapshot() const;
+  /// Where the world is: `step 2000, 20.00 s, branch 1`.
+  std::string place() const;
+  /// True once after each move in time.
+  bool has_moved() const { return moved_; }
+  bool take_moved() { return std::exchange(moved_, false); }
+  /// Why the world cannot go on.
+  const std::string& broken() const { return broken_; }
+  std::size_t bytes() const { return ring_.bytes() + mail_.bytes(); }
+  std::optional<std::int64_t> oldest_step() const { return ring_.oldest(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Saved {
+    sim::Bytes state, scores, owners;
+  };
+
+  Saved save(History history) const;
+  void load(const Saved& saved, History history);
+  void load_beside(const Saved& saved, History history);
+  void forget_all();
+  void simulate_again(std::int64_t to_step);
+  /// Carries out `work`, which moves the world; puts the world back when that fails.
+  void travel(const std::function<void()>& work, std::int64_t to_step, bool run_on, bool ours);
+  void put_back(const Saved& before);
+  /// To a step of this branch, from the snapshot in memory of an earlier one on.
+  void go_back(std::int64_t base, std::int64_t target, bool run_on);
+  void restore_with_clients(const Snapshot& snapshot, const std::string& path, bool run_on);
+  std::string what_is_kept() const;
+  std::string write_file(const std::string& name);
+  std::string path_of(const std::string& name) const;
+
+  sim::World& world_;
+  sim::RunControl& control_;
+  Scoring& scoring_;
+  bridges::SimService& service_;
+  RunMail& mail_;
+  Options options_;
+  Hooks hooks_;
+  std::int64_t steps_per_second_;
+  SnapshotRing ring_;
+  Clock::time_point not_before_;  // the next snapshot for going back
+  std::int64_t first_step_ = 0;   ///< where this run began, or an earlier file
+  int files_ = 0;
+  /// Steps at which a file was written, with the hash of its state: of this branch, back to where its past is known.
+  std::map<std::int64_t, std::uint64_t> written_;
+  bool moved_ = false;
+  std::string broken_;
+};
+
+}  // namespace tools

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ode/ode.h>
+#include <spdlog/fmt/fmt.h>
+
+#include "bridges/lcm/lcm_version.hpp"
+#include "tools/experiment/run/runner.hpp"
+
+namespace tools {
+
+std::string short_version() {
+  return fmt::format("{} ({})", SHOAL_VERSION, SHOAL_GIT_HASH);
+}
+
+std::string version_text() {
+  return fmt::format(
+      "shoal {}\n"
+      "ODE: {}\n"
+      "LCM {}, Eigen {}.{}.{}, fmt {}\n"
+      "compiler: {}\n",
+      short_version(), dGetConfiguration(), bridges::lcm_version(), EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
+      EIGEN_MINOR_VERSION, FMT_VERSION, __VERSION__);
+}
+
+}  // namespace tools

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "tools/experiment/score/metric.hpp"
+
+namespace tools {
+
+namespace {
+
+/// Two that part and touch again within this time have not parted: bodies bounce.
+constexpr double parted_after_s = 0.5;
+
+/// Contacts that began between vehicles, or a vehicle and an object.
+class CollisionMetric final : public Metric {
+ public:
+  CollisionMetric(const sim::MetricConfig& config, sim::World& world) : Metric(config), world_(world) {}
+
+  void after_step() override {
+    if (generation_ != world_.generation()) choose_groups();
+    const double now_s = sim::to_seconds(world_.now());
+    const auto parts = world_.physics().parts();
+    for (const sim::ContactReport& contact : world_.physics().contacts()) {
+      const int a = parts[static_cast<std::size_t>(contact.parts[0])].group;
+      const int b = parts[static_cast<std::size_t>(contact.parts[1])].group;
+      if (a != b && (matches(a, b) || matches(b, a))) touch(std::minmax(whose_.at(a), whose_.at(b)), now_s);
+    }
+  }
+
+  void visit_state(sim::StateArchive& archive, History) override {
+    archive(last_touch_s_, count_, first_s_);
+    // At once, not after the next step: a world that was built again watches no contacts yet.
+    if (archive.restoring()) choose_groups();
+  }
+
+  std::string why_none(const std::string&) const override { return "nothing touched" + since_from_s(); }
+
+  void add_figures(Figures& figures) const override {
+    add(figures, "count", static_cast<double>(count_));
+    add(figures, "first_s", first_s_);
+  }
+
+ private:
+  using Pair = std::pair<std::int64_t, std::int64_t>;
+  struct Group {
+    bool subject = false, object = false;
+  };
+
+  void choose_groups() {
+    generation_ = world_.generation();
+    groups_.clear();
+    whose_.clear();
+    for (const auto& vehicle : world_.vehicles()) {
+      const bool subject = config().vehicle.empty() || config().vehicle == vehicle->name();
+      add_group(vehicle->group(), 2 * static_cast<std::int64_t>(vehicle->number()),
+                {subject, config().with.empty() || config().with == vehicle->name()});
+      if (subject) world_.physics().watch_contacts(vehicle->group());
+    }
+    for (const auto& [name, object] : world_.objects()) {
+      const auto is_plane = [](const sim::PartConfig& part) { return part.shape == "plane"; };
+      const bool planes = std::all_of(object.config.parts.begin(), object.config.parts.end(), is_plane);
+      add_group(object.group, 2 * object.number + 1, {false, config().with.empty() ? !planes : config().with == name});
+    }
+  }
+
+  /// The number of a group is used again; `who` is not.
+  void add_group(int group, std::int64_t who, Group role) {
+    groups_[group] = role;
+    whose_[group] = who;
+  }
+
+  bool matches(int a, int b) const {
+    const auto subject = groups_.find(a);
+    const auto object = groups_.find(b);
+    return subject != groups_.end() && object != groups_.end() && subject->second.subject && object->second.object;
+  }
+
+  void touch(const Pair& pair, double now_s) {
+    const auto [last, fresh] = last_touch_s_.emplace(pair, now_s);
+    const bool begins = fresh || now_s - last->second > parted_after_s;
+    last->second = now_s;
+    if (!begins || now_s < config().from_s) return;
+    if (count_++ == 0) first_s_ = now_s;
+  }
+
+  sim::World& world_;
+  std::uint64_t generation_ = ~std::uint64_t{0};
+  std::map<int, Group> groups_;
+  std::map<int, std::int64_t> whose_;
+  std::map<Pair, double> last_touch_s_;
+  std::int64_t count_ = 0;
+  double first_s_ = no_figure;
+};
+
+}  // namespace
+
+std::unique_ptr<Metric> make_collision_metric(const sim::MetricConfig& config, sim::World& world) {
+  return std::make_unique<CollisionMetric>(config, world);
+}
+
+}  // namespace tools

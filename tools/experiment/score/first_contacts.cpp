@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/score/first_contacts.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+
+#include "devices/drive/wheel_geometry.hpp"
+#include "sim/world/vehicle.hpp"
+
+namespace tools {
+
+namespace {
+
+/// As metrics of collisions count: two that touch again sooner have not parted.
+constexpr double parted_after_s = 0.5;
+/// So long a vehicle settles on what it was put on.
+constexpr double settled_after_s = 0.1;
+/// A contact whose normal is steeper than 45 degrees carries.
+constexpr double carries = 0.7;
+
+constexpr std::size_t max_lines = 20;
+
+bool is_ground(const sim::ObjectConfig& object) {
+  return std::all_of(object.parts.begin(), object.parts.end(),
+                     [](const sim::PartConfig& part) { return part.shape == "plane" || part.shape == "terrain"; });
+}
+
+bool has_wheels(const sim::VehicleConfig& vehicle) {
+  return std::any_of(vehicle.joints.begin(), vehicle.joints.end(), [&](const sim::JointConfig& joint) {
+    const bool turns = joint.type == "hinge" || joint.type == "hinge2";
+    return turns && devices::wheel_geometry(vehicle, joint.name).rolls();
+  });
+}
+
+}  // namespace
+
+FirstContacts::FirstContacts(sim::World& world) : world_(world) {
+  choose_groups();
+}
+
+void FirstContacts::choose_groups() {
+  generation_ = world_.generation();
+  groups_.clear();
+  const auto put = [this](int group, Group entry) {
+    const auto at = static_cast<std::size_t>(group);
+    if (groups_.size() <= at) groups_.resize(at + 1);
+    groups_[at] = std::move(entry);
+  };
+  std::map<const sim::VehicleConfig*, bool> on_wheels;  // by key only
+  for (const auto& vehicle : world_.vehicles()) {
+    const auto [drives, fresh] = on_wheels.try_emplace(&vehicle->config());
+    if (fresh) drives->second = has_wheels(vehicle->config());
+    const std::int64_t who = 2 * static_cast<std::int64_t>(vehicle->number());
+    put(vehicle->group(), {who, vehicle->name(), true, drives->second, false, false});
+    since_s_.try_emplace(who, sim::to_seconds(world_.now()));
+    world_.physics().watch_contacts(vehicle->group());
+  }
+  for (const auto& [name, object] : world_.objects())
+    put(object.group, {2 * object.number + 1, name, false, false, is_ground(object.config), object.config.fixed});
+}
+
+void FirstContacts::after_step() {
+  if (generation_ != world_.generation()) choose_groups();
+  for (const sim::ContactReport& contact : world_.physics().contacts()) look_at(contact);
+}
+
+void FirstContacts::look_at(const sim::ContactReport& contact) {
+  const auto group_of = [&](int part) {
+    return static_cast<std::size_t>(world_.physics().parts()[static_cast<std::size_t>(part)].group);
+  };
+  const std::size_t first = group_of(contact.parts[0]), second = group_of(contact.parts[1]);
+  if (first == second || std::max(first, second) >= groups_.size()) return;
+  const Group &a = groups_[first], &b = groups_[second];
+  if (a.ground || b.ground) return;
+  const bool up = contact.normal_W.z() > carries, down = contact.normal_W.z() < -carries;
+  if (stands_on(a, b, up) || stands_on(b, a, down)) return;
+  touch(a, b);
+}
+
+bool FirstContacts::stands_on(const Group& vehicle, const Group& other, bool up) {
+  if (!vehicle.is_vehicle) return false;
+  if (up && vehicle.drives && other.fixed) return true;
+  const Pair pair{vehicle.who, other.who};
+  const auto came = since_s_.find(vehicle.who);
+  const double since_s = came == since_s_.end() ? 0 : came->second;
+  if (up && sim::to_seconds(world_.now()) <= since_s + settled_after_s) standing_.insert(pair);
+  return !standing_.empty() && standing_.contains(pair);
+}
+
+void FirstContacts::touch(const Group& a, const Group& b) {
+  const double now_s = sim::to_seconds(world_.now());
+  const Pair pair = std::minmax(a.who, b.who);
+  const auto [at, fresh] = contacts_.try_emplace(pair);
+  Contact& contact = at->second;
+  if (fresh) {
+    const bool in_order = a.is_vehicle && (!b.is_vehicle || a.who < b.who);
+    contact = {in_order ? a.name : b.name, in_order ? b.name : a.name, now_s, 0, now_s};
+  }
+  if (fresh || now_s - contact.last_s > parted_after_s) ++contact.count;
+  contact.last_s = now_s;
+  if (fresh) say(pair, contact);
+}
+
+/// Once, also when the run goes back and comes there again.
+void FirstContacts::say(const Pair& pair, const Contact& contact) {
+  if (!say_ || said_.size() > max_lines || !said_.emplace(pair, contact.first_s).second) return;
+  if (said_.size() > max_lines)
+    say_("more first contacts are counted only: the summary has them");
+  else
+    say_(fmt::format("{:.1f} s: {} hits {}", contact.first_s, contact.first, contact.second));
+}
+
+std::vector<FirstContacts::Contact> FirstContacts::all() const {
+  std::vector<Contact> all;
+  for (const auto& [pair, contact] : contacts_) all.push_back(contact);
+  std::stable_sort(all.begin(), all.end(), [](const Contact& a, const Contact& b) { return a.first_s < b.first_s; });
+  return all;
+}
+
+void FirstContacts::visit_state(sim::StateArchive& archive) {
+  archive(since_s_, standing_, contacts_);
+  // At once, not after the next step: a world that was built again watches no contacts yet.
+  if (archive.restoring()) choose_groups();
+}
+
+std::string contacts_text(const std::vector<FirstContacts::Contact>& contacts) {
+  constexpr std::size_t most = 10;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, contacts.size()); ++i)
+    text += fmt::format("  {} hit {}: {} {}, first at {:.2f} s\n", contacts[i].first, contacts[i].second,
+                        contacts[i].count, contacts[i].count == 1 ? "contact" : "contacts", contacts[i].first_s);
+  if (contacts.size() > most) text += fmt::format("  and {} more pairs hit each other\n", contacts.size() - most);
+  return text;
+}
+
+}  // namespace tools

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace tools {
+
+/// What the rules say of a run or a study.  Where nothing was judged nothing has passed.
+enum class Judgement { passed, failed, not_judged };
+
+/// For people: `passed`, `FAILED` or `not judged`.
+inline const char* judgement_word(Judgement judgement) {
+  if (judgement == Judgement::not_judged) return "not judged";
+  return judgement == Judgement::passed ? "passed" : "FAILED";
+}
+
+inline Judgement judgement_of(bool passed) {
+  return passed ? Judgement::passed : Judgement::failed;
+}
+
+/// As `passed` in JSON files: nothing, written as null, where nothing was judged.
+inline std::optional<bool> as_flag(Judgement judgement) {
+  if (judgement == Judgement::not_judged) return std::nullopt;
+  return judgement == Judgement::passed;
+}
+
+}  // namespace tools

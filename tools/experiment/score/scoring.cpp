@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/score/scoring.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+
+namespace tools {
+
+Scoring::Scoring(sim::World& world) : world_(world), contacts_(world) {
+  for (const sim::MetricConfig& config : world.config().metrics) metrics_.push_back(make(config));
+}
+
+Scoring::~Scoring() = default;
+
+const TruthHistory& Scoring::truth_of(const std::string& vehicle) {
+  std::unique_ptr<TruthHistory>& truth = truths_[vehicle];
+  if (!truth) truth = std::make_unique<TruthHistory>(world_, *world_.find_vehicle(vehicle));
+  return *truth;
+}
+
+std::unique_ptr<Metric> Scoring::make(const sim::MetricConfig& config) {
+  switch (config.type) {
+    case sim::MetricType::position_error:
+    case sim::MetricType::consistency:
+      return make_estimate_metric(config, world_, truth_of(config.vehicle));
+    case sim::MetricType::distance:
+      return make_distance_metric(config, world_, truth_of(config.vehicle));
+    case sim::MetricType::delivery:
+    case sim::MetricType::bytes_per_metre:
+      return make_link_metric(config, world_);
+    case sim::MetricType::mission_time:
+    case sim::MetricType::messages:
+      return make_event_metric(config, world_);
+    case sim::MetricType::lean:
+      return make_lean_metric(config, world_);
+    case sim::MetricType::collisions:
+      break;
+  }
+  return make_collision_metric(config, world_);
+}
+
+void Scoring::after_step() {
+  for (const auto& [vehicle, truth] : truths_) truth->after_step();
+  for (const auto& metric : metrics_) metric->after_step();
+  contacts_.after_step();
+}
+
+bool Scoring::is_early(const Metric& metric) const {
+  return sim::to_seconds(world_.now()) < metric.config().from_s;
+}
+
+Figures Scoring::figures() const {
+  Figures figures;
+  for (const bool needs_others : {false, true})
+    for (const auto& metric : metrics_) {
+      if (metric->needs_others() != needs_others) continue;
+      metric->add_figures(figures);
+      if (!is_early(*metric)) continue;
+      // What was not looked at has no count of 0 and no gap of 0 s: a rule would hold by that.
+      for (const std::string& name : metric->config().figures()) figures[name] = no_figure;
+    }
+  return figures;
+}
+
+void Scoring::visit_state(sim::StateArchive& archive, History history) {
+  for (const auto& [vehicle, truth] : truths_) {
+    archive.section("truth of " + vehicle);
+    archive(*truth);
+  }
+  for (const auto& metric : metrics_) {
+    archive.section("metric " + metric->config().name);
+    // NaN and infinity stand in figures for what was not seen yet.
+    struct State {
+      Metric& metric;
+      History history;
+      void visit_state(sim::StateArchive& each) { metric.visit_state(each, history); }
+    } state{*metric, history};
+    archive.not_only_finite(state);
+  }
+  archive.section("contacts");
+  archive(contacts_);
+}
+
+std::string Scoring::why_none(const std::string& name) const {
+  for (const auto& metric : metrics_) {
+    const sim::MetricConfig& config = metric->config();
+    if (!name.starts_with(config.name + ".")) continue;
+    if (is_early(*metric))
+      return fmt::format("the run ended at {:.6g} s, before from_s, {:.6g} s", sim::to_seconds(world_.now()),
+                         config.from_s);
+    return metric->why_none(name.substr(config.name.size() + 1));
+  }
+  return "there is no such metric";
+}
+
+Scoring::Verdict Scoring::judge(const sim::PassRule& rule, const Figures& figures) const {
+  const double value = figures.at(rule.metric);
+  const auto shown = [&](const std::string& name, double number) {
+    return std::isnan(number) ? "none: " + why_none(name) : fmt::format("{:.3f}", number);
+  };
+  const auto text = [&](const char* sign, const std::string& right) {
+    return fmt::format("{} ({}) {} {}", rule.metric, shown(rule.metric, value), sign, right);
+  };
+  if (rule.below) return {text("<", fmt::format("{}", *rule.below)), value < *rule.below};
+  if (rule.above) return {text(">", fmt::format("{}", *rule.above)), value > *rule.above};
+  if (rule.equals) return {text("==", fmt::format("{}", *rule.equals)), value == *rule.equals};
+  const bool below = !rule.below_metric.empty();
+  const std::string& other = below ? rule.below_metric : rule.above_metric;
+  const double limit = rule.factor * figures.at(other);
+  const std::string right = fmt::format("{} * {} ({})", rule.factor, other, shown(other, limit));
+  return {text(below ? "<" : ">", right), below ? value < limit : value > limit};
+}
+
+std::vector<Scoring::Verdict> Scoring::verdicts() const {
+  const Figures all = figures();
+  std::vector<Verdict> verdicts;
+  for (const sim::PassRule& rule : world_.config().pass) verdicts.push_back(judge(rule, all));
+  return verdicts;
+}
+
+std::vector<Scoring::Track> Scoring::tracks() const {
+  std::vector<Track> tracks;
+  for (const auto& metric : metrics_)
+    if (const std::vector<ErrorSample>* samples = metric->samples())
+      tracks.push_back({metric->config().name, metric->config().vehicle, metric->config().channel,
+                        metric->config().dimensions, samples});
+  return tracks;
+}
+
+std::int64_t Scoring::bad_messages() const {
+  std::int64_t sum = 0;
+  for (const auto& metric : metrics_) sum += metric->bad_messages();
+  return sum;
+}
+
+void Scoring::warn_of_silence(sim::Warnings& warnings) const {
+  for (const auto& metric : metrics_) {
+    const std::vector<ErrorSample>* samples = metric->samples();
+    if (samples == nullptr || !samples->empty()) continue;
+    const std::string& name = metric->config().name;
+    warnings.warn(metric->config().place, "metric '" + name + "'",
+                  why_none(name + ".samples") + ": its figures are not numbers");
+  }
+}
+
+}  // namespace tools

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "sim/state/state_archive.hpp"
+#include "sim/world/world.hpp"
+
+namespace tools {
+
+/// The true simulated time at which a vehicle's clock showed `utime`.  Any 64 bits may come: what lies too far off
+/// gives the smallest or largest time.
+sim::Time true_time_of(const sim::World& world, const sim::Vehicle& vehicle, std::int64_t utime);
+
+/// Where a vehicle was in the last seconds, and how far it had come.
+class TruthHistory {
+ public:
+  static constexpr double memory_s = 10;
+  struct Truth {
+    sim::Vector3d position_m = sim::Vector3d::Zero();
+    double travelled_m = 0;  ///< length of the way from the start
+    void visit_state(sim::StateArchive& archive) { archive(position_m, travelled_m); }
+  };
+
+  /// The world must outlive this, and keep the vehicle.
+  TruthHistory(const sim::World& world, const sim::Vehicle& vehicle);
+  /// Call once after every step.
+  void after_step();
+  const Truth& now() const;
+  /// At the step nearest to a time; nothing when it lies in the future or is forgotten.
+  std::optional<Truth> at(sim::Time time) const;
+  void visit_state(sim::StateArchive& archive);
+
+ private:
+  std::size_t slot_of(std::int64_t step) const { return static_cast<std::size_t>(step) % recent_.size(); }
+
+  const sim::World& world_;
+  std::string vehicle_;        ///< a restored world may have built it anew
+  std::vector<Truth> recent_;  ///< ring by step number
+};
+
+}  // namespace tools

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "shoal/sim_snapshot_t.hpp"
+#include "sim/bus/bus.hpp"
+#include "tools/experiment/snapshot/snapshot_file.hpp"
+
+namespace tools {
+
+/// A snapshot as messages for `sim.snapshot`, each of at most 60 kB, so that one is one datagram.  The scores stay
+/// behind: they change nothing that happens.
+std::vector<shoal::sim_snapshot_t> in_pieces(const Snapshot& snapshot, std::int32_t branch, std::int64_t mail_sequence);
+
+/// Puts the pieces together again.  They come from a log: some may be missing, twice, or anybody's.
+class SnapshotPieces {
+ public:
+  /// The bytes of the snapshot file when this was the last piece.  Throws shoal::MessageError for one that cannot be,
+  /// or that comes after others were lost.
+  std::optional<sim::Bytes> add(const shoal::sim_snapshot_t& piece);
+  /// What is missing of the last one, such as `pieces 3 to 4 of 7 of the snapshot of step 1000 are missing`; empty:
+  /// nothing.
+  std::string missing() const;
+
+ private:
+  bool continues(const shoal::sim_snapshot_t& piece) const;
+
+  std::optional<shoal::sim_snapshot_t> first_;  // without its data
+  std::int32_t next_ = 0;                       // piece that comes next
+  std::int32_t lost_until_ = 0;                 // pieces before this one are lost, from next_ on
+  sim::Bytes bytes_;
+};
+
+}  // namespace tools

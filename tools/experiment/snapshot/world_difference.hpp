@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/world_file/load_world.hpp"
+
+namespace tools {
+
+/// What a world has that another one has not, by name: `object 'box'`, `vehicle 'r1'`, `device 'r1/lidar'`,
+/// `event 'storm'`.
+std::vector<std::string> things_only_in(const sim::WorldConfig& world, const sim::WorldConfig& other);
+
+}  // namespace tools

@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/study/study_config.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <stdexcept>
+
+#include "shoal/message_writer.hpp"
+#include "sim/config/file_access.hpp"
+#include "sim/config/message_text.hpp"
+#include "sim/config/shipped_files.hpp"
+#include "sim/config/yaml_writer.hpp"
+
+namespace tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_seeds = 100000;
+constexpr double largest_seed = 9007199254740992.0;  // 2^53
+
+/// The first seed and how many.
+struct SeedRange {
+  std::int64_t first = 1;
+  std::int64_t count = 0;
+  void read(sim::ParamReader& in) {
+    in.read("first", first, sim::between(0, largest_seed), "the first seed");
+    in.require("count");
+    in.read("count", count, sim::between(1, static_cast<double>(most_seeds)), "how many");
+  }
+};
+
+std::optional<std::int64_t> whole_seed(std::string_view text) {
+  std::int64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  const bool good = error == std::errc{} && end == text.data() + text.size() && !text.empty() && text[0] != '-' &&
+                    static_cast<double>(seed) <= largest_seed;
+  return good ? std::optional(seed) : std::nullopt;
+}
+
+/// `1-10`.  Nothing: it is not of this form.
+std::optional<std::pair<std::int64_t, std::int64_t>> first_and_last(std::string_view text) {
+  const std::size_t dash = text.find('-', 1);
+  if (dash == std::string_view::npos) return std::nullopt;
+  const auto trimmed = [](std::string_view part) {
+    while (part.starts_with(' ')) part.remove_prefix(1);
+    while (part.ends_with(' ')) part.remove_suffix(1);
+    return part;
+  };
+  const auto first = whole_seed(trimmed(text.substr(0, dash))), last = whole_seed(trimmed(text.substr(dash + 1)));
+  return first && last ? std::optional(std::pair(*first, *last)) : std::nullopt;
+}
+
+/// Adds `7` or `1-10`.  What is wrong with the text; empty: nothing.
+std::string add_seeds(std::string_view text, std::vector<std::int64_t>& seeds) {
+  const std::string got = ", got '" + sim::shortened(sim::printable(text)) + "'";
+  if (const auto one = whole_seed(text)) {
+    seeds.push_back(*one);
+    return {};
+  }
+  const auto range = first_and_last(text);
+  if (!range) return "must be whole numbers from 0 to 2^53 or ranges such as 1-10" + got;
+  if (range->second < range->first) return "must be ranges from the lower to the higher seed" + got;
+  if (range->second - range->first >= static_cast<std::int64_t>(most_seeds))
+    return "must be at most " + std::to_string(most_seeds) + got;
+  for (std::int64_t seed = range->first; seed <= range->second; ++seed) seeds.push_back(seed);
+  return {};
+}
+
+bool differ_from_each_other(const std::vector<std::int64_t>& seeds) {
+  return std::set<std::int64_t>(seeds.begin(), seeds.end()).size() == seeds.size();
+}
+
+/// Whether a text such as `1-10` is among the seeds, so that they are no list of numbers.
+bool has_range(const sim::ConfigNode& node) {
+  if (node.kind == sim::ConfigNode::Kind::scalar) return first_and_last(node.scalar).has_value();
+  return std::any_of(node.items.begin(), node.items.end(), has_range);
+}
+
+std::vector<std::int64_t> read_seed_ranges(sim::ParamReader& in, const sim::ConfigNode& node) {
+  std::vector<std::int64_t> seeds;
+  const auto add = [&](const sim::ConfigNode& item) {
+    const std::string problem = item.kind == sim::ConfigNode::Kind::scalar
+                                    ? add_seeds(item.scalar, seeds)
+                                    : "must be whole numbers or ranges such as 1-10, got " + sim::shown(item);
+    if (!problem.empty()) in.error("seeds", "'seeds' " + problem);
+  };
+  if (node.kind == sim::ConfigNode::Kind::scalar) add(node);
+  for (const sim::ConfigNode& item : node.items) add(item);
+  return seeds;
+}
+
+std::vector<std::int64_t> read_seeds(sim::ParamReader& in) {
+  in.require("seeds");
+  const sim::ConfigNode* node = in.child("seeds");
+  std::vector<std::int64_t> seeds;
+  if (node != nullptr && node->kind == sim::ConfigNode::Kind::map) {
+    SeedRange range;
+    in.read("seeds", range, "seeds of the runs");
+    for (std::int64_t i = 0; i < range.count; ++i) seeds.push_back(range.first + i);
+    return seeds;
+  }
+  if (node != nullptr && has_range(*node)) {
+    seeds = read_seed_ranges(in, *node);
+    if (!differ_from_each_other(seeds)) in.error("seeds", "'seeds' must differ from each other");
+    return seeds;
+  }
+  std::vector<double> numbers;
+  in.read("seeds", numbers, sim::between(0, largest_seed), "seeds of the runs");
+  for (const double number : numbers) {
+    if (number != std::trunc(number))
+      in.error("seeds", "'seeds' must be whole numbers, got " + sim::number_text(number));
+    seeds.push_back(static_cast<std::int64_t>(number));
+  }
+  const bool nothing = node != nullptr && (node->kind == sim::ConfigNode::Kind::null ||
+                                           (node->kind == sim::ConfigNode::Kind::list && node->items.empty()));
+  if (nothing) in.error("seeds", "'seeds' must have at least one seed");
+  if (!differ_from_each_other(seeds)) in.error("seeds", "'seeds' must differ from each other");
+  return seeds;
+}
+
+/// A key that is there must say something.
+void require_something(sim::ParamReader& in, const char* key, bool empty) {
+  if (in.has(key) && empty) in.error(key, "'" + std::string(key) + "' must not be empty");
+}
+
+/// All figures of all cases, sorted.
+std::vector<std::string> figures_of(const LoadedStudy& study) {
+  std::set<std::string> names{"passed"};
+  for (const sim::LoadedWorld& world : study.worlds)
+    for (const sim::MetricConfig& metric : world.config.metrics)
+      for (const std::string& figure : metric.figures()) names.insert(figure);
+  return {names.begin(), names.end()};
+}
+
+std::vector<std::string> error_metrics_of(const LoadedStudy& study) {
+  std::set<std::string> names;
+  for (const sim::LoadedWorld& world : study.worlds)
+    for (const sim::MetricConfig& metric : world.config.metrics)
+      if (metric.type == sim::MetricType::position_error || metric.type == sim::MetricType::consistency)
+        names.insert(metric.name);
+  return {names.begin(), names.end()};
+}
+
+/// Figures and metrics are known only with the worlds.
+class NameCheck {
+ public:
+  explicit NameCheck(const LoadedStudy& study)
+      : study_(study), figures_(figures_of(study)), metrics_(error_metrics_of(study)) {}
+
+  void check() {
+    const StudyConfig& config = study_.config;
+    for (const std::string& figure : config.figures) require("figures", figure, figures_, config.figures_place, "");
+    for (const StudyPlot& plot : config.plots) {
+      const std::string who = "plot '" + plot.name + "'";
+      if (!plot.figure.empty()) require("figure", plot.figure, figures_, plot.place, who);
+      for (const std::string& metric : plot.metrics) require("metrics", metric, metrics_, plot.place, who);
+    }
+    for (std::size_t i = 0; i < config.pass.size(); ++i) {
+      const StudyRule& rule = config.pass[i];
+      const std::string who = "rule " + std::to_string(i + 1);
+      require("figure", rule.figure, figures_, rule.place, who);
+      if (!rule.below_figure.empty()) require("below_figure", rule.below_figure, figures_, rule.place, who);
+    }
+    diagnostics_.throw_if_any();
+  }
+
+ private:
+  void require(const char* key, const std::string& name, const std::vector<std::string>& known,
+               const sim::SourcePlace& place, const std::string& who) {
+    if (!std::binary_search(known.begin(), known.end(), name))
+      diagnostics_.error(place, who,
+                         "'" + std::string(key) + "' names nothing of this world: '" +
+                             sim::shortened(sim::printable(name)) + "'; known: " + sim::list_text(known));
+  }
+
+  const LoadedStudy& study_;
+  std::vector<std::string> figures_, metrics_;
+  sim::Diagnostics diagnostics_;
+};
+
+}  // namespace
+
+void StudyCase::read(sim::ParamReader& in) {
+  in.require("name");
+  in.read_name("name", name, "name of the case");
+  in.read_raw("set", changes, "dotted path: value, as with --set");
+}
+
+std::vector<std::string> StudyCase::sets() const {
+  std::vector<std::string> texts;
+  for (const auto& entry : changes.entries) texts.push_back(entry.key + "=" + sim::to_flow_yaml(entry.value));
+  return texts;
+}
+
+void StudyPlot::read(sim::ParamReader& in) {
+  if (in.node() != nullptr) place = in.node()->place;
+  in.require("name");
+  in.read_name("name", name, "name of the picture, NAME.png");
+  in.read("figure", figure, "figure that is drawn for each case");
+  in.read("metrics", metrics, "metrics whose errors are drawn, instead of `figure`");
+  in.read_references("cases", cases, "case", "those that are drawn; unset: all");
+  in.read_choice("over", over, {{"cases", Over::cases}, {"distance", Over::distance}, {"time", Over::time}},
+                 "what errors are drawn over: distance travelled or time");
+  if (in.describing()) return;
+  require_something(in, "figure", figure.empty());
+  require_something(in, "metrics", metrics.empty());
+  if (in.has("figure") == in.has("metrics"))
+    in.error(in.has("figure") ? "needs either 'figure' or 'metrics', not both" : "needs either 'figure' or 'metrics'");
+  else if (in.has("metrics") == (over == Over::cases))
+    in.error("over",
+             in.has("metrics") ? "'metrics' are drawn over 'distance' or 'time'" : "a 'figure' is drawn over 'cases'");
+}
+
+const std::vector<std::string>& statistic_words() {
+  static const std::vector<std::string> words{"mean", "std", "min", "max", "median"};
+  return words;
+}
+
+void StudyRule::read(sim::ParamReader& in) {
+  if (in.node() != nullptr) place = in.node()->place;
+  in.require("case");
+  in.read_reference("case", in_case, "case", "whose runs are judged");
+  in.require("figure");
+  in.read("figure", figure, "which figure of them; `passed`: 1 when the run passed the rules of its world");
+  in.read_choice("statistic", statistic, statistic_words(), "over the seeds");
+  in.read("below", below, sim::any_number(), "it must be below this");
+  in.read("above", above, sim::any_number(), "it must be above this");
+  in.read("equals", equals, sim::any_number(), "it must be this");
+  in.read_reference("below_case", below_case, "case", "it must be below the same of this case times factor");
+  in.read("below_figure", below_figure, "it must be below the same of this figure times factor");
+  in.read("factor", factor, sim::above(0), "see below_case and below_figure");
+  if (in.describing()) return;
+  require_something(in, "case", in_case.empty());
+  require_something(in, "figure", figure.empty());
+  require_something(in, "below", !below);
+  require_something(in, "above", !above);
+  require_something(in, "equals", !equals);
+  require_something(in, "below_case", below_case.empty());
+  require_something(in, "below_figure", below_figure.empty());
+  int forms = 0;
+  for (const char* key : {"below", "above", "equals", "below_case", "below_figure"}) forms += in.has(key);
+  if (in.has("factor") && !in.has("below_case") && !in.has("below_figure"))
+    in.error("factor", "'factor' belongs to 'below_case' and 'below_figure'");
+  if (forms != 1)
+    in.error("needs one of 'above', 'below', 'below_case', 'below_figure' and 'equals'" +
+             std::string(forms > 1 ? ", not several" : ""));
+}
+
+void StudyConfig::read(sim::ParamReader& in) {
+  int version = 1;
+  in.require("shoal");
+  in.read("shoal", version, sim::between(1, 1), "version of the file format");
+  in.require("study");
+  in.read_name("study", name, "name of the study");
+  in.read("description", description, "one sentence for people");
+  in.require("world");
+  in.read("world", world, "world file, from the folder of this file");
+  in.read("launch", launch, "start the programs that the world names");
+  in.read("duration_s", duration_s, sim::above_to(0, 1e9), "simulated time of each run; unset: as the world says");
+  seeds = read_seeds(in);
+  in.read_list("cases", cases, "case", "ways of running the world; unset: as it is");
+  if (cases.empty()) cases.emplace_back().name = "world";
+  for (const StudyCase& each : cases) in.declare("case", each.name);
+  in.read("figures", figures, "figures of the table; unset: all");
+  if (in.has("figures")) figures_place = in.child("figures")->place;
+  in.read_list("plots", plots, "plot", "pictures");
+  for (const StudyPlot& plot : plots) in.declare("plot", plot.name);
+  in.read_list("pass", pass, "rule", "the study passes when every rule holds; else exit code 1");
+}
+
+std::vector<std::int64_t> parse_seeds(const std::string& text) {
+  std::vector<std::int64_t> seeds;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    if (const std::string problem = add_seeds(std::string_view(text).substr(begin, end - begin), seeds);
+        !problem.empty())
+      throw std::invalid_argument(problem);
+    begin = end + 1;
+  }
+  if (!differ_from_each_other(seeds)) throw std::invalid_argument("must differ from each other, got '" + text + "'");
+  return seeds;
+}
+
+namespace {
+
+/// The world of a study lies with it or in the folder above: an error of it quotes it.
+void check_world_file(const std::string& world, const std::string& study, const sim::ConfigNode& root,
+                      const sim::LoadOptions& load) {
+  const fs::path folder = fs::path(study).parent_path();
+  std::vector<std::string> folders{folder.string(), (folder / "..").string()};
+  if (!sim::shipped_folder().empty()) folders.push_back(sim::shipped_folder() + "/worlds");
+  const sim::FileAccess access(std::move(folders), load.allow_paths, {});
+  if (!load.only_own_files || access.may_read(world)) return;
+  sim::throw_config_error(root.find("world")->place, "",
+                          "'world' must lie below the folder of the study or the one above it, be a shipped one, or "
+                          "lie below a folder given with --allow-path");
+}
+
+}  // namespace
+
+LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
+  LoadedStudy study;
+  sim::Diagnostics diagnostics;
+  const sim::ConfigNode root = sim::load_config_file(path, diagnostics);
+  diagnostics.throw_if_any();
+  sim::ParamReader in(root, "", diagnostics);
+  study.config.read(in);
+  in.finish();
+  diagnostics.throw_if_any();
+  study.config.file = path;
+  if (!changes.seeds.empty()) study.config.seeds = changes.seeds;
+  if (changes.duration_s) study.config.duration_s = changes.duration_s;
+  const fs::path world_file = fs::path(path).parent_path() / study.config.world;
+  study.config.world = world_file.lexically_normal().string();
+  check_world_file(study.config.world, path, root, changes.load);
+  for (const StudyCase& each : study.config.cases) {
+    sim::LoadOptions options = changes.load;
+    options.sets = each.sets();
+    options.allow_plugins = options.serial_ports = study.config.launch;
+    options.encode_message = shoal::encode_own_message;
+    const sim::LoadedWorld& world = study.worlds.emplace_back(sim::load_world(study.config.world, options));
+    if (!study.config.duration_s && world.config.run.duration_s == 0)
+      sim::throw_config_error(root.place, "case '" + each.name + "'",
+                              "its world runs without end: the study needs a 'duration_s'");
+  }
+  NameCheck(study).check();
+  return study;
+}
+
+std::optional<SharedPort> find_shared_port(const LoadedStudy& study) {
+  if (!study.config.launch) return std::nullopt;
+  for (const sim::LoadedWorld& world : study.worlds)
+    for (const sim::VehicleInstance& vehicle : world.config.vehicles)
+      for (const sim::DeviceConfig& device : vehicle.config->devices) {
+        const sim::ConfigNode* const serial = device.source ? device.source->find("serial") : nullptr;
+        const sim::ConfigNode* const path = serial != nullptr ? serial->find("path") : nullptr;
+        if (path == nullptr || path->scalar.find("{run}") != std::string::npos) continue;
+        if (fs::path(path->scalar).is_relative()) continue;  // below the results of each run
+        return SharedPort{path->place, "vehicle '" + vehicle.name + "': device '" + device.name + "'",
+                          sim::channel_name(path->scalar, vehicle.name, device.name)};
+      }
+  return std::nullopt;
+}
+
+}  // namespace tools

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/experiment/study/study_runs.hpp"
+
+namespace tools {
+
+/// Cases of a study that came out equal.
+struct EqualCases {
+  std::vector<std::string> cases;  ///< two or more, as the study orders them
+  bool same_settings = false;      ///< they change the same things; else a setting does nothing
+  bool same_state = false;         ///< also the final states are equal
+};
+
+/// Groups of cases whose runs have the same figures for every seed or, where a world has no figures, the same final
+/// state.  A case with a run without a result is in no group.
+std::vector<EqualCases> equal_cases(const LoadedStudy& study, const std::vector<StudyRun>& runs);
+
+/// A sentence about a group, for people.
+std::string equal_cases_text(const EqualCases& group);
+
+}  // namespace tools

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/study/study_results.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
+
+#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/study/study_equal_cases.hpp"
+
+namespace tools {
+
+namespace {
+
+constexpr const char* passed_figure = "passed";
+
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
+}
+
+/// A text as a CSV field.
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+nlohmann::ordered_json json_of(const Statistics& statistics) {
+  nlohmann::ordered_json json{{"count", statistics.count}};
+  for (const std::string& word : statistic_words()) json[word] = statistics.by_word(word);  // NaN becomes null
+  json["mean_low_95"] = statistics.mean_95.low;
+  json["mean_high_95"] = statistics.mean_95.high;
+  return json;
+}
+
+}  // namespace
+
+double Statistics::by_word(const std::string& word) const {
+  if (word == "mean") return mean;
+  if (word == "std") return std;
+  if (word == "min") return min;
+  return word == "max" ? max : median;
+}
+
+double quantile(const std::vector<double>& sorted, double share) {
+  const double at = share * static_cast<double>(sorted.size() - 1);
+  const auto low = static_cast<std::size_t>(at);
+  const std::size_t high = std::min(low + 1, sorted.size() - 1);
+  return sorted[low] + (at - static_cast<double>(low)) * (sorted[high] - sorted[low]);
+}
+
+Statistics statistics_of(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  Statistics statistics;
+  statistics.count = static_cast<std::int64_t>(values.size());
+  if (values.empty()) return statistics;
+  std::sort(values.begin(), values.end());
+  const auto count = static_cast<double>(values.size());
+  statistics.mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+  double squares = 0;
+  for (const double value : values) squares += (value - statistics.mean) * (value - statistics.mean);
+  if (values.size() > 1) {
+    statistics.std = std::sqrt(squares / (count - 1));
+    statistics.mean_95 = mean_interval_95(statistics.mean, statistics.std, values.size());
+  }
+  statistics.min = values.front();
+  statistics.max = values.back();
+  statistics.median = quantile(values, 0.5);
+  return statistics;
+}
+
+StudyResults::StudyResults(const LoadedStudy& study, const std::vector<StudyRun>& runs) : study_(study), runs_(runs) {
+  std::set<std::string> names;
+  for (const StudyRun& run : runs)
+    if (run.record)
+      for (const auto& [name, value] : run.record->metrics) names.insert(name);
+  figures_.assign(names.begin(), names.end());
+}
+
+std::vector<double> StudyResults::values(const std::string& in_case, const std::string& figure) const {
+  std::vector<double> values;
+  for (const StudyRun& run : runs_) {
+    if (!run.record || study_.config.cases[run.in_case].name != in_case) continue;
+    const auto found = run.record->metrics.find(figure);
+    if (figure == passed_figure)
+      values.push_back(run.record->judgement == Judgement::not_judged ? no_figure
+                       : run.record->judgement == Judgement::passed   ? 1
+                                                                      : 0);
+    else if (found != run.record->metrics.end())
+      values.push_back(found->second.value_or(no_figure));
+  }
+  return values;
+}
+
+Statistics StudyResults::of(const std::string& in_case, const std::string& figure) const {
+  Statistics statistics = statistics_of(values(in_case, figure));
+  if (figure == passed_figure && statistics.count > 0) {
+    const auto count = static_cast<std::size_t>(statistics.count);
+    const auto hits = static_cast<std::size_t>(std::llround(statistics.mean * static_cast<double>(count)));
+    statistics.mean_95 = share_interval_95(hits, count);
+  }
+  return statistics;
+}
+
+std::vector<std::string> StudyResults::table_figures() const {
+  if (!study_.config.figures.empty()) return study_.config.figures;
+  std::vector<std::string> figures{passed_figure};
+  figures.insert(figures.end(), figures_.begin(), figures_.end());
+  return figures;
+}
+
+std::size_t StudyResults::runs_of(const std::string& in_case) const {
+  return static_cast<std::size_t>(std::count_if(runs_.begin(), runs_.end(), [&](const StudyRun& run) {
+    return study_.config.cases[run.in_case].name == in_case;
+  }));
+}
+
+StudyResults::Shown StudyResults::statistic(const StudyRule& rule, const std::string& in_case,
+                                            const std::string& figure) const {
+  const Statistics statistics = of(in_case, figure);
+  const std::size_t runs = runs_of(in_case);
+  const std::size_t lacking = runs - static_cast<std::size_t>(statistics.count);
+  // A figure that nothing could be made of in some of the runs is no good figure.
+  if (lacking > 0)
+    return {no_figure,
+            fmt::format("none: {} of {} runs {} no such figure", lacking, runs, lacking == 1 ? "has" : "have")};
+  const double value = statistics.by_word(rule.statistic);
+  if (std::isnan(value)) return {no_figure, fmt::format("none: {} needs two runs", rule.statistic)};
+  return {value, fmt::format("{:.4g}", value)};
+}
+
+Scoring::Verdict StudyResults::judge(const StudyRule& rule) const {
+  const Shown left = statistic(rule, rule.in_case, rule.figure);
+  const auto text = [&](const char* sign, const std::string& right) {
+    return fmt::format("{}: {} of {} ({}) {} {}", rule.in_case, rule.statistic, rule.figure, left.text, sign, right);
+  };
+  if (rule.below) return {text("<", fmt::format("{}", *rule.below)), left.value < *rule.below};
+  if (rule.above) return {text(">", fmt::format("{}", *rule.above)), left.value > *rule.above};
+  if (rule.equals) return {text("==", fmt::format("{}", *rule.equals)), left.value == *rule.equals};
+  const bool other_case = !rule.below_case.empty();
+  const Shown right =
+      other_case ? statistic(rule, rule.below_case, rule.figure) : statistic(rule, rule.in_case, rule.below_figure);
+  const std::string other = other_case ? "that of " + rule.below_case : rule.below_figure;
+  const double limit = rule.factor * right.value;
+  const std::string shown = std::isnan(limit) ? right.text : fmt::format("{:.4g}", limit);
+  return {text("<", fmt::format("{} * {} ({})", rule.factor, other, shown)), left.value < limit};
+}
+
+std::vector<Scoring::Verdict> StudyResults::verdicts() const {
+  std::vector<Scoring::Verdict> verdicts;
+  for (const StudyRule& rule : study_.config.pass) verdicts.push_back(judge(rule));
+  if (!verdicts.empty() && runs_with_failed_programs() > 0)
+    verdicts.push_back(
+        {fmt::format("{} of {} runs had programs that failed", runs_with_failed_programs(), runs_.size()), false});
+  return verdicts;
+}
+
+std::size_t StudyResults::failed_runs() const {
+  return static_cast<std::size_t>(
+      std::count_if(runs_.begin(), runs_.end(), [](const StudyRun& run) { return !run.record; }));
+}
+
+std::size_t StudyResults::runs_with_failed_programs() const {
+  return static_cast<std::size_t>(std::count_if(runs_.begin(), runs_.end(), [](const StudyRun& run) {
+    return run.record && std::any_of(run.record->processes.begin(), run.record->processes.end(),
+                                     [](const RunRecord::Process& process) { return process.failed; });
+  }));
+}
+
+Judgement StudyResults::judgement() const {
+  const auto all = verdicts();
+  const bool hold = std::all_of(all.begin(), all.end(), [](const auto& verdict) { return verdict.passed; });
+  if (failed_runs() > 0 || !hold) return Judgement::failed;
+  return all.empty() ? Judgement::not_judged : Judgement::passed;
+}
+
+std::string StudyResults::to_text() const {
+  const StudyConfig& config = study_.config;
+  std::size_t widest_figure = 6, widest_case = 4;
+  for (const std::string& figure : table_figures()) widest_figure = std::max(widest_figure, figure.size());
+  for (const StudyCase& each : config.cases) widest_case = std::max(widest_case, each.name.size());
+  const auto line = [&](const std::string& figure, const std::string& in_case, const auto&... cells) {
+    std::string text = fmt::format("{:<{}}  {:<{}}", figure, widest_figure, in_case, widest_case);
+    ((text += fmt::format(" {:>10}", cells)), ...);
+    return text + "\n";
+  };
+  std::string text = fmt::format("study {}: {} runs of {}\n", config.name, runs_.size(), config.world);
+  text += line("figure", "case", "runs", "mean", "std", "min", "max", "median", "mean 95 %", "");
+  for (const std::string& figure : table_figures())
+    for (const StudyCase& each : config.cases) {
+      const Statistics s = of(each.name, figure);
+      // A mean of those that arrived says nothing of those that did not.
+      const std::size_t runs = runs_of(each.name);
+      const bool all = static_cast<std::size_t>(s.count) == runs;
+      text += line(figure, each.name, all ? fmt::format("{}", runs) : fmt::format("{}/{}", s.count, runs),
+                   number(s.mean), number(s.std), number(s.min), number(s.max), number(s.median), number(s.mean_95.low),
+                   number(s.mean_95.high));
+    }
+  for (const Scoring::Verdict& verdict : verdicts())
+    text += fmt::format("{}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.rule);
+  if (config.pass.empty() && runs_with_failed_programs() > 0)
+    text += fmt::format("{} of {} runs had programs that failed\n", runs_with_failed_programs(), runs_.size());
+  for (const EqualCases& group : equal_cases(study_, runs_)) text += "note: " + equal_cases_text(group) + "\n";
+  if (failed_runs() > 0) text += fmt::format("{} runs have no result\n", failed_runs());
+  if (judgement() == Judgement::not_judged) text += "not judged: the study has no rules\n";
+  return text;
+}
+
+std::string StudyResults::to_csv() const {
+  std::string text = "case,seed,exit_code,passed,ended,sim_time_s,wall_s,run_hash";
+  for (const std::string& figure : figures_) text += "," + figure;
+  text += "\n";
+  for (const StudyRun& run : runs_) {
+    text += fmt::format("{},{}", study_.config.cases[run.in_case].name, run.seed);
+    if (!run.record) {
+      text += ",,,failed,,," + std::string(figures_.size(), ',') + "\n";
+      continue;
+    }
+    const RunRecord& record = *run.record;
+    const auto passed = as_flag(record.judgement);
+    text += fmt::format(",{},{},{},{},{:.3f},{}", record.exit_code,
+                        !passed   ? ""
+                        : *passed ? "1"
+                                  : "0",
+                        field(record.ended), record.sim_time_s, record.wall_s, record.run_hash);
+    for (const std::string& figure : figures_) {
+      const auto found = record.metrics.find(figure);
+      const bool known = found != record.metrics.end() && found->second;
+      text += "," + (known ? fmt::format("{:.9g}", *found->second) : "");
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string StudyResults::to_json(int exit_code) const {
+  const StudyConfig& config = study_.config;
+  nlohmann::ordered_json json;
+  json["study"] = config.name;
+  json["description"] = config.description;
+  json["world"] = study_.worlds.front().config.name;
+  json["seeds"] = config.seeds;
+  json["launch"] = config.launch;
+  json["figures"] = table_figures();
+  json["cases"] = nlohmann::ordered_json::array();
+  for (const StudyCase& each : config.cases) {
+    nlohmann::ordered_json entry{{"name", each.name}, {"set", each.sets()}, {"figures", nlohmann::json::object()}};
+    entry["figures"][passed_figure] = json_of(of(each.name, passed_figure));
+    for (const std::string& figure : figures_) entry["figures"][figure] = json_of(of(each.name, figure));
+    json["cases"].push_back(std::move(entry));
+  }
+  json["notes"] = nlohmann::ordered_json::array();
+  for (const EqualCases& group : equal_cases(study_, runs_)) json["notes"].push_back(equal_cases_text(group));
+  json["failed_runs"] = nlohmann::ordered_json::array();
+  for (const StudyRun& run : runs_)
+    if (!run.record)
+      json["failed_runs"].push_back(
+          {{"case", config.cases[run.in_case].name}, {"seed", run.seed}, {"why", run.failure}});
+  json["runs"] = runs_.size();
+  json["rules"] = nlohmann::ordered_json::array();
+  for (const Scoring::Verdict& verdict : verdicts())
+    json["rules"].push_back({{"rule", verdict.rule}, {"passed", verdict.passed}});
+  json["pictures"] = study_pictures(config);
+  json["judged"] = judgement() != Judgement::not_judged;
+  json["passed"] = nullptr;
+  if (const auto flag = as_flag(judgement())) json["passed"] = *flag && exit_code == 0;
+  json["exit_code"] = exit_code;
+  json["shoal"] = short_version();
+  return json.dump(2) + "\n";
+}
+
+}  // namespace tools

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/terminal/key_sequences.hpp"
+
+namespace tools {
+
+namespace {
+
+constexpr char escape = 27;
+
+}  // namespace
+
+std::string KeySequences::next(char byte, Clock::time_point now) {
+  const State before = state_;
+  state_ = State::none;
+  if (byte == escape) {
+    state_ = State::begun;
+    begun_ = now;
+    return before == State::begun ? std::string{escape} : std::string{};
+  }
+  switch (before) {
+    case State::none:
+      return {byte};
+    case State::begun:
+      if (byte == '[') state_ = State::first_parameter;
+      if (byte == 'O') state_ = State::one_more;
+      return state_ == State::none ? std::string{escape, byte} : std::string{};
+    case State::one_more:
+      return {};
+    case State::first_parameter:
+      if (byte == '[') {
+        state_ = State::one_more;
+        return {};
+      }
+      [[fallthrough]];
+    case State::parameters:
+      if (byte >= ' ' && byte <= '?') state_ = State::parameters;
+      return {};
+  }
+  return {};
+}
+
+std::string KeySequences::alone(Clock::time_point now) {
+  if (state_ != State::begun || now - begun_ < patience) return {};
+  state_ = State::none;
+  return {escape};
+}
+
+}  // namespace tools

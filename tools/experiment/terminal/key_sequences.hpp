@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace tools {
+
+/// Tells the keys that are one byte from those that a terminal sends as several: arrows, Home, F1 and the like begin
+/// with ESC [ or ESC O, and end with a letter or `~` (ECMA-48, sections 5.4 and 8.3.16; `ESC [ [` and a letter on the
+/// Linux console).  These are swallowed.
+class KeySequences {
+ public:
+  using Clock = std::chrono::steady_clock;
+  /// A key alone is told from the begin of a sequence by what does not follow for so long.
+  static constexpr std::chrono::milliseconds patience{50};
+
+  /// The keys that the bytes of a terminal, given one by one, turn out to be.  None: this one belongs to a sequence, or
+  /// may.
+  std::string next(char byte, Clock::time_point now);
+  /// ESC, when it was pressed alone by now.
+  std::string alone(Clock::time_point now);
+
+ private:
+  enum class State { none, begun, one_more, parameters, first_parameter };
+
+  State state_ = State::none;
+  Clock::time_point begun_{};
+};
+
+}  // namespace tools

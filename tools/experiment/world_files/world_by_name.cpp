@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/world_files/world_by_name.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "sim/config/config_node.hpp"
+#include "sim/config/message_text.hpp"
+#include "sim/config/shipped_files.hpp"
+
+namespace tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* ending = ".yaml";
+
+struct Words {
+  const char* folder;
+  const char* one;
+  const char* list;
+};
+
+Words words_of(ShippedKind kind) {
+  switch (kind) {
+    case ShippedKind::world:
+      return {"worlds", "world", "worlds"};
+    case ShippedKind::vehicle:
+      return {"vehicles", "vehicle", "vehicles"};
+    case ShippedKind::study:
+      break;
+  }
+  return {"worlds/studies", "study", "studies"};
+}
+
+/// Names and paths alone, without a look into the files.
+std::vector<ShippedFile> named_files(ShippedKind kind) {
+  std::vector<ShippedFile> files;
+  const std::string folder = sim::shipped_folder();
+  if (folder.empty()) return files;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(folder) / words_of(kind).folder, error))
+    if (entry.path().extension() == ending && entry.is_regular_file(error))
+      files.push_back({entry.path().stem().string(), entry.path().string(), ""});
+  std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  return files;
+}
+
+[[noreturn]] void refuse_name(std::initializer_list<ShippedKind> kinds, const std::string& given) {
+  std::string what, lists;
+  std::vector<std::string> names;
+  for (const ShippedKind kind : kinds) {
+    const Words words = words_of(kind);
+    what += (what.empty() ? "" : " or ") + std::string(words.one);
+    lists += (lists.empty() ? "`shoal list " : " and `shoal list ") + std::string(words.list) + "`";
+    for (const ShippedFile& file : named_files(kind)) names.push_back(file.name);
+  }
+  const std::string name = sim::shortened(sim::printable(given));
+  const std::string meant = sim::closest_name(given, names);
+  sim::throw_config_error({}, "'" + name + "'",
+                          "there is no such file here, nor '" + name + ending + "', nor a shipped " + what +
+                              " of this name; " + (meant.empty() ? "see " + lists : "did you mean '" + meant + "'?"));
+}
+
+}  // namespace
+
+std::vector<ShippedFile> shipped_files(ShippedKind kind) {
+  std::vector<ShippedFile> files = named_files(kind);
+  for (ShippedFile& file : files) {
+    sim::Diagnostics ignored;  // `shoal check` says what is wrong with a file
+    const sim::ConfigNode root = sim::load_config_file(file.path, ignored);
+    if (const sim::ConfigNode* description = root.find("description")) file.description = description->scalar;
+  }
+  return files;
+}
+
+std::string file_by_name(std::initializer_list<ShippedKind> kinds, const std::string& given) {
+  std::error_code error;
+  const bool bare = !given.empty() && given.find('/') == std::string::npos && !fs::path(given).has_extension();
+  if (!bare || fs::is_regular_file(given, error)) return given;
+  if (fs::is_regular_file(given + ending, error)) return given + ending;
+  for (const ShippedKind kind : kinds)
+    for (const ShippedFile& file : named_files(kind))
+      if (file.name == given) return file.path;
+  refuse_name(kinds, given);
+}
+
+}  // namespace tools

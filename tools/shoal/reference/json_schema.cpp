@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/shoal/reference/json_schema.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "sim/world_file/world_config.hpp"
+#include "tools/shoal/reference/param_tables.hpp"
+
+namespace tools {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using sim::ParamInfo;
+using sim::ParamKind;
+using Table = std::vector<ParamInfo>;
+
+// A scalar of a vehicle file that holds this is replaced before it is checked.
+const char* const parameter = R"(\$\{[^}]+\})";
+const char* const name_pattern = "^[A-Za-z0-9_-]+$";
+
+/// 30, not 30.0.
+Json json_number(double value) {
+  const bool whole = std::abs(value) < 1e15 && value == std::trunc(value);
+  return whole ? Json(static_cast<std::int64_t>(value)) : Json(value);
+}
+
+Json json_scalar(const std::string& text, ParamKind kind) {
+  switch (kind) {
+    case ParamKind::boolean:
+      return text == "true";
+    case ParamKind::integer:
+      return std::strtoll(text.c_str(), nullptr, 10);
+    case ParamKind::number:
+    case ParamKind::vector:
+    case ParamKind::numbers:
+      return json_number(std::strtod(text.c_str(), nullptr));
+    default:
+      return text;
+  }
+}
+
+/// The default in JSON; null when there is none.
+Json json_default(const ParamInfo& info) {
+  sim::Diagnostics ignored;
+  const sim::ConfigNode node = sim::parse_config_text(info.initial, "default", ignored);
+  switch (node.kind) {
+    case sim::ConfigNode::Kind::null:
+      return nullptr;
+    case sim::ConfigNode::Kind::scalar:
+      return json_scalar(node.scalar, info.kind);
+    case sim::ConfigNode::Kind::map:
+      return Json::object();
+    case sim::ConfigNode::Kind::list:
+      Json list = Json::array();
+      for (const sim::ConfigNode& item : node.items) list.push_back(json_scalar(item.scalar, info.kind));
+      return list;
+  }
+  return nullptr;
+}
+
+Json number_schema(const char* type, const sim::Rule& range) {
+  Json schema{{"type", {type}}};
+  if (std::isfinite(range.low)) schema[range.low_open ? "exclusiveMinimum" : "minimum"] = json_number(range.low);
+  if (std::isfinite(range.high)) schema[range.high_open ? "exclusiveMaximum" : "maximum"] = json_number(range.high);
+  return schema;
+}
+
+Json reference_to(const std::string& definition) {
+  return {{"$ref", "#/definitions/" + definition}};
+}
+
+/// A key whose value other tables describe.
+struct Special {
+  Json value;     ///< schema of the value
+  Json required;  ///< what must be there in it
+};
+
+/// Turns tables into schemas.  What must be there stands apart from what may be there: in a file that includes
+/// another, the other may have it.
+class SchemaWriter {
+ public:
+  /// `with_parameters`: every value may hold a ${name}.
+  SchemaWriter(bool with_parameters, std::map<std::string, Special> specials)
+      : with_parameters_(with_parameters), specials_(std::move(specials)) {}
+
+  /// Keys, types and ranges.
+  Json keys(const Table& table) const {
+    Json schema{{"type", {"object"}}, {"properties", Json::object()}, {"additionalProperties", false}};
+    for (const ParamInfo& info : table) schema["properties"][info.key] = entry(info);
+    return schema;
+  }
+
+  /// What must be there; an empty object when nothing must.
+  Json required(const Table& table) const {
+    Json schema = Json::object();
+    for (const ParamInfo& info : table) {
+      if (info.required) schema["required"].push_back(info.key);
+      const auto special = specials_.find(info.key);
+      Json inner = special != specials_.end() ? special->second.required : required(info.children);
+      if (inner.empty()) continue;
+      schema["properties"][info.key] = info.kind == ParamKind::maps ? Json{{"items", inner}} : inner;
+    }
+    return schema;
+  }
+
+  /// One key with its meaning and its default.
+  Json entry(const ParamInfo& info) const {
+    Json schema{
+        {"description", info.meaning + (info.choices.empty() && !info.rule.empty() ? " (" + info.rule + ")" : "")}};
+    if (!info.required)
+      if (const Json value = json_default(info); !value.is_null()) schema["default"] = value;
+    schema.update(value(info));
+    return schema;
+  }
+
+  /// One word of a list.
+  Json words(const std::vector<std::string>& choices) const {
+    if (!with_parameters_) return {{"enum", choices}};
+    return {{"anyOf", {Json{{"enum", choices}}, Json{{"type", "string"}, {"pattern", parameter}}}}};
+  }
+
+ private:
+  Json value(const ParamInfo& info) const {
+    if (const auto special = specials_.find(info.key); special != specials_.end())
+      return info.kind == ParamKind::maps ? with_exceptions(list_of(special->second.value), info)
+                                          : special->second.value;
+    if (!info.choices.empty()) return words(info.choices);
+    if (info.kind == ParamKind::any) return Json::object();
+    return with_exceptions(plain_value(info), info);
+  }
+
+  Json plain_value(const ParamInfo& info) const {
+    switch (info.kind) {
+      case ParamKind::boolean:
+        return {{"type", {"boolean"}}};
+      case ParamKind::integer:
+        return number_schema("integer", info.range);
+      case ParamKind::number:
+        return number_schema("number", info.range);
+      case ParamKind::vector: {
+        Json schema = list_of(number_schema("number", info.range));
+        schema["minItems"] = schema["maxItems"] = 3;
+        return schema;
+      }
+      case ParamKind::numbers:
+        return list_of(number_schema("number", info.range));
+      case ParamKind::texts:
+      case ParamKind::paths:
+        return list_of(text());
+      case ParamKind::map:
+        return map_of(info);
+      case ParamKind::maps:
+        return list_of(map_of(info));
+      case ParamKind::raw:
+        return {{"type", {"object"}}};
+      default:
+        return text();
+    }
+  }
+
+  /// YAML takes a plain 12 for a number; where text belongs it is text.
+  static Json text() { return {{"type", {"string", "number", "boolean"}}}; }
+
+  /// A map without known keys is one that contains itself: any keys.
+  Json map_of(const ParamInfo& info) const {
+    return info.children.empty() ? Json{{"type", {"object"}}} : keys(info.children);
+  }
+
+  Json list_of(Json item) const {
+    allow_parameter(item);
+    return {{"type", {"array"}}, {"items", item}};
+  }
+
+  Json with_exceptions(Json schema, const ParamInfo& info) const {
+    if (info.kind == ParamKind::name) schema["pattern"] = name_pattern;
+    if (info.may_be_null) schema["type"].push_back("null");
+    allow_parameter(schema);
+    return schema;
+  }
+
+  /// In JSON Schema a pattern binds strings only, and a minimum numbers only: both can stand side by side.
+  void allow_parameter(Json& schema) const {
+    if (!with_parameters_ || !schema.contains("type")) return;
+    if (schema["type"][0] != "string") {
+      schema["type"].push_back("string");
+      schema["pattern"] = parameter;
+    } else if (schema.contains("pattern")) {
+      schema["pattern"] = std::string(name_pattern) + "|" + parameter;
+    }
+  }
+
+  bool with_parameters_;
+  std::map<std::string, Special> specials_;
+};
+
+Json when_type_is(const std::string& type, Json then) {
+  return {{"if", {{"properties", {{"type", {{"const", type}}}}}, {"required", {"type"}}}}, {"then", std::move(then)}};
+}
+
+/// Keys of one device type: its own, and those of every device, which are checked in the definition `device`.
+Json device_type_schema(const SchemaWriter& writer, const sim::DeviceType& type, const Table& common) {
+  Json schema = writer.keys(params_of(type));
+  schema.erase("type");
+  for (const ParamInfo& info : common) schema["properties"][info.key] = Json::object();
+  if (type.default_rate_hz > 0) schema["properties"]["rate_hz"]["default"] = json_number(type.default_rate_hz);
+  schema["description"] = type.meaning;
+  return schema;
+}
+
+/// An item of `devices:`.  Its keys depend on its type.
+Special device_special(Json& definitions) {
+  const SchemaWriter writer(true, {});
+  const Table common = common_params();
+  Json device = writer.keys(common);
+  Json any_type = writer.required(common);
+  std::vector<std::string> names;
+  for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all()) {
+    names.push_back(type->name);
+    definitions["device_" + type->name] = device_type_schema(writer, *type, common);
+    device["allOf"].push_back(when_type_is(type->name, reference_to("device_" + type->name)));
+    if (const Json own = writer.required(params_of(*type)); !own.empty())
+      any_type["allOf"].push_back(when_type_is(type->name, own));
+  }
+  Json& type_key = device["properties"]["type"];
+  type_key = {{"description", type_key["description"]}};
+  type_key.update(writer.words(names));
+  // Which keys there are is for the type to say.
+  device.erase("additionalProperties");
+  device["type"] = {"object", "string"};
+  device["pattern"] = parameter;
+  definitions["device"] = device;
+  definitions["device_required"] = any_type;
+  return {reference_to("device"), reference_to("device_required")};
+}
+
+const Json include_schema{
+    {"description", "file, or list of files, over which this one is merged; relative to this file"},
+    {"type", {"string", "array"}},
+    {"items", {{"type", "string"}}}};
+
+/// A whole file: keys of `table`, or an `include`, which may bring what is missing here.
+Json file_schema(const std::string& file, const SchemaWriter& writer, const Table& table, Json definitions) {
+  Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
+              {"$comment", "Generated: shoal describe --schema " + file + ".  Do not edit."},
+              {"title", "Shoal " + file + " file"}};
+  Json keys = writer.keys(table);
+  keys["properties"]["include"] = include_schema;
+  schema.update(keys);
+  schema["if"] = {{"required", {"include"}}};
+  schema["then"] = true;
+  schema["else"] = writer.required(table);
+  schema["definitions"] = std::move(definitions);
+  return schema;
+}
+
+Json vehicle_schema() {
+  Json definitions = Json::object();
+  const Special device = device_special(definitions);
+  const SchemaWriter writer(true, {{"devices", device}});
+  return file_schema("vehicle", writer, params_of<sim::VehicleConfig>(), std::move(definitions));
+}
+
+Json world_schema() {
+  Json definitions = Json::object();
+  const Special device = device_special(definitions);
+  const SchemaWriter vehicle(true, {{"devices", device}});
+  const Table vehicle_table = params_of<sim::VehicleConfig>();
+  definitions["vehicle"] = vehicle.keys(vehicle_table);
+  definitions["vehicle_required"] = vehicle.required(vehicle_table);
+  // A reference hides what stands beside it, such as the description: so it stands in an allOf.
+  const Special model{{{"allOf", {reference_to("vehicle")}}}, reference_to("vehicle_required")};
+  const SchemaWriter writer(false, {{"devices", device}, {"model", model}});
+  return file_schema("world", writer, params_of<sim::WorldConfig>(), std::move(definitions));
+}
+
+}  // namespace
+
+std::string json_schema(const std::string& file) {
+  if (file == "world") return world_schema().dump(1) + "\n";
+  if (file == "vehicle") return vehicle_schema().dump(1) + "\n";
+  throw std::out_of_range("no schema of '" + file + "'; files: world, vehicle");
+}
+
+}  // namespace tools
