@@ -12,7 +12,8 @@ install(DIRECTORY sim DESTINATION include/shoal FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY ${PROJECT_BINARY_DIR}/sim/generated/sim DESTINATION include/shoal)
 install(DIRECTORY ${types_dir}/shoal ${PROJECT_BINARY_DIR}/messages/generated/shoal DESTINATION include/shoal
         FILES_MATCHING PATTERN "*.hpp")
-install(DIRECTORY ${types_dir}/ DESTINATION share/shoal/types FILES_MATCHING PATTERN "*.lcm" PATTERN shoal EXCLUDE)
+file(GLOB lcm_files CONFIGURE_DEPENDS ${types_dir}/*/*.lcm)
+install(FILES ${lcm_files} DESTINATION share/shoal/types)
 
 # The first lines of worlds and vehicles name ../docs/schema.
 install(DIRECTORY worlds vehicles DESTINATION share/shoal)

@@ -5,7 +5,7 @@
 #include <iostream>
 
 #include "bridges/base/bus_error.hpp"
-#include "bridges/lockstep/lockstep_client.hpp"
+#include "bridges/lockstep_client/lockstep_client.hpp"
 #include "shoal/utime_t.hpp"
 
 namespace shoal {

@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "bridges/lockstep/lockstep_line.hpp"
-#include "bridges/lockstep/resend.hpp"
+#include "bridges/lockstep_client/resend.hpp"
 #include "shoal/sim_control_reply_t.hpp"
 #include "sim/config/message_text.hpp"
 

@@ -2,7 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include "bridges/lockstep/lockstep_line.hpp"
-#include "bridges/lockstep/resend.hpp"
+#include "bridges/lockstep_client/resend.hpp"
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_resend_t.hpp"
 #include "shoal/sim_tick_t.hpp"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "bridges/lockstep/lockstep_line.hpp"
-#include "bridges/lockstep/resend.hpp"
+#include "bridges/lockstep_client/resend.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace bridges {

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "bridges/lockstep/answer_history.hpp"
-#include "bridges/signing/control_guard.hpp"
+#include "bridges/lockstep/control_guard.hpp"
 #include "bridges/lockstep/lockstep_summary.hpp"
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_control_request_t.hpp"

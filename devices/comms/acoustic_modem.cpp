@@ -123,7 +123,7 @@ AcousticModem::AcousticModem(const Params& params, const sim::DeviceContext& con
     : params_(params),
       world_(context.world),
       vehicle_(context.vehicle),
-      transducer_(*this, params.receiver, context),
+      transducer_(*this, params.receiver, context.sound_site()),
       now_(context.world.now()) {
   if (params.serial) serial_ = std::make_unique<SerialMessages>(*params.serial, context);
   transducer_.belong_to({group_of(params), vehicle_.name()});

@@ -74,7 +74,7 @@ Micromodem::Micromodem(const Params& params, const sim::DeviceContext& context)
       vehicle_(context.vehicle),
       epoch_us_(context.world.epoch_us()),
       addresses_(context.world.shared<Addresses>()),
-      transducer_(*this, params.receiver, context),
+      transducer_(*this, params.receiver, context.sound_site()),
       protocol_(protocol_config(params), *this),
       now_(context.world.now()) {
   check_beacons(context);

@@ -30,7 +30,7 @@ Interrogator::Interrogator(const InterrogatorParams& params, const sim::DeviceCo
     : params_(params),
       context_(context),
       network_(context.world.shared<TransponderNetwork>()),
-      transducer_(*this, params.receiver, context) {}
+      transducer_(*this, params.receiver, context.sound_site()) {}
 
 void Interrogator::change(const InterrogatorParams& params) {
   params_ = params;

@@ -21,9 +21,9 @@ void NoiseSource::Params::read(sim::ParamReader& in) {
 
 NoiseSource::NoiseSource(const Params& params, const sim::DeviceContext& context) : params_(params), on_(params.on) {
   if (params.kind == Kind::pulses)
-    transducer_.emplace(*this, sim::ReceiverConfig{}, context);
+    transducer_.emplace(*this, sim::ReceiverConfig{}, context.sound_site());
   else
-    sound_.emplace(sim::Decibels{params.level_dB}, params.frequency_Hz, params.bandwidth_Hz, context);
+    sound_.emplace(sim::Decibels{params.level_dB}, params.frequency_Hz, params.bandwidth_Hz, context.sound_site());
 }
 
 void NoiseSource::change(const Params& params) {

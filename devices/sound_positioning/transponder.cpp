@@ -29,7 +29,7 @@ Transponder::Transponder(const Params& params, const sim::DeviceContext& context
       network_(context.world.shared<TransponderNetwork>()),
       answer_Hz_(params.answer_frequency_Hz ? *params.answer_frequency_Hz
                                             : network_.free_answer_Hz(params.network, params.bandwidth_Hz)),
-      transducer_(*this, params.receiver, context) {
+      transducer_(*this, params.receiver, context.sound_site()) {
   network_.join(*this);
 }
 

@@ -1,7 +1,7 @@
 // A client in lockstep with the simulator, over a network that may lose messages: docs/lockstep.md, in Java.
 // Drives rover1 of worlds/minimal.yaml towards the wall, and stops before it.
 //
-//     lcm-gen --java --jpath types messages/*.lcm
+//     lcm-gen --java --jpath types messages/*/*.lcm
 //     javac -cp lcm.jar:types examples/java/LockstepClient.java -d .
 //     java -cp lcm.jar:types:. LockstepClient
 import java.io.IOException;

@@ -8,7 +8,6 @@
 
 #include "sim/acoustics/sound_path.hpp"
 #include "sim/device/fault.hpp"
-#include "sim/world/vehicle.hpp"
 
 namespace sim {
 
@@ -214,7 +213,7 @@ void AcousticChannel::transmit(Transducer& from, Signal signal, Time at) {
   sending.from = &from;
   sending.source = from.full_name();
   sending.number = from.number();
-  sending.group = from.vehicle().group();
+  sending.group = from.group();
   sending.sequence = ++from.signals_;
   sending.sent = at;
   sending.users = 2;  // the two events

@@ -4,7 +4,6 @@
 #include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/sound_path.hpp"
 #include "sim/device/fault.hpp"
-#include "sim/world/vehicle.hpp"
 
 // What becomes of a signal where it arrives.
 
@@ -21,8 +20,8 @@ PowerRatio AcousticChannel::noise_at(const Transducer& to, const Vector3d& p_W, 
   PowerRatio noise =
       propagation_.ambient_power(signal.centre_Hz, signal.bandwidth_Hz, to.noise_reduction(signal.centre_Hz));
   for (const ContinuousSound* sound : sounds_) {
-    if (!sound->on_ || !sound->vehicle_.systems().powered || sound->faults_.silent()) continue;
-    const Vector3d from_W = sound->body_.X_WB() * sound->p_BS_;
+    if (!sound->on_ || !sound->site_.powered || sound->site_.faults.silent()) continue;
+    const Vector3d from_W = sound->site_.body.X_WB() * sound->site_.X_BS.translation();
     if (!around_.medium.in_water(from_W)) continue;
     const double f = sound->centre_Hz_, half_Hz = sound->bandwidth_Hz_ / 2;
     const double low_Hz = std::max(f - half_Hz, signal.centre_Hz - signal.bandwidth_Hz / 2);
@@ -33,7 +32,7 @@ PowerRatio AcousticChannel::noise_at(const Transducer& to, const Vector3d& p_W, 
                               around_.medium.sound_speed_mps(p_W));
     if (config_.occlusion)
       level += pressure_level(
-          propagation_.free_part(from_W, sound->vehicle_.group(), p_W, to.vehicle().group(), signal.centre_Hz));
+          propagation_.free_part(from_W, sound->site_.group, p_W, to.group(), signal.centre_Hz));
     noise += (high_Hz - low_Hz) / sound->bandwidth_Hz_ * to_power(level);
   }
   return noise;
@@ -77,7 +76,7 @@ PowerRatio AcousticChannel::work_out_level(Flight& flight, const Sending& sendin
 
   Random random = propagation_.draws() ? stream(to, sending, false) : Random(0, {});
   const Propagation::Gain gain =
-      propagation_.gain(sending.p_W, sending.group, flight.p_begun_W, to.vehicle().group(), signal.centre_Hz, random);
+      propagation_.gain(sending.p_W, sending.group, flight.p_begun_W, to.group(), signal.centre_Hz, random);
   double loss_probability = 0;
   Decibels level = signal.source_level - link_loss(to, sending, loss_probability);
   const auto add_beam = [&](const DirectivityConfig& beam, const auto& direction_S) {

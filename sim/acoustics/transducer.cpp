@@ -2,25 +2,10 @@
 #include "sim/acoustics/transducer.hpp"
 
 #include "sim/acoustics/channel.hpp"
-#include "sim/device/device_registry.hpp"
-#include "sim/world/world.hpp"
+#include "sim/device/fault.hpp"
+#include "sim/physics/body.hpp"
 
 namespace sim {
-
-namespace {
-
-/// The channel, where there is water to carry sound.
-AcousticChannel& channel_of(const DeviceContext& context) {
-  AcousticChannel& channel = context.world.acoustics();
-  if (!channel.has_water())
-    throw_config_error(context.config.place,
-                       "vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'",
-                       "a device of type '" + context.config.type +
-                           "' needs water to carry its sound: the world has no 'medium: {water: ...}'");
-  return channel;
-}
-
-}  // namespace
 
 void ReceiverConfig::read(ParamReader& in) {
   in.read("detection_dB", detection_dB, between(-60, 100), "signal over noise and other sounds to notice a signal");
@@ -31,41 +16,36 @@ void ReceiverConfig::read(ParamReader& in) {
   in.read("directivity", directivity, "for sending and hearing; its axis is x of the device");
 }
 
-Transducer::Transducer(AcousticListener& listener, const ReceiverConfig& config, const DeviceContext& context)
+Transducer::Transducer(AcousticListener& listener, const ReceiverConfig& config, SoundSite site)
     : listener_(listener),
       config_(config),
-      channel_(channel_of(context)),
-      vehicle_(context.vehicle),
-      body_(context.body),
-      X_BS_(context.config.X_BS()),
-      faults_(context.faults),
-      full_name_(context.full_name()) {
-  channel_.join(*this);
+      site_(std::move(site)) {
+  site_.channel.join(*this);
 }
 
 Transducer::~Transducer() {
-  channel_.leave(*this);
+  site_.channel.leave(*this);
 }
 
 void Transducer::transmit(Signal signal, Time at) {
   busy_until_ = std::max(busy_until_, at + signal.duration);
-  channel_.transmit(*this, std::move(signal), at);
+  site_.channel.transmit(*this, std::move(signal), at);
 }
 
 void Transducer::call_back() {
-  busy_until_ = channel_.call_back(*this);
+  busy_until_ = site_.channel.call_back(*this);
 }
 
 void Transducer::belong_to(const Audience& own) {
   counts_.lost[static_cast<std::size_t>(SignalLoss::range)] += out_of_range();
   own_ = own;
-  meant_before_ = channel_.messages_for(own_);
+  meant_before_ = site_.channel.messages_for(own_);
   meant_near_ = 0;
 }
 
 std::int64_t Transducer::out_of_range() const {
   // Without signs: a snapshot that somebody made up may hold any counts.
-  const auto meant = static_cast<std::uint64_t>(channel_.messages_for(own_));
+  const auto meant = static_cast<std::uint64_t>(site_.channel.messages_for(own_));
   return static_cast<std::int64_t>(meant - static_cast<std::uint64_t>(meant_before_) -
                                    static_cast<std::uint64_t>(meant_near_));
 }
@@ -77,34 +57,34 @@ Transducer::Counts Transducer::counts() const {
 }
 
 bool Transducer::works() const {
-  return vehicle_.systems().powered && !faults_.silent();
+  return site_.powered && !site_.faults.silent();
 }
 
 const Transducer::Motion& Transducer::motion() const {
   // Where hundreds of signals come to it in a step, it is worked out once.
-  const std::int64_t look = channel_.look();
+  const std::int64_t look = site_.channel.look();
   if (look == motion_of_ && look >= 0) return motion_;
-  const BodyMotion body = body_.motion();
-  const Vector3d p_BS_W = body.R_WB * X_BS_.translation();
+  const BodyMotion body = site_.body.motion();
+  const Vector3d p_BS_W = body.R_WB * site_.X_BS.translation();
   motion_.p_W = body.p_WB + p_BS_W;
   motion_.drift_W = body.v_WB_W + body.w_WB_W.cross(p_BS_W);
-  motion_.v_W = body_.velocity_at_W(X_BS_.translation());
+  motion_.v_W = site_.body.velocity_at_W(site_.X_BS.translation());
   motion_of_ = look;
   return motion_;
 }
 
 Vector3d Transducer::p_W(Time at) const {
   const Motion& now = motion();
-  return now.p_W + now.drift_W * to_seconds(at - channel_.step_end());
+  return now.p_W + now.drift_W * to_seconds(at - site_.channel.step_end());
 }
 
 Matrix3d Transducer::R_WS() const {
-  return body_.motion().R_WB * X_BS_.linear();
+  return site_.body.motion().R_WB * site_.X_BS.linear();
 }
 
 void Transducer::change(const ReceiverConfig& config) {
   config_ = config;
-  channel_.forget_receivers();
+  site_.channel.forget_receivers();
   index_of_Hz_ = std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -120,31 +100,27 @@ Decibels Transducer::noise_reduction(double frequency_Hz) const {
 }
 
 ContinuousSound::ContinuousSound(Decibels source_level, double centre_Hz, double bandwidth_Hz,
-                                 const DeviceContext& context)
-    : channel_(channel_of(context)),
-      vehicle_(context.vehicle),
-      body_(context.body),
-      p_BS_(context.config.position_m),
-      faults_(context.faults),
+                                 SoundSite site)
+    : site_(std::move(site)),
       source_level_(source_level),
       centre_Hz_(centre_Hz),
       bandwidth_Hz_(bandwidth_Hz) {
-  channel_.join(*this);
+  site_.channel.join(*this);
 }
 
 void ContinuousSound::set_on(bool on) {
   if (on == on_) return;
   on_ = on;
-  channel_.noise_changed();
+  site_.channel.noise_changed();
 }
 
 void ContinuousSound::set_level(Decibels source_level) {
   source_level_ = source_level;
-  channel_.noise_changed();
+  site_.channel.noise_changed();
 }
 
 ContinuousSound::~ContinuousSound() {
-  channel_.leave(*this);
+  site_.channel.leave(*this);
 }
 
 }  // namespace sim

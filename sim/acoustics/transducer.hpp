@@ -8,15 +8,10 @@
 #include "sim/acoustics/directivity.hpp"
 #include "sim/acoustics/signal.hpp"
 #include "sim/acoustics/signal_receiver.hpp"
+#include "sim/acoustics/sound_site.hpp"
 #include "sim/config/param_reader.hpp"
 
 namespace sim {
-
-class AcousticChannel;
-class Body;
-class DeviceFaults;
-class Vehicle;
-struct DeviceContext;
 
 /// Who hears through a transducer.
 class AcousticListener {
@@ -53,8 +48,7 @@ class Transducer {
     void visit_state(StateArchive& archive) { archive(sent, sent_bytes, understood, understood_bytes, unsent, lost); }
   };
 
-  /// Throws ConfigError at the device's place when the world has no water.
-  Transducer(AcousticListener& listener, const ReceiverConfig& config, const DeviceContext& context);
+  Transducer(AcousticListener& listener, const ReceiverConfig& config, SoundSite site);
   ~Transducer();
   Transducer(const Transducer&) = delete;
   Transducer& operator=(const Transducer&) = delete;
@@ -79,8 +73,9 @@ class Transducer {
   Vector3d p_W(Time at) const;
   Vector3d v_W() const { return motion().v_W; }
   Matrix3d R_WS() const;
-  const std::string& full_name() const { return full_name_; }
-  const Vehicle& vehicle() const { return vehicle_; }
+  const std::string& full_name() const { return site_.full_name; }
+  /// See SoundSite.
+  int group() const { return site_.group; }
   int number() const { return number_; }
   const ReceiverConfig& config() const { return config_; }
   void change(const ReceiverConfig& config);
@@ -109,12 +104,7 @@ class Transducer {
 
   AcousticListener& listener_;
   ReceiverConfig config_;
-  AcousticChannel& channel_;
-  const Vehicle& vehicle_;
-  const Body& body_;
-  Pose X_BS_;
-  const DeviceFaults& faults_;
-  std::string full_name_;
+  const SoundSite site_;
   int number_ = -1;
   std::uint32_t join_ = 0;  // of the joins of all transducers, from 1: others may have had its number before
   Time busy_until_{0};      // of all it was asked to send
@@ -137,8 +127,8 @@ class Transducer {
 /// which hashes and saves its state: the device does not visit it.
 class ContinuousSound {
  public:
-  /// Even over its band.  Throws ConfigError at the device's place when the world has no water.
-  ContinuousSound(Decibels source_level, double centre_Hz, double bandwidth_Hz, const DeviceContext& context);
+  /// Even over its band.
+  ContinuousSound(Decibels source_level, double centre_Hz, double bandwidth_Hz, SoundSite site);
   ~ContinuousSound();
   ContinuousSound(const ContinuousSound&) = delete;
   ContinuousSound& operator=(const ContinuousSound&) = delete;
@@ -153,11 +143,7 @@ class ContinuousSound {
  private:
   friend class AcousticChannel;
 
-  AcousticChannel& channel_;
-  const Vehicle& vehicle_;
-  const Body& body_;
-  Vector3d p_BS_;
-  const DeviceFaults& faults_;
+  const SoundSite site_;
   Decibels source_level_;
   double centre_Hz_, bandwidth_Hz_;
   bool on_ = true;

@@ -5,23 +5,8 @@
 #include <utility>
 
 #include "sim/config/message_text.hpp"
-#include "sim/world/vehicle.hpp"
-#include "sim/world/world.hpp"
 
 namespace sim {
-
-Joint& DeviceContext::joint(const std::string& name) const {
-  return vehicle.joint(name);
-}
-
-std::string DeviceContext::full_name() const {
-  return vehicle.name() + "/" + config.name;
-}
-
-Noise DeviceContext::noise(const NoiseParams& params, int values, const std::string& key) const {
-  const std::string quantity = quantity_of(key);
-  return {params, values, Random(world.seed(), full_name() + "#" + quantity), &faults.noise_of(quantity)};
-}
 
 std::string quantity_of(const std::string& noise_key) {
   constexpr std::string_view suffix = "_noise";

@@ -13,24 +13,7 @@
 
 namespace sim {
 
-class Joint;
-
-/// What a device may hold on to while it is built.
-struct DeviceContext {
-  World& world;
-  Vehicle& vehicle;
-  const DeviceConfig& config;
-  Body& body;  ///< that the device is mounted on
-  int number;  ///< of the device in the world, for World::schedule_arrival
-  DeviceFaults& faults;
-
-  /// Throws std::out_of_range: names were checked when the file was read.
-  Joint& joint(const std::string& name) const;
-  std::string full_name() const;  ///< such as `rover1/lidar`
-  /// The error of a quantity, with a random stream of its own, which faults can reach.  `key`: its key in YAML, such
-  /// as `gyro_noise`.  `values`: how many have slow parts of their own (axes of a vector).
-  Noise noise(const NoiseParams& params, int values, const std::string& key) const;
-};
+struct DeviceContext;
 
 /// The name of a quantity for faults: the key of its noise without `_noise`.
 std::string quantity_of(const std::string& noise_key);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/config/config_node.hpp"
+#include "sim/director/actor.hpp"
 #include "sim/director/condition_watch.hpp"
 #include "sim/geometry/zone.hpp"
 #include "sim/world_file/world_config.hpp"

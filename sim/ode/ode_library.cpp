@@ -11,7 +11,7 @@
 #include <cstring>
 #include <string>
 
-#include "sim/physics/physics_world.hpp"
+#include "sim/ode/physics_fault.hpp"
 #include "sim/base/step_memory.hpp"
 
 namespace sim {

@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,17 +16,12 @@
 #include "sim/physics/joint.hpp"
 #include "sim/physics/motion.hpp"
 #include "sim/model/physics_config.hpp"
+#include "sim/ode/physics_fault.hpp"
 #include "sim/scene/scene.hpp"
 
 namespace sim {
 
 class StateArchive;
-
-/// A body became NaN or flew off, or ODE gave up.  The world cannot be stepped any further.
-class PhysicsFault : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// One part as built: who it belongs to.
 struct PartInfo {

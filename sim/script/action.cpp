@@ -6,7 +6,7 @@
 
 #include "sim/config/message_text.hpp"
 #include "sim/config/read_points.hpp"
-#include "sim/world_file/world_config.hpp"
+#include "sim/model/object_config.hpp"
 
 namespace sim {
 

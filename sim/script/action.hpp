@@ -11,12 +11,11 @@
 #include "sim/config/param_reader.hpp"
 #include "sim/device/fault.hpp"
 #include "sim/random/random.hpp"
-#include "sim/script/actor.hpp"
+#include "sim/script/actor_config.hpp"
 
 namespace sim {
 
 struct ObjectConfig;
-struct WorldConfig;
 
 /// Turns a map of values into the payload of a message type; what is wrong goes to the diagnostics.  sim/ knows no
 /// message types: the program that loads a world brings this.

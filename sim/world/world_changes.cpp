@@ -237,4 +237,24 @@ void World::clear_faults(const std::string& device) {
   device_named(device).clear_faults();
 }
 
+bool World::change_device(const std::string& full_name, const ConfigNode& values, Diagnostics& diagnostics) {
+  const bool changed = apply_change(full_name, values, diagnostics);
+  if (changed) journal_->device_changed(full_name, values);
+  return changed;
+}
+
+bool World::apply_change(const std::string& full_name, const ConfigNode& values, Diagnostics& diagnostics) {
+  MountedDevice* device = find_device(full_name);
+  const std::string who = "device '" + shortened(printable(full_name)) + "'";
+  if (device == nullptr) {
+    diagnostics.error(values.place, who, "there is no such device; devices are named VEHICLE/DEVICE");
+    return false;
+  }
+  const auto changed = changed_device(device->config(), device->vehicle().config(), config_, values, who, diagnostics);
+  if (changed) device->change(*changed, now());
+  for (Sensing& sensing : sensing_)
+    if (sensing.device == device) sensing.due_step = device->next_sample_step();
+  return changed.has_value();
+}
+
 }  // namespace sim

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "sim/world/device_change.hpp"
+#include "sim/world_file/device_change.hpp"
 
 namespace sim {
 

@@ -13,11 +13,12 @@
 #include "sim/config/param_reader.hpp"
 #include "sim/base/geodesy.hpp"
 #include "sim/medium/medium_config.hpp"
+#include "sim/model/object_config.hpp"
 #include "sim/model/physics_config.hpp"
 #include "sim/script/event_config.hpp"
 #include "sim/geometry/zone.hpp"
 #include "sim/world_file/metric_config.hpp"
-#include "sim/world_file/placement.hpp"
+#include "sim/model/placement.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 
 namespace sim {
@@ -43,22 +44,6 @@ struct ChannelConfig {
   std::string report = "{vehicle}.{device}";
   std::string command = "{vehicle}.{device}.cmd";
   std::string truth = "{vehicle}.{device}.truth";
-  void read(ParamReader& in);
-};
-
-/// A thing without devices.
-struct ObjectConfig {
-  std::string name;
-  Vector3d position_m = Vector3d::Zero();
-  Vector3d rpy_rad = Vector3d::Zero();
-  bool fixed = false;      ///< never moves
-  bool present = true;     ///< false: it is not there until an event adds it
-  bool kinematic = false;  ///< an actor moves it
-  int count = 1;
-  PlacementConfig placement;
-  std::vector<PartConfig> parts;
-  std::shared_ptr<const ConfigNode> source;  ///< what it was read from; null: made by hand
-  SourcePlace place;
   void read(ParamReader& in);
 };
 

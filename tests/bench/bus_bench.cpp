@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "bridges/lcm/lcm_bus.hpp"
+#include "bridges/bus/lcm_bus.hpp"
 #include "bridges/log/recording_bus.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/bus/in_process_bus.hpp"

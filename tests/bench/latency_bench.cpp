@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "bridges/lcm/lcm_bus.hpp"
+#include "bridges/bus/lcm_bus.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
 
 namespace {

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "bridges/lcm/lcm_bus.hpp"
+#include "bridges/bus/lcm_bus.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/lockstep/lockstep_client.hpp"
+#include "bridges/lockstep_client/lockstep_client.hpp"
 #include "bridges/control/sim_service.hpp"
 #include "sim/world_file/load_world.hpp"
 

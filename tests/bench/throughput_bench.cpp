@@ -11,7 +11,7 @@
 #include <cstring>
 #include <string>
 
-#include "bridges/lcm/lcm_bus.hpp"
+#include "bridges/bus/lcm_bus.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
 
 namespace {

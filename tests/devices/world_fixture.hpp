@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "shoal/message_codec.hpp"
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"

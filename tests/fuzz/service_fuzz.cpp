@@ -4,7 +4,7 @@
 #include "bridges/lockstep/lockstep_service.hpp"
 #include "bridges/control/sim_service.hpp"
 #include "shoal/message_codec.hpp"
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_resend_t.hpp"
 #include "shoal/sim_resent_t.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 #include "tests/fuzz/scratch_file.hpp"
 #include "tools/experiment/fidelity/fidelity.hpp"

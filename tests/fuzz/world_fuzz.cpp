@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 #include "sim/config/warnings.hpp"
 #include "sim/world_file/config_warnings.hpp"
 #include "sim/world_file/load_world.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <set>
 
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/vehicle_config.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 
 #include <gmock/gmock.h>
 

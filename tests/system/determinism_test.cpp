@@ -7,7 +7,7 @@
 #include <set>
 
 #include "bridges/lcm/lcm_listener.hpp"
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/world_file/load_world.hpp"

@@ -8,7 +8,7 @@
 
 #include "bridges/log/event_log.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/lockstep/lockstep_client.hpp"
+#include "bridges/lockstep_client/lockstep_client.hpp"
 #include "tests/system/shoal_program.hpp"
 
 // 0 ok, 1 a pass rule failed, 2 usage or configuration, 3 physics, 4 bus or file, 5 time-out, 129, 130 and 143

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/lockstep/lockstep_client.hpp"
+#include "bridges/lockstep_client/lockstep_client.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_control_reply_t.hpp"

@@ -6,7 +6,7 @@
 
 #include "bridges/base/bus_error.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/lockstep/lockstep_client.hpp"
+#include "bridges/lockstep_client/lockstep_client.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/utime_t.hpp"
 #include "tests/system/shoal_program.hpp"

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "devices/comms/acoustic_modem.hpp"
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 #include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/transducer.hpp"
 #include "sim/bus/in_process_bus.hpp"

@@ -3,7 +3,7 @@
 #include <iostream>
 #include <memory>
 
-#include "bridges/lcm/network_check.hpp"
+#include "bridges/bus/network_check.hpp"
 #include "tools/shoal/commands.hpp"
 
 namespace tools {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"

@@ -8,7 +8,7 @@
 #include "bridges/lockstep/lockstep_service.hpp"
 #include "tools/experiment/replay/play.hpp"
 #include "tools/experiment/replay/replay.hpp"
-#include "tools/experiment/files/run_error.hpp"
+#include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <sstream>
 
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 #include "tools/experiment/bug_report/bug_report.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/experiment/run/runner.hpp"

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "devices/ranging/camera.hpp"
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/image/image_file.hpp"
 #include "sim/camera/renderer.hpp"

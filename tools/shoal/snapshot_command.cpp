@@ -2,7 +2,7 @@
 #include <iostream>
 #include <memory>
 
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world_file/load_world.hpp"

@@ -13,7 +13,7 @@
 #include <optional>
 
 #include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/lockstep/wait_notice.hpp"
+#include "bridges/lockstep_client/wait_notice.hpp"
 #include "shoal/message_schema.hpp"
 #include "tools/command_line/text_layout.hpp"
 #include "tools/experiment/run/runner.hpp"

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <future>
 
-#include "bridges/lcm/lcm_bus.hpp"
+#include "bridges/bus/lcm_bus.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "shoal/sim_tick_t.hpp"
 #include "shoal/utime_t.hpp"

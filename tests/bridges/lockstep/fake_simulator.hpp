@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "bridges/lcm/lcm_bus.hpp"
+#include "bridges/bus/lcm_bus.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_control_reply_t.hpp"

@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include "bridges/lockstep/resend.hpp"
+#include "bridges/lockstep_client/resend.hpp"
 #include "tests/bridges/lockstep/lockstep_fixture.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "bridges/log/event_log.hpp"
-#include "bridges/lcm/lcm_bus.hpp"
+#include "bridges/bus/lcm_bus.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 
 namespace bridges {

@@ -13,7 +13,7 @@
 
 #include "bridges/serial/serial_port.hpp"
 #include "devices/common/nmea.hpp"
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"

@@ -9,8 +9,8 @@
 #include <fstream>
 
 #include "bridges/base/bus_error.hpp"
-#include "bridges/lcm/bus_reach.hpp"
-#include "bridges/signing/control_guard.hpp"
+#include "bridges/bus/bus_reach.hpp"
+#include "bridges/lockstep/control_guard.hpp"
 #include "bridges/lcm/lcm_connection.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_signed_t.hpp"

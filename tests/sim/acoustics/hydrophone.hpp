@@ -31,7 +31,7 @@ class Hydrophone final : public sim::Sensor, public sim::AcousticListener {
     sim::ReceiverConfig receiver;
     void read(sim::ParamReader& in) { in.read("receiver", receiver, "of the transducer"); }
   };
-  Hydrophone(const Params& params, const sim::DeviceContext& context) : transducer_(*this, params.receiver, context) {}
+  Hydrophone(const Params& params, const sim::DeviceContext& context) : transducer_(*this, params.receiver, context.sound_site()) {}
 
   void measure(const sim::SenseContext&) override {}
   void disturb(double, sim::Random&) override {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world_file/placement.hpp"
+#include "sim/model/placement.hpp"
 
 #include <gtest/gtest.h>
 

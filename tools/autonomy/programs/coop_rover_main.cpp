@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
 
-#include "tools/autonomy/programs/coop_rover.hpp"
+#include "tools/autonomy/missions/coop_rover.hpp"
 #include "tools/autonomy/programs/program.hpp"
 #include "tools/autonomy/behaviours/waypoint_text.hpp"
 

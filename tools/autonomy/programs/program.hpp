@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "shoal/client.hpp"
-#include "tools/autonomy/programs/memory.hpp"
+#include "tools/autonomy/missions/memory.hpp"
 
 namespace autonomy {
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <numbers>
 
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"

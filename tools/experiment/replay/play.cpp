@@ -8,12 +8,12 @@
 #include <memory>
 #include <thread>
 
-#include "bridges/lcm/lcm_bus.hpp"
+#include "bridges/bus/lcm_bus.hpp"
 #include "bridges/lockstep/lockstep_service.hpp"
 #include "bridges/control/other_simulators.hpp"
 #include "bridges/control/sim_service.hpp"
 #include "shoal/message_codec.hpp"
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/bus/mail_gate.hpp"
 #include "sim/config/message_text.hpp"
@@ -24,7 +24,7 @@
 #include "tools/experiment/terminal/progress.hpp"
 #include "tools/experiment/replay/recorded_steps.hpp"
 #include "tools/experiment/replay/replay_log.hpp"
-#include "tools/experiment/files/run_error.hpp"
+#include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/process/signals.hpp"
 
 namespace tools {

@@ -14,7 +14,7 @@
 #include "bridges/log/run_journal.hpp"
 #include "bridges/control/sim_service.hpp"
 #include "shoal/message_codec.hpp"
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/bus/mail_gate.hpp"
 #include "sim/config/message_text.hpp"

@@ -24,7 +24,7 @@
 #include "shoal/sim_snapshot_t.hpp"
 #include "shoal/sim_state_t.hpp"
 #include "sim/config/message_text.hpp"
-#include "tools/experiment/files/notice_text.hpp"
+#include "tools/experiment/results/notice_text.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/snapshot/snapshot_pieces.hpp"
 

@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "tools/experiment/files/gnuplot.hpp"
-#include "tools/experiment/files/notice_text.hpp"
+#include "tools/experiment/results/notice_text.hpp"
 #include "tools/experiment/results/results_world.hpp"
 #include "tools/experiment/results/run_pictures.hpp"
 

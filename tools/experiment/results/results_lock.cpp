@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "bridges/base/file_lock.hpp"
-#include "tools/experiment/files/run_error.hpp"
+#include "tools/experiment/results/run_error.hpp"
 
 namespace tools {
 

@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "bridges/base/bus_error.hpp"
-#include "bridges/lcm/bus_reach.hpp"
+#include "bridges/bus/bus_reach.hpp"
 #include "sim/bus/in_process_bus.hpp"
 
 namespace tools {

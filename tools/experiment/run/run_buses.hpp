@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "bridges/lcm/lcm_bus.hpp"
+#include "bridges/bus/lcm_bus.hpp"
 #include "bridges/control/other_simulators.hpp"
 #include "bridges/log/recording_bus.hpp"
 #include "sim/bus/bus.hpp"

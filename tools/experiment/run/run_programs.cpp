@@ -3,7 +3,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "tools/experiment/files/run_error.hpp"
+#include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/run/run_name.hpp"
 
 namespace tools {

@@ -2,7 +2,7 @@
 #include <ode/ode.h>
 #include <spdlog/fmt/fmt.h>
 
-#include "bridges/lcm/lcm_version.hpp"
+#include "bridges/bus/lcm_version.hpp"
 #include "tools/experiment/run/runner.hpp"
 
 namespace tools {

@@ -8,7 +8,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 #include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/shipped_files.hpp"

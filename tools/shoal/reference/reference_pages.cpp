@@ -121,7 +121,7 @@ std::string world_format_page() {
 
 std::string messages_page() {
   std::string page = fmt::format(fmt::runtime(generated), "messages") +
-                     "# Messages\n\nPackage `shoal`, from `messages/*.lcm`. `utime` is the run's epoch plus "
+                     "# Messages\n\nPackage `shoal`, from `messages/*/*.lcm`. `utime` is the run's epoch plus "
                      "simulated time, in microseconds. Channels are `VEHICLE.DEVICE` for reports, "
                      "`VEHICLE.DEVICE.cmd` for commands, `VEHICLE.DEVICE.truth` for readings without errors, and "
                      "`sim.*` for the simulator itself.\n\n"

@@ -10,7 +10,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "shoal/message_writer.hpp"
+#include "messages/yaml/message_writer.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tools/experiment/results/results_world.hpp"

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridges/bus/arrivals.hpp"
+
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "bridges/base/bus_error.hpp"
+
+namespace bridges {
+
+Arrivals::Arrivals() : wake_fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  if (wake_fd_ < 0) throw BusError("no file descriptor is left for the bus");
+  readable_.add(wake_fd_, nullptr);
+}
+
+Arrivals::~Arrivals() {
+  close(wake_fd_);
+}
+
+void Arrivals::add(Port& port, int fd) {
+  if (fd >= 0) readable_.add(fd, &port);
+  ports_.push_back({&port, fd});
+}
+
+void Arrivals::remove(Port& port) {
+  const auto watched =
+      std::find_if(ports_.begin(), ports_.end(), [&](const Watched& each) { return each.port == &port; });
+  if (watched == ports_.end()) return;
+  if (watched->fd >= 0) readable_.remove(watched->fd);
+  ports_.erase(watched);
+}
+
+void Arrivals::arrived() {
+  count_.fetch_add(1);
+  // Who falls asleep now sees the new count.
+  if (!asleep_.load() || !asleep_.exchange(false)) return;
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const auto written = write(wake_fd_, &one, sizeof one);
+}
+
+bool Arrivals::wait(std::chrono::milliseconds timeout) {
+  using std::chrono::steady_clock;
+  const auto deadline = steady_clock::now() + timeout;
+  for (const Watched& each : ports_) each.port->send_queued();
+  for (std::chrono::milliseconds left = timeout;;) {
+    asleep_ = true;
+    const bool came = count_.load() != seen_;
+    const PollSet::Readable readable = came ? PollSet::Readable{} : readable_.wait(left);
+    asleep_ = false;
+    if (came) break;
+    receive(readable);
+    if (count_.load() != seen_) break;
+    if (left.count() == 0 && readable.count == 0) return false;
+    left = std::max(std::chrono::ceil<std::chrono::milliseconds>(deadline - steady_clock::now()), left * 0);
+  }
+  seen_ = count_.load();
+  return true;
+}
+
+void Arrivals::receive(const PollSet::Readable& readable) {
+  for (std::size_t i = 0; i < readable.count; ++i) {
+    if (readable.tags[i] == nullptr) {
+      std::uint64_t times = 0;
+      [[maybe_unused]] const auto got = read(wake_fd_, &times, sizeof times);
+    } else if (Port& port = *static_cast<Port*>(readable.tags[i]); !port.receive()) {
+      remove(port);
+    }
+  }
+}
+
+}  // namespace bridges

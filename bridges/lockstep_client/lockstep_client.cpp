@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridges/lockstep_client/lockstep_client.hpp"
+
+#include <algorithm>
+#include <random>
+
+#include "bridges/lockstep_client/lockstep_terms.hpp"
+#include "bridges/lockstep_client/resend.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/sim_ack_t.hpp"
+#include "shoal/sim_control_reply_t.hpp"
+#include "shoal/sim_control_request_t.hpp"
+#include "shoal/sim_resend_t.hpp"
+#include "shoal/sim_resent_t.hpp"
+
+namespace bridges {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr const char* tick_channel = "sim.tick";
+constexpr const char* ack_channel = "sim.ack";
+constexpr const char* request_channel = "sim.control";
+constexpr const char* reply_channel = "sim.control.reply";
+constexpr const char* question_channel = "sim.resend";
+constexpr const char* bundle_channel = "sim.resent";
+
+constexpr milliseconds slice{50};
+/// How often somebody who follows a run asks, at most, to be told of its end.
+constexpr int most_questions = 20;
+/// What a client waits, at most, for the simulator to let it go.
+constexpr milliseconds time_to_leave{1000};
+
+/// Nothing when the payload is not a valid M: anybody may publish anything.
+template <class M>
+std::optional<M> try_decode(std::span<const std::byte> payload) {
+  try {
+    return shoal::decode<M>(payload, shoal::Finite::required);
+  } catch (const shoal::MessageError&) {
+    return std::nullopt;
+  }
+}
+
+/// Its own at each start, so that nobody takes it for a program that ran before it.
+std::int64_t random_session() {
+  std::random_device device;
+  const std::uint64_t high = device();
+  return static_cast<std::int64_t>((high << 30 ^ device()) & 0x1FFFFFFFFFFFFF) + 1;
+}
+
+}  // namespace
+
+LockstepClient::LockstepClient(const std::string& url, std::string name)
+    : lcm_(url),
+      name_(std::move(name)),
+      session_(random_session()),
+      outbox_(name_, [this](std::string_view channel, std::span<const std::byte> payload) { send(channel, payload); }) {
+  for (const char* channel : {tick_channel, reply_channel, question_channel, bundle_channel}) lcm_.listen(channel);
+  if (const auto key = run_key_from_environment()) signer_.emplace(*key, name_);
+  // A program that was started again must not take the answer to its predecessor for its own.
+  request_id_ = static_cast<std::int32_t>(std::random_device()() >> 2);
+}
+
+void LockstepClient::subscribe(const std::string& channel, Handler handler) {
+  auto& handlers = handlers_[channel];
+  const bool own =
+      channel == tick_channel || channel == reply_channel || channel == question_channel || channel == bundle_channel;
+  // One subscription per channel, or each message would arrive twice.
+  if (handlers.empty() && !own) lcm_.listen(channel);
+  if (ClientInbox::is_named(channel)) inbox_.add_channel(channel);
+  handlers.push_back(std::move(handler));
+}
+
+void LockstepClient::send(std::string_view channel, std::span<const std::byte> payload) {
+  sim::Bytes signed_payload;
+  if (signer_ && is_control_channel(channel)) {
+    signed_payload = signer_->sign(channel, payload);
+    payload = signed_payload;
+  }
+  if (!lcm_.publish(channel, payload))
+    throw BusError("cannot publish " + std::to_string(payload.size()) + " bytes on '" + std::string(channel) + "'");
+}
+
+void LockstepClient::publish(std::string_view channel, std::span<const std::byte> payload) {
+  if (joined_ && ClientInbox::is_named(channel))
+    outbox_.publish(channel, payload);
+  else
+    send(channel, payload);
+}
+
+void LockstepClient::send_request(const std::string& command, std::int32_t id, double value, const std::string& text) {
+  shoal::sim_control_request_t request{};
+  request.id = id;
+  request.client = name_;
+  request.command = command;
+  request.value = value;
+  request.text = text;
+  send(request_channel, shoal::encode(request));
+}
+
+void LockstepClient::request(const std::string& command, double value, const std::string& text,
+                             Clock::time_point deadline, bool heed_stop) {
+  const std::int32_t id = ++request_id_;
+  if (command == "join") join_id_ = id;
+  answered_id_.reset();
+  milliseconds interval = first_resend_interval;
+  while (Clock::now() < deadline && !(stop_ && heed_stop)) {
+    send_request(command, id, value, text);
+    const auto resend = std::min(deadline, Clock::now() + interval);
+    interval = next_resend_interval(interval);
+    while (auto message = wait(resend, heed_stop)) {
+      take(std::move(*message));
+      if (answered_id_ != id) continue;
+      if (!refusal_.empty()) throw BusError("the simulator refuses '" + name_ + "': " + refusal_);
+      return;
+    }
+  }
+  const std::string where = " on " + lcm_.url();
+  if (stop_ && heed_stop) throw BusError("'" + name_ + "' was stopped while it waited for a simulator" + where);
+  throw BusError("no simulator answered '" + name_ + "' in time" + where + "; is it running, with the same LCM URL?");
+}
+
+void LockstepClient::wait_for(const std::string& what) {
+  notice_.emplace("'" + name_ + "' waits for " + what + ", at " + lcm_.url(), notice_after_);
+}
+
+void LockstepClient::ask_to_join(Clock::time_point deadline) {
+  const std::size_t told = inbox_.channels().size();
+  const sim::LockstepTerms terms{session_, inbox_.channels(), options_.on_timeout, options_.timeout_s};
+  request("join", period_s_, text_of(terms), deadline, true);
+  channels_told_ = told;
+}
+
+void LockstepClient::join(double period_s, milliseconds timeout, const JoinOptions& options) {
+  const bool again = joined_ && end_ != End::dropped;
+  if (!again) {
+    session_ = random_session();
+    sequence_ = 0;
+    incomplete_.reset();
+    outbox_.restart();
+  }
+  joined_ = again;
+  following_ = false;
+  period_s_ = period_s;
+  options_ = options;
+  end_ = End::none;
+  wait_for("a simulator to answer its join on 'sim.control.reply'");
+  ask_to_join(Clock::now() + timeout);
+  got_it();
+  // What came before was not for a member of the lockstep.
+  if (!joined_) inbox_.drop_held();
+  joined_ = true;
+}
+
+std::optional<Received> LockstepClient::wait(Clock::time_point deadline, bool heed_stop) {
+  while (!(stop_ && heed_stop)) {
+    if (notice_) notice_->look();
+    const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now());
+    if (auto message = lcm_.next(std::clamp(left, milliseconds(0), slice))) return message;
+    if (Clock::now() >= deadline) break;
+  }
+  return std::nullopt;
+}
+
+void LockstepClient::call_handlers(const std::string& channel, std::span<const std::byte> payload) {
+  const auto found = handlers_.find(channel);
+  if (found == handlers_.end()) return;
+  const std::size_t count = found->second.size();
+  for (std::size_t i = 0; i < count; ++i) found->second[i](payload);
+}
+
+void LockstepClient::follow() {
+  following_ = true;
+  end_ = End::none;
+  join_id_ = ++request_id_;  // the number of the request: follow() takes the place of join()
+  answered_id_.reset();
+  questions_left_ = most_questions;
+  ask_at_ = Clock::now();
+  ask_interval_ = first_resend_interval;
+}
+
+void LockstepClient::ask_to_be_told_of_the_end() {
+  if (questions_left_ == 0 || answered_id_ == join_id_ || Clock::now() < ask_at_) return;
+  --questions_left_;
+  ask_at_ = Clock::now() + ask_interval_;
+  ask_interval_ = next_resend_interval(ask_interval_);
+  send_request("follow", join_id_, 0, text_of(sim::FollowTerms{session_}));
+}
+
+bool LockstepClient::handle_message() {
+  const bool forever = silence_limit_.count() == 0;
+  const auto deadline = forever ? Clock::time_point::max() : Clock::now() + silence_limit_;
+  while (true) {
+    auto until = deadline;
+    if (following_) {
+      ask_to_be_told_of_the_end();
+      if (questions_left_ > 0 && answered_id_ != join_id_) until = std::min(until, ask_at_);
+    }
+    const auto message = wait(until);
+    if (message) {
+      if (following_ && message->channel == reply_channel) take_reply(message->payload);
+      if (following_ && message->channel == tick_channel) take_tick(message->payload);
+      call_handlers(message->channel, message->payload);
+      return end_ != End::last_tick;
+    }
+    if (!stop_ && Clock::now() < deadline) continue;
+    end_ = stop_ ? End::stopped : End::silence;
+    return false;
+  }
+}
+
+void LockstepClient::take(Received message) {
+  if (message.channel == tick_channel) take_tick(message.payload);
+  if (message.channel == reply_channel) take_reply(message.payload);
+  if (message.channel == question_channel) take_question(message.payload);
+  if (message.channel == bundle_channel) take_bundle(message.payload);
+  if (!inbox_.hold(message)) call_handlers(message.channel, message.payload);
+}
+
+void LockstepClient::take_reply(std::span<const std::byte> payload) {
+  const auto reply = try_decode<shoal::sim_control_reply_t>(payload);
+  if (!reply || reply->client != name_) return;
+  // Another client may have our name, and even our number of a request.  What could not be read has no session.
+  const bool ours = reply->session == session_;
+  if (!ours && reply->session != 0) return;
+  if (reply->id == request_id_) {
+    answered_id_ = reply->id;
+    refusal_ = reply->ok != 0 ? "" : reply->text.empty() ? "it does not say why" : reply->text;
+  } else if (reply->id != join_id_) {
+    return;
+  }
+  if (ours && joined_ && reply->id == join_id_ && reply->ok == 0) {
+    end_ = End::dropped;
+    reason_ = reply->text;
+  }
+}
+
+void LockstepClient::take_tick(std::span<const std::byte> payload) {
+  auto tick = try_decode<shoal::sim_tick_t>(payload);
+  if (!tick) return;
+  const auto due = std::find_if(tick->client.begin(), tick->client.end(), [&](const shoal::sim_due_t& each) {
+    return each.name == name_ && each.session == session_;
+  });
+  if (due == tick->client.end()) return;  // also a last one: the end of somebody else's run
+  if (following_) {
+    if (tick->last != 0) end_ = End::last_tick;
+    return;
+  }
+  if (due->sequence == sequence_ && !outbox_.is_open())
+    return send_ack();  // our answer was lost, or is on its way; or we are asked whether we live
+  if (due->sequence <= sequence_ || (incomplete_ && incomplete_->sequence == due->sequence)) return;
+  const shoal::sim_due_t own = *due;
+  begin_tick(std::move(*tick), own);
+}
+
+void LockstepClient::begin_tick(shoal::sim_tick_t tick, const shoal::sim_due_t& due) {
+  if (!inbox_.expect(due)) return;  // not what we asked for
+  incomplete_ = {std::move(tick), due.sequence, Clock::now() + resend_grace, first_resend_interval};
+}
+
+void LockstepClient::take_question(std::span<const std::byte> payload) {
+  const auto question = try_decode<shoal::sim_resend_t>(payload);
+  if (!question || question->of_client == 0 || question->client != name_ || question->session != session_) return;
+  if (question->sequence != sequence_ || outbox_.is_open()) return;
+  shoal::sim_resent_t head;
+  head.utime = tick_.utime;
+  head.client = name_;
+  head.session = session_;
+  head.sequence = sequence_;
+  head.of_client = 1;
+  outbox_.send_again(head, question->first,
+                     [this](const shoal::sim_resent_t& bundle) { send(bundle_channel, shoal::encode(bundle)); });
+}
+
+void LockstepClient::take_bundle(std::span<const std::byte> payload) {
+  if (!incomplete_) return;
+  const auto bundle = try_decode<shoal::sim_resent_t>(payload);
+  if (!bundle || bundle->of_client != 0 || bundle->client != name_ || bundle->session != session_) return;
+  if (bundle->sequence == incomplete_->sequence) inbox_.add(bundle->first, bundle->message);
+}
+
+void LockstepClient::ask_when_due() {
+  const auto now = Clock::now();
+  if (now < incomplete_->ask_at) return;
+  incomplete_->ask_at = now + incomplete_->interval;
+  incomplete_->interval = next_resend_interval(incomplete_->interval);
+  shoal::sim_resend_t question;
+  question.utime = incomplete_->tick.utime;
+  question.client = name_;
+  question.session = session_;
+  question.sequence = incomplete_->sequence;
+  question.of_client = 0;
+  question.first = inbox_.first_missing();
+  send(question_channel, shoal::encode(question));
+}
+
+bool LockstepClient::rewind(const shoal::sim_tick_t& tick) {
+  branch_ = tick.branch;
+  outbox_.clear();
+  inbox_.forget();
+  if (!rewound_) {
+    end_ = End::rewound;
+    return false;
+  }
+  rewound_(tick);
+  return true;
+}
+
+void LockstepClient::handle_tick() {
+  Incomplete now = std::move(*incomplete_);
+  incomplete_.reset();
+  const bool first = sequence_ == 0;
+  sequence_ = now.sequence;
+  tick_ = std::move(now.tick);
+  outbox_.open();
+  if (first) branch_ = tick_.branch;
+  if (tick_.branch != branch_ && !rewind(tick_)) {
+    // Not handled: after another join() it comes again.
+    --sequence_;
+    outbox_.close();
+    return;
+  }
+  outbox_.release();
+  inbox_.hand_over(
+      [this](const std::string& channel, std::span<const std::byte> payload) { call_handlers(channel, payload); });
+}
+
+bool LockstepClient::next_tick(shoal::sim_tick_t& tick) {
+  auto heard = Clock::now();
+  if (sequence_ == 0 && !notice_)
+    wait_for(
+        "its first tick on 'sim.tick' (it has joined; a paused run, or other clients that are missing, hold it up)");
+  while (!stop_ && end_ != End::dropped) {
+    if (incomplete_ && inbox_.complete()) {
+      got_it();
+      handle_tick();
+      if (end_ == End::rewound) return false;
+      tick = tick_;
+      if (tick.last == 0) return true;
+      acknowledge(tick);
+      end_ = End::last_tick;
+    }
+    if (end_ == End::last_tick) {
+      tick = tick_;
+      return false;
+    }
+    if (incomplete_) ask_when_due();
+    const bool forever = silence_limit_.count() == 0;
+    auto until = forever ? Clock::time_point::max() : heard + silence_limit_;
+    if (incomplete_) until = std::min(until, incomplete_->ask_at);
+    if (auto message = wait(until)) {
+      heard = Clock::now();
+      take(std::move(*message));
+    } else if (!stop_ && !forever && Clock::now() >= heard + silence_limit_) {
+      end_ = End::silence;
+      return false;
+    }
+  }
+  if (end_ != End::dropped) end_ = End::stopped;
+  return false;
+}
+
+void LockstepClient::acknowledge(const shoal::sim_tick_t&) {
+  if (!outbox_.is_open()) return;
+  // The world waits, so it is the same step in every run from which it knows of new channels.
+  if (inbox_.channels().size() > channels_told_) ask_to_join(Clock::now() + std::chrono::seconds(30));
+  outbox_.close();
+  send_ack();
+}
+
+void LockstepClient::send_ack() {
+  shoal::sim_ack_t ack{};
+  ack.utime = tick_.utime;
+  ack.step = tick_.step;
+  ack.client = name_;
+  ack.session = session_;
+  ack.sequence = sequence_;
+  outbox_.name_all(ack);
+  send(ack_channel, shoal::encode(ack));
+}
+
+void LockstepClient::leave() {
+  if (!joined_) return;
+  const auto deadline = Clock::now() + time_to_leave;
+  if (outbox_.is_open()) {
+    outbox_.close();
+    send_ack();
+  }
+  joined_ = false;
+  try {
+    request("leave", 0, text_of(sim::LeaveTerms{session_, sequence_}), deadline, false);
+  } catch (const BusError&) {
+    // The world notices when it waits for this client.
+  }
+}
+
+}  // namespace bridges

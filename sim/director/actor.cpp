@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/director/actor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/world/world.hpp"
+
+namespace sim {
+
+Actor::Actor(const ActorConfig& config)
+    : config_(config),
+      path_(config.make_path()),
+      rate_(config.path == PathKind::timed ? 1.0 : config.speed_mps),
+      since_(from_seconds(config.start_s)),
+      moving_(!config.waiting) {}
+
+double Actor::progress_at(Time now) const {
+  const double length = path_.length();
+  if (!moving_ || now <= since_) return from_;
+  const double progress = from_ + direction_ * rate_ * to_seconds(now - since_);
+  if (config_.ends == PathEnds::stop) return std::clamp(progress, 0.0, length);
+  const double period = config_.ends == PathEnds::bounce ? 2 * length : length;
+  return progress - period * std::floor(progress / period);
+}
+
+Pose Actor::pose_at(Time now) const {
+  const double progress = progress_at(now);
+  return path_.pose_at(progress > path_.length() ? 2 * path_.length() - progress : progress);
+}
+
+void Actor::anchor(Time now) {
+  from_ = progress_at(now);
+  since_ = std::max(since_, now);
+}
+
+void Actor::command(ActorCommand command, Time now) {
+  anchor(now);
+  moving_ = command != ActorCommand::stop;
+  if (command == ActorCommand::start || command == ActorCommand::stop) return;
+  // On the way back of a bounce the place counts, not how often it has been there.
+  if (from_ > path_.length()) from_ = 2 * path_.length() - from_;
+  direction_ = command == ActorCommand::forward ? 1 : -1;
+}
+
+void Actor::find_body(World& world) {
+  if (generation_ == world.generation()) return;
+  const WorldObject* object = world.find_object(config_.object);
+  // Only a kinematic body can be led along; World::add_object sees to it that an actor's object is one.
+  body_ = object && object->body->kinematic() ? object->body : nullptr;
+  generation_ = world.generation();
+}
+
+void Actor::place(World& world) {
+  find_body(world);
+  X_WB_ = pose_at(Time{0});
+  if (body_ != nullptr) body_->set_pose(X_WB_);
+}
+
+void Actor::step(World& world, Time now) {
+  find_body(world);
+  if (body_ == nullptr) return;  // removed; it is in its place again when it comes back
+  // Someone put it elsewhere, or it is new: it jumps back, for a way in one step would hit others like a bullet.
+  if ((body_->X_WB().translation() - X_WB_.translation()).squaredNorm() > 1e-12) body_->set_pose(pose_at(now));
+  const Time end = now + world.step_time();
+  X_WB_ = pose_at(end);
+  body_->move_to(X_WB_, to_seconds(world.step_time()));
+}
+
+}  // namespace sim

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/model/object_config.hpp"
+
+namespace sim {
+
+void refuse_reserved(ParamReader& in, const std::string& name) {
+  if (name == "any" || name == "world" || name == "sim")
+    in.error("name", "'" + name + "' cannot be a name: it is a word");
+}
+
+void ObjectConfig::read(ParamReader& in) {
+  if (in.node() != nullptr) {
+    place = in.node()->place;
+    source = std::make_shared<const ConfigNode>(*in.node());
+  }
+  in.require("name");
+  in.read_name("name", name, "name of the object, unique in the world");
+  refuse_reserved(in, name);
+  in.read("position_m", position_m, any_place(), "place in the world");
+  in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
+  in.read("fixed", fixed, "it never moves");
+  in.read("present", present, "false: it is not there until an event adds it");
+  in.read("count", count, between(1, 100000), "how many; named NAME1, NAME2, ...");
+  in.read("placement", placement, "where the instances stand when there is a count");
+  in.require("parts");
+  in.read_list("parts", parts, "part", "what it is made of");
+  if (in.has("parts") && in.child("parts")->items.empty() && in.child("parts")->kind != ConfigNode::Kind::scalar)
+    in.error("parts", "'parts' must have at least one part");
+}
+
+}  // namespace sim

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/config/param_reader.hpp"
+#include "sim/script/path.hpp"
+#include "sim/state/state_archive.hpp"
+#include "sim/base/time.hpp"
+
+namespace sim {
+
+/// What an actor does at the end of its path.
+enum class PathEnds { loop, bounce, stop };
+
+enum class ActorCommand {
+  start,    ///< go on in the direction it had
+  stop,     ///< stand
+  forward,  ///< towards the end of the path
+  back,     ///< towards its beginning
+};
+const std::vector<std::pair<std::string, ActorCommand>>& actor_command_words();
+
+/// Moves an object along a path.  The object becomes kinematic: it pushes others, and is not pushed.
+struct ActorConfig {
+  std::string name;
+  std::string object;
+  PathKind path = PathKind::waypoints;
+  std::vector<Vector3d> points_m;  ///< waypoints, spline
+  std::vector<TimedPose> poses;    ///< timed
+  std::optional<Vector3d> rpy_rad;
+  double speed_mps = 1;
+  PathEnds ends = PathEnds::loop;
+  double start_s = 0;
+  bool waiting = false;
+  SourcePlace place;
+
+  void read(ParamReader& in);
+  Path make_path() const;
+
+ private:
+  void check_points(ParamReader& in);
+};
+
+}  // namespace sim

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world/device_context.hpp"
+
+#include "sim/acoustics/channel.hpp"
+#include "sim/world/vehicle.hpp"
+#include "sim/world/world.hpp"
+
+namespace sim {
+
+Joint& DeviceContext::joint(const std::string& name) const {
+  return vehicle.joint(name);
+}
+
+std::string DeviceContext::full_name() const {
+  return vehicle.name() + "/" + config.name;
+}
+
+Noise DeviceContext::noise(const NoiseParams& params, int values, const std::string& key) const {
+  const std::string quantity = quantity_of(key);
+  return {params, values, Random(world.seed(), full_name() + "#" + quantity), &faults.noise_of(quantity)};
+}
+
+SoundSite DeviceContext::sound_site() const {
+  AcousticChannel& channel = world.acoustics();
+  if (!channel.has_water())
+    throw_config_error(config.place, "vehicle '" + vehicle.name() + "': device '" + config.name + "'",
+                       "a device of type '" + config.type +
+                           "' needs water to carry its sound: the world has no 'medium: {water: ...}'");
+  return {channel, body, config.X_BS(), vehicle.group(), vehicle.systems().powered, faults, full_name()};
+}
+
+}  // namespace sim

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "sim/acoustics/sound_site.hpp"
+#include "sim/device/device_registry.hpp"
+#include "sim/random/noise.hpp"
+
+namespace sim {
+
+class Body;
+class Joint;
+class Vehicle;
+class World;
+
+/// What a device may hold on to while it is built.
+struct DeviceContext {
+  World& world;
+  Vehicle& vehicle;
+  const DeviceConfig& config;
+  Body& body;  ///< that the device is mounted on
+  int number;  ///< of the device in the world, for World::schedule_arrival
+  DeviceFaults& faults;
+
+  /// Throws std::out_of_range: names were checked when the file was read.
+  Joint& joint(const std::string& name) const;
+  std::string full_name() const;  ///< such as `rover1/lidar`
+  /// The error of a quantity, with a random stream of its own, which faults can reach.  `key`: its key in YAML, such
+  /// as `gyro_noise`.  `values`: how many have slow parts of their own (axes of a vector).
+  Noise noise(const NoiseParams& params, int values, const std::string& key) const;
+  /// For a Transducer or a ContinuousSound.  Throws ConfigError at the device's place when the world has no water.
+  SoundSite sound_site() const;
+};
+
+}  // namespace sim

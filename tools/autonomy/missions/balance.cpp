@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/autonomy/missions/balance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "shoal/message_codec.hpp"
+
+namespace autonomy {
+
+namespace {
+
+/// Numbers between colons.
+SpeedPoint parse_point(const std::string& text) {
+  std::vector<double> numbers;
+  std::stringstream parts(text);
+  for (std::string part; std::getline(parts, part, ':');) {
+    std::size_t read = 0;
+    double number = 0;
+    try {
+      number = std::stod(part, &read);
+    } catch (const std::exception&) {
+      read = 0;
+    }
+    if (read == 0 || read != part.size() || !std::isfinite(number))
+      throw std::invalid_argument("'" + part + "' in '" + text + "' is not a number");
+    numbers.push_back(number);
+  }
+  if (numbers.size() != 2 && numbers.size() != 3)
+    throw std::invalid_argument("'" + text + "' must be TIME:SPEED or TIME:SPEED:TURN");
+  return {numbers[0], numbers[1], numbers.size() == 3 ? numbers[2] : 0};
+}
+
+/// A lean that is later than this does not belong to the same clock.
+constexpr double most_late_s = 0.1;
+/// From one lean to the next; after more than this their difference is no rate.
+constexpr double longest_gap_s = 1;
+
+/// The share of the way to a new value that a low pass goes in a time.
+double share(double time_s, double time_constant_s) {
+  return time_s / (time_s + time_constant_s);
+}
+
+}  // namespace
+
+std::vector<SpeedPoint> parse_speeds(const std::string& text) {
+  std::vector<SpeedPoint> points;
+  std::stringstream parts(text);
+  for (std::string part; std::getline(parts, part, ';');) points.push_back(parse_point(part));
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if (points[i].from_s <= points[i - 1].from_s)
+      throw std::invalid_argument("the times must grow, in '" + text + "'");
+  return points;
+}
+
+Balance::Balance(const Params& params) : params_(params) {
+  for (const double number : {params.period_s, params.wheel_radius_m, params.track_m, params.max_torque_Nm,
+                              params.fallen_rad, params.max_acceleration_mps2})
+    if (!(number > 0)) throw std::invalid_argument("period, sizes and limits must be above 0");
+}
+
+void Balance::receive(const shoal::inclination_t& message) {
+  // As floating point numbers: the difference of any two whole ones may be too large for one.
+  const double dt_s = (static_cast<double>(message.utime) - static_cast<double>(lean_utime_)) * 1e-6;
+  const bool late = dt_s <= 0 && dt_s > -most_late_s;
+  if (lean_known_ && late) return;
+  // Other times: the clock was set, or the last message had a time of its own.  The rate stays what it was.
+  if (lean_known_ && dt_s > 0 && dt_s < longest_gap_s) {
+    const double rate_radps = (message.pitch_rad - lean_rad_) / dt_s;
+    rate_radps_ += share(dt_s, params_.rate_filter_s) * (rate_radps - rate_radps_);
+  }
+  lean_rad_ = message.pitch_rad;
+  lean_utime_ = message.utime;
+  lean_known_ = true;
+}
+
+void Balance::receive(const shoal::wheel_encoder_t& message) {
+  if (message.rate_radps.size() != 2)
+    throw shoal::MessageError("it needs the rates of two wheels, got " + std::to_string(message.rate_radps.size()));
+  left_radps_ = message.rate_radps[0];
+  right_radps_ = message.rate_radps[1];
+  wheels_known_ = true;
+}
+
+void Balance::receive(const shoal::twist_command_t& message) {
+  drive(message.forward_mps, message.turn_radps);
+}
+
+void Balance::drive(double forward_mps, double turn_radps) {
+  asked_mps_ = forward_mps;
+  asked_turn_radps_ = turn_radps;
+}
+
+std::optional<Balance::Torques> Balance::step() {
+  if (!lean_known_ || !wheels_known_) return std::nullopt;
+  const Params& p = params_;
+  if (std::abs(lean_rad_ - p.balanced_lean_rad) > p.fallen_rad) fallen_ = true;
+  if (fallen_) return Torques{};
+
+  // The encoders count how the wheels turn on the body, which turns itself.
+  const double part = share(p.period_s, p.speed_filter_s);
+  const double rolled_mps = p.wheel_radius_m * ((left_radps_ + right_radps_) / 2 + rate_radps_);
+  speed_mps_ += part * (rolled_mps - speed_mps_);
+  turn_radps_ += part * (p.wheel_radius_m * (right_radps_ - left_radps_) / p.track_m - turn_radps_);
+
+  const double most_change = p.max_acceleration_mps2 * p.period_s;
+  wanted_mps_ += std::clamp(asked_mps_ - wanted_mps_, -most_change, most_change);
+  const double slow_mps = wanted_mps_ - speed_mps_;
+  const double by_speed_rad = p.kv_rad_per_mps * slow_mps;
+  const double by_way_rad = p.ki_rad_per_m * (way_m_ + slow_mps * p.period_s);
+  // The integral stands still while the lean is cut.
+  if (std::abs(by_speed_rad + by_way_rad) < p.max_lean_rad) way_m_ += slow_mps * p.period_s;
+  const double wanted_rad =
+      p.balanced_lean_rad + std::clamp(by_speed_rad + by_way_rad, -p.max_lean_rad, p.max_lean_rad);
+
+  const double both_Nm = p.kp_Nm_per_rad * (lean_rad_ - wanted_rad) + p.kd_Nms_per_rad * rate_radps_;
+  const double slow_radps = asked_turn_radps_ - turn_radps_;
+  const double most_rad = p.turn_ki_Nm_per_rad > 0 ? p.max_torque_Nm / p.turn_ki_Nm_per_rad : 0;
+  turned_rad_ = std::clamp(turned_rad_ + slow_radps * p.period_s, -most_rad, most_rad);
+  const double between_Nm = p.turn_gain_Nms_per_rad * slow_radps + p.turn_ki_Nm_per_rad * turned_rad_;
+  const auto cut = [&p](double torque_Nm) { return std::clamp(torque_Nm, -p.max_torque_Nm, p.max_torque_Nm); };
+  return Torques{cut((both_Nm - between_Nm) / 2), cut((both_Nm + between_Nm) / 2)};
+}
+
+}  // namespace autonomy

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <complex>
+
+#include "tools/autonomy/missions/balance.hpp"
+
+namespace autonomy {
+
+/// An inverted pendulum on two wheels that roll without slip, linear about its balance.  With the way of the axle x and
+/// the lean a from balance, both forwards, and the torque T of both motors (Lagrange's equations of body and wheels):
+///
+///     (M + m) x'' + m l a'' = T / r        M = mass of the wheels + their inertia / r^2
+///     m l x'' + J a'' = m g l a - T
+struct BalanceModel {
+  double mass_kg = 72.7;          ///< m: of the body
+  double height_m = 0.18114;      ///< l: of its centre of mass over the axle, when balanced
+  double inertia_kgm2 = 8.92056;  ///< J: of the body about the axle
+  double wheels_kg = 10;          ///< of both
+  double wheels_kgm2 = 0.27848;   ///< of both, about the axle
+  double wheel_radius_m = 0.236;  ///< r
+  double gravity_mps2 = 9.80665;
+
+  /// Lean (rad) and speed (m/s) for a torque (N m), at a complex frequency (1/s).
+  struct Response {
+    std::complex<double> lean, speed;
+  };
+  Response response(std::complex<double> s) const;
+};
+
+/// The frequency response, at `w` rad/s, of the whole loop cut at the torque: model, sampling, filters, both laws and
+/// the hold of the torque between two samples.  It is stable while 1 + loop has no zero to the right.
+std::complex<double> open_loop(const Balance::Params& law, const BalanceModel& model, double w_radps);
+
+/// How late torque may come after the lean that it answers: the smallest phase margin over its frequency.  For a loop
+/// that is stable without delay.
+struct DelayMargin {
+  double delay_s = 0;
+  double frequency_radps = 0;  ///< of the swing at the limit
+};
+DelayMargin delay_margin(const Balance::Params& law, const BalanceModel& model = {});
+
+}  // namespace autonomy

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/autonomy/missions/coop_craft.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace autonomy {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+double seconds(std::int64_t time_us) {
+  return static_cast<double>(time_us) * 1e-6;
+}
+
+}  // namespace
+
+CoopCraft::CoopCraft(const Params& params, std::unique_ptr<HelmBehaviour> behaviour)
+    : params_(params), behaviour_(std::move(behaviour)), access_(params.access, params.name) {}
+
+void CoopCraft::receive(const shoal::gps_data_t& fix) {
+  utime_ = fix.utime;  // the stamp counts, fix or no fix: a clock may be set back, too
+  const Vector2d p_W(fix.xyz_pos[0], fix.xyz_pos[1]);
+  if (fix.gps_lock < 1 || !p_W.allFinite() || !(fix.horizontal_accuracy > 0)) return;
+  Motion motion{fix.utime, p_W, Vector2d::Zero()};
+  // GPS gives the course clockwise from north.
+  if (std::isfinite(fix.speed) && std::isfinite(fix.heading))
+    motion.v_W = turned({fix.speed, 0}, 0.5 * std::numbers::pi - fix.heading);
+  motion_ = motion;
+  steps_since_fix_ = 0;
+  position_std_m_ = fix.horizontal_accuracy;
+}
+
+void CoopCraft::receive(const shoal::acoustic_received_t& packet) {
+  const auto state = state_in(packet);
+  if (!state) {
+    ++(order_in(packet) ? counts_.orders : counts_.bad_frames);
+    return;
+  }
+  ++counts_.heard;
+  if (direct_.is_direct(packet, *state))
+    behaviour_->hear(packet.source, motion_of(*state));
+  else
+    ++counts_.relayed;
+}
+
+CoopCraft::Decision CoopCraft::step() {
+  Decision decision;
+  shoal::helm_command_t helm{utime_, 0, nan, nan, nan};
+  // The time is that of GPS: when it is silent there is none, but for the calls of this.
+  const bool is_recent = steps_since_fix_++ * params_.period_s <= params_.oldest_fix_s;
+  const bool has_fix = is_recent && motion_ && std::abs(seconds(utime_ - motion_->utime)) <= params_.oldest_fix_s;
+  if (!motion_) return decision;
+  decision.remark = remark();
+  if (has_fix) {
+    const Course course = behaviour_->steer(*motion_);
+    helm.speed_mps = course.speed_mps;
+    helm.heading_rad = course.heading_rad;
+    decision.estimate = estimate();
+    if (access_.take_turn(utime_)) decision.send = state_frame();
+  }
+  decision.helm = helm;  // blind, it stops
+  return decision;
+}
+
+/// Once, when it has waited for long.
+std::string CoopCraft::remark() {
+  if (!patient_since_ || utime_ < *patient_since_) patient_since_ = utime_;
+  const double waited_s = seconds(utime_ - *patient_since_);
+  const std::string text = behaviour_->remark();
+  if (remarked_ || text.empty() || waited_s < params_.patience_s) return {};
+  remarked_ = true;
+  return "after " + std::to_string(std::llround(waited_s)) + " s: " + text;
+}
+
+shoal::estimate_t CoopCraft::estimate() const {
+  shoal::estimate_t estimate{};
+  estimate.utime = motion_->utime;
+  for (int i = 0; i < 2; ++i) {
+    estimate.position_m[i] = motion_->p_W[i];
+    estimate.velocity_mps[i] = motion_->v_W[i];
+    estimate.covariance_m2[4 * i] = position_std_m_ * position_std_m_;
+  }
+  estimate.covariance_m2[8] = 1;  // it floats; waves and tide are not known
+  estimate.yaw_rad = std::atan2(motion_->v_W.y(), motion_->v_W.x());
+  estimate.clock_error_s = 0;  // GPS sets the clock
+  return estimate;
+}
+
+std::optional<shoal::modem_send_t> CoopCraft::state_frame() {
+  AcousticState state;
+  state.sender = params_.id;
+  state.utime = motion_->utime;
+  state.east_m = motion_->p_W.x();
+  state.north_m = motion_->p_W.y();
+  state.depth_m = params_.transducer_depth_m;
+  state.east_std_m = state.north_std_m = position_std_m_;
+  state.speed_mps = motion_->v_W.norm();
+  state.course_rad = std::atan2(motion_->v_W.y(), motion_->v_W.x());
+  auto message = to_everybody(state);
+  if (message) ++counts_.sent;
+  return message;
+}
+
+}  // namespace autonomy

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "shoal/acoustic_received_t.hpp"
+#include "shoal/estimate_t.hpp"
+#include "shoal/gps_data_t.hpp"
+#include "shoal/helm_command_t.hpp"
+#include "shoal/modem_send_t.hpp"
+#include "tools/autonomy/acomms/channel_access.hpp"
+#include "tools/autonomy/missions/cloned.hpp"
+#include "tools/autonomy/behaviours/helm_behaviour.hpp"
+#include "tools/autonomy/acomms/state_packet.hpp"
+
+namespace autonomy {
+
+/// A surface craft that knows by GPS where it is, and tells those below by acoustic modem.  A pure function of its
+/// reports in their order; its time is that of the reports' stamps, the vehicle's own clock.
+class CoopCraft {
+ public:
+  struct Params {
+    std::string name;
+    int id = 1;                       ///< in its frames
+    double transducer_depth_m = 0.5;  ///< of the modem, below the surface
+    double oldest_fix_s = 3;          ///< an older one says nothing of where it is
+    double period_s = 0.5;            ///< between two calls of step()
+    double patience_s = 60;           ///< after which it remarks what its behaviour waits for
+    ChannelAccess::Params access;
+  };
+  struct Decision {
+    std::optional<shoal::helm_command_t> helm;  ///< for NAME.autopilot.cmd
+    std::optional<shoal::estimate_t> estimate;  ///< for NAME.estimate
+    std::optional<shoal::modem_send_t> send;    ///< for NAME.modem.cmd
+    std::string remark;                         ///< for people; empty: nothing
+  };
+  struct Counts {
+    int sent = 0;
+    int heard = 0;
+    int relayed = 0;  ///< states that did not come from their sender, and are not used
+    int orders = 0;   ///< for others
+    int bad_frames = 0;
+  };
+
+  CoopCraft(const Params& params, std::unique_ptr<HelmBehaviour> behaviour);
+
+  void receive(const shoal::gps_data_t& fix);
+  void receive(const shoal::acoustic_received_t& packet);
+  /// All reports up to now are in: what to do.
+  Decision step();
+
+  const Counts& counts() const { return counts_; }
+  const HelmBehaviour& behaviour() const { return *behaviour_; }
+
+ private:
+  shoal::estimate_t estimate() const;
+  std::optional<shoal::modem_send_t> state_frame();
+  std::string remark();
+
+  Params params_;
+  Cloned<HelmBehaviour> behaviour_;
+  ChannelAccess access_;
+  DirectStates direct_;
+  std::int64_t utime_ = 0;  ///< newest stamp
+  std::optional<std::int64_t> patient_since_;
+  bool remarked_ = false;
+  std::optional<Motion> motion_;
+  int steps_since_fix_ = 0;
+  double position_std_m_ = 0;
+  Counts counts_;
+};
+
+}  // namespace autonomy
