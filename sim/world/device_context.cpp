@@ -3,7 +3,6 @@
 
 #include "sim/acoustics/channel.hpp"
 #include "sim/world/vehicle.hpp"
-#include "sim/world/world.hpp"
 
 namespace sim {
 
@@ -17,11 +16,11 @@ std::string DeviceContext::full_name() const {
 
 Noise DeviceContext::noise(const NoiseParams& params, int values, const std::string& key) const {
   const std::string quantity = quantity_of(key);
-  return {params, values, Random(world.seed(), full_name() + "#" + quantity), &faults.noise_of(quantity)};
+  return {params, values, Random(host.seed, full_name() + "#" + quantity), &faults.noise_of(quantity)};
 }
 
 SoundSite DeviceContext::sound_site() const {
-  AcousticChannel& channel = world.acoustics();
+  AcousticChannel& channel = *host.acoustics;
   if (!channel.has_water())
     throw_config_error(config.place, "vehicle '" + vehicle.name() + "': device '" + config.name + "'",
                        "a device of type '" + config.type +
