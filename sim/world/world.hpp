@@ -12,15 +12,15 @@
 #include <typeindex>
 #include <vector>
 
+#include "sim/base/geodesy.hpp"
+#include "sim/base/thread_pool.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/bus/byte_port.hpp"
-#include "sim/base/geodesy.hpp"
+#include "sim/bus/mail_flags.hpp"
+#include "sim/event/event_queue.hpp"
 #include "sim/hydrodynamics/hydrodynamics.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/physics/physics_world.hpp"
-#include "sim/base/thread_pool.hpp"
-#include "sim/event/event_queue.hpp"
-#include "sim/bus/mail_flags.hpp"
 #include "sim/world/mounted_device.hpp"
 #include "sim/world/vehicle.hpp"
 #include "sim/world_file/world_config.hpp"

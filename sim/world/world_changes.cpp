@@ -9,6 +9,7 @@
 #include "sim/world/world.hpp"
 #include "sim/world/world_journal.hpp"
 #include "sim/world/world_warnings.hpp"
+#include "sim/world_file/device_change.hpp"
 
 // What changes a world while it runs.
 

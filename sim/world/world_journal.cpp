@@ -8,9 +8,9 @@
 #include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/transducer.hpp"
 #include "sim/config/diagnostics.hpp"
+#include "sim/world/world.hpp"
 #include "sim/world_file/data_files.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
-#include "sim/world/world.hpp"
 
 namespace sim {
 
@@ -172,7 +172,8 @@ void WorldJournal::vehicle_came(const VehicleInstance& instance, int number, boo
   came.numbers = world_.physics_->numbers_of(vehicle.group());
   for (const MountedDevice* device : vehicle.devices()) came.devices.push_back(device->number());
   for (const Transducer* transducer : world_.acoustics_->transducers())
-    if (transducer != nullptr && &transducer->vehicle() == &vehicle) came.transducers.push_back(transducer->number());
+    if (transducer != nullptr && transducer->group() == vehicle.group())
+      came.transducers.push_back(transducer->number());
   append(std::move(came));
 }
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/bus/bus.hpp"
 #include "sim/base/math.hpp"
+#include "sim/bus/bus.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/state/state_archive.hpp"
 #include "sim/world_file/world_config.hpp"

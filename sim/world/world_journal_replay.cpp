@@ -5,10 +5,10 @@
 
 #include "sim/acoustics/channel.hpp"
 #include "sim/config/diagnostics.hpp"
-#include "sim/world_file/load_world.hpp"
-#include "sim/world_file/vehicle_loader.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_journal.hpp"
+#include "sim/world_file/load_world.hpp"
+#include "sim/world_file/vehicle_loader.hpp"
 
 // What the journal tells, done again.
 
