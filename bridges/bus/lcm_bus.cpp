@@ -18,11 +18,12 @@
 #include <utility>
 #include <vector>
 
-#include "bridges/bus/outgoing_sender.hpp"
 #include "bridges/base/poll_set.hpp"
+#include "bridges/bus/outgoing_sender.hpp"
 
 namespace bridges {
-namespace {
+/// What LcmBus is made of; named, for LcmBus::Threads holds it.
+namespace lcm_bus {
 
 constexpr std::size_t max_echoes = 4096;
 
@@ -152,7 +153,9 @@ void on_message(const LcmMessage& message, void* user) {
   static_cast<Channel*>(user)->deliver(message.payload);
 }
 
-}  // namespace
+}  // namespace lcm_bus
+
+using namespace lcm_bus;
 
 struct LcmBus::Threads final : Arrivals::Port {
   Threads(const std::string& url, const LcmBusOptions& chosen)

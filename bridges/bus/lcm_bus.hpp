@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "bridges/bus/arrivals.hpp"
-#include "bridges/lcm/lcm_connection.hpp"
 #include "bridges/bus/outgoing_queue.hpp"
+#include "bridges/lcm/lcm_connection.hpp"
 #include "sim/bus/bus.hpp"
 
 namespace bridges {

@@ -20,9 +20,9 @@
 #include <set>
 #include <sstream>
 
+#include "bridges/bus/reach_check.hpp"
 #include "bridges/lcm/lcm_connection.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/bus/reach_check.hpp"
 
 namespace bridges {
 namespace {

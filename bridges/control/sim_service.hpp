@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "bridges/control/client_accounts.hpp"
-#include "bridges/lockstep/lockstep_service.hpp"
 #include "bridges/control/other_simulators.hpp"
 #include "bridges/control/run_notices.hpp"
 #include "bridges/control/time_machine.hpp"
 #include "bridges/control/visitors.hpp"
+#include "bridges/lockstep/lockstep_service.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/run/run_control.hpp"

@@ -8,13 +8,13 @@
 #include <span>
 #include <string_view>
 
+#include "bridges/lcm/lcm_reassembly.hpp"
+
 namespace bridges {
 namespace {
 
 // The filter sees the UDP header, then the datagram.
 constexpr std::uint32_t udp_header_bytes = 8;
-constexpr std::uint32_t short_magic = 0x4c433032;     // "LC02"
-constexpr std::uint32_t fragment_magic = 0x4c433033;  // "LC03"
 constexpr std::uint32_t short_channel_at = udp_header_bytes + 8;
 constexpr std::uint32_t fragment_number_at = udp_header_bytes + 16;
 constexpr std::uint32_t fragment_channel_at = udp_header_bytes + 20;

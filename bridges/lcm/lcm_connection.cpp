@@ -21,13 +21,8 @@ namespace {
 using namespace std::chrono_literals;
 
 // Every LCM program says this to itself when it starts.
-constexpr const char* self_test_channel = "LCM_SELF_TEST";
 constexpr std::chrono::seconds self_test_limit{10};
 constexpr int max_liblcm_batch = 25;
-
-[[noreturn]] void fail(const std::string& url, const std::string& what) {
-  throw BusError("LCM URL '" + url + "': " + what);
-}
 
 /// The regular expression that matches this channel only.
 std::string literal_channel_pattern(const std::string& channel) {
@@ -73,7 +68,7 @@ LcmConnection::LcmConnection(const std::string& url)
   is_tcp_ = endpoint.kind == "tcpq";
   if (is_tcp_) require_tcp_server(url_, endpoint);
   lcm_.reset(lcm_create(url_.c_str()));
-  if (!lcm_) fail(url_, "LCM cannot be used: no route for multicast, or the port is taken; run `shoal doctor`");
+  if (!lcm_) refuse_url(url_, "LCM cannot be used: no route for multicast, or the port is taken; run `shoal doctor`");
   if (endpoint.kind == "udpm")
     open_udp(endpoint);
   else
@@ -89,7 +84,7 @@ void LcmConnection::open_udp(const LcmEndpoint& endpoint) {
                                                            .buffer_bytes = endpoint.recv_buf_bytes,
                                                            .this_machine_only = endpoint.ttl == 0});
   } catch (const BusError& error) {
-    fail(url_, std::string("LCM cannot receive: ") + error.what() + "; run `shoal doctor`");
+    refuse_url(url_, std::string("LCM cannot receive: ") + error.what() + "; run `shoal doctor`");
   }
   fd_ = udp_->fd();
   test_itself();
@@ -119,15 +114,16 @@ void LcmConnection::test_itself() {
   }
   unsubscribe(own);
   if (!test.heard)
-    fail(url_,
-         "LCM cannot receive its own messages (a firewall, or an interface without multicast); run `shoal doctor`");
+    refuse_url(
+        url_,
+        "LCM cannot receive its own messages (a firewall, or an interface without multicast); run `shoal doctor`");
 }
 
 void LcmConnection::open_liblcm_receiver() {
   // The first subscription starts liblcm's receiver.
   lcm_subscription_t* probe = lcm_subscribe(lcm_.get(), "shoal\\.probe", ignore_message, nullptr);
   fd_ = probe == nullptr ? -1 : lcm_get_fileno(lcm_.get());
-  if (fd_ < 0) fail(url_, "LCM cannot receive; run `shoal doctor`");
+  if (fd_ < 0) refuse_url(url_, "LCM cannot receive; run `shoal doctor`");
   lcm_unsubscribe(lcm_.get(), probe);
 }
 

@@ -12,10 +12,9 @@ namespace {
 using namespace std::chrono_literals;
 
 // Every LCM program says this to itself when it starts.
-constexpr std::string_view self_test_channel = "LCM_SELF_TEST";
 /// Of one look of the listener's thread: then the one that waits has its turn.
 constexpr int max_batches = 64;
-constexpr std::size_t overhead_bytes = sizeof(Received) + 64;
+constexpr std::size_t message_overhead_bytes = sizeof(Received) + 64;
 
 void raise(const FileDescriptor& event) {
   const std::uint64_t one = 1;
@@ -42,16 +41,16 @@ LcmListener::~LcmListener() {
 }
 
 void LcmListener::keep(const LcmMessage& message, void* listener) {
-  if (message.channel == self_test_channel) return;
+  if (message.channel == std::string_view(self_test_channel)) return;
   auto& self = *static_cast<LcmListener*>(listener);
   Received received{std::string(message.channel), {message.payload.begin(), message.payload.end()}, message.wall_utime};
   bool waiting = false;
   {
     const std::lock_guard lock(self.mutex_);
-    self.arrived_bytes_ += received.payload.size() + overhead_bytes;
+    self.arrived_bytes_ += received.payload.size() + message_overhead_bytes;
     self.arrived_.push_back(std::move(received));
     while (self.arrived_bytes_ > max_waiting_bytes && self.arrived_.size() > 1) {
-      self.arrived_bytes_ -= self.arrived_.front().payload.size() + overhead_bytes;
+      self.arrived_bytes_ -= self.arrived_.front().payload.size() + message_overhead_bytes;
       self.arrived_.pop_front();
     }
     waiting = std::exchange(self.waiting_, false);
@@ -73,7 +72,7 @@ std::optional<Received> LcmListener::take() {
   if (arrived_.empty()) return std::nullopt;
   Received message = std::move(arrived_.front());
   arrived_.pop_front();
-  arrived_bytes_ -= message.payload.size() + overhead_bytes;
+  arrived_bytes_ -= message.payload.size() + message_overhead_bytes;
   return message;
 }
 

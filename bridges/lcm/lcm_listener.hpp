@@ -13,8 +13,8 @@
 #include <thread>
 
 #include "bridges/base/file_descriptor.hpp"
-#include "bridges/lcm/lcm_connection.hpp"
 #include "bridges/base/poll_set.hpp"
+#include "bridges/lcm/lcm_connection.hpp"
 #include "sim/bus/bus.hpp"
 
 namespace bridges {

@@ -7,10 +7,8 @@
 namespace bridges {
 namespace {
 
-constexpr std::uint32_t short_magic = 0x4c433032;     // "LC02"
-constexpr std::uint32_t fragment_magic = 0x4c433033;  // "LC03"
-constexpr std::size_t short_header_bytes = 8;         // magic, sequence number
-constexpr std::size_t fragment_header_bytes = 20;     // and: message size, offset, fragment number and count
+constexpr std::size_t short_header_bytes = 8;      // magic, sequence number
+constexpr std::size_t fragment_header_bytes = 20;  // and: message size, offset, fragment number and count
 /// A partial message costs at least this.
 constexpr std::size_t overhead_bytes = 256;
 /// Of the payload, reserved at the first fragment: images do not have to grow.

@@ -15,6 +15,9 @@
 
 namespace bridges {
 
+/// The first four bytes of a datagram: a message in one, "LC02", or a fragment of one, "LC03".
+inline constexpr std::uint32_t short_magic = 0x4c433032, fragment_magic = 0x4c433033;
+
 /// Who sent a datagram; two processes of one machine differ in the port.
 struct DatagramSender {
   std::uint32_t address = 0;  ///< IPv4, in host byte order

@@ -20,10 +20,6 @@
 namespace bridges {
 namespace {
 
-[[noreturn]] void fail(const std::string& url, const std::string& what) {
-  throw BusError("LCM URL '" + url + "': " + what);
-}
-
 struct UrlParts {
   std::string kind;
   std::string network;
@@ -32,7 +28,7 @@ struct UrlParts {
 
 UrlParts split_url(const std::string& url) {
   const auto colon = url.find("://");
-  if (colon == std::string::npos) fail(url, "must look like udpm://239.255.76.67:7667?ttl=0");
+  if (colon == std::string::npos) refuse_url(url, "must look like udpm://239.255.76.67:7667?ttl=0");
   UrlParts parts;
   parts.kind = url.substr(0, colon);
   std::string rest = url.substr(colon + 3);
@@ -71,12 +67,12 @@ LcmEndpoint endpoint_of(const std::string& url, const UrlParts& parts) {
   if (colon != std::string::npos) {
     const auto port = whole_number(std::string_view(parts.network).substr(colon + 1));
     if (!port || *port < 1 || *port > 65535)
-      fail(url, "the port must be 1 to 65535, got '" + parts.network.substr(colon + 1) + "'");
+      refuse_url(url, "the port must be 1 to 65535, got '" + parts.network.substr(colon + 1) + "'");
     endpoint.port = *port;
   }
   in_addr address{};
   if (!tcp && (inet_pton(AF_INET, endpoint.address.c_str(), &address) != 1 || !IN_MULTICAST(ntohl(address.s_addr))))
-    fail(url, "'" + endpoint.address + "' is no multicast address (224.0.0.0 to 239.255.255.255)");
+    refuse_url(url, "'" + endpoint.address + "' is no multicast address (224.0.0.0 to 239.255.255.255)");
   for (const auto& [key, value] : parts.options) {
     if (key == "ttl") endpoint.ttl = whole_number(value).value_or(0);
     if (key == "recv_buf_size") endpoint.recv_buf_bytes = whole_number(value).value_or(0);
@@ -89,13 +85,13 @@ void check_options(const std::string& url, const UrlParts& parts) {
   std::set<std::string> seen;
   for (const auto& [key, value] : parts.options) {
     if (!multicast || (key != "ttl" && key != "recv_buf_size"))
-      fail(url, "unknown option '" + key + "'" + (multicast ? "; known options: recv_buf_size, ttl" : ""));
-    if (!seen.insert(key).second) fail(url, "option '" + key + "' is given twice");
+      refuse_url(url, "unknown option '" + key + "'" + (multicast ? "; known options: recv_buf_size, ttl" : ""));
+    if (!seen.insert(key).second) refuse_url(url, "option '" + key + "' is given twice");
     const auto number = whole_number(value);
     if (key == "ttl" && (!number || *number < 0 || *number > 255))
-      fail(url, "ttl must be 0 to 255, got '" + value + "'");
+      refuse_url(url, "ttl must be 0 to 255, got '" + value + "'");
     if (key == "recv_buf_size" && (!number || *number < 1))
-      fail(url, "recv_buf_size must be a number of bytes, got '" + value + "'");
+      refuse_url(url, "recv_buf_size must be a number of bytes, got '" + value + "'");
   }
 }
 
@@ -107,11 +103,12 @@ std::string resolve_lcm_url(const std::string& url) {
     if (const char* variable = std::getenv("LCM_DEFAULT_URL")) chosen = variable;
   if (chosen.empty()) chosen = default_lcm_url;
   const UrlParts parts = split_url(chosen);
-  if (parts.kind == "file") fail(chosen, "the simulator writes logs with --record; lcm-logplayer plays them");
+  if (parts.kind == "file") refuse_url(chosen, "the simulator writes logs with --record; lcm-logplayer plays them");
   if (parts.kind == "mpudpm")
-    fail(chosen, "mpudpm is not supported: one datagram of anybody can crash liblcm's receiver; use udpm or tcpq");
+    refuse_url(chosen,
+               "mpudpm is not supported: one datagram of anybody can crash liblcm's receiver; use udpm or tcpq");
   if (parts.kind != "udpm" && parts.kind != "tcpq" && parts.kind != "memq")
-    fail(chosen, "unknown kind '" + parts.kind + "'; known kinds: memq, tcpq, udpm");
+    refuse_url(chosen, "unknown kind '" + parts.kind + "'; known kinds: memq, tcpq, udpm");
   check_options(chosen, parts);
   const LcmEndpoint endpoint = endpoint_of(chosen, parts);
   if (parts.kind != "udpm") return chosen;
@@ -137,7 +134,7 @@ void require_tcp_server(const std::string& url, const LcmEndpoint& endpoint) {
   addrinfo* found = nullptr;
   const std::string port = std::to_string(endpoint.port);
   if (const int error = getaddrinfo(endpoint.address.c_str(), port.c_str(), &hints, &found); error != 0)
-    fail(url, "host '" + endpoint.address + "': " + gai_strerror(error));
+    refuse_url(url, "host '" + endpoint.address + "': " + gai_strerror(error));
   const int fd = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   int error = fd < 0 ? errno : 0;
   if (error == 0 && connect(fd, found->ai_addr, found->ai_addrlen) != 0) {
@@ -154,8 +151,12 @@ void require_tcp_server(const std::string& url, const LcmEndpoint& endpoint) {
   freeaddrinfo(found);
   if (fd >= 0) close(fd);
   if (error != 0)
-    fail(url, "no LCM server at " + endpoint.address + ":" + port + " (" + std::strerror(error) +
-                  "); start one (java lcm.lcm.TCPService, package liblcm-java) or use udpm://");
+    refuse_url(url, "no LCM server at " + endpoint.address + ":" + port + " (" + std::strerror(error) +
+                        "); start one (java lcm.lcm.TCPService, package liblcm-java) or use udpm://");
+}
+
+void refuse_url(const std::string& url, const std::string& what) {
+  throw BusError("LCM URL '" + url + "': " + what);
 }
 
 }  // namespace bridges

@@ -13,6 +13,9 @@ inline constexpr const char* default_lcm_url = "udpm://239.255.76.67:7667?ttl=0&
 /// LCM 1.3.1 never delivers larger messages.
 inline constexpr std::size_t max_lcm_message_bytes = std::size_t{16} << 20;
 
+/// liblcm sends itself messages on it when it starts.
+inline constexpr const char* self_test_channel = "LCM_SELF_TEST";
+
 /// The URL that is used: `url`, or LCM_DEFAULT_URL, or the default; recv_buf_size is added to a udpm URL
 /// without. Throws BusError on a URL that LCM would misunderstand.
 std::string resolve_lcm_url(const std::string& url);
@@ -26,6 +29,9 @@ struct LcmEndpoint {
   int recv_buf_bytes = 0;  ///< udpm; 0: what the kernel gives
 };
 LcmEndpoint lcm_endpoint(const std::string& resolved_url);
+
+/// Throws BusError that names the URL.
+[[noreturn]] void refuse_url(const std::string& url, const std::string& what);
 
 /// Throws BusError when no LCM server answers there: liblcm would retry for ever, and then abort.
 void require_tcp_server(const std::string& url, const LcmEndpoint& endpoint);

@@ -20,18 +20,18 @@ namespace {
 /// UDP carries no larger payload.
 constexpr std::size_t max_datagram_bytes = 65536;
 
-[[noreturn]] void fail(const std::string& what) {
+[[noreturn]] void fail_with_errno(const std::string& what) {
   throw BusError(what + " (" + std::strerror(errno) + ")");
 }
 
 void set_option(int fd, int level, int name, int value, const char* what) {
-  if (setsockopt(fd, level, name, &value, sizeof value) != 0) fail(what);
+  if (setsockopt(fd, level, name, &value, sizeof value) != 0) fail_with_errno(what);
 }
 
 FileDescriptor open_socket(const UdpReceiver::Options& options) {
   FileDescriptor opened(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const int fd = opened.number();
-  if (fd < 0) fail("no socket can be opened");
+  if (fd < 0) fail_with_errno("no socket can be opened");
   // lcm-spy, lcm-logger and other runs use the same port.
   set_option(fd, SOL_SOCKET, SO_REUSEADDR, 1, "the port cannot be shared");
   set_option(fd, SOL_SOCKET, SO_TIMESTAMP, 1, "the kernel does not stamp messages");
@@ -46,9 +46,9 @@ FileDescriptor open_socket(const UdpReceiver::Options& options) {
   membership.imr_multiaddr = address.sin_addr;
   membership.imr_interface.s_addr = htonl(INADDR_ANY);
   if (bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-    fail("port " + std::to_string(options.port) + " cannot be used");
+    fail_with_errno("port " + std::to_string(options.port) + " cannot be used");
   if (setsockopt(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) != 0)
-    fail("the multicast group " + options.group + " cannot be joined");
+    fail_with_errno("the multicast group " + options.group + " cannot be joined");
   return opened;
 }
 

@@ -12,11 +12,11 @@
 #include <string>
 #include <string_view>
 
+#include "bridges/lcm/lcm_listener.hpp"
 #include "bridges/lockstep_client/client_inbox.hpp"
 #include "bridges/lockstep_client/client_outbox.hpp"
-#include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/signing/signed_message.hpp"
 #include "bridges/lockstep_client/wait_notice.hpp"
+#include "bridges/signing/signed_message.hpp"
 #include "shoal/sim_tick_t.hpp"
 
 namespace bridges {

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "bridges/log/event_log.hpp"
 #include "bridges/base/file_lock.hpp"
+#include "bridges/log/event_log.hpp"
 
 namespace bridges {
 namespace {

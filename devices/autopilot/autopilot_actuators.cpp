@@ -6,8 +6,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "devices/marine/fin.hpp"
+#include "devices/autopilot/autopilot_control.hpp"
 #include "devices/joint/joint_of_device.hpp"
+#include "devices/marine/fin.hpp"
 #include "shoal/actuator_command_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/world/mounted_device.hpp"
@@ -19,8 +20,6 @@ namespace {
 
 // Of the water that thrust and lift are planned with; limits need not be exact.
 constexpr double plan_density_kgpm3 = 1025;
-// A craft with fins that is slower is steered as if it had this speed.
-constexpr double slowest_mps = 0.5;
 
 /// A device of the vehicle, which may come after the autopilot in the file: only its description is there yet.
 template <typename Params>

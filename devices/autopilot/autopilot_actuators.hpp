@@ -6,7 +6,7 @@
 
 #include "devices/autopilot/autopilot_config.hpp"
 #include "devices/marine/thruster_command.hpp"
-#include "sim/device/device_registry.hpp"
+#include "sim/world/device_context.hpp"
 #include "sim/world/vehicle.hpp"
 
 namespace devices {

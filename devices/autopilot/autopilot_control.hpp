@@ -6,6 +6,9 @@
 
 namespace devices {
 
+/// A craft with fins that is slower is steered as if it had this speed.
+inline constexpr double slowest_mps = 0.5;
+
 /// How fast a quantity is brought to its set value.
 struct HoldGains {
   double bandwidth_radps = 0.5;

@@ -10,8 +10,6 @@ namespace {
 
 // Slower than this through the water a craft with rudder or two propellers keeps its heading at a station.
 constexpr double idle_mps = 0.05;
-// A craft with fins that is slower is steered as if it had this speed.
-constexpr double slowest_mps = 0.5;
 
 Eigen::Vector2d at_most(const Eigen::Vector2d& v, double length) {
   const double norm = v.norm();

@@ -7,8 +7,8 @@
 
 #include "sim/bus/byte_port.hpp"
 #include "sim/config/param_reader.hpp"
-#include "sim/device/device_registry.hpp"
 #include "sim/state/state_archive.hpp"
+#include "sim/world/device_context.hpp"
 
 namespace devices {
 

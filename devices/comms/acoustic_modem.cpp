@@ -5,8 +5,8 @@
 #include <charconv>
 #include <stdexcept>
 
-#include "devices/comms/micromodem_rates.hpp"
 #include "devices/common/own_clock.hpp"
+#include "devices/comms/micromodem_rates.hpp"
 #include "shoal/acoustic_received_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/modem_send_t.hpp"
@@ -48,7 +48,7 @@ void use_preset(AcousticModem::Params& params) {
   }
 }
 
-constexpr std::string_view mark = "msg ";
+constexpr std::string_view message_mark = "msg ";
 
 /// Those that understand each other.
 std::string group_of(const AcousticModem::Params& params) {
@@ -57,13 +57,13 @@ std::string group_of(const AcousticModem::Params& params) {
 
 /// What the frame tells beside the data, in Signal::code: the sending time by the sender's clock, the destination.
 std::string code_of(sim::Time sent, const std::string& destination) {
-  return std::string(mark) + std::to_string(sent.count()) + " " + destination;
+  return std::string(message_mark) + std::to_string(sent.count()) + " " + destination;
 }
 
 /// False: it is a frame of another kind of modem.
 bool read_code(std::string_view code, sim::Time& sent, std::string& destination) {
-  if (!code.starts_with(mark)) return false;
-  code.remove_prefix(mark.size());
+  if (!code.starts_with(message_mark)) return false;
+  code.remove_prefix(message_mark.size());
   const std::size_t space = code.find(' ');
   std::int64_t sent_us = 0;
   if (space == std::string_view::npos ||

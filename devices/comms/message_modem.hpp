@@ -6,8 +6,8 @@
 #include <map>
 #include <string>
 
-#include "sim/bus/bus.hpp"
 #include "sim/base/time.hpp"
+#include "sim/bus/bus.hpp"
 
 namespace devices {
 

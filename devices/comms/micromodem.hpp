@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "devices/comms/micromodem_protocol.hpp"
 #include "devices/common/serial_port.hpp"
+#include "devices/comms/micromodem_protocol.hpp"
 #include "sim/acoustics/transducer.hpp"
-#include "sim/device/device_registry.hpp"
+#include "sim/world/device_context.hpp"
 
 namespace devices {
 

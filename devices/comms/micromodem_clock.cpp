@@ -11,7 +11,6 @@ namespace devices {
 
 namespace {
 
-constexpr int bad_field = 3;  // of $CAERR
 constexpr std::int64_t second_us = 1'000'000;
 
 std::int64_t floor_second(std::int64_t utc_us) {

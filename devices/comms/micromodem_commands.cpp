@@ -9,9 +9,6 @@ namespace devices {
 
 namespace {
 
-// Numbers of $CAERR; the words are ours.
-constexpr int unknown_sentence = 1, bad_field = 3, is_busy = 4, too_long_data = 5, no_request = 6;
-
 /// A sequence of a generic transponder: up to 64 bits in hexadecimal digits; nothing when it is anything else.
 std::optional<bool> is_sequence_set(const std::string& text) {
   constexpr std::size_t max_digits = 20;  // some drivers write 64 bits as a decimal number

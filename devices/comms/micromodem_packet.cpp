@@ -7,7 +7,7 @@ namespace devices {
 
 namespace {
 
-constexpr const char* mark = "micromodem";
+constexpr const char* packet_mark = "micromodem";
 
 }  // namespace
 
@@ -19,8 +19,8 @@ int MicromodemPacket::data_bytes() const {
 
 std::string MicromodemPacket::code() const {
   std::ostringstream text;
-  text << mark << ' ' << static_cast<int>(kind) << ' ' << source << ' ' << destination << ' ' << rate << ' ' << ack
-       << ' ' << frame_count << ' ' << value << ' ' << frames.size();
+  text << packet_mark << ' ' << static_cast<int>(kind) << ' ' << source << ' ' << destination << ' ' << rate << ' '
+       << ack << ' ' << frame_count << ' ' << value << ' ' << frames.size();
   for (const Frame& frame : frames) text << ' ' << frame.ack << ' ' << frame.data.size();
   return text.str();
 }
@@ -39,7 +39,7 @@ std::optional<MicromodemPacket> MicromodemPacket::read(const std::string& code, 
   MicromodemPacket packet;
   text >> word >> kind >> packet.source >> packet.destination >> packet.rate >> packet.ack >> packet.frame_count >>
       packet.value >> frames;
-  if (!text || word != mark || kind < 0 || kind > static_cast<int>(Kind::mini)) return {};
+  if (!text || word != packet_mark || kind < 0 || kind > static_cast<int>(Kind::mini)) return {};
   packet.kind = static_cast<Kind>(kind);
   std::size_t at = 0;
   for (std::size_t i = 0; i < frames; ++i) {

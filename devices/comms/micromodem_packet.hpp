@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "sim/base/time.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/base/time.hpp"
 
 namespace devices {
 

@@ -7,13 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "devices/common/nmea.hpp"
 #include "devices/comms/micromodem_packet.hpp"
 #include "devices/comms/micromodem_rates.hpp"
 #include "devices/comms/micromodem_settings.hpp"
-#include "devices/common/nmea.hpp"
 #include "sim/base/time.hpp"
 
 namespace devices {
+
+/// Numbers of $CAERR; the words are ours.
+inline constexpr int unknown_sentence = 1, bad_field = 3, is_busy = 4, too_long_data = 5, no_request = 6;
 
 inline constexpr int micromodem_broadcast = 127;
 inline constexpr int micromodem_beacons = 4;

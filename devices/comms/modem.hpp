@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "devices/comms/message_modem.hpp"
 #include "devices/common/serial_port.hpp"
+#include "devices/comms/message_modem.hpp"
 #include "devices/sound_positioning/signal_carrier.hpp"
 #include "sim/acoustics/signal.hpp"
-#include "sim/device/device_registry.hpp"
+#include "sim/world/device_context.hpp"
 
 namespace devices {
 

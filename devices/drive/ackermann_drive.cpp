@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "devices/drive/drive_commands.hpp"
-#include "devices/joint/joint_of_device.hpp"
 #include "devices/drive/weight_on_wheels.hpp"
 #include "devices/drive/wheel_geometry.hpp"
+#include "devices/joint/joint_of_device.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world/world_warnings.hpp"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "devices/joint/joint_power.hpp"
 #include "devices/drive/wheel_motors.hpp"
+#include "devices/joint/joint_power.hpp"
 
 namespace devices {
 

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "sim/device/device_registry.hpp"
+#include "sim/world/device_context.hpp"
 
 namespace devices {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "devices/joint/joint_of_device.hpp"
 #include "devices/drive/weight_on_wheels.hpp"
 #include "devices/drive/wheel_geometry.hpp"
+#include "devices/joint/joint_of_device.hpp"
 
 namespace devices {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/device/device_registry.hpp"
+#include "sim/world/device_context.hpp"
 
 namespace devices {
 

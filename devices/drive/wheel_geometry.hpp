@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/device/device_registry.hpp"
 #include "sim/model/physics_config.hpp"
+#include "sim/world/device_context.hpp"
 
 namespace sim {
 class Vehicle;

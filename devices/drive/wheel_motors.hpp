@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "devices/joint/joint_power.hpp"
-#include "sim/device/device_registry.hpp"
 #include "sim/physics/joint.hpp"
+#include "sim/world/device_context.hpp"
 #include "sim/world/vehicle.hpp"
 
 namespace devices {

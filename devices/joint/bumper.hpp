@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "sim/device/device_registry.hpp"
 #include "sim/random/noise.hpp"
+#include "sim/world/device_context.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {

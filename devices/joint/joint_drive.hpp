@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "devices/joint/joint_power.hpp"
-#include "sim/device/device_registry.hpp"
+#include "sim/world/device_context.hpp"
 #include "sim/world/vehicle.hpp"
 
 namespace devices {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "sim/device/device_registry.hpp"
 #include "sim/physics/joint.hpp"
 #include "sim/random/noise.hpp"
+#include "sim/world/device_context.hpp"
 
 namespace devices {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "devices/joint/joint_power.hpp"
-#include "sim/device/device_registry.hpp"
+#include "sim/world/device_context.hpp"
 #include "sim/world/vehicle.hpp"
 
 namespace devices {

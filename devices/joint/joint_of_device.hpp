@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "sim/device/device_registry.hpp"
 #include "sim/physics/joint.hpp"
+#include "sim/world/device_context.hpp"
 
 namespace devices {
 

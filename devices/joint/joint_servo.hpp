@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "devices/joint/joint_power.hpp"
-#include "sim/device/device_registry.hpp"
+#include "sim/world/device_context.hpp"
 #include "sim/world/vehicle.hpp"
 
 namespace devices {

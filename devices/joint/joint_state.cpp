@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "devices/joint/joint_state.hpp"
 
-#include "devices/joint/joint_of_device.hpp"
 #include "devices/common/same_size.hpp"
+#include "devices/joint/joint_of_device.hpp"
 #include "shoal/joint_state_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/world/vehicle.hpp"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devices/joint/joint_of_device.hpp"
 #include "devices/common/same_size.hpp"
+#include "devices/joint/joint_of_device.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/wheel_encoder_t.hpp"
 

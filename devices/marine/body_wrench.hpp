@@ -2,8 +2,8 @@
 #pragma once
 
 #include "devices/common/actuator_lag.hpp"
-#include "sim/device/device_registry.hpp"
 #include "sim/physics/body.hpp"
+#include "sim/world/device_context.hpp"
 
 namespace devices {
 

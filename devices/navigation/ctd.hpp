@@ -2,8 +2,8 @@
 #pragma once
 
 #include "devices/navigation/depth_formula.hpp"
-#include "sim/device/device_registry.hpp"
 #include "sim/random/noise.hpp"
+#include "sim/world/device_context.hpp"
 
 namespace devices {
 

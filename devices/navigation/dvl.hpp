@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/device/device_registry.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/random/noise.hpp"
 #include "sim/scene/scene.hpp"
+#include "sim/world/device_context.hpp"
 
 namespace devices {
 

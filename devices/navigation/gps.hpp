@@ -3,10 +3,10 @@
 
 #include <optional>
 
-#include "sim/device/device_registry.hpp"
 #include "sim/base/geodesy.hpp"
-#include "sim/random/noise.hpp"
 #include "sim/clock/vehicle_clock.hpp"
+#include "sim/random/noise.hpp"
+#include "sim/world/device_context.hpp"
 
 namespace devices {
 

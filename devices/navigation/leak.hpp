@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "sim/device/device_registry.hpp"
 #include "sim/random/noise.hpp"
+#include "sim/world/device_context.hpp"
 
 namespace devices {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devices/joint/joint_of_device.hpp"
 #include "devices/drive/wheel_geometry.hpp"
+#include "devices/joint/joint_of_device.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/odometry_t.hpp"
 #include "sim/world/vehicle.hpp"

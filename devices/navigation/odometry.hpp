@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "sim/device/device_registry.hpp"
 #include "sim/physics/joint.hpp"
 #include "sim/random/noise.hpp"
+#include "sim/world/device_context.hpp"
 
 namespace devices {
 

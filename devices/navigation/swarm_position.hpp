@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/device/device_registry.hpp"
 #include "sim/random/noise.hpp"
+#include "sim/world/device_context.hpp"
 
 namespace devices {
 

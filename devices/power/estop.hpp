@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "sim/device/device_registry.hpp"
+#include "sim/world/device_context.hpp"
 #include "sim/world/vehicle.hpp"
 
 namespace devices {

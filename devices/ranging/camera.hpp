@@ -8,8 +8,8 @@
 
 #include "devices/common/reading_digest.hpp"
 #include "sim/camera/renderer.hpp"
-#include "sim/device/device_registry.hpp"
 #include "sim/random/noise.hpp"
+#include "sim/world/device_context.hpp"
 
 namespace devices {
 

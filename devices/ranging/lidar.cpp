@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devices/ranging/lidar_presets.hpp"
 #include "devices/common/param_checks.hpp"
+#include "devices/ranging/lidar_presets.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "sim/world/world.hpp"

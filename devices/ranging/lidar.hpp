@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "devices/ranging/laser_return.hpp"
 #include "devices/common/reading_digest.hpp"
+#include "devices/ranging/laser_return.hpp"
 
 namespace devices {
 

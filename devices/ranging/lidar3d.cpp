@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devices/ranging/lidar_presets.hpp"
 #include "devices/common/param_checks.hpp"
+#include "devices/ranging/lidar_presets.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/point_cloud_t.hpp"
 #include "sim/world/world.hpp"

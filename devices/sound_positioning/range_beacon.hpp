@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "devices/sound_positioning/signal_carrier.hpp"
-#include "sim/device/device_registry.hpp"
 #include "sim/random/noise.hpp"
+#include "sim/world/device_context.hpp"
 
 namespace devices {
 

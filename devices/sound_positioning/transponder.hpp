@@ -42,13 +42,14 @@ class Transponder final : public sim::Sensor, public sim::AcousticListener {
 
   const Params& params() const { return params_; }
   double answer_Hz() const { return answer_Hz_; }
-  const sim::Vehicle& vehicle() const { return transducer_.vehicle(); }
+  const sim::Vehicle& vehicle() const { return vehicle_; }
   const std::string& full_name() const { return transducer_.full_name(); }
   std::int64_t answers() const { return answers_; }
   const std::string& asked_by() const { return asked_by_; }
 
  private:
   Params params_;
+  const sim::Vehicle& vehicle_;
   TransponderNetwork& network_;
   double answer_Hz_;
   sim::Transducer transducer_;

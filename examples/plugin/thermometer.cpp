@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/message_codec.hpp"
-#include "sim/device/device_registry.hpp"
 #include "sim/device/plugin.hpp"
 #include "sim/random/noise.hpp"
+#include "sim/world/device_context.hpp"
 #include "thermometer/array_lengths.hpp"
 #include "thermometer/temperature_t.hpp"
 

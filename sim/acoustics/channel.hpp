@@ -14,11 +14,11 @@
 #include "sim/acoustics/propagation.hpp"
 #include "sim/acoustics/signal.hpp"
 #include "sim/acoustics/transducer.hpp"
+#include "sim/event/event_queue.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/random/random.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/event/event_queue.hpp"
 
 namespace sim {
 

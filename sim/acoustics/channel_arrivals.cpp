@@ -31,8 +31,7 @@ PowerRatio AcousticChannel::noise_at(const Transducer& to, const Vector3d& p_W, 
     level += directivity_gain(to.config().directivity, to.R_WS().transpose() * (from_W - p_W), f,
                               around_.medium.sound_speed_mps(p_W));
     if (config_.occlusion)
-      level += pressure_level(
-          propagation_.free_part(from_W, sound->site_.group, p_W, to.group(), signal.centre_Hz));
+      level += pressure_level(propagation_.free_part(from_W, sound->site_.group, p_W, to.group(), signal.centre_Hz));
     noise += (high_Hz - low_Hz) / sound->bandwidth_Hz_ * to_power(level);
   }
   return noise;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "sim/acoustics/decibels.hpp"
-#include "sim/config/param_reader.hpp"
 #include "sim/base/math.hpp"
+#include "sim/config/param_reader.hpp"
 
 namespace sim {
 

@@ -7,9 +7,9 @@
 
 #include "sim/acoustics/decibels.hpp"
 #include "sim/acoustics/modulation.hpp"
-#include "sim/bus/bus.hpp"
 #include "sim/base/math.hpp"
 #include "sim/base/time.hpp"
+#include "sim/bus/bus.hpp"
 
 namespace sim {
 

@@ -17,9 +17,7 @@ void ReceiverConfig::read(ParamReader& in) {
 }
 
 Transducer::Transducer(AcousticListener& listener, const ReceiverConfig& config, SoundSite site)
-    : listener_(listener),
-      config_(config),
-      site_(std::move(site)) {
+    : listener_(listener), config_(config), site_(std::move(site)) {
   site_.channel.join(*this);
 }
 
@@ -99,12 +97,8 @@ Decibels Transducer::noise_reduction(double frequency_Hz) const {
   return index_;
 }
 
-ContinuousSound::ContinuousSound(Decibels source_level, double centre_Hz, double bandwidth_Hz,
-                                 SoundSite site)
-    : site_(std::move(site)),
-      source_level_(source_level),
-      centre_Hz_(centre_Hz),
-      bandwidth_Hz_(bandwidth_Hz) {
+ContinuousSound::ContinuousSound(Decibels source_level, double centre_Hz, double bandwidth_Hz, SoundSite site)
+    : site_(std::move(site)), source_level_(source_level), centre_Hz_(centre_Hz), bandwidth_Hz_(bandwidth_Hz) {
   site_.channel.join(*this);
 }
 

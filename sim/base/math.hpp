@@ -30,4 +30,11 @@ double yaw_of(const Matrix3d& R);
 /// The angle brought to (-pi, pi].
 double wrap_angle(double angle_rad);
 
+/// The matrix of a cross product from the left: cross_matrix(v) * x is v x x.
+inline Matrix3d cross_matrix(const Vector3d& v) {
+  Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
 }  // namespace sim

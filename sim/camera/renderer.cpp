@@ -12,7 +12,7 @@ namespace {
 /// Rays of a tile go nearly the same way, so that the scene can follow them together.
 constexpr int tile_rays = 64;
 constexpr double shadow_range_m = 10'000;
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float nothing_seen_m = std::numeric_limits<float>::infinity();
 
 /// Colors of what has none: fixed things, and things that move, by the number of their group.
 const Color fixed_color = {178, 170, 156};
@@ -103,7 +103,7 @@ void Renderer::clear(Frame& frame) const {
   if (options_.kind == ImageKind::color)
     empty(frame.light, 3, 0.0F);
   else if (options_.kind == ImageKind::depth)
-    empty(frame.depth_m, 1, infinity);
+    empty(frame.depth_m, 1, nothing_seen_m);
   else
     empty(frame.labels, 1, std::uint16_t{0});
 }
@@ -213,7 +213,7 @@ void Renderer::fill_values(const Tile& tile, Frame& frame) const {
       const bool seen = i >= 0 && tile.hits[i].hit();
       if (options_.kind == ImageKind::depth) {
         const double factor = seen && !options_.depth_along_ray ? static_cast<double>(tile.along_axis[i]) : 1.0;
-        *frame.depth_m.at(u, v) = seen ? static_cast<float>(tile.hits[i].range_m * factor) : infinity;
+        *frame.depth_m.at(u, v) = seen ? static_cast<float>(tile.hits[i].range_m * factor) : nothing_seen_m;
         continue;
       }
       int label = 0;

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/image/image.hpp"
-#include "sim/scene/light.hpp"
 #include "sim/camera/optics.hpp"
 #include "sim/camera/texture.hpp"
+#include "sim/image/image.hpp"
 #include "sim/physics/physics_world.hpp"
+#include "sim/scene/light.hpp"
 
 namespace sim {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/image/image.hpp"
 #include "sim/base/math.hpp"
+#include "sim/image/image.hpp"
 #include "sim/scene/material.hpp"
 
 namespace sim {

@@ -26,11 +26,6 @@ std::vector<std::string> split_path(std::string_view path) {
   return keys;
 }
 
-const std::string* name_of(const ConfigNode& item) {
-  const ConfigNode* name = item.kind == Kind::map ? item.find("name") : nullptr;
-  return name != nullptr && name->kind == Kind::scalar ? &name->scalar : nullptr;
-}
-
 /// The item with this name, else the item at this index, counted from 1 as in messages.
 ConfigNode* find_item(ConfigNode& list, const std::string& key) {
   for (ConfigNode& item : list.items)
@@ -137,6 +132,11 @@ class Substitution {
 };
 
 }  // namespace
+
+const std::string* name_of(const ConfigNode& item) {
+  const ConfigNode* name = item.kind == Kind::map ? item.find("name") : nullptr;
+  return name != nullptr && name->kind == Kind::scalar ? &name->scalar : nullptr;
+}
 
 ConfigNode scalar_node(const std::string& text, const SourcePlace& place) {
   ConfigNode node;

@@ -64,6 +64,9 @@ void set_config_path(ConfigNode& root, std::string_view path, const ConfigNode& 
 void substitute_parameters(ConfigNode& node, const std::vector<std::pair<std::string, ConfigNode>>& parameters,
                            const std::string& who, Diagnostics& diagnostics);
 
+/// The text of `name` in an item of a list; null when it is no map or has none.
+const std::string* name_of(const ConfigNode& item);
+
 /// YAML text of the tree, which parses to the same tree.
 std::string to_yaml(const ConfigNode& node);
 

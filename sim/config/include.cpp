@@ -21,11 +21,6 @@ using Kind = ConfigNode::Kind;
 constexpr std::size_t max_bytes = 64'000'000;
 constexpr int max_files = 100;
 
-const std::string* name_of(const ConfigNode& item) {
-  const ConfigNode* name = item.kind == Kind::map ? item.find("name") : nullptr;
-  return name != nullptr && name->kind == Kind::scalar ? &name->scalar : nullptr;
-}
-
 bool is_list_of_named_maps(const ConfigNode& node) {
   return node.kind == Kind::list && !node.items.empty() &&
          std::all_of(node.items.begin(), node.items.end(),

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
+#include "sim/base/math.hpp"
 #include "sim/config/config_node.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/param_info.hpp"
-#include "sim/base/math.hpp"
 
 namespace sim {
 

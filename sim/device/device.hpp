@@ -5,13 +5,13 @@
 #include <span>
 #include <string>
 
-#include "sim/bus/bus.hpp"
 #include "sim/base/math.hpp"
-#include "sim/random/random.hpp"
-#include "sim/state/state_archive.hpp"
 #include "sim/base/state_hash.hpp"
 #include "sim/base/step_memory.hpp"
 #include "sim/base/time.hpp"
+#include "sim/bus/bus.hpp"
+#include "sim/random/random.hpp"
+#include "sim/state/state_archive.hpp"
 
 namespace sim {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "sim/config/param_reader.hpp"
 #include "sim/base/math.hpp"
+#include "sim/config/param_reader.hpp"
 
 namespace sim {
 

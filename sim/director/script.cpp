@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <set>
 
-#include "sim/world_file/check_script.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world_file/check_script.hpp"
 
 namespace sim {
 

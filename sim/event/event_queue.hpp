@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
+#include "sim/base/time.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/base/time.hpp"
 
 namespace sim {
 

@@ -8,8 +8,8 @@
 #include <map>
 #include <utility>
 
-#include "sim/config/message_text.hpp"
 #include "sim/base/whole_file.hpp"
+#include "sim/config/message_text.hpp"
 
 namespace sim {
 namespace {

@@ -12,12 +12,6 @@ namespace sim {
 
 namespace {
 
-Matrix3d cross_matrix(const Vector3d& v) {
-  Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
 /// The share of its lift that a hull keeps at an angle of attack of 0 to 90 degrees: all of it up to 45, none across
 /// the flow, where what was ahead becomes astern.
 double kept_lift(double alpha_rad) {

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "sim/model/hydrodynamics_config.hpp"
 #include "sim/base/math.hpp"
 #include "sim/medium/medium.hpp"
+#include "sim/model/hydrodynamics_config.hpp"
 
 namespace sim {
 

@@ -12,8 +12,8 @@
 #include "sim/hydrodynamics/coefficient_model.hpp"
 #include "sim/hydrodynamics/immersed_bodies.hpp"
 #include "sim/medium/medium.hpp"
-#include "sim/physics/body.hpp"
 #include "sim/model/physics_config.hpp"
+#include "sim/physics/body.hpp"
 
 namespace sim {
 

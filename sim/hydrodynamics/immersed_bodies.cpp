@@ -15,12 +15,6 @@ namespace {
 /// In waves a part is cut into sections of this length, but not into more than 8.
 constexpr double section_m = 0.25;
 
-Matrix3d cross_matrix(const Vector3d& v) {
-  Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
 }  // namespace
 
 /// Sums over the pieces of a body, about its centre of mass, in the world's axes.

@@ -12,12 +12,6 @@ namespace {
 /// Skin friction: a drag that grows with the speed instead of its square below this speed.  Without it no swing ends.
 constexpr double slow_mps = 0.005;
 
-Matrix3d cross_matrix(const Vector3d& v) {
-  Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
 }  // namespace
 
 void ImmersedDrag::begin(const Matrix3d& R_WB, const Vector3d& v_WC_W, const Vector3d& w_W) {

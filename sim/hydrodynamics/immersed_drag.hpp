@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "sim/model/hydrodynamics_config.hpp"
 #include "sim/hydrodynamics/immersed_piece.hpp"
+#include "sim/model/hydrodynamics_config.hpp"
 
 namespace sim {
 

@@ -12,8 +12,6 @@ namespace sim {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 Vector3d default_drag(const std::string& shape) {
   // Hoerner, Fluid-Dynamic Drag (1965), chapter 3: sphere and cylinders below the critical Reynolds number, cube.
   if (shape == "sphere") return Vector3d::Constant(0.47);
@@ -47,7 +45,7 @@ ImmersedPiece sphere_piece(const PartConfig& part, const Vector3d& C) {
   piece.shape = ImmersedPiece::Shape::sphere;
   piece.size_m = Vector3d::Constant(2 * part.radius_m);
   piece.radius_m = part.radius_m;
-  piece.drag_area_m2 = C * pi * part.radius_m * part.radius_m;
+  piece.drag_area_m2 = C * std::numbers::pi * part.radius_m * part.radius_m;
   piece.angular_drag_area_m5 = spin_share * angular_drag(C, piece.size_m);
   return piece;
 }
@@ -72,7 +70,7 @@ ImmersedPiece round_piece(const PartConfig& part, double low, double high, const
   piece.p_BP.z() = (low + high) / 2;
   piece.radius_m = std::hypot(r, (high - low) / 2);
   const double side = 2 * r * (high - low);
-  piece.drag_area_m2 = C.cwiseProduct(Vector3d(side, side, pi * r * r));
+  piece.drag_area_m2 = C.cwiseProduct(Vector3d(side, side, std::numbers::pi * r * r));
   piece.angular_drag_area_m5 = angular_drag(C, piece.size_m);
   piece.angular_drag_area_m5.z() *= spin_share;
   return piece;

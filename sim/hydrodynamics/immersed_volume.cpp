@@ -10,8 +10,6 @@ namespace sim {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 /// Sums the tetrahedra between the wet faces of a closed surface and a point of the water plane: those of the face
 /// that the plane itself would add are flat.  What is left is the volume under water (divergence theorem).
 class WetFaces {
@@ -63,7 +61,7 @@ class WetFaces {
 ImmersedVolume immersed_sphere(double radius_m, const WaterPlane& plane) {
   const double height = std::clamp(radius_m + plane.level_m, 0.0, 2 * radius_m);  // of the cap under water
   if (height == 0) return {};
-  const double volume = pi * height * height * (3 * radius_m - height) / 3;
+  const double volume = std::numbers::pi * height * height * (3 * radius_m - height) / 3;
   const double rest = 2 * radius_m - height;
   const double below = 3 * rest * rest / (4 * (3 * radius_m - height));
   return {volume, -below * plane.normal};
@@ -173,13 +171,14 @@ class RoundSum {
   }
 
   void add_whole(double low, double high) {
-    double volume = pi * radius_ * radius_ * (high - low);
+    double volume = std::numbers::pi * radius_ * radius_ * (high - low);
     double moment = volume * (low + high) / 2;
     if (cap_) {
       const double a = low - center_, b = high - center_;
-      const double cut = pi * (b * b * b - a * a * a) / 3;
+      const double cut = std::numbers::pi * (b * b * b - a * a * a) / 3;
       volume -= cut;
-      moment = volume * center_ + pi * (radius_ * radius_ * (b * b - a * a) / 2 - (b * b * b * b - a * a * a * a) / 4);
+      moment = volume * center_ +
+               std::numbers::pi * (radius_ * radius_ * (b * b - a * a) / 2 - (b * b * b * b - a * a * a * a) / 4);
     }
     volume_ += volume;
     moment_along_ += moment;

@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "sim/base/whole_file.hpp"
 #include "sim/image/jpeg.hpp"
 #include "sim/image/png.hpp"
-#include "sim/base/whole_file.hpp"
 
 namespace sim {
 

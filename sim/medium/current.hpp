@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "sim/base/math.hpp"
+#include "sim/base/time.hpp"
 #include "sim/medium/current_grid.hpp"
 #include "sim/medium/gauss_markov.hpp"
 #include "sim/medium/medium_config.hpp"
-#include "sim/base/time.hpp"
 
 namespace sim {
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "sim/config/message_text.hpp"
 #include "sim/base/whole_file.hpp"
+#include "sim/config/message_text.hpp"
 #include "sim/terrain/terrain.hpp"
 
 namespace sim {

@@ -6,9 +6,9 @@
 #include <cstdint>
 
 #include "sim/base/math.hpp"
+#include "sim/base/time.hpp"
 #include "sim/random/random.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/base/time.hpp"
 
 namespace sim {
 

@@ -5,13 +5,13 @@
 #include <optional>
 
 #include "sim/base/math.hpp"
+#include "sim/base/time.hpp"
 #include "sim/medium/current.hpp"
 #include "sim/medium/medium_config.hpp"
 #include "sim/medium/water_column.hpp"
 #include "sim/medium/waves.hpp"
 #include "sim/medium/wind.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/base/time.hpp"
 
 namespace sim {
 

@@ -9,7 +9,6 @@ namespace {
 
 // Water that sinks warms by 0.15 K per km at most and expands by 2e-4 per K: 3e-5 kg/m^3 per m.
 constexpr double mixed_kgpm4 = 5e-5;
-constexpr double dbar_Pa = 1e4;
 
 }  // namespace
 

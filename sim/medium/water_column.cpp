@@ -12,7 +12,6 @@ namespace {
 
 constexpr double deepest_m = 12000;
 constexpr double spacing_m = 20;  ///< of the rows that the pressure is integrated over
-constexpr double dbar_Pa = 1e4;
 
 double mix(double a, double b, double share) {
   return a + (b - a) * share;

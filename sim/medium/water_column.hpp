@@ -7,6 +7,9 @@
 
 namespace sim {
 
+/// A decibar in Pa: oceanography gives pressure in it.
+inline constexpr double dbar_Pa = 1e4;
+
 /// The water by depth, in m below the surface; above it as at the surface.
 class WaterColumn {
  public:

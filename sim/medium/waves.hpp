@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "sim/base/math.hpp"
+#include "sim/base/time.hpp"
 #include "sim/medium/medium_config.hpp"
 #include "sim/medium/wave_spectrum.hpp"
-#include "sim/base/time.hpp"
 
 namespace sim {
 

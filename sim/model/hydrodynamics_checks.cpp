@@ -11,16 +11,14 @@ namespace sim {
 namespace {
 
 constexpr const char* axes[] = {"surge", "sway", "heave", "roll", "pitch", "yaw"};
-constexpr char rows[] = "XYZKMN";
-constexpr char states[] = "uvwpqr";
 
 const char* key_of_added_mass(const ParamReader& in) {
   return in.has("added_mass") || !in.has("derivatives") ? "added_mass" : "derivatives";
 }
 
 std::string derivative_name(const DerivativeTerm& term) {
-  std::string name{rows[term.row], '_', states[term.first]};
-  if (term.second >= 0) name += states[term.second];
+  std::string name{derivative_rows[term.row], '_', derivative_states[term.first]};
+  if (term.second >= 0) name += derivative_states[term.second];
   return name;
 }
 
@@ -39,7 +37,7 @@ void check_added_mass(const Matrix6d& A, ParamReader& in) {
   for (int i = 0; i < 6; ++i) {
     if (A(i, i) >= 0) continue;
     in.error(key, std::string("the added mass in ") + axes[i] + " must be >= 0, got " + number_text(A(i, i)) +
-                      ": papers print derivatives such as " + rows[i] + "_" + states[i] +
+                      ": papers print derivatives such as " + derivative_rows[i] + "_" + derivative_states[i] +
                       "dot, which are its negative");
     return;
   }

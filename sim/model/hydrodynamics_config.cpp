@@ -13,8 +13,6 @@ namespace sim {
 
 namespace {
 
-constexpr std::string_view rows = "XYZKMN";
-constexpr std::string_view states = "uvwpqr";
 /// Signs of the components in forward-right-down against forward-left-up.
 const Vector6d flip = (Vector6d() << 1, -1, -1, 1, -1, -1).finished();
 
@@ -64,11 +62,11 @@ bool reverses(int row, int motion) {
 /// Reads `X_uu`, `Y_uv`, `N_|v|r`, `M_qdot`.  False: the name is none of these.  `second` -2: an acceleration.
 bool parse_derivative(std::string_view name, DerivativeTerm& term) {
   if (name.size() < 3 || name[1] != '_') return false;
-  const auto row = rows.find(name[0]);
+  const auto row = derivative_rows.find(name[0]);
   if (row == std::string_view::npos) return false;
   term.row = static_cast<int>(row);
   name.remove_prefix(2);
-  const auto state = [](char c) { return static_cast<int>(states.find(c)); };
+  const auto state = [](char c) { return static_cast<int>(derivative_states.find(c)); };
   const bool bars = name.size() == 4 && ((name[0] == '|' && name[2] == '|') || (name[1] == '|' && name[3] == '|'));
   std::string letters;
   if (bars && name[0] == '|') letters = {name[1], name[3]};

@@ -4,15 +4,20 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "sim/config/param_reader.hpp"
 #include "sim/base/math.hpp"
+#include "sim/config/param_reader.hpp"
 
 namespace sim {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// The letters of the names of derivatives: forces and moments, and velocities (SNAME).
+inline constexpr std::string_view derivative_rows = "XYZKMN";
+inline constexpr std::string_view derivative_states = "uvwpqr";
 
 /// A hydrodynamic force named as SNAME does: `coefficient` times one or two components of the velocity, such as
 /// Y_uv (u v), N_rr (|r| r), X_rr (r r), X_u.  Rows and states: 0 to 5 are X u, Y v, Z w, K p, M q, N r.

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "sim/base/math.hpp"
 #include "sim/config/param_reader.hpp"
 #include "sim/model/hydrodynamics_config.hpp"
-#include "sim/base/math.hpp"
 #include "sim/scene/material.hpp"
 #include "sim/terrain/terrain_config.hpp"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/config/param_reader.hpp"
 #include "sim/base/math.hpp"
+#include "sim/config/param_reader.hpp"
 
 namespace sim {
 

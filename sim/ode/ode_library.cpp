@@ -11,8 +11,8 @@
 #include <cstring>
 #include <string>
 
-#include "sim/ode/physics_fault.hpp"
 #include "sim/base/step_memory.hpp"
+#include "sim/ode/physics_fault.hpp"
 
 namespace sim {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "sim/geometry/mesh.hpp"
-#include "sim/ode/ode_library.hpp"
 #include "sim/model/physics_config.hpp"
+#include "sim/ode/ode_library.hpp"
 
 namespace sim {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "sim/base/math.hpp"
-#include "sim/physics/motion.hpp"
 #include "sim/base/step_memory.hpp"
+#include "sim/physics/motion.hpp"
 
 namespace sim {
 

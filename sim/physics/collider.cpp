@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "sim/base/free_numbers.hpp"
+#include "sim/geometry/box_grid.hpp"
 #include "sim/ode/ode_math.hpp"
 #include "sim/physics/terrain_geom.hpp"
-#include "sim/geometry/box_grid.hpp"
 
 namespace sim {
 namespace {

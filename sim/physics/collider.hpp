@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "sim/ode/ode_library.hpp"
 #include "sim/physics/contact_report.hpp"
 #include "sim/physics/contact_table.hpp"
 #include "sim/physics/islands.hpp"
 #include "sim/physics/motion.hpp"
-#include "sim/ode/ode_library.hpp"
 
 namespace sim {
 

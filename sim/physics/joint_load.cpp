@@ -2,8 +2,8 @@
 #include <numbers>
 #include <utility>
 
-#include "sim/physics/joint.hpp"
 #include "sim/ode/ode_math.hpp"
+#include "sim/physics/joint.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/state/state_archive.hpp"
 

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "sim/physics/collider.hpp"
 #include "sim/base/free_numbers.hpp"
-#include "sim/physics/islands.hpp"
 #include "sim/ode/ode_library.hpp"
 #include "sim/ode/part_shape.hpp"
+#include "sim/physics/collider.hpp"
+#include "sim/physics/islands.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/physics/terrain_geom.hpp"
 #include "sim/rays/world_scene.hpp"

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/ode/ode_library.hpp"
 #include "sim/geometry/box_grid.hpp"
+#include "sim/ode/ode_library.hpp"
 #include "sim/rays/world_scene.hpp"
 
 namespace sim {

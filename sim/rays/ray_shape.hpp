@@ -7,8 +7,8 @@
 
 #include "sim/base/math.hpp"
 #include "sim/geometry/box_grid.hpp"
-#include "sim/scene/scene.hpp"
 #include "sim/rays/world_scene.hpp"
+#include "sim/scene/scene.hpp"
 
 namespace sim {
 

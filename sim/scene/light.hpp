@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "sim/config/param_reader.hpp"
 #include "sim/base/math.hpp"
+#include "sim/config/param_reader.hpp"
 
 namespace sim {
 

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "sim/base/time.hpp"
 #include "sim/config/param_reader.hpp"
 #include "sim/script/path.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/base/time.hpp"
 
 namespace sim {
 

@@ -21,8 +21,8 @@
 #include <vector>
 
 #include "sim/base/math.hpp"
-#include "sim/state/enum_values.hpp"
 #include "sim/base/state_hash.hpp"
+#include "sim/state/enum_values.hpp"
 
 namespace sim {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <stdexcept>
 
-#include "sim/image/image_file.hpp"
 #include "sim/base/whole_file.hpp"
+#include "sim/image/image_file.hpp"
 #include "sim/terrain/terrain.hpp"
 
 namespace sim {

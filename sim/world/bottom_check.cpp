@@ -5,8 +5,8 @@
 
 #include "sim/world/mounted_device.hpp"
 #include "sim/world/vehicle.hpp"
-#include "sim/world_file/vehicle_config.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world_file/vehicle_config.hpp"
 
 namespace sim {
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "sim/bus/utime_stamp.hpp"
+#include "sim/world/device_context.hpp"
 #include "sim/world/run_hash.hpp"
 #include "sim/world/vehicle.hpp"
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/bus/bus.hpp"
 #include "sim/base/math.hpp"
+#include "sim/bus/bus.hpp"
+#include "sim/clock/vehicle_clock.hpp"
 #include "sim/physics/body.hpp"
 #include "sim/physics/joint.hpp"
-#include "sim/clock/vehicle_clock.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 
 namespace sim {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "sim/clock/oscillator.hpp"
 #include "sim/device/device_config.hpp"
 #include "sim/model/physics_config.hpp"
-#include "sim/clock/oscillator.hpp"
 
 namespace sim {
 

@@ -8,17 +8,17 @@
 #include <vector>
 
 #include "sim/acoustics/acoustics_config.hpp"
-#include "sim/scene/light.hpp"
+#include "sim/base/geodesy.hpp"
 #include "sim/config/file_access.hpp"
 #include "sim/config/param_reader.hpp"
-#include "sim/base/geodesy.hpp"
+#include "sim/geometry/zone.hpp"
 #include "sim/medium/medium_config.hpp"
 #include "sim/model/object_config.hpp"
 #include "sim/model/physics_config.hpp"
-#include "sim/script/event_config.hpp"
-#include "sim/geometry/zone.hpp"
-#include "sim/world_file/metric_config.hpp"
 #include "sim/model/placement.hpp"
+#include "sim/scene/light.hpp"
+#include "sim/script/event_config.hpp"
+#include "sim/world_file/metric_config.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 
 namespace sim {

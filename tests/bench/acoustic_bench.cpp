@@ -10,8 +10,8 @@
 #include "shoal/modem_send_t.hpp"
 #include "sim/acoustics/channel.hpp"
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
 
 namespace {

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "bridges/bus/lcm_bus.hpp"
+#include "bridges/control/sim_service.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
 #include "bridges/lockstep_client/lockstep_client.hpp"
-#include "bridges/control/sim_service.hpp"
 #include "sim/world_file/load_world.hpp"
 
 namespace {

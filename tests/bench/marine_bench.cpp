@@ -7,8 +7,8 @@
 #include "shoal/actuator_command_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
 
 namespace {

@@ -3,8 +3,8 @@
 #include <benchmark/benchmark.h>
 
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world_file/load_world.hpp"
 
 namespace {
 

@@ -10,9 +10,9 @@
 #include "shoal/station_command_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "shoal/wrench_t.hpp"
+#include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/devices/joint/arm_fixture.hpp"
 #include "tests/devices/marine/marine_fixture.hpp"
-#include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/devices/state_fixture.hpp"
 
 namespace {

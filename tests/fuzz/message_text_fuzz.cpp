@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "shoal/lcm_parser.hpp"
 #include "messages/yaml/message_writer.hpp"
+#include "shoal/lcm_parser.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 // Messages as YAML (events, `shoal control do`), and the .lcm files of users.

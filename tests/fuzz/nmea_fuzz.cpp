@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "devices/comms/micromodem_packet.hpp"
 #include "devices/common/nmea.hpp"
+#include "devices/comms/micromodem_packet.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 // Sentences of NMEA 0183, hexadecimal data, and what a Micro-Modem takes from the water.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 
-#include "bridges/lockstep/lockstep_service.hpp"
 #include "bridges/control/sim_service.hpp"
-#include "shoal/message_codec.hpp"
+#include "bridges/lockstep/lockstep_service.hpp"
 #include "messages/yaml/message_writer.hpp"
+#include "shoal/message_codec.hpp"
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_resend_t.hpp"
 #include "shoal/sim_resent_t.hpp"

@@ -3,9 +3,9 @@
 
 #include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
+#include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/vehicle_config.hpp"
-#include "sim/world/world.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 // A small world from a stranger: built, run for some steps, saved and restored.

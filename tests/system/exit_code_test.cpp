@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <random>
 
-#include "bridges/log/event_log.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
 #include "bridges/lockstep_client/lockstep_client.hpp"
+#include "bridges/log/event_log.hpp"
 #include "tests/system/shoal_program.hpp"
 
 // 0 ok, 1 a pass rule failed, 2 usage or configuration, 3 physics, 4 bus or file, 5 time-out, 129, 130 and 143

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <map>
 
-#include "bridges/log/event_log.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
+#include "bridges/log/event_log.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/odometry_t.hpp"
 #include "shoal/planar_lidar_t.hpp"

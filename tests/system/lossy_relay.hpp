@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "bridges/lcm/lcm_connection.hpp"
-#include "sim/bus/bus.hpp"
 #include "sim/base/crc32.hpp"
+#include "sim/bus/bus.hpp"
 
 namespace system_test {
 

@@ -56,7 +56,8 @@ TEST(Warnings, TellAtTheEndOfAMetricThatHeardNothing) {
       file, system_test::endless_world("metrics: [{name: error, vehicle: rover1, channel: rover1.estimate}]\n"));
   const system_test::Ended run =
       system_test::run_shoal({"run", file, "--bus", "none", "--duration", "1", "--speed", "max"});
-  EXPECT_THAT(run.errors, HasSubstr("metric 'error': no estimate came on 'rover1.estimate': its figures are not numbers"));
+  EXPECT_THAT(run.errors,
+              HasSubstr("metric 'error': no estimate came on 'rover1.estimate': its figures are not numbers"));
 }
 
 TEST(Warnings, TellOfAFirstContactWhileTheWorldRuns) {

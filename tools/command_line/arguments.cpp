@@ -13,10 +13,6 @@ namespace command_line {
 
 namespace {
 
-std::string quoted(const std::string& text) {
-  return "'" + sim::shortened(sim::printable(sim::shortened(text, 240))) + "'";
-}
-
 bool is_flag(const CLI::Option& option) {
   return option.get_items_expected_max() == 0;
 }

@@ -16,10 +16,6 @@ namespace command_line {
 namespace {
 
 /// What was given, safe to print on one line.
-std::string quoted(const std::string& text) {
-  return "'" + sim::shortened(sim::printable(sim::shortened(text, 240))) + "'";
-}
-
 /// The whole text as a number; nothing when it is something else.
 template <class Number>
 std::optional<Number> parse_number(const std::string& text) {
@@ -101,6 +97,10 @@ CLI::Validator setting() {
 CLI::Validator not_empty() {
   return make_check(
       "", [](const std::string& text) { return !text.empty(); }, "must not be empty");
+}
+
+std::string quoted(const std::string& text) {
+  return "'" + sim::shortened(sim::printable(sim::shortened(text, 240))) + "'";
 }
 
 }  // namespace command_line

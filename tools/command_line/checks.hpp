@@ -15,6 +15,9 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What a user typed, for an error: in quotes, printable, shortened.
+std::string quoted(const std::string& text);
+
 /// Checks of an option's value.  Their descriptions stand in the help: `from 0 to 1e9`, `lcm or none`.
 
 /// A number of a closed range; not nan, which CLI::Range lets pass.

@@ -11,8 +11,8 @@
 #include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/transducer.hpp"
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "tools/experiment/acoustics/acoustic_closed_forms.hpp"
 #include "tools/experiment/acoustics/acoustic_link.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
@@ -78,8 +78,8 @@ LinkEnd find_end(const char* option, const std::string& text, const sim::World& 
     if (transducer == nullptr) continue;
     known += (known.empty() ? "; transducers: " : ", ") + transducer->full_name();
     if (transducer->full_name() != text) continue;
-    return {transducer->p_W(world.now()), transducer->R_WS(), transducer->config().directivity,
-            transducer->vehicle().group(), transducer->config().detection_dB};
+    return {transducer->p_W(world.now()), transducer->R_WS(), transducer->config().directivity, transducer->group(),
+            transducer->config().detection_dB};
   }
   if (const sim::Vehicle* vehicle = world.find_vehicle(text)) {
     end.p_W = vehicle->base().X_WB().translation();

@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/signing/signed_message.hpp"
 #include "bridges/lockstep_client/wait_notice.hpp"
+#include "bridges/signing/signed_message.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_control_reply_t.hpp"
 #include "shoal/sim_control_request_t.hpp"

@@ -18,7 +18,7 @@ struct MeshOptions {
   MeshImportOptions import;
 };
 
-std::string vector_text(const sim::Vector3d& v) {
+std::string list_text_of(const sim::Vector3d& v) {
   return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x(), v.y(), v.z());
 }
 
@@ -29,15 +29,15 @@ void print(const std::string& file, const sim::Mesh& mesh) {
     high = high.cwiseMax(p);
   }
   std::cout << fmt::format("{}: {} triangles, {} vertices\n", file, mesh.triangles.size(), mesh.vertices_m.size())
-            << fmt::format("bounds: {} to {} m, size {} m\n", vector_text(low), vector_text(high),
-                           vector_text(high - low));
+            << fmt::format("bounds: {} to {} m, size {} m\n", list_text_of(low), list_text_of(high),
+                           list_text_of(high - low));
   if (!sim::is_closed(mesh)) {
     std::cout << "surface: open; it can stand in a world, but has no mass of its own\n";
     return;
   }
   const sim::MeshSolid solid = sim::solid_of(mesh);
   std::cout << fmt::format("surface: closed, volume {:.6g} m3, centroid {} m{}\n", std::abs(solid.volume_m3),
-                           vector_text(solid.centroid_m),
+                           list_text_of(solid.centroid_m),
                            solid.volume_m3 < 0 ? "; inside out, which Shoal turns by itself" : "");
 }
 

@@ -9,8 +9,8 @@
 
 #include "messages/yaml/message_writer.hpp"
 #include "tools/experiment/bug_report/bug_report.hpp"
-#include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/speed_option.hpp"

@@ -5,10 +5,10 @@
 #include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
-#include "tools/experiment/snapshot/run_identity.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/experiment/snapshot/snapshot_file.hpp"
 #include "tools/shoal/commands.hpp"
 

@@ -10,8 +10,8 @@
 #include "shoal/sim_info_t.hpp"
 #include "shoal/sim_tick_t.hpp"
 #include "shoal/utime_t.hpp"
-#include "tests/bridges/lcm/lcm_test_support.hpp"
 #include "tests/bridges/control/service_fixture.hpp"
+#include "tests/bridges/lcm/lcm_test_support.hpp"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include "shoal/sim_vehicle_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "sim/state/state_archive.hpp"
-#include "tests/bridges/lcm/lcm_test_support.hpp"
 #include "tests/bridges/control/service_fixture.hpp"
+#include "tests/bridges/lcm/lcm_test_support.hpp"
 
 // Vehicles that clients bring, by way of requests on sim.control.
 

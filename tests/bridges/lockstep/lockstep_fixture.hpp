@@ -11,8 +11,8 @@
 #include "shoal/sim_resent_t.hpp"
 #include "shoal/sim_tick_t.hpp"
 #include "sim/base/crc32.hpp"
-#include "tests/bridges/lcm/lcm_test_support.hpp"
 #include "tests/bridges/control/service_fixture.hpp"
+#include "tests/bridges/lcm/lcm_test_support.hpp"
 
 namespace lcm_test {
 

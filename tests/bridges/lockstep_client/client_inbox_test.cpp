@@ -3,8 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "tests/bridges/lcm/lcm_test_support.hpp"
 #include "sim/base/crc32.hpp"
+#include "tests/bridges/lcm/lcm_test_support.hpp"
 
 namespace bridges {
 namespace {

@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 
 #include "bridges/base/bus_error.hpp"
-#include "tests/bridges/lcm/lcm_test_support.hpp"
 #include "sim/base/crc32.hpp"
 #include "sim/run/lockstep.hpp"
+#include "tests/bridges/lcm/lcm_test_support.hpp"
 
 namespace bridges {
 namespace {

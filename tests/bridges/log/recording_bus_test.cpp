@@ -10,8 +10,8 @@
 #include <random>
 #include <sstream>
 
-#include "bridges/log/event_log.hpp"
 #include "bridges/bus/lcm_bus.hpp"
+#include "bridges/log/event_log.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 
 namespace bridges {

@@ -15,8 +15,8 @@
 #include "devices/common/nmea.hpp"
 #include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
 

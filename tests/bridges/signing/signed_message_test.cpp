@@ -10,8 +10,8 @@
 
 #include "bridges/base/bus_error.hpp"
 #include "bridges/bus/bus_reach.hpp"
-#include "bridges/lockstep/control_guard.hpp"
 #include "bridges/lcm/lcm_connection.hpp"
+#include "bridges/lockstep/control_guard.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_signed_t.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"

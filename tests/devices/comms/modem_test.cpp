@@ -2,8 +2,8 @@
 #include "devices/comms/message_modem.hpp"
 #include "shoal/modem_received_t.hpp"
 #include "shoal/modem_send_t.hpp"
-#include "tests/devices/navigation/immersed_sensor_fixture.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
+#include "tests/devices/navigation/immersed_sensor_fixture.hpp"
 
 namespace {
 

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "devices/marine/buoyancy_engine.hpp"
 #include "devices/joint/moving_mass.hpp"
+#include "devices/marine/buoyancy_engine.hpp"
 #include "tests/devices/marine/marine_fixture.hpp"
 #include "tests/project_paths.hpp"
 

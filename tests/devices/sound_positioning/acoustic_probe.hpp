@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "sim/acoustics/channel.hpp"
-#include "sim/device/device_registry.hpp"
+#include "sim/world/device_context.hpp"
 #include "sim/world/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 

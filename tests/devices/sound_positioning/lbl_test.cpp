@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 
 #include "shoal/lbl_t.hpp"
-#include "tests/devices/sound_positioning/acoustic_probe.hpp"
 #include "tests/devices/ranging/ranging_fixture.hpp"
+#include "tests/devices/sound_positioning/acoustic_probe.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/acoustics/channel.hpp"
-#include "sim/device/device_registry.hpp"
+#include "sim/world/device_context.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace test {
@@ -31,7 +31,8 @@ class Hydrophone final : public sim::Sensor, public sim::AcousticListener {
     sim::ReceiverConfig receiver;
     void read(sim::ParamReader& in) { in.read("receiver", receiver, "of the transducer"); }
   };
-  Hydrophone(const Params& params, const sim::DeviceContext& context) : transducer_(*this, params.receiver, context.sound_site()) {}
+  Hydrophone(const Params& params, const sim::DeviceContext& context)
+      : transducer_(*this, params.receiver, context.sound_site()) {}
 
   void measure(const sim::SenseContext&) override {}
   void disturb(double, sim::Random&) override {}

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "tests/fidelity/closed_forms.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/sim/medium/log_capture.hpp"

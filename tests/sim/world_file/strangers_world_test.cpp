@@ -7,9 +7,9 @@
 #include <fstream>
 
 #include "sim/bus/in_process_bus.hpp"
+#include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
-#include "sim/world/world.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace {

@@ -93,7 +93,8 @@ using Bytes = std::vector<std::uint8_t>;
 std::optional<Bytes> encode(const AcousticState& state);
 
 /// Nothing when it is no such frame: the length, version, kind or checksum is another, the standard deviations are
-/// zero, or encode() would not send it.  `near_utime`: a time within half a week of the sender's, which makes a full time of the time of the week.
+/// zero, or encode() would not send it.  `near_utime`: a time within half a week of the sender's, which makes a full
+/// time of the time of the week.
 std::optional<AcousticState> decode(std::span<const std::uint8_t> bytes, std::int64_t near_utime);
 
 /// Nothing when the order does not fit: sender, receiver, number, position or depth are out of their ranges as above, a

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tools/autonomy/filters/pose2.hpp"
 #include "tools/autonomy/behaviours/scan.hpp"
+#include "tools/autonomy/filters/pose2.hpp"
 
 namespace autonomy {
 

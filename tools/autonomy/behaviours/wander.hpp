@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "sim/random/random.hpp"
-#include "tools/autonomy/filters/pose2.hpp"
 #include "tools/autonomy/behaviours/scan.hpp"
+#include "tools/autonomy/filters/pose2.hpp"
 
 namespace autonomy {
 

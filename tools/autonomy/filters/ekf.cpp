@@ -8,13 +8,7 @@
 
 namespace autonomy {
 
-namespace {
-
-double squared(double x) {
-  return x * x;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 Ekf::Ekf(const Pose2& start, double position_std_m, double yaw_std_rad, const Params& params)
     : params_(params), pose_(start), P_(Eigen::Matrix3d::Zero()) {

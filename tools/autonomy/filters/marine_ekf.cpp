@@ -13,14 +13,6 @@ namespace {
 constexpr double longest_memory_s = 60;
 constexpr double bad_clock_mps = 0.15;  ///< 100 ppm, the worst of usual quartz clocks, by the speed of sound
 
-double squared(double x) {
-  return x * x;
-}
-
-double seconds(std::int64_t time_us) {
-  return static_cast<double>(time_us) * 1e-6;
-}
-
 Vector2d left_of(const Vector2d& v) {
   return {-v.y(), v.x()};
 }

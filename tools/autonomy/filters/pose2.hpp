@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace autonomy {
 
@@ -25,6 +27,18 @@ inline Vector2d turned(const Vector2d& v, double angle_rad) {
   const double c = std::cos(angle_rad);
   const double s = std::sin(angle_rad);
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
+}
+
+/// What nobody knows, in messages and estimates.
+inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+inline double squared(double x) {
+  return x * x;
+}
+
+/// Of a time stamp or a difference of two.
+inline double seconds(std::int64_t time_us) {
+  return static_cast<double>(time_us) * 1e-6;
 }
 
 }  // namespace autonomy

@@ -36,7 +36,7 @@ SpeedPoint parse_point(const std::string& text) {
 /// A lean that is later than this does not belong to the same clock.
 constexpr double most_late_s = 0.1;
 /// From one lean to the next; after more than this their difference is no rate.
-constexpr double longest_gap_s = 1;
+constexpr double lean_gap_s = 1;
 
 /// The share of the way to a new value that a low pass goes in a time.
 double share(double time_s, double time_constant_s) {
@@ -50,8 +50,7 @@ std::vector<SpeedPoint> parse_speeds(const std::string& text) {
   std::stringstream parts(text);
   for (std::string part; std::getline(parts, part, ';');) points.push_back(parse_point(part));
   for (std::size_t i = 1; i < points.size(); ++i)
-    if (points[i].from_s <= points[i - 1].from_s)
-      throw std::invalid_argument("the times must grow, in '" + text + "'");
+    if (points[i].from_s <= points[i - 1].from_s) throw std::invalid_argument("the times must grow, in '" + text + "'");
   return points;
 }
 
@@ -67,7 +66,7 @@ void Balance::receive(const shoal::inclination_t& message) {
   const bool late = dt_s <= 0 && dt_s > -most_late_s;
   if (lean_known_ && late) return;
   // Other times: the clock was set, or the last message had a time of its own.  The rate stays what it was.
-  if (lean_known_ && dt_s > 0 && dt_s < longest_gap_s) {
+  if (lean_known_ && dt_s > 0 && dt_s < lean_gap_s) {
     const double rate_radps = (message.pitch_rad - lean_rad_) / dt_s;
     rate_radps_ += share(dt_s, params_.rate_filter_s) * (rate_radps - rate_radps_);
   }

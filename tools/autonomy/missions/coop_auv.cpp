@@ -11,8 +11,6 @@ namespace autonomy {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 // What a velocity is worth that is not over ground: a current is not known, an old one has changed.
 constexpr double through_water_mpsprtHz = 0.3;
 constexpr double coasting_mpsprtHz = 0.5;
@@ -30,10 +28,6 @@ constexpr double lost_heading_s = 60;
 constexpr double longest_quiet_s = 1;
 /// Sound comes 90 km far in that: no modem does.
 constexpr double longest_travel_s = 60;
-
-double seconds(std::int64_t time_us) {
-  return static_cast<double>(time_us) * 1e-6;
-}
 
 }  // namespace
 
@@ -250,7 +244,7 @@ CoopAuv::Decision CoopAuv::step() {
 }
 
 shoal::helm_command_t CoopAuv::helm() {
-  shoal::helm_command_t helm{utime_, 0, nan, 0, nan};
+  shoal::helm_command_t helm{utime_, 0, unknown, 0, unknown};
   if (phase_ != Phase::under_way) return helm;
   const MarineEkf& filter = params_.steer_by_dead_reckoning ? *dead_reckoning_ : *cooperative_;
   const Course course = behaviour_->steer({utime_, filter.position_at(utime_), filter.velocity()});
@@ -276,7 +270,7 @@ shoal::estimate_t CoopAuv::estimate(const MarineEkf& filter) const {
   const Eigen::Quaterniond q_WB = q_WB_.value_or(Eigen::Quaterniond::Identity());
   estimate.velocity_mps[2] = (q_WB * v_B_).z();
   estimate.yaw_rad = sim::wrap_angle(sim::yaw_of(q_WB.toRotationMatrix()) + filter.heading_bias_rad());
-  estimate.clock_error_s = params_.filter.states > 4 ? filter.range_bias_m() / params_.sound_speed_mps : nan;
+  estimate.clock_error_s = params_.filter.states > 4 ? filter.range_bias_m() / params_.sound_speed_mps : unknown;
   return estimate;
 }
 

@@ -18,10 +18,10 @@
 #include "shoal/pressure_t.hpp"
 #include "tools/autonomy/acomms/acoustic_frame.hpp"
 #include "tools/autonomy/acomms/channel_access.hpp"
-#include "tools/autonomy/missions/cloned.hpp"
+#include "tools/autonomy/acomms/state_packet.hpp"
 #include "tools/autonomy/behaviours/helm_behaviour.hpp"
 #include "tools/autonomy/filters/marine_ekf.hpp"
-#include "tools/autonomy/acomms/state_packet.hpp"
+#include "tools/autonomy/missions/cloned.hpp"
 
 namespace autonomy {
 

@@ -8,15 +8,7 @@
 
 namespace autonomy {
 
-namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-double seconds(std::int64_t time_us) {
-  return static_cast<double>(time_us) * 1e-6;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 CoopCraft::CoopCraft(const Params& params, std::unique_ptr<HelmBehaviour> behaviour)
     : params_(params), behaviour_(std::move(behaviour)), access_(params.access, params.name) {}
@@ -49,7 +41,7 @@ void CoopCraft::receive(const shoal::acoustic_received_t& packet) {
 
 CoopCraft::Decision CoopCraft::step() {
   Decision decision;
-  shoal::helm_command_t helm{utime_, 0, nan, nan, nan};
+  shoal::helm_command_t helm{utime_, 0, unknown, unknown, unknown};
   // The time is that of GPS: when it is silent there is none, but for the calls of this.
   const bool is_recent = steps_since_fix_++ * params_.period_s <= params_.oldest_fix_s;
   const bool has_fix = is_recent && motion_ && std::abs(seconds(utime_ - motion_->utime)) <= params_.oldest_fix_s;

@@ -12,9 +12,9 @@
 #include "shoal/helm_command_t.hpp"
 #include "shoal/modem_send_t.hpp"
 #include "tools/autonomy/acomms/channel_access.hpp"
-#include "tools/autonomy/missions/cloned.hpp"
-#include "tools/autonomy/behaviours/helm_behaviour.hpp"
 #include "tools/autonomy/acomms/state_packet.hpp"
+#include "tools/autonomy/behaviours/helm_behaviour.hpp"
+#include "tools/autonomy/missions/cloned.hpp"
 
 namespace autonomy {
 

@@ -25,10 +25,6 @@ ObstacleAvoidance::Params avoidance_params(const CoopRover::Params& params) {
   return avoidance;
 }
 
-double seconds(std::int64_t time_us) {
-  return static_cast<double>(time_us) * 1e-6;
-}
-
 }  // namespace
 
 CoopRover::CoopRover(const Params& params)

@@ -11,11 +11,11 @@
 
 #include "shoal/gps_data_t.hpp"
 #include "shoal/swarm_position_t.hpp"
-#include "tools/autonomy/filters/ekf.hpp"
-#include "tools/autonomy/behaviours/obstacle_avoidance.hpp"
-#include "tools/autonomy/filters/odometer.hpp"
 #include "tools/autonomy/acomms/position_reports.hpp"
+#include "tools/autonomy/behaviours/obstacle_avoidance.hpp"
 #include "tools/autonomy/behaviours/waypoint_follower.hpp"
+#include "tools/autonomy/filters/ekf.hpp"
+#include "tools/autonomy/filters/odometer.hpp"
 
 namespace autonomy {
 

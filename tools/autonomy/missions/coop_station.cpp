@@ -15,7 +15,6 @@ namespace autonomy {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_orders = 255;
 
 std::string decimal(double number) {
@@ -40,7 +39,7 @@ shoal::estimate_t estimate_of(const AcousticState& state) {
   estimate.covariance_m2[4] = state.north_std_m * state.north_std_m;
   estimate.covariance_m2[8] = depth_std_m * depth_std_m;
   estimate.yaw_rad = state.course_rad;
-  estimate.clock_error_s = nan;
+  estimate.clock_error_s = unknown;
   return estimate;
 }
 

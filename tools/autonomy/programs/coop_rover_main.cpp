@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
 
+#include "tools/autonomy/behaviours/waypoint_text.hpp"
 #include "tools/autonomy/missions/coop_rover.hpp"
 #include "tools/autonomy/programs/program.hpp"
-#include "tools/autonomy/behaviours/waypoint_text.hpp"
 
 namespace {
 

@@ -11,14 +11,13 @@
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
-#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world_file/load_world.hpp"
 
 namespace tools {
 
 namespace {
 
-constexpr double deg = std::numbers::pi / 180;
 constexpr double bottom_m = 11000;  ///< below the start of a vehicle
 
 std::string list_of(std::initializer_list<double> values) {
@@ -129,8 +128,8 @@ void compare(FidelityResult& result) {
   const auto count = static_cast<double>(result.t.size());
   result.position_rms_m = std::sqrt(position / count);
   result.velocity_rms_mps = std::sqrt(velocity / count);
-  result.turn_rms_degps = std::sqrt(turn / count) / deg;
-  result.heading_rms_deg = std::sqrt(heading / count) / deg;
+  result.turn_rms_degps = std::sqrt(turn / count) / degree_rad;
+  result.heading_rms_deg = std::sqrt(heading / count) / degree_rad;
   const auto check = [&](const char* name, double value, const std::optional<double>& bar) {
     // Not `value > bar`: a value that is no number has missed it.
     if (bar && !(value <= *bar))
@@ -234,13 +233,13 @@ sim::ConfigNode fidelity_world(const FidelityCase& of, const FidelityReference& 
                                const FidelityOptions& options) {
   const FidelityState start = state_of(of, reference, reference.rows.front());
   // No bottom is near; that there is none at all would be said of every case.
-  const std::string text = "shoal: 1\nname: " + of.name +
-                           "\nphysics: {step_s: " + sim::number_text(options.step_s.value_or(of.step_s)) +
-                           "}\nmedium: {water: {}}\nobjects:\n  - name: far_bottom\n    fixed: true\n    position_m: " +
-                           list_of({0, 0, -start[2] - bottom_m}) +
-                           "\n    parts: [{shape: plane}]\nvehicles:\n  - name: " + vehicle_name(of) +
-                           "\n    file: ''\n    position_m: " + list_of({start[1], start[0], -start[2]}) +
-                           "\n    rpy_deg: " + list_of({start[3] / deg, -start[4] / deg, 90 - start[5] / deg}) + "\n";
+  const std::string text =
+      "shoal: 1\nname: " + of.name + "\nphysics: {step_s: " + sim::number_text(options.step_s.value_or(of.step_s)) +
+      "}\nmedium: {water: {}}\nobjects:\n  - name: far_bottom\n    fixed: true\n    position_m: " +
+      list_of({0, 0, -start[2] - bottom_m}) +
+      "\n    parts: [{shape: plane}]\nvehicles:\n  - name: " + vehicle_name(of) +
+      "\n    file: ''\n    position_m: " + list_of({start[1], start[0], -start[2]}) +
+      "\n    rpy_deg: " + list_of({start[3] / degree_rad, -start[4] / degree_rad, 90 - start[5] / degree_rad}) + "\n";
   sim::Diagnostics diagnostics;
   sim::ConfigNode world = sim::parse_config_text(text, of.name, diagnostics);
   set_places(world, of.place);

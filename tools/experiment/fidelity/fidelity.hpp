@@ -3,6 +3,7 @@
 
 #include <array>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,9 @@
 #include "sim/config/param_reader.hpp"
 
 namespace tools {
+
+/// A degree in rad.
+inline constexpr double degree_rad = std::numbers::pi / 180;
 
 /// How columns of a reference become a command of a device.
 struct FidelityInput {

@@ -16,8 +16,6 @@ namespace tools {
 
 namespace {
 
-constexpr double deg = M_PI / 180;
-
 std::string bar_text(const std::optional<double>& bar) {
   return bar ? fmt::format("{:g}", *bar) : "-";
 }
@@ -38,7 +36,7 @@ std::string rows_of(const FidelityResult& result, const std::vector<FidelityStat
       double value = states[i][k];
       // Both turn about the same whole turns.
       if (for_plot && k == 5) value = result.theirs[i][k] + std::remainder(value - result.theirs[i][k], 2 * M_PI);
-      if (for_plot && ((k >= 3 && k < 6) || k >= 9)) value /= deg;
+      if (for_plot && ((k >= 3 && k < 6) || k >= 9)) value /= degree_rad;
       text += separator + fmt::format("{:.9g}", value);
     }
     text += '\n';
@@ -118,7 +116,7 @@ std::string section_of(const FidelityResult& result) {
   static const char* names[] = {"north (m)", "east (m)",    "depth (m)",  "roll (deg)", "pitch (deg)",
                                 "yaw (deg)", "surge (m/s)", "sway (m/s)", "heave (m/s)"};
   for (std::size_t k = 0; k < std::size(names); ++k) {
-    const double unit = k >= 3 && k < 6 ? deg : 1;
+    const double unit = k >= 3 && k < 6 ? degree_rad : 1;
     const double difference = k == 5 ? std::remainder(b[k] - a[k], 2 * M_PI) : b[k] - a[k];
     text += fmt::format("| {} | {} | {} | {} |\n", names[k], digits(a[k] / unit), digits((a[k] + difference) / unit),
                         digits(difference / unit));

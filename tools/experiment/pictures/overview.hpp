@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/camera/optics.hpp"
 #include "sim/base/math.hpp"
+#include "sim/camera/optics.hpp"
 
 namespace sim {
 class World;

@@ -9,23 +9,23 @@
 #include <thread>
 
 #include "bridges/bus/lcm_bus.hpp"
-#include "bridges/lockstep/lockstep_service.hpp"
 #include "bridges/control/other_simulators.hpp"
 #include "bridges/control/sim_service.hpp"
-#include "shoal/message_codec.hpp"
+#include "bridges/lockstep/lockstep_service.hpp"
 #include "messages/yaml/message_writer.hpp"
+#include "shoal/message_codec.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/bus/mail_gate.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world_file/load_world.hpp"
-#include "tools/experiment/run/pacer.hpp"
+#include "tools/experiment/process/signals.hpp"
 #include "tools/experiment/replay/played_answers.hpp"
 #include "tools/experiment/replay/player_requests.hpp"
-#include "tools/experiment/terminal/progress.hpp"
 #include "tools/experiment/replay/recorded_steps.hpp"
 #include "tools/experiment/replay/replay_log.hpp"
 #include "tools/experiment/results/run_error.hpp"
-#include "tools/experiment/process/signals.hpp"
+#include "tools/experiment/run/pacer.hpp"
+#include "tools/experiment/terminal/progress.hpp"
 
 namespace tools {
 

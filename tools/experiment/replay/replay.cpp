@@ -10,21 +10,21 @@
 #include <memory>
 #include <set>
 
+#include "bridges/control/sim_service.hpp"
 #include "bridges/lockstep/lockstep_service.hpp"
 #include "bridges/log/run_journal.hpp"
-#include "bridges/control/sim_service.hpp"
-#include "shoal/message_codec.hpp"
 #include "messages/yaml/message_writer.hpp"
+#include "shoal/message_codec.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/bus/mail_gate.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/experiment/replay/line_difference.hpp"
-#include "tools/experiment/terminal/progress.hpp"
 #include "tools/experiment/replay/replay_messages.hpp"
 #include "tools/experiment/replay/replay_ports.hpp"
-#include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/experiment/snapshot/world_difference.hpp"
+#include "tools/experiment/terminal/progress.hpp"
 
 namespace tools {
 

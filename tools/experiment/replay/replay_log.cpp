@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
+#include "bridges/control/run_notices.hpp"
 #include "bridges/log/event_log.hpp"
 #include "bridges/log/run_journal.hpp"
-#include "bridges/control/run_notices.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_hash_t.hpp"
 #include "shoal/sim_mail_t.hpp"

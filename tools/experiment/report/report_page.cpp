@@ -14,8 +14,8 @@
 #include "tools/experiment/report/report_figures.hpp"
 #include "tools/experiment/report/report_pictures.hpp"
 #include "tools/experiment/report/run_words.hpp"
-#include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/report/study_report.hpp"
+#include "tools/experiment/run/runner.hpp"
 
 namespace tools {
 

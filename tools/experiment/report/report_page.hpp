@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "tools/experiment/score/judgement.hpp"
 #include "tools/experiment/results/run_metrics.hpp"
 #include "tools/experiment/results/run_record.hpp"
+#include "tools/experiment/score/judgement.hpp"
 
 namespace tools {
 

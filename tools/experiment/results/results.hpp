@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "bridges/lockstep/lockstep_summary.hpp"
 #include "bridges/control/run_notices.hpp"
+#include "bridges/lockstep/lockstep_summary.hpp"
 #include "sim/config/config_node.hpp"
 #include "sim/director/script.hpp"
 #include "sim/world/world.hpp"
+#include "tools/experiment/results/summary_file.hpp"
 #include "tools/experiment/score/judgement.hpp"
 #include "tools/experiment/score/link_counts.hpp"
 #include "tools/experiment/score/scoring.hpp"
-#include "tools/experiment/results/summary_file.hpp"
 
 namespace tools {
 

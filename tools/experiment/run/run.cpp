@@ -11,8 +11,8 @@
 #include "bridges/base/bus_error.hpp"
 #include "tools/experiment/results/results_world.hpp"
 #include "tools/experiment/results/run_error.hpp"
-#include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/experiment/run/run_ports.hpp"
+#include "tools/experiment/snapshot/run_identity.hpp"
 
 namespace tools {
 

@@ -5,24 +5,24 @@
 #include <set>
 #include <string>
 
-#include "bridges/lockstep/lockstep_service.hpp"
 #include "bridges/control/other_simulators.hpp"
-#include "bridges/log/run_journal.hpp"
 #include "bridges/control/sim_service.hpp"
+#include "bridges/lockstep/lockstep_service.hpp"
+#include "bridges/log/run_journal.hpp"
 #include "sim/run/run_control.hpp"
+#include "tools/experiment/results/results.hpp"
 #include "tools/experiment/run/branch_log.hpp"
 #include "tools/experiment/run/pacer.hpp"
-#include "tools/experiment/terminal/progress.hpp"
-#include "tools/experiment/results/results.hpp"
 #include "tools/experiment/run/run_buses.hpp"
 #include "tools/experiment/run/run_key_file.hpp"
 #include "tools/experiment/run/run_keys.hpp"
 #include "tools/experiment/run/run_mail.hpp"
 #include "tools/experiment/run/run_programs.hpp"
 #include "tools/experiment/run/runner.hpp"
-#include "tools/experiment/score/scoring.hpp"
 #include "tools/experiment/run/step_watch.hpp"
 #include "tools/experiment/run/time_control.hpp"
+#include "tools/experiment/score/scoring.hpp"
+#include "tools/experiment/terminal/progress.hpp"
 
 namespace tools {
 

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "sim/run/run_control.hpp"
+#include "tools/experiment/run/time_control.hpp"
 #include "tools/experiment/terminal/key_sequences.hpp"
 #include "tools/experiment/terminal/terminal_keys.hpp"
-#include "tools/experiment/run/time_control.hpp"
 
 namespace tools {
 

@@ -5,9 +5,9 @@
 #include <deque>
 #include <functional>
 
+#include "bridges/control/sim_service.hpp"
 #include "bridges/lockstep/lockstep_service.hpp"
 #include "bridges/log/run_journal.hpp"
-#include "bridges/control/sim_service.hpp"
 #include "tools/experiment/run/run_buses.hpp"
 
 namespace tools {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/spdlog.h>
 
-#include "devices/comms/message_modem.hpp"
 #include "devices/common/serial_port.hpp"
+#include "devices/comms/message_modem.hpp"
 #include "sim/acoustics/channel.hpp"
 #include "tools/experiment/run/run.hpp"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "shoal/message_codec.hpp"
-#include "tools/experiment/run/run.hpp"
 #include "tools/experiment/results/run_error.hpp"
+#include "tools/experiment/run/run.hpp"
 #include "tools/experiment/snapshot/snapshot_pieces.hpp"
 
 // What a run does beside when its world moves in time, and when it writes snapshots.

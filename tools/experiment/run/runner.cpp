@@ -7,8 +7,8 @@
 #include "sim/config/diagnostics.hpp"
 #include "tools/experiment/process/process_check.hpp"
 #include "tools/experiment/results/results_lock.hpp"
-#include "tools/experiment/run/run.hpp"
 #include "tools/experiment/results/run_error.hpp"
+#include "tools/experiment/run/run.hpp"
 
 namespace tools {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "sim/world_file/load_world.hpp"
-#include "tools/experiment/results/results.hpp"
 #include "tools/experiment/process/signals.hpp"
+#include "tools/experiment/results/results.hpp"
 #include "tools/experiment/snapshot/snapshot_file.hpp"
 
 namespace tools {

@@ -9,9 +9,9 @@
 #include <cstring>
 #include <filesystem>
 
+#include "sim/base/state_hash.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/base/state_hash.hpp"
 
 namespace tools {
 

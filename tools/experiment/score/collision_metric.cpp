@@ -3,14 +3,12 @@
 #include <map>
 #include <utility>
 
+#include "tools/experiment/score/first_contacts.hpp"
 #include "tools/experiment/score/metric.hpp"
 
 namespace tools {
 
 namespace {
-
-/// Two that part and touch again within this time have not parted: bodies bounce.
-constexpr double parted_after_s = 0.5;
 
 /// Contacts that began between vehicles, or a vehicle and an object.
 class CollisionMetric final : public Metric {

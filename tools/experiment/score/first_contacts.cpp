@@ -12,8 +12,6 @@ namespace tools {
 
 namespace {
 
-/// As metrics of collisions count: two that touch again sooner have not parted.
-constexpr double parted_after_s = 0.5;
 /// So long a vehicle settles on what it was put on.
 constexpr double settled_after_s = 0.1;
 /// A contact whose normal is steeper than 45 degrees carries.

@@ -14,6 +14,9 @@
 
 namespace tools {
 
+/// Two that part and touch again within this time have not parted: bodies bounce.
+inline constexpr double parted_after_s = 0.5;
+
 /// Which vehicles hit which vehicles and objects, and how often.  Watching does not change the run.
 ///
 /// Not counted: planes and terrain; the fixed things that a vehicle with wheels drives on (contacts from below); what a

@@ -4,8 +4,8 @@
 #include <chrono>
 #include <string>
 
-#include "sim/run/run_control.hpp"
 #include "sim/base/time.hpp"
+#include "sim/run/run_control.hpp"
 
 namespace tools {
 

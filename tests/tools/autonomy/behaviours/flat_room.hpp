@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "tools/autonomy/filters/pose2.hpp"
 #include "tools/autonomy/behaviours/scan.hpp"
+#include "tools/autonomy/filters/pose2.hpp"
 
 /// A room of straight walls and a rover without mass, for tests of what the rover thinks.
 namespace flat_room {

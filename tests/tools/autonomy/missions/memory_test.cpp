@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tools/autonomy/missions/coop_auv.hpp"
 #include "tools/autonomy/behaviours/helm_behaviour.hpp"
+#include "tools/autonomy/missions/coop_auv.hpp"
 
 namespace {
 

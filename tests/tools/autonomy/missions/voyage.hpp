@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "sim/random/random.hpp"
+#include "tools/autonomy/acomms/state_packet.hpp"
 #include "tools/autonomy/behaviours/behaviour_text.hpp"
 #include "tools/autonomy/missions/coop_auv.hpp"
-#include "tools/autonomy/acomms/state_packet.hpp"
 
 /// Reports of a surface craft's and an AUV's devices, and an AUV that lives on them.
 namespace voyage_test {

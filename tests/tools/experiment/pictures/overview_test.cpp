@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world_file/load_world.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world_file/load_world.hpp"
 
 namespace {
 

@@ -9,9 +9,9 @@
 #include "tests/devices/world_fixture.hpp"
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
+#include "tools/experiment/report/study_report.hpp"
 #include "tools/experiment/results/results.hpp"
 #include "tools/experiment/study/study_curves.hpp"
-#include "tools/experiment/report/study_report.hpp"
 #include "tools/experiment/study/study_results.hpp"
 
 namespace {
