@@ -167,7 +167,7 @@ void WorldJournal::vehicle_added(const VehicleInstance& instance, const Vehicle&
   added.numbers = parts_.physics.numbers_of(vehicle.group());
   for (const MountedDevice* device : vehicle.devices()) added.devices.push_back(device->number());
   for (const Transducer* transducer : parts_.acoustics->transducers())
-    if (transducer != nullptr && &transducer->vehicle() == &vehicle) added.transducers.push_back(transducer->number());
+    if (transducer != nullptr && transducer->group() == vehicle.group()) added.transducers.push_back(transducer->number());
   append(std::move(added));
 }
 
