@@ -144,7 +144,7 @@ const Vehicle& World::add_vehicle(const VehicleInstance& instance) {
 void World::check_removable(const std::string& name) const {
   vehicle_named(name);
   for (const MetricConfig& metric : config_.metrics)
-    if (metric.vehicle == name)
+    if (metric.params && metric.params->vehicle == name)
       throw WorldError("vehicle " + quoted(name) + " cannot be removed: metric '" + metric.name + "' scores it");
 }
 
