@@ -89,7 +89,7 @@ const WorldObject& WorldBuilder::place_object(const ObjectConfig& config, const 
                                [&](const ActorConfig& actor) { return actor.object == name; });
   if (!led || config.kinematic) return build_object(config, name, X_WE);
   const bool has_plane = std::any_of(config.parts.begin(), config.parts.end(),
-                                     [](const PartConfig& part) { return part.shape == "plane"; });
+                                     [](const PartConfig& part) { return part.shape == PartShape::plane; });
   if (config.fixed || has_plane)
     throw_config_error(config.place, "object " + shown_name(name), "an actor moves it: it cannot be fixed or a plane");
   ObjectConfig kinematic = config;

@@ -73,7 +73,7 @@ const Vehicle& WorldEditor::add_vehicle(const VehicleInstance& instance) {
 void WorldEditor::check_removable(const std::string& name) const {
   parts_.entities.vehicle_named(name);
   for (const MetricConfig& metric : parts_.config.metrics)
-    if (metric.vehicle == name)
+    if (metric.params && metric.params->vehicle == name)
       throw WorldError("vehicle " + shown_name(name) + " cannot be removed: metric '" + metric.name + "' scores it");
 }
 
