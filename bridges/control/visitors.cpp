@@ -76,7 +76,8 @@ sim::SpawnRequest read_request(const sim::WorldConfig& world, const std::string&
 
 }  // namespace
 
-Visitors::Visitors(sim::World& world, sim::Bus& bus) : world_(world), bus_(bus) {
+Visitors::Visitors(sim::World& world, sim::Bus& bus, RunJournal* journal)
+    : world_(world), bus_(bus), journal_(journal) {
   know_all();
 }
 

@@ -122,9 +122,11 @@ TEST(Spawn, ErrorsReadAsThoseOfFiles) {
 
 TEST(Spawn, OnlyWhatIsAVehicleIsWrittenDown) {
   Host host;
-  bridges::RunJournal journal(host.test.bus);
-  journal.attach(host.test.world);
-  host.service.use_journal(journal);
+  bridges::JournalPorts ports;
+  bridges::RunJournal journal(host.test.bus, host.test.world, ports);
+  bridges::SimService service(host.test.bus, host.test.bus, host.test.world, host.control, host.lockstep,
+                              {"{}", "test"}, {.journal = &journal});
+  host.answering = &service;
   std::vector<std::string> written;
   journal.set_listener([&](std::int64_t, const bridges::RunJournal::Letter& letter) {
     written.emplace_back(reinterpret_cast<const char*>(letter.payload.data()), letter.payload.size());

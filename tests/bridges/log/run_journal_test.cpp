@@ -24,9 +24,7 @@ struct Journalled {
   explicit Journalled(int hash_every_steps = 10)
       : test("shoal: 1\nrun: {hash_every_steps: " + std::to_string(hash_every_steps) +
              "}\nphysics: {step_s: 0.01}\nobjects: [{name: ball, position_m: [0, 0, 5], parts: [{shape: sphere, "
-             "radius_m: 0.1, mass_kg: 1}]}]\n") {
-    journal.attach(test.world);
-  }
+             "radius_m: 0.1, mass_kg: 1}]}]\n") {}
 
   void step() {
     test.world.step();
@@ -45,7 +43,8 @@ struct Journalled {
   }
 
   test::TestWorld test;
-  RunJournal journal{test.bus};
+  bridges::JournalPorts ports;
+  RunJournal journal{test.bus, test.world, ports};
   test::Listener<shoal::sim_mail_t> mail{test, "sim.mail"};
   test::Listener<shoal::sim_hash_t> hashes{test, "sim.hash"};
   std::vector<std::int64_t> sequences;
@@ -142,7 +141,7 @@ TEST(RunJournal, MutedItWritesNothingAndItsPortsReadWhatTheyReadBefore) {
   const auto end = std::make_shared<test::PortEnd>();
   Journalled run(1);
   const sim::PortOpener open =
-      run.journal.wrap([&](const std::string&, const std::string&) { return std::make_unique<test::FakePort>(end); });
+      run.ports.wrap([&](const std::string&, const std::string&) { return std::make_unique<test::FakePort>(end); });
   const auto port = open("pty", "/nowhere/a");
   run.journal.start();
   end->to_world = "hello";

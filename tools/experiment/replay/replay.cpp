@@ -79,7 +79,6 @@ class Replay {
     check_times();
     restore();
     world_.use_threads(options.threads);
-    serial_.attach(world_);
     for (const Letter& letter : log_.letters)
       if (letter.bus == RunJournal::serial_bus) serial_.add(letter);
   }
@@ -96,6 +95,7 @@ class Replay {
       while (world_.step_number() < last && caught_signal() == 0) {
         hand_over(world_.step_number());
         for_each_line([](Line& line) { line.gate->admit(); });
+        serial_.begin_step(world_.step_number());
         world_.step();
         after_step();
         progress.update(world_.now(), messages_.equal(), control_, false);

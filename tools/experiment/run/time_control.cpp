@@ -72,17 +72,16 @@ std::string first_difference(const std::string& there, const std::string& here) 
 }  // namespace
 
 TimeControl::TimeControl(sim::World& world, sim::RunControl& control, Scoring& scoring, bridges::SimService& service,
-                         RunMail& mail, Options options, Hooks hooks)
+                         RunMail& mail, Options options, Timeline& timeline)
     : world_(world),
       control_(control),
       scoring_(scoring),
       service_(service),
       mail_(mail),
       options_(std::move(options)),
-      hooks_(std::move(hooks)),
+      timeline_(timeline),
       steps_per_second_(std::max<std::int64_t>(1, std::llround(1e6 / static_cast<double>(world.step_time().count())))),
       ring_(std::llround(options_.rewind_s * static_cast<double>(steps_per_second_)), options_.most_bytes) {
-  service_.set_time_machine(this);
   if (options_.rewind_s > 0) mail_.keep(options_.most_bytes, [this] { forget_all(); });
 }
 
@@ -279,9 +278,9 @@ void TimeControl::simulate_again(std::int64_t to_step) {
 void TimeControl::travel(const std::function<void()>& work, std::int64_t to_step, bool run_on, bool ours) {
   const Saved before = save(History::whole);
   try {
-    if (hooks_.leaving) hooks_.leaving(to_step, ours);
+    timeline_.leave_branch(to_step, ours);
   } catch (const std::exception&) {
-    if (hooks_.stayed) hooks_.stayed();
+    timeline_.stay();
     throw;
   }
   mail_.begin_again(world_.step_number());
@@ -297,7 +296,7 @@ void TimeControl::travel(const std::function<void()>& work, std::int64_t to_step
   control_.set_paused(!run_on);
   moved_ = true;
   try {
-    if (hooks_.arrived) hooks_.arrived(ours);
+    timeline_.begin_branch(ours);
   } catch (const std::exception& error) {  // half of the run is there: it cannot go on
     broken_ = error.what();
     throw;
@@ -311,7 +310,7 @@ void TimeControl::put_back(const Saved& before) {
     broken_ = error.what();
   }
   mail_.end_again();
-  if (hooks_.stayed) hooks_.stayed();
+  timeline_.stay();
 }
 
 void TimeControl::go_on_from(const Snapshot& snapshot) {

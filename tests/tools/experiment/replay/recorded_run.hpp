@@ -29,16 +29,15 @@ class RecordedRun {
       : loaded(sim::load_world_text(yaml, "worlds/test.yaml", LoadedTestWorld::with_messages({}))),
         recorder(network, log, loaded.config.epoch_us),
         gate(recorder),
-        journal(gate),
-        world(loaded.config, gate, journal.wrap([this](const std::string&, const std::string& path) {
+        world(loaded.config, gate, ports.wrap([this](const std::string&, const std::string& path) {
           ends[path] = std::make_shared<PortEnd>();
           return std::make_unique<FakePort>(ends[path]);
         })),
+        journal(gate, world, ports),
         service(gate, network, world, control, lockstep,
                 {sim::to_yaml(loaded.resolved), tools::version_text(), tools::build_text(),
-                 tools::files_text(loaded.resolved)}) {
-    journal.attach(world);
-    service.use_journal(journal);
+                 tools::files_text(loaded.resolved)},
+                {.journal = &journal}) {
     if (from != nullptr) {
       world.state().restore(from->state);
       auto owners = sim::StateArchive::restorer(from->owners);
@@ -112,9 +111,10 @@ class RecordedRun {
   sim::InProcessBus network;
   bridges::RecordingBus recorder;
   sim::MailGate gate;
-  bridges::RunJournal journal;
+  bridges::JournalPorts ports;
   sim::RunControl control;
   sim::World world;
+  bridges::RunJournal journal;
   bridges::LockstepService lockstep{world, control};
   bridges::SimService service;
 };
