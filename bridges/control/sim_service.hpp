@@ -84,8 +84,7 @@ class SimService {
   void publish_state();
   void handle_request(Line& line, const sim::Message& message, TimeMachine* machine);
   void refuse(Line& line, const shoal::sim_control_request_t& request, const ControlGuard::Opened& opened);
-  void answer(Line& line, const shoal::sim_control_request_t& request, const std::string& signer,
-              TimeMachine* machine);
+  void answer(Line& line, const shoal::sim_control_request_t& request, const std::string& signer, TimeMachine* machine);
   void reply(Line& line, const shoal::sim_control_request_t& request, std::int64_t session, bool ok,
              const std::string& text);
   /// What came of it; nothing: it is not decided yet, and not answered.  Throws std::runtime_error that says why it was

@@ -22,7 +22,8 @@ class RunJournal;
 /// brings or takes it, is told on `sim.vehicle`.
 class Visitors {
  public:
-  /// `journal` is given every request that is about to change the world, whoever makes it, and descriptions; may be null.
+  /// `journal` is given every request that is about to change the world, whoever makes it, and descriptions; may be
+  /// null.
   Visitors(sim::World& world, sim::Bus& bus, RunJournal* journal);
 
   /// Adds the vehicle that `text` describes (an entry of `vehicles:` in YAML); returns one line that names it, its

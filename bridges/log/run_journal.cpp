@@ -3,9 +3,9 @@
 
 #include <utility>
 
-#include "sim/world/world_state.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_hash_t.hpp"
+#include "sim/world/world_state.hpp"
 
 namespace bridges {
 
@@ -86,8 +86,7 @@ void RunJournal::letter(const std::string& bus, const std::string& channel, std:
 }
 
 void RunJournal::take_readings() {
-  for (const JournalPorts::Reading& reading : ports_.take())
-    add(reading.step, serial_bus, reading.path, reading.bytes);
+  for (const JournalPorts::Reading& reading : ports_.take()) add(reading.step, serial_bus, reading.path, reading.bytes);
 }
 
 void RunJournal::add(std::int64_t step, const std::string& bus, const std::string& channel,

@@ -40,7 +40,7 @@ struct ServedWorld {
   bridges::LockstepService lockstep;
   bridges::SimService service;
   bridges::SimService* answering = &service;  ///< another one of this world may answer in its place
-  bridges::TimeMachine* machine = nullptr;  ///< serves what is about time
+  bridges::TimeMachine* machine = nullptr;    ///< serves what is about time
   std::int32_t id = 0;
 
  private:

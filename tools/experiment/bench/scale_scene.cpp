@@ -11,6 +11,7 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "shoal/twist_command_t.hpp"
+#include "sim/world/world_state.hpp"
 #include "tools/autonomy/behaviours/wander.hpp"
 
 namespace tools {
