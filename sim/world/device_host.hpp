@@ -7,8 +7,8 @@
 #include "sim/bus/byte_port.hpp"
 #include "sim/device/shared_by_devices.hpp"
 #include "sim/event/event_queue.hpp"
-#include "sim/world_base/step_clock.hpp"
-#include "sim/world_base/world_warnings.hpp"
+#include "sim/world/step_clock.hpp"
+#include "sim/world/world_warnings.hpp"
 
 namespace sim {
 

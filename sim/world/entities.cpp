@@ -6,8 +6,8 @@
 
 #include "sim/state/state_archive.hpp"
 #include "sim/world/mounted_device.hpp"
-#include "sim/world_base/limit_check.hpp"
-#include "sim/world_base/world_error.hpp"
+#include "sim/world/limit_check.hpp"
+#include "sim/world/world_error.hpp"
 
 namespace sim {
 

@@ -8,7 +8,7 @@
 #include "sim/bus/utime_stamp.hpp"
 #include "sim/world/device_context.hpp"
 #include "sim/world/vehicle.hpp"
-#include "sim/world_base/run_hash.hpp"
+#include "sim/world/run_hash.hpp"
 
 namespace sim {
 

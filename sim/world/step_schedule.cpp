@@ -7,7 +7,7 @@
 #include "sim/scene/scene.hpp"
 #include "sim/world/device_table.hpp"
 #include "sim/world/entities.hpp"
-#include "sim/world_base/step_clock.hpp"
+#include "sim/world/step_clock.hpp"
 
 namespace sim {
 

@@ -18,10 +18,10 @@
 #include "sim/world/entities.hpp"
 #include "sim/world/mounted_device.hpp"
 #include "sim/world/vehicle.hpp"
-#include "sim/world_base/end_of_run.hpp"
-#include "sim/world_base/step_clock.hpp"
-#include "sim/world_base/world_buses.hpp"
-#include "sim/world_base/world_error.hpp"
+#include "sim/world/end_of_run.hpp"
+#include "sim/world/step_clock.hpp"
+#include "sim/world/world_buses.hpp"
+#include "sim/world/world_error.hpp"
 #include "sim/world_file/world_config.hpp"
 
 namespace sim {

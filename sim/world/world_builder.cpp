@@ -9,7 +9,7 @@
 
 #include "sim/config/diagnostics.hpp"
 #include "sim/world/world_parts.hpp"
-#include "sim/world_base/limit_check.hpp"
+#include "sim/world/limit_check.hpp"
 #include "sim/world_file/device_change.hpp"
 
 namespace sim {

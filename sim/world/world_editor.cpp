@@ -11,7 +11,7 @@
 #include "sim/world/world_builder.hpp"
 #include "sim/world/world_journal.hpp"
 #include "sim/world/world_parts.hpp"
-#include "sim/world_base/limit_check.hpp"
+#include "sim/world/limit_check.hpp"
 
 namespace sim {
 

@@ -15,11 +15,11 @@
 #include "sim/world/device_table.hpp"
 #include "sim/world/entities.hpp"
 #include "sim/world/step_schedule.hpp"
-#include "sim/world_base/end_of_run.hpp"
-#include "sim/world_base/step_clock.hpp"
-#include "sim/world_base/surfaces.hpp"
-#include "sim/world_base/world_buses.hpp"
-#include "sim/world_base/world_warnings.hpp"
+#include "sim/world/end_of_run.hpp"
+#include "sim/world/step_clock.hpp"
+#include "sim/world/surfaces.hpp"
+#include "sim/world/world_buses.hpp"
+#include "sim/world/world_warnings.hpp"
 #include "sim/world_file/world_config.hpp"
 
 namespace sim {

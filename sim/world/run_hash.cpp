@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world_base/run_hash.hpp"
+#include "sim/world/run_hash.hpp"
 
 #include <string>
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "sim/bus/bus.hpp"
-#include "sim/world_base/run_hash.hpp"
+#include "sim/world/run_hash.hpp"
 
 namespace sim {
 

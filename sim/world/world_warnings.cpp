@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world_base/world_warnings.hpp"
+#include "sim/world/world_warnings.hpp"
 
 #include <spdlog/spdlog.h>
 
