@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Runs every command of README.md, in order, in a copy of the checkout, as somebody would who has just cloned it.
 
     python3 readme_test.py SOURCE BINARY_DIRECTORY
