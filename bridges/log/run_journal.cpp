@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "sim/world/world_state.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_hash_t.hpp"
 
@@ -136,14 +137,14 @@ void RunJournal::publish_hash() {
   message.branch = branch_;
   message.mail_sequence = sequence_;
   sim::StateHash whole;  // World::state_hash() is that of the hashes of all parts; so the state is gone through once
-  for (const sim::PartHash& part : world_->part_hashes()) {
+  for (const sim::PartHash& part : world_->state().part_hashes()) {
     whole.add(part.hash);
     message.part.push_back(part.part);
     message.part_hash.push_back(static_cast<std::int64_t>(part.hash));
   }
   message.hash = static_cast<std::int64_t>(whole.value());
   message.part.push_back(run_hash_part);
-  message.part_hash.push_back(static_cast<std::int64_t>(world_->run_hash()));
+  message.part_hash.push_back(static_cast<std::int64_t>(world_->state().run_hash()));
   message.count = static_cast<std::int32_t>(message.part.size());
   shoal::encode_into(message, buffer_);
   bus_.publish("sim.hash", buffer_, world_->now());

@@ -45,4 +45,7 @@ class TransponderNetwork {
   std::vector<Transponder*> members_;
 };
 
+/// Of each world.
+inline const sim::SharedKind<TransponderNetwork> transponder_network;
+
 }  // namespace devices

@@ -56,6 +56,7 @@ class RangeBeacon final : public sim::Sensor {
 
  private:
   class Network;
+  static const sim::SharedKind<Network> network_of_world;
   /// The errors to one beacon have a life of their own.
   struct Errors {
     std::string beacon;

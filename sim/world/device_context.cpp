@@ -5,7 +5,6 @@
 
 #include "sim/acoustics/channel.hpp"
 #include "sim/world/vehicle.hpp"
-#include "sim/world/world.hpp"
 
 namespace sim {
 
@@ -25,11 +24,11 @@ Noise DeviceContext::noise(const NoiseParams& params, int values) const {
 NoiseOrigin DeviceContext::noise_origin(const NoiseParams& params) const {
   assert(*params.key != '\0');  // it was read
   const std::string quantity = quantity_of(params.key);
-  return {world.seed(), full_name() + "#" + quantity, &faults.noise_of(quantity)};
+  return {host.seed, full_name() + "#" + quantity, &faults.noise_of(quantity)};
 }
 
 SoundSite DeviceContext::sound_site() const {
-  AcousticChannel& channel = world.acoustics();
+  AcousticChannel& channel = *host.acoustics;
   if (!channel.has_water())
     throw_config_error(config.place, "vehicle '" + vehicle.name() + "': device '" + config.name + "'",
                        "a device of type '" + config.type +

@@ -9,7 +9,6 @@
 #include "sim/world/device_context.hpp"
 #include "sim/world/run_hash.hpp"
 #include "sim/world/vehicle.hpp"
-#include "sim/world/world.hpp"
 
 namespace sim {
 
@@ -62,9 +61,8 @@ class MountedDevice::Outlet final : public Publisher {
   std::vector<Bytes>* copies_ = nullptr;
 };
 
-MountedDevice::MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig& config, DeviceHost& host, int number)
+MountedDevice::MountedDevice(Vehicle& vehicle, const DeviceConfig& config, DeviceHost& host, int number)
     : config_(config),
-      world_(world),
       type_(*config.device_type),
       host_(host),
       bus_(vehicle.bus()),
@@ -72,14 +70,14 @@ MountedDevice::MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig&
       body_(config.body.empty() ? vehicle.base() : vehicle.body(config.body)),
       number_(number),
       full_name_(vehicle.name() + "/" + config.name),
-      report_channel_(device_channel(world.config().channels, vehicle.name(), config, ChannelKind::report)),
-      truth_channel_(device_channel(world.config().channels, vehicle.name(), config, ChannelKind::truth)),
-      command_channel_(device_channel(world.config().channels, vehicle.name(), config, ChannelKind::command)),
+      report_channel_(device_channel(host.channels, vehicle.name(), config, ChannelKind::report)),
+      truth_channel_(device_channel(host.channels, vehicle.name(), config, ChannelKind::truth)),
+      command_channel_(device_channel(host.channels, vehicle.name(), config, ChannelKind::command)),
       X_BS_(config_.X_BS()),
-      built_(type_.build(*config_.params, {world, vehicle, config_,
+      built_(type_.build(*config_.params, {host.world, vehicle, config_,
                                            config.body.empty() ? vehicle.body(vehicle.config().bodies.front().name)
                                                                : vehicle.body(config.body),
-                                           number, faults_})),
+                                           number, faults_, host})),
       noise_random_(host.seed, full_name_),
       link_random_(host.seed, full_name_ + "#link") {
   if (built_.controller) mailbox_ = bus_.open_mailbox(command_channel_, Bus::default_mailbox_capacity);
@@ -92,7 +90,7 @@ MountedDevice::MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig&
   report_outlet_ = std::make_unique<Outlet>(*this, bus_, report_channel_, &vehicle.clock());
   // Who switches the truth on observes: the run, and its hash, stay what they are.
   truth_outlet_ = std::make_unique<Outlet>(*this, RunHash::uncounted(bus_), truth_channel_, nullptr);
-  plan_again(world.now());
+  plan_again(host.clock.now());
 }
 
 void MountedDevice::plan_schedule() {
@@ -117,7 +115,7 @@ void MountedDevice::plan_next_sample() {
   }
   // Sample k is due at phase + k * period, so that a rate which does not divide the step is right on average.  Two
   // samples never share a step, and none is before the step after the device came.
-  const auto step_us = static_cast<double>(host_.step.count());
+  const auto step_us = static_cast<double>(host_.clock.step.count());
   // Where many samples fall into one step, all but one are skipped at once.
   const double skip = (static_cast<double>(earliest - 1) * step_us - phase_us_) / period_us_;
   std::int64_t sample = std::max(samples_planned_, static_cast<std::int64_t>(std::floor(skip)));
@@ -129,7 +127,7 @@ void MountedDevice::plan_next_sample() {
 /// The first step at or after its due time.
 std::int64_t MountedDevice::step_of_sample(std::int64_t sample) const {
   constexpr double beyond_all_runs_us = 1e18;
-  const auto step_us = static_cast<double>(host_.step.count());
+  const auto step_us = static_cast<double>(host_.clock.step.count());
   const double due_us = phase_us_ + static_cast<double>(sample) * period_us_;
   return static_cast<std::int64_t>(
       std::ceil(std::clamp(due_us, -beyond_all_runs_us, beyond_all_runs_us) / step_us - 1e-9));
@@ -140,7 +138,7 @@ void MountedDevice::check_schedule(const StateArchive& archive) const {
   if (!senses()) return;
   archive.require(samples_planned_, 1, std::numeric_limits<std::int64_t>::max() / 2, "a next sample");
   const bool fits = config_.rate_hz > 0 ? next_sample_step_ == step_of_sample(samples_planned_ - 1)
-                                        : next_sample_step_ > 0 && next_sample_step_ <= world_.step_number() + 1;
+                                        : next_sample_step_ > 0 && next_sample_step_ <= host_.clock.step_number + 1;
   if (!fits) archive.fail("the snapshot has a next sample that cannot be");
 }
 
@@ -180,7 +178,7 @@ void MountedDevice::receive(Time now, std::span<const std::byte> payload) {
     acting_->last_command = now;
     acting_->safe = false;
   } catch (const std::runtime_error& error) {
-    host_.complain({command_channel_, error.what()});
+    host_.warnings.bad_message(command_channel_, error.what());
   }
 }
 
@@ -197,11 +195,11 @@ void Acting::act(Time now, double step_s) {
   if (systems->metered && works) systems->drawn_J += actuator->power_W() * step_s;
 }
 
-void MountedDevice::sweep(const World& world, Time now) {
+void MountedDevice::sweep(Time now) {
   const Pose X_WS = body_.X_WB() * X_BS_;
   if (works())
-    built_.sensor->sweep({world, vehicle_, now - host_.step, now, X_WS_before_.value_or(X_WS), X_WS,
-                          Time{next_sample_step_ * host_.step.count()}});
+    built_.sensor->sweep({host_.world, vehicle_, now - host_.clock.step, now, X_WS_before_.value_or(X_WS), X_WS,
+                          Time{next_sample_step_ * host_.clock.step.count()}});
   X_WS_before_ = X_WS;
 }
 
@@ -210,13 +208,13 @@ void MountedDevice::publish_reports() {
   report_outlet_->flush();
 }
 
-void MountedDevice::sample(const World& world, Time now, std::int64_t step_number) {
+void MountedDevice::sample(Time now, std::int64_t step_number) {
   plan_next_sample();
   if (!works()) return;
   const double dt_s = last_sample_.count() < 0 ? 0.0 : to_seconds(now - last_sample_);
   last_sample_ = now;
   const Pose X_WB = body_.X_WB();
-  const SenseContext context{world, vehicle_, now, dt_s, X_WB * X_BS_, body_.velocity_at_W(X_BS_.translation())};
+  const SenseContext context{host_.world, vehicle_, now, dt_s, X_WB * X_BS_, body_.velocity_at_W(X_BS_.translation())};
   built_.sensor->measure(context);
   if (!built_.reporter) return;
   if (config_.truth) {
@@ -297,7 +295,7 @@ void MountedDevice::change(const DeviceConfig& changed, Time now) {
 /// Samples count from time 0, whenever the device came or got its rate; the next one is the first after now.
 void MountedDevice::plan_again(Time now) {
   samples_planned_ = 0;
-  next_sample_step_ = now / host_.step;
+  next_sample_step_ = now / host_.clock.step;
   plan_schedule();
 }
 
@@ -308,10 +306,10 @@ void MountedDevice::visit_state(StateArchive& archive) {
   archive.unhashed(period_us, phase_us);
   if (archive.restoring()) {
     // The world that is restored may give the device another rate.
-    if (period_us != period_us_ || phase_us != phase_us_) plan_again(world_.now());
+    if (period_us != period_us_ || phase_us != phase_us_) plan_again(host_.clock.now());
     check_schedule(archive);
-    archive.require(last_sample_, Time{-1}, world_.now(), "the time of a last sample");
-    archive.require(acting_->last_command, Time{-1}, world_.now(), "the time of a last command");
+    archive.require(last_sample_, Time{-1}, host_.clock.now(), "the time of a last sample");
+    archive.require(acting_->last_command, Time{-1}, host_.clock.now(), "the time of a last command");
     acting_->effectiveness = faults_.effectiveness();
     acting_->stuck = faults_.stuck();
   }

@@ -10,26 +10,12 @@
 #include "sim/device/device_registry.hpp"
 #include "sim/device/fault.hpp"
 #include "sim/event/event_queue.hpp"
+#include "sim/world/device_host.hpp"
 #include "sim/world_file/world_config.hpp"
 
 namespace sim {
 
 struct VehicleSystems;
-
-/// A message that a device could not use.
-struct BadMessage {
-  std::string channel;
-  std::string text;
-};
-
-/// What the mounted devices of a world have in common.
-struct DeviceHost {
-  EventQueue& events;
-  std::int64_t epoch_us;
-  Time step;
-  std::uint64_t seed;
-  std::function<void(BadMessage)> complain;
-};
 
 /// What a step needs to let an actuator act; the rest of its device stays out of the way.
 struct Acting : VisitedInSteps {
@@ -51,8 +37,11 @@ struct Acting : VisitedInSteps {
 /// jitter, dropout, the truth channel, the mailbox, faults, the watchdog, power and emergency stop.
 class MountedDevice {
  public:
+  /// What its events are about: Event::kind.
+  enum EventKind { report_event, command_event, arrival_event };
+
   /// `config` must outlive the device (the vehicle keeps it).
-  MountedDevice(World& world, Vehicle& vehicle, const DeviceConfig& config, DeviceHost& host, int number);
+  MountedDevice(Vehicle& vehicle, const DeviceConfig& config, DeviceHost& host, int number);
   ~MountedDevice();
   MountedDevice(const MountedDevice&) = delete;
   MountedDevice& operator=(const MountedDevice&) = delete;
@@ -62,9 +51,9 @@ class MountedDevice {
   /// Of the step after which it samples next.
   std::int64_t next_sample_step() const { return next_sample_step_; }
   /// See Sensor::sweep; called after each step of a sensor that sweeps.
-  void sweep(const World& world, Time now);
+  void sweep(Time now);
   /// Samples; the reports wait for publish().  Sensors that cast rays may do so at the same time in several threads.
-  void sample(const World& world, Time now, std::int64_t step_number);
+  void sample(Time now, std::int64_t step_number);
   /// Publishes or schedules what sample() found.
   void publish_reports();
   /// An event of this device is due.
@@ -100,9 +89,7 @@ class MountedDevice {
   void visit_state(StateArchive& archive);
 
  private:
-  enum EventKind { report_event, command_event, arrival_event };
   class Outlet;
-  friend class World;
 
   void receive(Time now, std::span<const std::byte> payload);
   void report(Time now);
@@ -115,7 +102,6 @@ class MountedDevice {
   void check_schedule(const StateArchive& archive) const;
 
   DeviceConfig config_;
-  const World& world_;
   const DeviceType& type_;
   DeviceHost& host_;
   Bus& bus_;

@@ -18,13 +18,15 @@ Part& find_named(const std::vector<std::pair<std::string, Part*>>& all, const st
 
 }  // namespace
 
-Vehicle::Vehicle(std::string name, int number, int group, std::shared_ptr<const VehicleConfig> config, Bus& bus)
+Vehicle::Vehicle(std::string name, int number, int group, std::shared_ptr<const VehicleConfig> config, Bus& bus,
+                 VehicleClock clock)
     : name_(std::move(name)),
       number_(number),
       group_(group),
       config_(std::move(config)),
       bus_(bus),
-      X_BV_(make_pose(config_->bodies.front().position_m, config_->bodies.front().rpy_rad).inverse()) {}
+      X_BV_(make_pose(config_->bodies.front().position_m, config_->bodies.front().rpy_rad).inverse()),
+      clock_(std::move(clock)) {}
 
 MountedDevice* Vehicle::find_device(const std::string& name) const {
   for (MountedDevice* device : devices_)

@@ -32,7 +32,9 @@ struct VehicleSystems {
 /// A vehicle in the world: its bodies, joints and devices by name.
 class Vehicle {
  public:
-  Vehicle(std::string name, int number, int group, std::shared_ptr<const VehicleConfig> config, Bus& bus);
+  /// Without bodies, joints and devices, which are added in this order.  `clock`: that its devices hold on to.
+  Vehicle(std::string name, int number, int group, std::shared_ptr<const VehicleConfig> config, Bus& bus,
+          VehicleClock clock);
 
   const std::string& name() const { return name_; }
   /// Grows from vehicle to vehicle, and is not used again when one is removed.
@@ -60,8 +62,6 @@ class Vehicle {
   /// By which its devices stamp what they report.
   VehicleClock& clock() { return clock_; }
   const VehicleClock& clock() const { return clock_; }
-  /// Before its devices are added: they hold on to it.
-  void start_clock(std::uint64_t seed, Time now) { clock_ = VehicleClock(config_->clock, seed, name_, now); }
 
   /// Its bodies, joints, systems and clock; devices are parts of their own.
   void visit_state(StateArchive& archive) {

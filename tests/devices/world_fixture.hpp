@@ -9,6 +9,7 @@
 
 #include "messages/yaml/message_writer.hpp"
 #include "shoal/message_codec.hpp"
+#include "sim/world/world_editor.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
@@ -33,7 +34,7 @@ class LoadedTestWorld {
   std::string change(const std::string& device, const std::string& values) {
     sim::Diagnostics diagnostics;
     const auto node = sim::parse_config_text(values, "change", diagnostics);
-    if (world.change_device(device, node, diagnostics)) return {};
+    if (world.editor().change_device(device, node, diagnostics)) return {};
     return diagnostics.lines().empty() ? "refused" : diagnostics.lines().front();
   }
   template <typename Message>

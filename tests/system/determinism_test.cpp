@@ -8,6 +8,7 @@
 
 #include "bridges/lcm/lcm_listener.hpp"
 #include "messages/yaml/message_writer.hpp"
+#include "sim/world/world_state.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/world/world.hpp"
@@ -48,7 +49,7 @@ class Determinism : public testing::TestWithParam<Case> {
     std::vector<std::uint64_t> hashes;
     while (world.now() < sim::from_seconds(std::stod(GetParam().duration_s))) {
       world.step();
-      hashes.push_back(world.run_hash());
+      hashes.push_back(world.state().run_hash());
     }
     return hashes;
   }

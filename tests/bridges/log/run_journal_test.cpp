@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world/world_state.hpp"
 #include "bridges/log/run_journal.hpp"
 
 #include <gmock/gmock.h>
@@ -84,10 +85,10 @@ TEST(RunJournal, HashesAreThoseOfTheWorldAtEveryNthStepAndAtTheEnd) {
   Journalled run(10);
   run.journal.start();
   run.journal.after_step();
-  std::vector<std::int64_t> expected{static_cast<std::int64_t>(run.test.world.state_hash())};
+  std::vector<std::int64_t> expected{static_cast<std::int64_t>(run.test.world.state().hash())};
   for (int i = 0; i < 25; ++i) {
     run.step();
-    if (i == 9 || i == 19 || i == 24) expected.push_back(static_cast<std::int64_t>(run.test.world.state_hash()));
+    if (i == 9 || i == 19 || i == 24) expected.push_back(static_cast<std::int64_t>(run.test.world.state().hash()));
   }
   run.journal.finish();
   run.journal.finish();
@@ -106,7 +107,7 @@ TEST(RunJournal, TheHashOfTheRunIsTheLastOfTheParts) {
   run.journal.start();
   std::int64_t expected = 0;
   for (int i = 0; i < 10; ++i) run.step();
-  expected = static_cast<std::int64_t>(run.test.world.run_hash());
+  expected = static_cast<std::int64_t>(run.test.world.state().run_hash());
   const auto messages = run.hashes.take_all();
   ASSERT_EQ(messages.size(), 1u);
   ASSERT_EQ(messages[0].part.size(), messages[0].part_hash.size());

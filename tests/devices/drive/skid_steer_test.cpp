@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world/world_editor.hpp"
 #include "devices/drive/skid_steer.hpp"
 
 #include <gmock/gmock.h>
@@ -103,7 +104,7 @@ TEST(SkidSteer, DeadItRollsOn) {
   test::TestWorld test(skid_world(track));
   test.send("r1.drive.cmd", twist(0.5, 0));
   test.run_for(1);
-  test.world.set_fault("r1/drive", {.kind = sim::FaultKind::dead});
+  test.world.editor().set_fault("r1/drive", {.kind = sim::FaultKind::dead});
   test.run_for(1);
   EXPECT_EQ(rover(test).joint("fl").motor_max_force(), 0);
   EXPECT_NEAR(rover(test).base().v_WB_W().x(), 0.5, 0.01);  // spheres roll without resistance

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world/world_editor.hpp"
 #include "devices/joint/bumper.hpp"
 
 #include <gmock/gmock.h>
@@ -151,7 +152,7 @@ TEST(Bumper, NoiseOfTheForceHasTheSpreadAskedFor) {
 TEST(Bumper, GoesWithItsVehicle) {
   test::TestWorld test(sled_world(""));
   test.run_for(0.1);
-  EXPECT_NO_THROW(test.world.remove_vehicle("s1"));
+  EXPECT_NO_THROW(test.world.editor().remove_vehicle("s1"));
   test.run_for(0.1);
   EXPECT_TRUE(test.world.physics().contacts().empty());
 }

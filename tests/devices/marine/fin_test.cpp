@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world/world_editor.hpp"
 #include "devices/marine/fin.hpp"
 
 #include <gmock/gmock.h>
@@ -153,7 +154,7 @@ TEST(Fin, ADeadServoLeavesTheFinWhereItIs) {
   WetBox box(wet_device("type: fin"));
   box.command(0.2);
   box.run_for(0.01);
-  box.world.set_fault("v/d", {.kind = sim::FaultKind::dead});
+  box.world.editor().set_fault("v/d", {.kind = sim::FaultKind::dead});
   box.command(-0.2);
   box.run_for(0.01);
   EXPECT_EQ(box.device<Fin>().angle_rad(), 0.2);

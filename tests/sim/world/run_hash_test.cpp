@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/world/world_state.hpp"
+#include "sim/world/world_editor.hpp"
 #include "shoal/acoustic_received_t.hpp"
 #include "shoal/imu_t.hpp"
 #include "shoal/utime_t.hpp"
@@ -19,7 +21,7 @@ struct Hashes {
 };
 
 Hashes of(const sim::World& world) {
-  return {world.run_hash(), world.state_hash()};
+  return {world.state().run_hash(), world.state().hash()};
 }
 
 /// Two modems 300 m apart that lose nothing: a speaks once.  `keys`: of the modems.
@@ -40,8 +42,8 @@ TEST(RunHash, TellsRunsApartThatDifferOnTheirWayAndEndInOneState) {
     const auto heard = at_b.take_all();
     ASSERT_EQ(heard.size(), 1u) << fading;
     snrs.insert(heard[0].snr_db);
-    run_hashes.insert(test.world.run_hash());
-    state_hashes.insert(test.world.state_hash());
+    run_hashes.insert(test.world.state().run_hash());
+    state_hashes.insert(test.world.state().hash());
   }
   EXPECT_EQ(snrs.size(), 3u);
   EXPECT_EQ(state_hashes.size(), 1u) << "nothing is left of the packet: the state hash cannot tell";
@@ -53,8 +55,8 @@ TEST(RunHash, HasTheMotionOfEveryBodyAfterEachStep) {
   const auto run = [](bool moved) {
     test::TestWorld test(test::box_world("", "{step_s: 0.01, gravity_mps2: 0}"));
     for (int step = 0; step < 20; ++step) {
-      if (moved && step == 13) test.world.move_vehicle("r1", sim::make_pose({1, 0, 0}, {0, 0, 0}));
-      if (moved && step == 14) test.world.move_vehicle("r1", sim::Pose::Identity());
+      if (moved && step == 13) test.world.editor().move_vehicle("r1", sim::make_pose({1, 0, 0}, {0, 0, 0}));
+      if (moved && step == 14) test.world.editor().move_vehicle("r1", sim::Pose::Identity());
       test.world.step();
     }
     return of(test.world);
@@ -68,8 +70,8 @@ TEST(RunHash, HasTheStateNow) {
   test::TestWorld test(test::box_world(""));
   test.run_for(0.05);
   const Hashes before = of(test.world);
-  test.world.move_vehicle("r1", sim::make_pose({1, 0, 0}, {0, 0, 0}));
-  EXPECT_NE(test.world.run_hash(), before.run) << "nothing was stepped or published";
+  test.world.editor().move_vehicle("r1", sim::make_pose({1, 0, 0}, {0, 0, 0}));
+  EXPECT_NE(test.world.state().run_hash(), before.run) << "nothing was stepped or published";
 }
 
 TEST(RunHash, HasWhatEventsPublishAndNotWhatIsPublishedBesideTheWorld) {
@@ -161,13 +163,13 @@ TEST(RunHash, GoesBackAndOnWithASnapshot) {
   test::TestWorld test(sensed_world("false")), fresh(sensed_world("false"));
   straight.run_for(1);
   test.run_for(0.305);
-  const sim::Bytes snapshot = test.world.snapshot();
+  const sim::Bytes snapshot = test.world.state().snapshot();
   const Hashes then = of(test.world);
-  test.world.move_vehicle("r1", sim::make_pose({0, 0, 1}, {0, 0, 0}));
+  test.world.editor().move_vehicle("r1", sim::make_pose({0, 0, 1}, {0, 0, 0}));
   ASSERT_EQ(test.change("r1/imu", "{rate_hz: 7}"), "");  // the world is built again to go back behind it
   test.run_for(0.2);
   for (sim::World* world : {&test.world, &fresh.world}) {
-    world->restore(snapshot);
+    world->state().restore(snapshot);
     EXPECT_EQ(of(*world), then);
     while (world->now() < sim::from_seconds(1)) world->step();
     EXPECT_EQ(of(*world), of(straight.world)) << (world == &fresh.world ? "in a fresh world" : "in the same");

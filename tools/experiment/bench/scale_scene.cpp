@@ -197,7 +197,7 @@ ScaleFigures measure_scale(int robots, const ScaleOptions& options) {
   scene.run_for(options.measure_s);
   figures.cpu_ms_per_robot_second = 1e3 * (cpu_seconds() - cpu_s) / robots / options.measure_s;
   figures.real_time_factor = options.measure_s / (wall_seconds() - wall_s);
-  figures.run_hash = scene.world().run_hash();
+  figures.run_hash = scene.world().state().run_hash();
   return figures;
 }
 

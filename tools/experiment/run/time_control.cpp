@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world/world_state.hpp"
 #include "tools/experiment/run/time_control.hpp"
 
 #include <spdlog/fmt/fmt.h>
@@ -87,7 +88,7 @@ TimeControl::TimeControl(sim::World& world, sim::RunControl& control, Scoring& s
 
 TimeControl::Saved TimeControl::save(History history) const {
   Saved saved;
-  saved.state = world_.snapshot();
+  saved.state = world_.state().snapshot();
   auto scores = sim::StateArchive::saver();
   scoring_.visit_state(scores, history);
   scores.end();
@@ -101,7 +102,7 @@ TimeControl::Saved TimeControl::save(History history) const {
 }
 
 void TimeControl::load(const Saved& saved, History history) {
-  world_.restore(saved.state);
+  world_.state().restore(saved.state);
   load_beside(saved, history);
 }
 
@@ -318,7 +319,7 @@ void TimeControl::go_on_from(const Snapshot& snapshot) {
     throw std::runtime_error(fmt::format(
         "the snapshot has a step of {} us and an epoch of {}, this world {} us and {}: they cannot be changed",
         snapshot.step_us, snapshot.epoch_us, world_.step_time().count(), world_.epoch_us()));
-  world_.restore(snapshot.state);
+  world_.state().restore(snapshot.state);
   first_step_ = world_.step_number();
   options_.scores_from_s = snapshot.from_s;
   try {
@@ -340,7 +341,7 @@ Snapshot TimeControl::snapshot() const {
   s.step = world_.step_number();
   s.branch = control_.branch;
   s.from_s = options_.scores_from_s;
-  s.state_hash = world_.state_hash();
+  s.state_hash = world_.state().hash();
   for (const auto& vehicle : world_.vehicles()) s.vehicles.push_back(vehicle->name());
   Saved saved = save(History::whole);
   s.state = std::move(saved.state);

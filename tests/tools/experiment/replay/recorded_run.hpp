@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/world/world_state.hpp"
 #include "bridges/control/sim_service.hpp"
 #include "bridges/lockstep/lockstep_service.hpp"
 #include "bridges/log/event_log.hpp"
@@ -39,7 +40,7 @@ class RecordedRun {
     journal.attach(world);
     service.use_journal(journal);
     if (from != nullptr) {
-      world.restore(from->state);
+      world.state().restore(from->state);
       auto owners = sim::StateArchive::restorer(from->owners);
       owners.section("owners");
       service.visit_state(owners);
@@ -60,8 +61,8 @@ class RecordedRun {
     s.epoch_us = world.epoch_us();
     s.step_us = world.step_time().count();
     s.step = world.step_number();
-    s.state_hash = world.state_hash();
-    s.state = world.snapshot();
+    s.state_hash = world.state().hash();
+    s.state = world.state().snapshot();
     auto owners = sim::StateArchive::saver();
     owners.section("owners");
     service.visit_state(owners);
