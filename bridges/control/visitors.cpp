@@ -9,9 +9,9 @@
 
 #include "bridges/log/run_journal.hpp"
 #include "shoal/message_codec.hpp"
-#include "sim/world/world_editor.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/state/state_archive.hpp"
+#include "sim/world/world_editor.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 
 namespace bridges {

@@ -3,9 +3,9 @@
 
 #include <utility>
 
-#include "sim/world/world_state.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_hash_t.hpp"
+#include "sim/world/world_state.hpp"
 
 namespace bridges {
 

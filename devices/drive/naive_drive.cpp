@@ -12,7 +12,7 @@
 #include "shoal/thrust_rudder_command_t.hpp"
 #include "shoal/thrust_rudder_elevator_command_t.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
@@ -81,7 +81,7 @@ void NaiveDrive::look_for_the_current() {
   if (!params_.drifts || left_the_current_ || world_.medium().current_known(p_WB_)) return;
   left_the_current_ = true;
   warnings_.notice("body '" + body_.name() + "'",
-              fmt::format("has left the file of the current at {:.1f}, {:.1f} m", p_WB_.x(), p_WB_.y()));
+                   fmt::format("has left the file of the current at {:.1f}, {:.1f} m", p_WB_.x(), p_WB_.y()));
 }
 
 double NaiveDrive::wanted_turn(double speed_share) const {

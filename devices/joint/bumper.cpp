@@ -18,10 +18,7 @@ void Bumper::Params::read(sim::ParamReader& in) {
 }
 
 Bumper::Bumper(const Params& params, const sim::DeviceContext& context)
-    : params_(params),
-      physics_(context.host.physics),
-      vehicle_(context.vehicle),
-      force_noise_(context, params) {
+    : params_(params), physics_(context.host.physics), vehicle_(context.vehicle), force_noise_(context, params) {
   const sim::PhysicsWorld& physics = context.world.physics();
   for (const std::string& name : params.parts)
     if (const auto part = physics.find_part(vehicle_.group(), name)) parts_.push_back(*part);

@@ -148,7 +148,8 @@ void Script::fire(std::size_t i, int depth) {
 }
 
 void Script::cut(EventState& event, const std::string& why) {
-  if (!event.told_of_cut) world_.warnings().bad_message("event '" + event.config.name + "'", why + "; the rest does not happen");
+  if (!event.told_of_cut)
+    world_.warnings().bad_message("event '" + event.config.name + "'", why + "; the rest does not happen");
   event.told_of_cut = true;
 }
 

@@ -104,7 +104,7 @@ void Hydrodynamics::tell_of_the_current(Wetted& wetted, const Vector3d& p_WB) {
   wetted.left_the_current = true;
   if (notice_)
     notice_("body '" + wetted.body->name() + "'",
-              fmt::format("has left the file of the current at {:.1f}, {:.1f} m", p_WB.x(), p_WB.y()));
+            fmt::format("has left the file of the current at {:.1f}, {:.1f} m", p_WB.x(), p_WB.y()));
 }
 
 CraftState Hydrodynamics::state_of(const CoefficientModel& model, const BodyInWater& around) const {
@@ -156,11 +156,10 @@ void Hydrodynamics::tell_of_stiffness(CoefficientBody& craft, const Vector6d& nu
   craft.stiffness_told = true;
   const auto rounded = [](double value) { return fmt::format("{:.3g}", value); };
   if (notice_)
-    notice_("body '" + craft.body->name() + "'", "what the water does at " + rounded(nu_r.head<3>().norm()) +
-                                                       " m/s and " + rounded(nu_r.tail<3>().norm()) +
-                                                       " rad/s is too fast for 'step_s' " + number_text(step_s_) +
-                                                       ": a step below " + rounded(1 / fastest_rate) +
-                                                       " s follows it; until then it brakes by backward Euler");
+    notice_("body '" + craft.body->name() + "'",
+            "what the water does at " + rounded(nu_r.head<3>().norm()) + " m/s and " + rounded(nu_r.tail<3>().norm()) +
+                " rad/s is too fast for 'step_s' " + number_text(step_s_) + ": a step below " +
+                rounded(1 / fastest_rate) + " s follows it; until then it brakes by backward Euler");
 }
 
 void Hydrodynamics::step_crafts() {

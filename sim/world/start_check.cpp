@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "sim/config/message_text.hpp"
-#include "sim/world/vehicle.hpp"
-#include "sim/world/world.hpp"
 #include "sim/config/warnings.hpp"
+#include "sim/vehicle/vehicle.hpp"
+#include "sim/world/world.hpp"
 
 namespace sim {
 
@@ -119,8 +119,7 @@ void warn_of_starts(const World& world, Warnings& warnings) {
   for (const auto& [starter, complaint] : first) {
     const int others = more.at(starter.place.line > 0 ? starter.place.text() : starter.name);
     const std::string and_more = others > 0 ? " (and " + std::to_string(others) + " more of this entry)" : "";
-    warnings.warn(starter.place, starter.kind + " '" + starter.name + "'",
-                            "it starts " + complaint + and_more);
+    warnings.warn(starter.place, starter.kind + " '" + starter.name + "'", "it starts " + complaint + and_more);
   }
 }
 

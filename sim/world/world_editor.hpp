@@ -6,8 +6,8 @@
 
 #include "sim/base/math.hpp"
 #include "sim/bus/bus.hpp"
-#include "sim/world/end_of_run.hpp"
-#include "sim/world/world_error.hpp"
+#include "sim/vehicle/end_of_run.hpp"
+#include "sim/vehicle/world_error.hpp"
 
 namespace sim {
 
@@ -23,7 +23,7 @@ struct VehicleInstance;
 struct WorldObject;
 struct WorldParts;
 
-/// Changes a world while it runs: adds, removes and moves vehicles and objects, sets faults and values of devices.  Call
+/// Changes a world while it runs: adds, removes and moves vehicles and objects, sets faults and values of devices. Call
 /// between steps, or from a script in stage 4 of a step.  What a snapshot needs to make the same changes again is
 /// noted.  World::editor() is the one of a world.
 class WorldEditor {

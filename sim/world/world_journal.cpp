@@ -8,8 +8,8 @@
 #include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/transducer.hpp"
 #include "sim/config/diagnostics.hpp"
-#include "sim/world_file/data_files.hpp"
 #include "sim/world/world_parts.hpp"
+#include "sim/world_file/data_files.hpp"
 
 namespace sim {
 
@@ -167,7 +167,8 @@ void WorldJournal::vehicle_added(const VehicleInstance& instance, const Vehicle&
   added.numbers = parts_.physics.numbers_of(vehicle.group());
   for (const MountedDevice* device : vehicle.devices()) added.devices.push_back(device->number());
   for (const Transducer* transducer : parts_.acoustics->transducers())
-    if (transducer != nullptr && transducer->group() == vehicle.group()) added.transducers.push_back(transducer->number());
+    if (transducer != nullptr && transducer->group() == vehicle.group())
+      added.transducers.push_back(transducer->number());
   append(std::move(added));
 }
 

@@ -37,8 +37,8 @@ WorldParts::WorldParts(const World& world, const WorldConfig& config_, Bus& bus,
       medium(config.medium, config.physics.gravity_mps2, seed()),
       buses(bus, std::move(find_bus)),
       surfaces(physics),
-      host{world,     config.channels, clock,  config.epoch_us, seed(),   physics,
-           acoustics, events,          open_port, warnings,     shared} {}
+      host{world,     config.channels, clock,     config.epoch_us, seed(), physics,
+           acoustics, events,          open_port, warnings,        shared} {}
 
 void WorldParts::visit_state(StateArchive& archive) {
   archive.section("world");

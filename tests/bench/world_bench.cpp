@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include "sim/world/world_state.hpp"
 #include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tools/experiment/bench/scale_scene.hpp"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "sim/world/world_state.hpp"
 #include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/project_paths.hpp"
@@ -83,9 +83,9 @@ class EveryWorld : public testing::TestWithParam<std::string> {
     for (const auto& device : world.devices()) {
       if (!device || !device->senses()) continue;
       sim::Diagnostics diagnostics;
-      EXPECT_TRUE(world.editor().change_device(device->full_name(),
-                                      sim::parse_config_text("{latency_s: 0.013, rate_hz: 7}", "set", diagnostics),
-                                      diagnostics))
+      EXPECT_TRUE(world.editor().change_device(
+          device->full_name(), sim::parse_config_text("{latency_s: 0.013, rate_hz: 7}", "set", diagnostics),
+          diagnostics))
           << diagnostics.lines().front();
       return true;
     }

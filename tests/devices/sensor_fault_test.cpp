@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What faults do to the measurements of a sensor, on paper and in its statistics.
-#include "sim/world/world_editor.hpp"
 #include "shoal/imu_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {

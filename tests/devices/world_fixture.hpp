@@ -9,9 +9,9 @@
 
 #include "messages/yaml/message_writer.hpp"
 #include "shoal/message_codec.hpp"
-#include "sim/world/world_editor.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_editor.hpp"
 #include "sim/world_file/load_world.hpp"
 
 namespace test {

@@ -3,10 +3,10 @@
 #include <limits>
 
 #include "messages/yaml/message_writer.hpp"
-#include "sim/world/world_state.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/state/state_archive.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_state.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 

@@ -2,9 +2,9 @@
 #include <set>
 
 #include "messages/yaml/message_writer.hpp"
-#include "sim/world/world_state.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_state.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 #include "tests/fuzz/fuzz_target.hpp"

@@ -14,8 +14,9 @@
 
 #include "tests/project_paths.hpp"
 
-// Every folder of sources is a room; the CMakeLists.txt of its top-level folder says which rooms it uses, from the bottom
-// up (cmake/Rooms.cmake).  Here includes are held to that; the linker does the same with symbols (target room_links).
+// Every folder of sources is a room; the CMakeLists.txt of its top-level folder says which rooms it uses, from the
+// bottom up (cmake/Rooms.cmake).  Here includes are held to that; the linker does the same with symbols (target
+// room_links).
 
 namespace {
 
@@ -79,8 +80,8 @@ bool may_call_lcm(const std::string& room) {
 /// be used.
 std::vector<std::string> offenders_in(const std::string& path, std::istream& text, const Rooms& rooms) {
   static const std::regex include(R"(\s*#\s*include\s*[<"](?:\.\./)*([^>"]+/[^>"]+)[>"].*)");
-  const std::string room = path.substr(0, path.rfind('/')) == "bridges/client/shoal" ? "bridges/client"
-                                                                                     : path.substr(0, path.rfind('/'));
+  const std::string room =
+      path.substr(0, path.rfind('/')) == "bridges/client/shoal" ? "bridges/client" : path.substr(0, path.rfind('/'));
   std::vector<std::string> offenders;
   const auto offends = [&](int line, const std::string& what) {
     offenders.push_back(path + ":" + std::to_string(line) + ": " + what);
@@ -138,8 +139,7 @@ TEST(IncludeDirection, RoomsUseOnlyRoomsBelowThem) {
   std::set<std::string> below;
   for (const std::string& room : rooms.order) {
     for (const std::string& used : rooms.uses.at(room)) {
-      if (used != room)
-        EXPECT_TRUE(below.contains(used)) << room << " uses " << used << ", which is not below it";
+      if (used != room) EXPECT_TRUE(below.contains(used)) << room << " uses " << used << ", which is not below it";
       EXPECT_TRUE(layers.at(top_of(room)).contains(top_of(used))) << room << " uses " << used;
     }
     below.insert(room);
@@ -153,7 +153,8 @@ TEST(IncludeDirection, EveryRoomIsSmallEnoughToKnow) {
 }
 
 const Rooms& small_house() {
-  static std::istringstream text("sim/base:\nsim/bus: sim/base\nmessages/shoal:\ndevices/ranging: sim/bus messages/shoal\n");
+  static std::istringstream text(
+      "sim/base:\nsim/bus: sim/base\nmessages/shoal:\ndevices/ranging: sim/bus messages/shoal\n");
   static const Rooms rooms = parse_rooms(text);
   return rooms;
 }
@@ -172,7 +173,8 @@ TEST(IncludeDirection, NamesAnOffender) {
               testing::ElementsAre("sim/bus/bus.hpp:1: sim/bus does not use messages/shoal"));
   EXPECT_THAT(offenders_in_text("sim/attic/a.cpp", ""),
               testing::ElementsAre("sim/attic/a.cpp:0: sim/attic is no room: no shoal_room() makes it"));
-  EXPECT_EQ(offenders_in_text("sim/bus/a.cpp", "#include \"../../tools/b/a.hpp\"\n#include \"tests/b.hpp\"\n").size(), 2u);
+  EXPECT_EQ(offenders_in_text("sim/bus/a.cpp", "#include \"../../tools/b/a.hpp\"\n#include \"tests/b.hpp\"\n").size(),
+            2u);
 }
 
 TEST(IncludeDirection, LetsPassWhatIsAllowed) {
@@ -180,8 +182,9 @@ TEST(IncludeDirection, LetsPassWhatIsAllowed) {
                                 "#include \"devices/ranging/a.hpp\"\n#include \"sim/bus/bus.hpp\"\n"
                                 "#include \"shoal/pose_t.hpp\"\n")
                   .empty());
-  EXPECT_TRUE(offenders_in_text("sim/base/a.cpp", "#include <sys/stat.h>\n#include <Eigen/Core>\n"
-                                                  "// #include \"tools/x/a.hpp\"\n")
+  EXPECT_TRUE(offenders_in_text("sim/base/a.cpp",
+                                "#include <sys/stat.h>\n#include <Eigen/Core>\n"
+                                "// #include \"tools/x/a.hpp\"\n")
                   .empty());
 }
 

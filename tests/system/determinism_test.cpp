@@ -8,10 +8,10 @@
 
 #include "bridges/lcm/lcm_listener.hpp"
 #include "messages/yaml/message_writer.hpp"
-#include "sim/world/world_state.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_state.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/system/shoal_program.hpp"
 

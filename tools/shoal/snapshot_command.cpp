@@ -3,10 +3,10 @@
 #include <memory>
 
 #include "messages/yaml/message_writer.hpp"
-#include "sim/world/world_state.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_state.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"

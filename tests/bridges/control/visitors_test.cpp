@@ -5,8 +5,8 @@
 #include "shoal/planar_lidar_t.hpp"
 #include "shoal/sim_vehicle_t.hpp"
 #include "shoal/twist_command_t.hpp"
-#include "sim/world/world_state.hpp"
 #include "sim/state/state_archive.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/bridges/control/service_fixture.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/world_state.hpp"
 #include "bridges/lockstep/lockstep_service.hpp"
 
 #include <gmock/gmock.h>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "bridges/lockstep_client/resend.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/bridges/lockstep/lockstep_fixture.hpp"
 
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/world_state.hpp"
 #include "bridges/log/run_journal.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "shoal/sim_hash_t.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 
 namespace {

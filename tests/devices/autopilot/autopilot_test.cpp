@@ -11,8 +11,8 @@
 #include "shoal/helm_command_t.hpp"
 #include "shoal/station_command_t.hpp"
 #include "shoal/waypoints_command_t.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world_state.hpp"
-#include "sim/world/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -375,7 +375,8 @@ TEST(Autopilot, RefusesBadCommandsAndGoesOn) {
 TEST(Autopilot, ADepthIsAnotherStateThanAnAltitude) {
   const auto hash_of = [](const std::string& hold) {
     return AutopilotWorld(world_with("remus100_survey.yaml", "      devices.autopilot.hold: " + hold + "\n"))
-        .world.state().hash();
+        .world.state()
+        .hash();
   };
   EXPECT_EQ(hash_of("{depth_m: 5}"), hash_of("{depth_m: 5}"));
   EXPECT_NE(hash_of("{depth_m: 5}"), hash_of("{altitude_m: 5}"));

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "devices/comms/micromodem_rates.hpp"
-#include "sim/world/world_editor.hpp"
 #include "sim/acoustics/channel.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 #include "tests/fidelity/closed_forms.hpp"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/world_state.hpp"
-#include "sim/world/world_editor.hpp"
 #include "devices/comms/micromodem.hpp"
 
 #include <gmock/gmock.h>
 
 #include "shoal/nmea_sentence_t.hpp"
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/fidelity/closed_forms.hpp"
 #include "tests/sim/medium/log_capture.hpp"
@@ -317,7 +317,8 @@ TEST(Micromodem, StartsAnewWhenItsPowerComesBack) {
   hosts.say("b", "$CCCYC,0,2,1,0,0,1");
   hosts.run_for(0.1);
   hosts.take("a"), hosts.take("b");
-  for (const char* name : {"a/modem", "b/modem"}) hosts.world.editor().set_fault(name, {.kind = sim::FaultKind::silent});
+  for (const char* name : {"a/modem", "b/modem"})
+    hosts.world.editor().set_fault(name, {.kind = sim::FaultKind::silent});
   hosts.run_for(3);
   for (const char* name : {"a/modem", "b/modem"}) hosts.world.editor().clear_faults(name);
   hosts.run_for(3);

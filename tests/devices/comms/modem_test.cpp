@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/world_editor.hpp"
 #include "devices/comms/message_modem.hpp"
 #include "shoal/modem_received_t.hpp"
 #include "shoal/modem_send_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 #include "tests/devices/navigation/immersed_sensor_fixture.hpp"
 

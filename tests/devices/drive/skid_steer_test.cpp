@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/world_editor.hpp"
 #include "devices/drive/skid_steer.hpp"
 
 #include <gmock/gmock.h>
@@ -7,6 +6,7 @@
 #include "shoal/thrust_rudder_command_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "shoal/wheel_speeds_command_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {

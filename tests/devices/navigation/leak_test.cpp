@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include "sim/world/world_editor.hpp"
 #include "shoal/leak_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/navigation/immersed_sensor_fixture.hpp"
 
 namespace {

@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "shoal/image_t.hpp"
-#include "sim/world/world_state.hpp"
 #include "sim/image/image_file.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {

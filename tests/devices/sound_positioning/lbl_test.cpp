@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include "sim/world/world_editor.hpp"
 #include "shoal/lbl_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/ranging/ranging_fixture.hpp"
 #include "tests/devices/sound_positioning/acoustic_probe.hpp"
 

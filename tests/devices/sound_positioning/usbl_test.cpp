@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include "sim/world/world_editor.hpp"
 #include "shoal/transponder_t.hpp"
 #include "shoal/usbl_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/navigation/immersed_sensor_fixture.hpp"
 
 namespace {

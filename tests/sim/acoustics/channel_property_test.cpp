@@ -7,8 +7,8 @@
 #include <array>
 #include <memory>
 
-#include "sim/world/world_state.hpp"
 #include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/sound_positioning/acoustic_probe.hpp"
 
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/world_editor.hpp"
 #include "sim/acoustics/channel.hpp"
 
+#include "sim/world/world_editor.hpp"
 #include "tests/sim/acoustics/sea_of_hydrophones.hpp"
 
 namespace {

@@ -6,9 +6,9 @@
 #include "shoal/modem_send_t.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "shoal/twist_command_t.hpp"
-#include "sim/world/world_state.hpp"
-#include "sim/world/world_editor.hpp"
 #include "sim/director/script.hpp"
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -300,7 +300,8 @@ std::string failure(sim::World& world, const std::string& action) {
 
 TEST(RunAction, DoesInAWorldWithoutEventsWhatAnEventDoes) {
   test::TestWorld test(test::rover_world(drive));
-  test.world.editor().run_action(yaml("{add: {name: post, fixed: true, position_m: [3, 0, 0], parts: [{shape: box}]}}"));
+  test.world.editor().run_action(
+      yaml("{add: {name: post, fixed: true, position_m: [3, 0, 0], parts: [{shape: box}]}}"));
   EXPECT_NE(test.world.find_object("post"), nullptr);
   test.world.editor().run_action(yaml("[{move: r1, position_m: [1, 1, 0.1]}, {remove: post}]"));
   EXPECT_EQ(test.world.find_object("post"), nullptr);

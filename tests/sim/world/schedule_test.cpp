@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <map>
 
-#include "sim/world/world_state.hpp"
-#include "sim/world/world_editor.hpp"
 #include "shoal/planar_lidar_t.hpp"
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/world_state.hpp"
-#include "sim/world/world_editor.hpp"
 #include "sim/world/start_check.hpp"
 
 #include <gmock/gmock.h>
 
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/sim/medium/log_capture.hpp"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/world_state.hpp"
-#include "sim/world/world_editor.hpp"
 #include "sim/world/world_journal.hpp"
 
 #include <gmock/gmock.h>
@@ -10,6 +8,8 @@
 #include <vector>
 
 #include "shoal/modem_send_t.hpp"
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tests/devices/state_fixture.hpp"
 
@@ -118,7 +118,7 @@ class Meddler {
         world.editor().remove_object(stone);
       else
         world.editor().add_object(world.config().objects[1], stone,
-                         sim::make_pose({5.0 * (stone.back() - '0'), 50, -20}, {0, 0, 0}));
+                                  sim::make_pose({5.0 * (stone.back() - '0'), 50, -20}, {0, 0, 0}));
     }
     if (draw(10) == 0) test.send("ship.modem.cmd", shoal::modem_send_t{0, "", 3, {1, 2, 3}});
     if (draw(20) == 0) move(world, "mast", {40, -20, -20}, draw);

@@ -10,8 +10,8 @@
 #include <string>
 #include <tuple>
 
-#include "sim/world/world_state.hpp"
 #include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tests/devices/state_fixture.hpp"
 
@@ -94,7 +94,8 @@ TEST(WorldSnapshot, VisitorsFaultsMovesAndChangesComeBack) {
     sim::World& world = test.world;
     const auto change = [&](const std::string& device, const std::string& values) {
       sim::Diagnostics diagnostics;
-      ASSERT_TRUE(world.editor().change_device(device, sim::parse_config_text(values, "change", diagnostics), diagnostics));
+      ASSERT_TRUE(
+          world.editor().change_device(device, sim::parse_config_text(values, "change", diagnostics), diagnostics));
     };
     if (step == 20) world.editor().add_vehicle(visitor(world, "guest", 0));
     if (step == 40) world.editor().add_vehicle(visitor(world, "other", 1));
@@ -144,7 +145,8 @@ TEST(WorldSnapshot, WhatLeavesNoTraceIsNotKept) {
       EXPECT_THROW(test.world.editor().add_vehicle(visitor(test.world, "taken", 2)), sim::ConfigError);
       sim::Diagnostics diagnostics;
       const std::string values = "{rate_hz: " + std::to_string(10 + i % 2) + "}";
-      test.world.editor().change_device("rover1/imu", sim::parse_config_text(values, "change", diagnostics), diagnostics);
+      test.world.editor().change_device("rover1/imu", sim::parse_config_text(values, "change", diagnostics),
+                                        diagnostics);
       test.world.editor().remove_vehicle("other");
       test.world.editor().remove_vehicle("guest");
       test.world.editor().remove_object("crate3");
@@ -314,8 +316,8 @@ TEST(WorldSnapshot, ValuesThatAreOnlyPossibleTogetherComeBack) {
                                             {50, "{range_max_m: 7}"}};
     if (!values.contains(step)) return;
     sim::Diagnostics diagnostics;
-    EXPECT_TRUE(test.world.editor().change_device("rover1/lidar", sim::parse_config_text(values.at(step), "change", diagnostics),
-                                         diagnostics));
+    EXPECT_TRUE(test.world.editor().change_device(
+        "rover1/lidar", sim::parse_config_text(values.at(step), "change", diagnostics), diagnostics));
   };
   SavedRun(busy_world, change).expect_restored_worlds_go_on_alike({15, 25, 35, 45, 55}, 60);
 }

@@ -8,11 +8,11 @@
 #include <numbers>
 
 #include "messages/yaml/message_writer.hpp"
-#include "sim/world/world_editor.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_editor.hpp"
 #include "sim/world_file/load_world.hpp"
 
 namespace tools {

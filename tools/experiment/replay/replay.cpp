@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/world_state.hpp"
 #include "tools/experiment/replay/replay.hpp"
 
 #include <spdlog/fmt/fmt.h>
@@ -19,6 +18,7 @@
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/bus/mail_gate.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/world/world_state.hpp"
 #include "tools/experiment/replay/line_difference.hpp"
 #include "tools/experiment/replay/replay_messages.hpp"
 #include "tools/experiment/replay/replay_ports.hpp"

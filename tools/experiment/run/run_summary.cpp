@@ -3,8 +3,8 @@
 
 #include "devices/common/serial_port.hpp"
 #include "devices/comms/message_modem.hpp"
-#include "sim/world/world_state.hpp"
 #include "sim/acoustics/channel.hpp"
+#include "sim/world/world_state.hpp"
 #include "tools/experiment/run/run.hpp"
 
 namespace tools {

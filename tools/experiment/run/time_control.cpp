@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/world_state.hpp"
 #include "tools/experiment/run/time_control.hpp"
 
 #include <spdlog/fmt/fmt.h>
@@ -13,6 +12,7 @@
 #include "sim/base/state_hash.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/state/state_archive.hpp"
+#include "sim/world/world_state.hpp"
 
 namespace tools {
 

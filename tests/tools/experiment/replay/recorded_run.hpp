@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "sim/world/world_state.hpp"
 #include "bridges/control/sim_service.hpp"
 #include "bridges/lockstep/lockstep_service.hpp"
 #include "bridges/log/event_log.hpp"
 #include "bridges/log/recording_bus.hpp"
 #include "bridges/log/run_journal.hpp"
 #include "shoal/message_codec.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/world/world_state.hpp"
 #include "shoal/twist_command_t.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/experiment/replay/recorded_run.hpp"
 #include "tools/experiment/replay/replay.hpp"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/world_state.hpp"
-#include "sim/world/world_editor.hpp"
 #include "tools/experiment/score/metric.hpp"
 
 #include <gtest/gtest.h>
@@ -14,6 +12,8 @@
 #include "shoal/estimate_t.hpp"
 #include "shoal/pose_t.hpp"
 #include "shoal/twist_command_t.hpp"
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/sim/medium/log_capture.hpp"

@@ -13,8 +13,8 @@
 #include <thread>
 #include <vector>
 
-#include "sim/world/world_state.hpp"
 #include "sim/physics/physics_world.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 #include "tests/devices/state_fixture.hpp"
 #include "tests/project_paths.hpp"

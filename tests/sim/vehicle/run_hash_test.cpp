@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/world/world_state.hpp"
-#include "sim/world/world_editor.hpp"
 #include "shoal/acoustic_received_t.hpp"
 #include "shoal/imu_t.hpp"
 #include "shoal/utime_t.hpp"
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
 
 namespace {
