@@ -8,7 +8,7 @@
 #include "sim/bus/byte_port.hpp"
 #include "sim/config/param_reader.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

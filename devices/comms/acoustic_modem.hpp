@@ -10,7 +10,7 @@
 #include "devices/common/serial_port.hpp"
 #include "devices/comms/message_modem.hpp"
 #include "sim/acoustics/transducer.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

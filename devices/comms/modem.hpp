@@ -12,7 +12,7 @@
 #include "devices/comms/message_modem.hpp"
 #include "devices/sound_positioning/signal_carrier.hpp"
 #include "sim/acoustics/signal.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

@@ -12,7 +12,7 @@
 #include "shoal/thrust_rudder_command_t.hpp"
 #include "shoal/thrust_rudder_elevator_command_t.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {

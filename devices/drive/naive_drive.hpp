@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

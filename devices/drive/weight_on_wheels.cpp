@@ -10,7 +10,7 @@
 
 #include "devices/drive/wheel_geometry.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {

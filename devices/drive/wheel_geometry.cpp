@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "sim/config/message_text.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 
 namespace devices {
 

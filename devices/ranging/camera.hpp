@@ -9,7 +9,7 @@
 #include "devices/common/reading_digest.hpp"
 #include "sim/camera/renderer.hpp"
 #include "sim/random/noise.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

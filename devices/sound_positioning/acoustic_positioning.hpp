@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/acoustics/transducer.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

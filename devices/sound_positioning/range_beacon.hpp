@@ -6,7 +6,7 @@
 
 #include "devices/sound_positioning/signal_carrier.hpp"
 #include "sim/random/noise.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

@@ -6,7 +6,7 @@
 
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/transponder_t.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "sim/config/diagnostics.hpp"
+#include "sim/vehicle/world_error.hpp"
 #include "sim/world/world_builder.hpp"
 #include "sim/world/world_journal.hpp"
 #include "sim/world/world_parts.hpp"
-#include "sim/world/world_error.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "sim/config/message_text.hpp"
 #include "sim/config/warnings.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world.hpp"
 
 namespace sim {

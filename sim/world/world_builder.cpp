@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "sim/config/diagnostics.hpp"
+#include "sim/vehicle/limit_check.hpp"
 #include "sim/world/world_parts.hpp"
-#include "sim/world/limit_check.hpp"
 #include "sim/world_file/device_change.hpp"
 
 namespace sim {

@@ -6,12 +6,12 @@
 #include <stdexcept>
 
 #include "sim/config/diagnostics.hpp"
+#include "sim/vehicle/limit_check.hpp"
 #include "sim/world/bottom_check.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_builder.hpp"
 #include "sim/world/world_journal.hpp"
 #include "sim/world/world_parts.hpp"
-#include "sim/world/limit_check.hpp"
 
 namespace sim {
 

@@ -6,8 +6,8 @@
 
 #include "sim/base/math.hpp"
 #include "sim/bus/bus.hpp"
-#include "sim/world/end_of_run.hpp"
-#include "sim/world/world_error.hpp"
+#include "sim/vehicle/end_of_run.hpp"
+#include "sim/vehicle/world_error.hpp"
 
 namespace sim {
 

@@ -8,7 +8,7 @@
 #include "shoal/joint_command_t.hpp"
 #include "shoal/joint_state_t.hpp"
 #include "shoal/twist_command_t.hpp"
-#include "sim/world/mounted_device.hpp"
+#include "sim/vehicle/mounted_device.hpp"
 #include "sim/world/world_editor.hpp"
 #include "tests/devices/joint/arm_fixture.hpp"
 

@@ -11,7 +11,7 @@
 #include "shoal/helm_command_t.hpp"
 #include "shoal/station_command_t.hpp"
 #include "shoal/waypoints_command_t.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
 

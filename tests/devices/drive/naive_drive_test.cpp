@@ -8,7 +8,7 @@
 
 #include "shoal/helm_command_t.hpp"
 #include "shoal/thrust_rudder_elevator_command_t.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world_editor.hpp"
 #include "tests/devices/world_fixture.hpp"
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "sim/acoustics/channel.hpp"
-#include "sim/world/device_context.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/device_context.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace test {

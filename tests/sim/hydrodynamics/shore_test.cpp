@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world/bottom_check.hpp"
-#include "sim/world/vehicle.hpp"
 #include "sim/world/world_editor.hpp"
 #include "sim/world/world_state.hpp"
 #include "tests/sim/hydrodynamics/floating_worlds.hpp"

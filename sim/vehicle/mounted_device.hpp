@@ -10,7 +10,7 @@
 #include "sim/device/device_registry.hpp"
 #include "sim/device/fault.hpp"
 #include "sim/event/event_queue.hpp"
-#include "sim/world/device_host.hpp"
+#include "sim/vehicle/device_host.hpp"
 #include "sim/world_file/world_config.hpp"
 
 namespace sim {

@@ -7,7 +7,7 @@
 
 #include "sim/config/warnings.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/world/step_clock.hpp"
+#include "sim/vehicle/step_clock.hpp"
 
 namespace sim {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/device_host.hpp"
+#include "sim/vehicle/device_host.hpp"
 
 #include <utility>
 
-#include "sim/world/mounted_device.hpp"
+#include "sim/vehicle/mounted_device.hpp"
 
 namespace sim {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/entities.hpp"
+#include "sim/vehicle/entities.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include "sim/state/state_archive.hpp"
-#include "sim/world/mounted_device.hpp"
-#include "sim/world/limit_check.hpp"
-#include "sim/world/world_error.hpp"
+#include "sim/vehicle/limit_check.hpp"
+#include "sim/vehicle/mounted_device.hpp"
+#include "sim/vehicle/world_error.hpp"
 
 namespace sim {
 

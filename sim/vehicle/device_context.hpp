@@ -6,7 +6,7 @@
 #include "sim/acoustics/sound_site.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/random/noise.hpp"
-#include "sim/world/device_host.hpp"
+#include "sim/vehicle/device_host.hpp"
 
 namespace sim {
 

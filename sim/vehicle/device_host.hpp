@@ -7,8 +7,8 @@
 #include "sim/bus/byte_port.hpp"
 #include "sim/device/shared_by_devices.hpp"
 #include "sim/event/event_queue.hpp"
-#include "sim/world/step_clock.hpp"
-#include "sim/world/world_warnings.hpp"
+#include "sim/vehicle/step_clock.hpp"
+#include "sim/vehicle/world_warnings.hpp"
 
 namespace sim {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/mounted_device.hpp"
+#include "sim/vehicle/mounted_device.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "sim/bus/utime_stamp.hpp"
-#include "sim/world/device_context.hpp"
-#include "sim/world/vehicle.hpp"
-#include "sim/world/run_hash.hpp"
+#include "sim/vehicle/device_context.hpp"
+#include "sim/vehicle/run_hash.hpp"
+#include "sim/vehicle/vehicle.hpp"
 
 namespace sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/device_table.hpp"
+#include "sim/vehicle/device_table.hpp"
 
 #include <algorithm>
 #include <map>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/model/object_config.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 
 namespace sim {
 

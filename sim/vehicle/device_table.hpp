@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/bus/mail_flags.hpp"
-#include "sim/world/mounted_device.hpp"
+#include "sim/vehicle/mounted_device.hpp"
 
 namespace sim {
 

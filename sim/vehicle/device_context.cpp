@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 #include <cassert>
 
 #include "sim/acoustics/channel.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 
 namespace sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/world_warnings.hpp"
+#include "sim/vehicle/world_warnings.hpp"
 
 #include <spdlog/spdlog.h>
 

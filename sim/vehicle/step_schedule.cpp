@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/step_schedule.hpp"
+#include "sim/vehicle/step_schedule.hpp"
 
 #include <optional>
 
 #include "sim/medium/medium.hpp"
 #include "sim/scene/scene.hpp"
-#include "sim/world/device_table.hpp"
-#include "sim/world/entities.hpp"
-#include "sim/world/step_clock.hpp"
+#include "sim/vehicle/device_table.hpp"
+#include "sim/vehicle/entities.hpp"
+#include "sim/vehicle/step_clock.hpp"
 
 namespace sim {
 

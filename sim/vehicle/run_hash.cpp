@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/run_hash.hpp"
+#include "sim/vehicle/run_hash.hpp"
 
 #include <string>
 

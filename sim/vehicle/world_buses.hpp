@@ -6,7 +6,7 @@
 #include <string>
 
 #include "sim/bus/bus.hpp"
-#include "sim/world/run_hash.hpp"
+#include "sim/vehicle/run_hash.hpp"
 
 namespace sim {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/surfaces.hpp"
+#include "sim/vehicle/surfaces.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
 #include "sim/physics/physics_world.hpp"
-#include "sim/world/limit_check.hpp"
+#include "sim/vehicle/limit_check.hpp"
 #include "sim/world_file/world_config.hpp"
 
 namespace sim {
