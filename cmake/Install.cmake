@@ -13,6 +13,7 @@ install(DIRECTORY sim DESTINATION include/shoal FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY ${PROJECT_BINARY_DIR}/sim/generated/sim DESTINATION include/shoal)
 install(DIRECTORY ${types_dir}/shoal ${PROJECT_BINARY_DIR}/messages/generated/shoal DESTINATION include/shoal
         FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY ${types_dir}/reporter DESTINATION include/shoal/messages FILES_MATCHING PATTERN "*.hpp")
 file(GLOB lcm_files CONFIGURE_DEPENDS ${types_dir}/*/*.lcm)
 install(FILES ${lcm_files} DESTINATION share/shoal/types)
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "devices/joint/joint_of_device.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/autopilot_command_t.hpp"
 #include "shoal/autopilot_state_t.hpp"
 #include "shoal/helm_command_t.hpp"
@@ -279,10 +280,8 @@ void Autopilot::visit_state(sim::StateArchive& archive) {
   if (!depth_wanted_m_ && !altitude_wanted_m_) archive.fail("an autopilot holds neither depth nor altitude");
 }
 
-void AutopilotReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  const Autopilot::Reading& reading = autopilot_.reading();
-  shoal::autopilot_state_t message;
-  message.utime = out.utime(sampled_at);
+void fill(const Autopilot& autopilot, shoal::autopilot_state_t& message) {
+  const Autopilot::Reading& reading = autopilot.reading();
   message.mode = static_cast<std::int8_t>(reading.mode);
   message.speed_mps = reading.speed_mps;
   message.heading_rad = reading.heading_rad;
@@ -294,12 +293,10 @@ void AutopilotReporter::report(sim::Time sampled_at, sim::Publisher& out) const 
   message.altitude_error_m = reading.altitude_error_m;
   message.cross_track_m = reading.cross_track_m;
   message.distance_m = reading.distance_m;
-  message.waypoint = static_cast<std::int32_t>(autopilot_.route().index());
-  message.waypoints = static_cast<std::int32_t>(autopilot_.route().size());
-  message.finished = autopilot_.route().finished();
+  message.waypoint = static_cast<std::int32_t>(autopilot.route().index());
+  message.waypoints = static_cast<std::int32_t>(autopilot.route().size());
+  message.finished = autopilot.route().finished();
   message.saturated = reading.saturated;
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
 }
 
 namespace {
@@ -360,6 +357,6 @@ void AutopilotController::receive(sim::Time, std::span<const std::byte> payload)
   autopilot_.set_mode(static_cast<Autopilot::Mode>(command.mode));
 }
 
-SHOAL_TRANSCEIVER("autopilot", Autopilot, AutopilotReporter, AutopilotController);
+SHOAL_TRANSCEIVER("autopilot", Autopilot, shoal::autopilot_state_t, AutopilotController);
 
 }  // namespace devices

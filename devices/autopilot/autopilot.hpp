@@ -87,17 +87,6 @@ class Autopilot final : public sim::Sensor {
   Reading reading_;
 };
 
-/// Publishes shoal.autopilot_state_t.
-class AutopilotReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.autopilot_state_t";
-  explicit AutopilotReporter(const Autopilot& autopilot) : autopilot_(autopilot) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Autopilot& autopilot_;
-};
-
 /// Takes shoal.helm_command_t, shoal.waypoints_command_t, shoal.station_command_t and shoal.autopilot_command_t.
 class AutopilotController final : public sim::Controller {
  public:

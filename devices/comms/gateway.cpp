@@ -6,8 +6,8 @@
 #include <string>
 
 #include "devices/common/named_vehicle.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/gateway_state_t.hpp"
-#include "shoal/message_codec.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "sim/world/world.hpp"
 
@@ -158,20 +158,16 @@ void Gateway::visit_state(sim::StateArchive& archive) {
   if (modems_[0] == nullptr) find_modems();
 }
 
-void GatewayReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  shoal::gateway_state_t message;
-  message.utime = out.utime(sampled_at);
+void fill(const Gateway& gateway, shoal::gateway_state_t& message) {
   for (std::size_t i = 0; i < 2; ++i) {
-    const Gateway::Counts& counts = gateway_.counts()[i];
+    const Gateway::Counts& counts = gateway.counts()[i];
     message.passed[i] = counts.passed;
     message.too_long[i] = counts.too_long;
     message.repeated[i] = counts.repeated;
     message.refused[i] = counts.refused;
   }
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
 }
 
-SHOAL_SENSOR("gateway", Gateway, GatewayReporter);
+SHOAL_SENSOR("gateway", Gateway, shoal::gateway_state_t);
 
 }  // namespace devices

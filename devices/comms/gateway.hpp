@@ -74,15 +74,4 @@ class Gateway final : public sim::Sensor {
   std::array<Counts, 2> counting_, counts_;
 };
 
-/// Publishes shoal.gateway_state_t.
-class GatewayReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.gateway_state_t";
-  explicit GatewayReporter(const Gateway& gateway) : gateway_(gateway) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Gateway& gateway_;
-};
-
 }  // namespace devices

@@ -36,21 +36,31 @@ std::string part_text(const sim::BodyConfig& body, const sim::PartConfig& part) 
 std::vector<sim::Vector3d> low_points(const sim::BodyConfig& body, const sim::PartConfig& part) {
   const sim::Pose X_VP = sim::make_pose(body.position_m, body.rpy_rad) * sim::make_pose(part.position_m, part.rpy_rad);
   const sim::Vector3d down = -part.radius_m * sim::Vector3d::UnitZ();
-  if (part.shape == "sphere") return {X_VP.translation() + down};
-  if (part.shape == "capsule" || part.shape == "cylinder") {
-    const sim::Vector3d along = X_VP.linear().col(2);
-    if (std::abs(along.z()) < 1e-3) return {X_VP.translation() + down};
-    const sim::Vector3d end = X_VP.translation() - std::copysign(part.length_m / 2, along.z()) * along;
-    if (part.shape == "capsule") return {end + down};
-    return {end - part.radius_m * std::sqrt(1 - along.z() * along.z()) * sim::Vector3d::UnitZ()};
-  }
-  std::vector<sim::Vector3d> corners;
-  if (part.shape == "box")
-    for (int i = 0; i < 8; ++i) {
-      const sim::Vector3d corner(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5);
-      corners.push_back(X_VP * corner.cwiseProduct(part.size_m).eval());
+  switch (part.shape) {
+    case sim::PartShape::sphere:
+      return {X_VP.translation() + down};
+    case sim::PartShape::capsule:
+    case sim::PartShape::cylinder: {
+      const sim::Vector3d along = X_VP.linear().col(2);
+      if (std::abs(along.z()) < 1e-3) return {X_VP.translation() + down};
+      const sim::Vector3d end = X_VP.translation() - std::copysign(part.length_m / 2, along.z()) * along;
+      if (part.shape == sim::PartShape::capsule) return {end + down};
+      return {end - part.radius_m * std::sqrt(1 - along.z() * along.z()) * sim::Vector3d::UnitZ()};
     }
-  return corners;
+    case sim::PartShape::box: {
+      std::vector<sim::Vector3d> corners;
+      for (int i = 0; i < 8; ++i) {
+        const sim::Vector3d corner(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5);
+        corners.push_back(X_VP * corner.cwiseProduct(part.size_m).eval());
+      }
+      return corners;
+    }
+    case sim::PartShape::plane:
+    case sim::PartShape::mesh:
+    case sim::PartShape::terrain:
+      break;
+  }
+  return {};
 }
 
 /// Whether it meets ordinary ground.

@@ -28,8 +28,8 @@ const sim::BodyConfig* body_named(const sim::VehicleConfig& vehicle, const std::
 
 /// The part turns about the axis without a change of its shape.
 bool is_round(const sim::PartConfig& part, const sim::Matrix3d& R_VB, const sim::Vector3d& axis_V) {
-  if (part.shape == "sphere") return true;
-  if (part.shape != "cylinder" && part.shape != "capsule") return false;
+  if (part.shape == sim::PartShape::sphere) return true;
+  if (!sim::shape_info(part.shape).round) return false;
   const sim::Matrix3d R_BP = sim::make_pose(part.position_m, part.rpy_rad).linear();
   return std::abs((R_VB * R_BP).col(2).dot(axis_V)) > 0.999;
 }

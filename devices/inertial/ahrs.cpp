@@ -3,8 +3,8 @@
 
 #include <limits>
 
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/ins_t.hpp"
-#include "shoal/message_codec.hpp"
 
 namespace devices {
 
@@ -21,18 +21,10 @@ void Ahrs::Params::read(sim::ParamReader& in) {
 Ahrs::Ahrs(const Params& params, const sim::DeviceContext& context)
     : heading_drift_rad_per_s_(params.heading_drift_rad_per_s),
       strapdown_(context),
-      tilt_noise_(context.noise(params.tilt_noise, 2, "tilt_noise")),
-      heading_noise_(context.noise(params.heading_noise, 1, "heading_noise")),
-      gyro_noise_(context.noise(params.gyro_noise, 3, "gyro_noise")),
-      accel_noise_(context.noise(params.accel_noise, 3, "accel_noise")) {}
-
-void Ahrs::change(const Params& params) {
-  heading_drift_rad_per_s_ = params.heading_drift_rad_per_s;
-  tilt_noise_.change(params.tilt_noise);
-  heading_noise_.change(params.heading_noise);
-  gyro_noise_.change(params.gyro_noise);
-  accel_noise_.change(params.accel_noise);
-}
+      tilt_noise_(context, params, 2),
+      heading_noise_(context, params),
+      gyro_noise_(context, params, 3),
+      accel_noise_(context, params, 3) {}
 
 void Ahrs::measure(const sim::SenseContext& context) {
   strapdown_.measure(context);
@@ -51,26 +43,23 @@ void Ahrs::disturb(double dt_s, sim::Random& random) {
   accel_noise_.apply(std::span<double>(f_S_.data(), 3), dt_s, random);
 }
 
-void AhrsReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
+// Publishes shoal.ins_t, equal on the wire to bot_core's.
+void fill(const Ahrs& ahrs, shoal::ins_t& message) {
   const double nothing = std::numeric_limits<double>::quiet_NaN();
-  const sim::Quaterniond& q = ahrs_.q_WS();
+  const sim::Quaterniond& q = ahrs.q_WS();
   const double sign = q.w() < 0 ? -1 : 1;  // of the two quaternions of a rotation the one with w >= 0
-  shoal::ins_t message;
-  message.utime = out.utime(sampled_at);
   message.device_time = message.utime;
   for (int i = 0; i < 3; ++i) {
-    message.gyro[i] = ahrs_.angular_velocity_S_radps()[i];
+    message.gyro[i] = ahrs.angular_velocity_S_radps()[i];
     message.mag[i] = nothing;
-    message.accel[i] = ahrs_.specific_force_S_mps2()[i];
+    message.accel[i] = ahrs.specific_force_S_mps2()[i];
     message.quat[i + 1] = sign * q.vec()[i];
   }
   message.quat[0] = sign * q.w();
   message.pressure = nothing;
   message.rel_alt = nothing;
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
 }
 
-SHOAL_SENSOR("ahrs", Ahrs, AhrsReporter);
+SHOAL_SENSOR("ahrs", Ahrs, shoal::ins_t);
 
 }  // namespace devices

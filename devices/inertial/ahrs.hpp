@@ -22,7 +22,8 @@ class Ahrs final : public sim::Sensor {
   };
 
   Ahrs(const Params& params, const sim::DeviceContext& context);
-  void change(const Params& params);
+  void change(const Params& params) { heading_drift_rad_per_s_ = params.heading_drift_rad_per_s; }
+  auto noises() { return std::tie(tilt_noise_, heading_noise_, gyro_noise_, accel_noise_); }
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override {
@@ -37,21 +38,13 @@ class Ahrs final : public sim::Sensor {
   double heading_drift_rad_per_s_;
   double drifted_rad_ = 0;
   Strapdown strapdown_;
-  sim::Noise tilt_noise_, heading_noise_, gyro_noise_, accel_noise_;
+  sim::NoiseOf<&Params::tilt_noise> tilt_noise_;
+  sim::NoiseOf<&Params::heading_noise> heading_noise_;
+  sim::NoiseOf<&Params::gyro_noise> gyro_noise_;
+  sim::NoiseOf<&Params::accel_noise> accel_noise_;
   sim::Quaterniond q_WS_ = sim::Quaterniond::Identity();
   sim::Vector3d w_S_ = sim::Vector3d::Zero();
   sim::Vector3d f_S_ = sim::Vector3d::Zero();
-};
-
-/// Publishes shoal.ins_t, equal on the wire to bot_core's.
-class AhrsReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.ins_t";
-  explicit AhrsReporter(const Ahrs& ahrs) : ahrs_(ahrs) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Ahrs& ahrs_;
 };
 
 }  // namespace devices

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/compass_t.hpp"
-#include "shoal/message_codec.hpp"
 
 namespace devices {
 
@@ -53,14 +53,12 @@ Compass::Compass(const Params& params, const sim::DeviceContext& context)
     : params_(params),
       strapdown_(context),
       tilt_filter_(params.tilt_time_s),
-      field_noise_(context.noise(params.field_noise, 3, "field_noise")),
-      heading_noise_(context.noise(params.heading_noise, 1, "heading_noise")) {}
+      field_noise_(context, params, 3),
+      heading_noise_(context, params) {}
 
 void Compass::change(const Params& params) {
   params_ = params;
   tilt_filter_.change(params.tilt_time_s);
-  field_noise_.change(params.field_noise);
-  heading_noise_.change(params.heading_noise);
 }
 
 double Compass::heading_of(const sim::Vector3d& field_S, const sim::Vector3d& up_S) {
@@ -94,17 +92,13 @@ void Compass::disturb(double dt_s, sim::Random& random) {
   reading_.heading_true_rad = compass_angle(heading_rad + params_.declination_correction_rad);
 }
 
-void CompassReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  const Compass::Reading& reading = compass_.reading();
-  shoal::compass_t message;
-  message.utime = out.utime(sampled_at);
+void fill(const Compass& compass, shoal::compass_t& message) {
+  const Compass::Reading& reading = compass.reading();
   message.heading_rad = reading.heading_rad;
   message.heading_true_rad = reading.heading_true_rad;
   for (int i = 0; i < 3; ++i) message.field_uT[i] = reading.field_S_uT[i];
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
 }
 
-SHOAL_SENSOR("compass", Compass, CompassReporter);
+SHOAL_SENSOR("compass", Compass, shoal::compass_t);
 
 }  // namespace devices

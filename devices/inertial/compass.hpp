@@ -41,6 +41,7 @@ class Compass final : public sim::Sensor {
 
   Compass(const Params& params, const sim::DeviceContext& context);
   void change(const Params& params);
+  auto noises() { return std::tie(field_noise_, heading_noise_); }
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override {
@@ -55,20 +56,10 @@ class Compass final : public sim::Sensor {
   Params params_;
   Strapdown strapdown_;
   LowPass tilt_filter_;
-  sim::Noise field_noise_, heading_noise_;
+  sim::NoiseOf<&Params::field_noise> field_noise_;
+  sim::NoiseOf<&Params::heading_noise> heading_noise_;
   sim::Vector3d up_S_ = sim::Vector3d::UnitZ();
   Reading reading_;
-};
-
-/// Publishes shoal.compass_t.
-class CompassReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.compass_t";
-  explicit CompassReporter(const Compass& compass) : compass_(compass) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Compass& compass_;
 };
 
 }  // namespace devices

@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "devices/inertial/imu_presets.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/imu_t.hpp"
-#include "shoal/message_codec.hpp"
 
 namespace devices {
 
@@ -78,8 +78,8 @@ Imu::Imu(const Params& params, const sim::DeviceContext& context)
     : strapdown_(context),
       gyro_filter_(time_constant_s(params.bandwidth_hz)),
       accel_filter_(time_constant_s(params.bandwidth_hz)),
-      gyro_errors_(params.gyro, params.gyro_noise, context, "gyro_noise"),
-      accel_errors_(params.accel, params.accel_noise, context, "accel_noise") {}
+      gyro_errors_(params.gyro, params.gyro_noise, context),
+      accel_errors_(params.accel, params.accel_noise, context) {}
 
 void Imu::change(const Params& params) {
   gyro_filter_.change(time_constant_s(params.bandwidth_hz));
@@ -101,17 +101,13 @@ void Imu::disturb(double dt_s, sim::Random& random) {
   accel_errors_.apply(f_S_, dt_s, random);
 }
 
-void ImuReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  shoal::imu_t message;
-  message.utime = out.utime(sampled_at);
+void fill(const Imu& imu, shoal::imu_t& message) {
   for (int i = 0; i < 3; ++i) {
-    message.angular_velocity_radps[i] = imu_.angular_velocity_S_radps()[i];
-    message.linear_acceleration_mps2[i] = imu_.specific_force_S_mps2()[i];
+    message.angular_velocity_radps[i] = imu.angular_velocity_S_radps()[i];
+    message.linear_acceleration_mps2[i] = imu.specific_force_S_mps2()[i];
   }
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
 }
 
-SHOAL_SENSOR("imu", Imu, ImuReporter);
+SHOAL_SENSOR("imu", Imu, shoal::imu_t);
 
 }  // namespace devices

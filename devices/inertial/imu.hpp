@@ -42,15 +42,4 @@ class Imu final : public sim::Sensor {
   sim::Vector3d f_S_ = sim::Vector3d::Zero();
 };
 
-/// Publishes shoal.imu_t.
-class ImuReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.imu_t";
-  explicit ImuReporter(const Imu& imu) : imu_(imu) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Imu& imu_;
-};
-
 }  // namespace devices

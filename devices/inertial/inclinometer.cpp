@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/inclination_t.hpp"
-#include "shoal/message_codec.hpp"
 
 namespace devices {
 
@@ -20,15 +20,11 @@ void Inclinometer::Params::read(sim::ParamReader& in) {
 }
 
 Inclinometer::Inclinometer(const Params& params, const sim::DeviceContext& context)
-    : ideal_(params.ideal),
-      strapdown_(context),
-      filter_(params.time_constant_s),
-      noise_(context.noise(params.noise, 2, "noise")) {}
+    : ideal_(params.ideal), strapdown_(context), filter_(params.time_constant_s), noise_(context, params, 2) {}
 
 void Inclinometer::change(const Params& params) {
   ideal_ = params.ideal;
   filter_.change(params.time_constant_s);
-  noise_.change(params.noise);
 }
 
 void Inclinometer::measure(const sim::SenseContext& context) {
@@ -44,15 +40,11 @@ void Inclinometer::disturb(double dt_s, sim::Random& random) {
   reading_ = {angles_rad[0], angles_rad[1]};
 }
 
-void InclinometerReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  shoal::inclination_t message;
-  message.utime = out.utime(sampled_at);
-  message.roll_rad = inclinometer_.reading().roll_rad;
-  message.pitch_rad = inclinometer_.reading().pitch_rad;
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
+void fill(const Inclinometer& inclinometer, shoal::inclination_t& message) {
+  message.roll_rad = inclinometer.reading().roll_rad;
+  message.pitch_rad = inclinometer.reading().pitch_rad;
 }
 
-SHOAL_SENSOR("inclinometer", Inclinometer, InclinometerReporter);
+SHOAL_SENSOR("inclinometer", Inclinometer, shoal::inclination_t);
 
 }  // namespace devices

@@ -29,6 +29,7 @@ class Inclinometer final : public sim::Sensor {
 
   Inclinometer(const Params& params, const sim::DeviceContext& context);
   void change(const Params& params);
+  auto noises() { return std::tie(noise_); }
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override { archive(strapdown_, filter_, noise_, reading_); }
@@ -38,19 +39,8 @@ class Inclinometer final : public sim::Sensor {
   bool ideal_;
   Strapdown strapdown_;
   LowPass filter_;
-  sim::Noise noise_;
+  sim::NoiseOf<&Params::noise> noise_;
   Tilt reading_;
-};
-
-/// Publishes shoal.inclination_t.
-class InclinometerReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.inclination_t";
-  explicit InclinometerReporter(const Inclinometer& inclinometer) : inclinometer_(inclinometer) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Inclinometer& inclinometer_;
 };
 
 }  // namespace devices

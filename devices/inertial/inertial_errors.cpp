@@ -13,13 +13,13 @@ double gauss_markov_allan_deviation(double correlation_times) {
 }
 
 InertialErrors::InertialErrors(const InertialParams& params, const sim::NoiseParams& noise,
-                               const sim::DeviceContext& context, const std::string& noise_key)
+                               const sim::DeviceContext& context)
     : params_(params),
-      noise_(context.noise(noise, 3, noise_key)),
-      fault_(context.faults.noise_of(sim::quantity_of(noise_key))),
+      noise_(context.noise(noise, 3)),
+      fault_(*context.noise_origin(noise).fault),
       nominal_dt_s_(context.config.rate_hz > 0 ? 1 / context.config.rate_hz
                                                : sim::to_seconds(context.world.step_time())) {
-  sim::Random random(context.world.seed(), context.full_name() + "#" + noise_key + "/unit");
+  sim::Random random(context.world.seed(), context.full_name() + "#" + noise.key + "/unit");
   for (int i = 0; i < 3; ++i) drawn_bias_[i] = random.gaussian();
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column) drawn_matrix_(row, column) = random.gaussian();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/base/math.hpp"
+#include "sim/device/device_registry.hpp"
 #include "sim/random/noise.hpp"
 #include "sim/world/device_context.hpp"
 
@@ -37,9 +38,8 @@ inline constexpr double gauss_markov_allan_peak_at = 1.8926;  ///< correlation t
 /// Technology, 2nd ed., 2004).
 class InertialErrors {
  public:
-  /// `noise_key`: such as `gyro_noise`; what faults do to that quantity reaches the errors of the data sheet too.
-  InertialErrors(const InertialParams& params, const sim::NoiseParams& noise, const sim::DeviceContext& context,
-                 const std::string& noise_key);
+  /// What faults do to the quantity of `noise` reaches the errors of the data sheet too.
+  InertialErrors(const InertialParams& params, const sim::NoiseParams& noise, const sim::DeviceContext& context);
   /// What was drawn once keeps its direction and takes its new size.
   void change(const InertialParams& params, const sim::NoiseParams& noise);
   void apply(sim::Vector3d& value, double dt_s, sim::Random& random);

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "devices/joint/joint_of_device.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/bumper_t.hpp"
-#include "shoal/message_codec.hpp"
 
 namespace devices {
 
@@ -18,10 +18,7 @@ void Bumper::Params::read(sim::ParamReader& in) {
 }
 
 Bumper::Bumper(const Params& params, const sim::DeviceContext& context)
-    : params_(params),
-      world_(context.world),
-      vehicle_(context.vehicle),
-      force_noise_(context.noise(params.force_noise, 1, "force_noise")) {
+    : params_(params), world_(context.world), vehicle_(context.vehicle), force_noise_(context, params) {
   const sim::PhysicsWorld& physics = context.world.physics();
   for (const std::string& name : params.parts)
     if (const auto part = physics.find_part(vehicle_.group(), name)) parts_.push_back(*part);
@@ -95,26 +92,24 @@ void Bumper::disturb(double dt_s, sim::Random& random) {
 void Bumper::change(const Params& params) {
   params_.min_force_N = params.min_force_N;
   params_.report = params.report;
-  force_noise_.change(params.force_noise);
 }
 
-void BumperReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  if (!bumper_.is_news()) return;
-  shoal::bumper_t message;
-  message.utime = out.utime(sampled_at);
-  message.touching = bumper_.touching();
-  message.count = static_cast<std::int32_t>(bumper_.places().size());
-  for (const Bumper::Place& place : bumper_.places()) {
+// Publishes shoal.bumper_t: at the first sample and when a touch begins or ends, or at every sample.  A report of a
+// change that is lost on its way is not repeated.
+bool fill(const Bumper& bumper, shoal::bumper_t& message) {
+  if (!bumper.is_news()) return false;
+  message.touching = bumper.touching();
+  message.count = static_cast<std::int32_t>(bumper.places().size());
+  for (const Bumper::Place& place : bumper.places()) {
     message.part.push_back(place.part);
     message.other.push_back(place.other);
     message.position_m.emplace_back(place.position_V.begin(), place.position_V.end());
     message.normal.emplace_back(place.normal_V.begin(), place.normal_V.end());
     message.force_N.push_back(place.force_N);
   }
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
+  return true;
 }
 
-SHOAL_SENSOR("bumper", Bumper, BumperReporter);
+SHOAL_SENSOR("bumper", Bumper, shoal::bumper_t);
 
 }  // namespace devices

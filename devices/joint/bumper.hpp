@@ -39,6 +39,7 @@ class Bumper final : public sim::Sensor {
   void disturb(double dt_s, sim::Random& random) override;
   /// All but the parts.
   void change(const Params& params);
+  auto noises() { return std::tie(force_noise_); }
   void visit_state(sim::StateArchive& archive) override {
     archive(force_noise_, looked_, pressed_, most_force_N_, touching_, changed_, sampled_, places_);
   }
@@ -57,7 +58,7 @@ class Bumper final : public sim::Sensor {
   sim::World& world_;
   const sim::Vehicle& vehicle_;
   std::vector<int> parts_;  ///< their numbers, sorted
-  sim::Noise force_noise_;
+  sim::NoiseOf<&Params::force_noise> force_noise_;
   bool looked_ = true;          ///< at the last step
   std::vector<Place> pressed_;  ///< since the last sample: the step that pressed most
   double most_force_N_ = -1;
@@ -65,18 +66,6 @@ class Bumper final : public sim::Sensor {
   bool changed_ = false;
   bool sampled_ = false;
   std::vector<Place> places_;  ///< the reading
-};
-
-/// Publishes shoal.bumper_t: at the first sample and when a touch begins or ends, or at every sample.  A report of a
-/// change that is lost on its way is not repeated.
-class BumperReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.bumper_t";
-  explicit BumperReporter(const Bumper& bumper) : bumper_(bumper) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Bumper& bumper_;
 };
 
 }  // namespace devices

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "devices/joint/joint_load.hpp"
 
-#include "shoal/message_codec.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/wrench_t.hpp"
 #include "sim/physics/body.hpp"
 
@@ -20,8 +20,8 @@ JointLoad::JointLoad(const Params& params, const sim::DeviceContext& context)
     : params_(params),
       joint_(context.joint(params.joint)),
       body_(context.body),
-      force_noise_(context.noise(params.force_noise, 3, "force_noise")),
-      torque_noise_(context.noise(params.torque_noise, 3, "torque_noise")) {
+      force_noise_(context, params, 3),
+      torque_noise_(context, params, 3) {
   context.joint(params.joint).measure_load();
 }
 
@@ -42,23 +42,13 @@ void JointLoad::disturb(double dt_s, sim::Random& random) {
   torque_noise_.apply(std::span<double>(torque_Nm_.data(), 3), dt_s, random);
 }
 
-void JointLoad::change(const Params& params) {
-  params_.frame = params.frame;
-  force_noise_.change(params.force_noise);
-  torque_noise_.change(params.torque_noise);
-}
-
-void JointLoadReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  shoal::wrench_t message;
-  message.utime = out.utime(sampled_at);
+void fill(const JointLoad& load, shoal::wrench_t& message) {
   for (int i = 0; i < 3; ++i) {
-    message.force_N[i] = load_.force_N()[i];
-    message.torque_Nm[i] = load_.torque_Nm()[i];
+    message.force_N[i] = load.force_N()[i];
+    message.torque_Nm[i] = load.torque_Nm()[i];
   }
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
 }
 
-SHOAL_SENSOR("joint_load", JointLoad, JointLoadReporter);
+SHOAL_SENSOR("joint_load", JointLoad, shoal::wrench_t);
 
 }  // namespace devices

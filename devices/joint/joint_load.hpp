@@ -26,7 +26,8 @@ class JointLoad final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   /// The errors and the frame; the joint stays.
-  void change(const Params& params);
+  void change(const Params& params) { params_.frame = params.frame; }
+  auto noises() { return std::tie(force_noise_, torque_noise_); }
   void visit_state(sim::StateArchive& archive) override { archive(force_noise_, torque_noise_, force_N_, torque_Nm_); }
   /// In the frame that the parameters say.
   const sim::Vector3d& force_N() const { return force_N_; }
@@ -38,20 +39,10 @@ class JointLoad final : public sim::Sensor {
   Params params_;
   const sim::Joint& joint_;
   const sim::Body& body_;
-  sim::Noise force_noise_, torque_noise_;
+  sim::NoiseOf<&Params::force_noise> force_noise_;
+  sim::NoiseOf<&Params::torque_noise> torque_noise_;
   sim::Vector3d force_N_ = sim::Vector3d::Zero();
   sim::Vector3d torque_Nm_ = sim::Vector3d::Zero();
-};
-
-/// Publishes shoal.wrench_t.
-class JointLoadReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.wrench_t";
-  explicit JointLoadReporter(const JointLoad& load) : load_(load) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const JointLoad& load_;
 };
 
 }  // namespace devices

@@ -3,8 +3,8 @@
 
 #include "devices/common/same_size.hpp"
 #include "devices/joint/joint_of_device.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/joint_state_t.hpp"
-#include "shoal/message_codec.hpp"
 #include "sim/world/vehicle.hpp"
 
 namespace devices {
@@ -39,9 +39,9 @@ std::vector<JointState::Axis> axes_of(const JointState::Params& params, const si
 
 JointState::JointState(const Params& params, const sim::DeviceContext& context)
     : axes_(axes_of(params, context)),
-      position_noise_(context.noise(params.position_noise, static_cast<int>(axes_.size()), "position_noise")),
-      velocity_noise_(context.noise(params.velocity_noise, static_cast<int>(axes_.size()), "velocity_noise")),
-      effort_noise_(context.noise(params.effort_noise, static_cast<int>(axes_.size()), "effort_noise")),
+      position_noise_(context, params, static_cast<int>(axes_.size())),
+      velocity_noise_(context, params, static_cast<int>(axes_.size())),
+      effort_noise_(context, params, static_cast<int>(axes_.size())),
       positions_(axes_.size()),
       velocities_(axes_.size()),
       efforts_(axes_.size()) {
@@ -64,29 +64,19 @@ void JointState::disturb(double dt_s, sim::Random& random) {
   effort_noise_.apply(std::span<double>(efforts_), dt_s, random);
 }
 
-void JointState::change(const Params& params) {
-  position_noise_.change(params.position_noise);
-  velocity_noise_.change(params.velocity_noise);
-  effort_noise_.change(params.effort_noise);
-}
-
 void JointState::visit_state(sim::StateArchive& archive) {
   archive(position_noise_, velocity_noise_, effort_noise_);
   for (auto* values : {&positions_, &velocities_, &efforts_}) visit_same_size(archive, *values, "axes of joints");
 }
 
-void JointStateReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  shoal::joint_state_t message;
-  message.utime = out.utime(sampled_at);
-  message.num_joints = static_cast<std::int16_t>(state_.axes().size());
-  for (const JointState::Axis& axis : state_.axes()) message.joint_name.push_back(axis.name);
-  message.joint_position.assign(state_.positions().begin(), state_.positions().end());
-  message.joint_velocity.assign(state_.velocities().begin(), state_.velocities().end());
-  message.joint_effort.assign(state_.efforts().begin(), state_.efforts().end());
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
+void fill(const JointState& state, shoal::joint_state_t& message) {
+  message.num_joints = static_cast<std::int16_t>(state.axes().size());
+  for (const JointState::Axis& axis : state.axes()) message.joint_name.push_back(axis.name);
+  message.joint_position.assign(state.positions().begin(), state.positions().end());
+  message.joint_velocity.assign(state.velocities().begin(), state.velocities().end());
+  message.joint_effort.assign(state.efforts().begin(), state.efforts().end());
 }
 
-SHOAL_SENSOR("joint_state", JointState, JointStateReporter);
+SHOAL_SENSOR("joint_state", JointState, shoal::joint_state_t);
 
 }  // namespace devices

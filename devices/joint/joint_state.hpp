@@ -32,7 +32,7 @@ class JointState final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   /// The errors; the joints stay.
-  void change(const Params& params);
+  auto noises() { return std::tie(position_noise_, velocity_noise_, effort_noise_); }
   void visit_state(sim::StateArchive& archive) override;
 
   // In the joints' own signs; rad, rad/s, N m, or m, m/s, N of a slider.
@@ -43,19 +43,10 @@ class JointState final : public sim::Sensor {
 
  private:
   std::vector<Axis> axes_;
-  sim::Noise position_noise_, velocity_noise_, effort_noise_;
+  sim::NoiseOf<&Params::position_noise> position_noise_;
+  sim::NoiseOf<&Params::velocity_noise> velocity_noise_;
+  sim::NoiseOf<&Params::effort_noise> effort_noise_;
   std::vector<double> positions_, velocities_, efforts_;
-};
-
-/// Publishes shoal.joint_state_t.
-class JointStateReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.joint_state_t";
-  explicit JointStateReporter(const JointState& state) : state_(state) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const JointState& state_;
 };
 
 }  // namespace devices

@@ -6,7 +6,7 @@
 
 #include "devices/common/same_size.hpp"
 #include "devices/joint/joint_of_device.hpp"
-#include "shoal/message_codec.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/wheel_encoder_t.hpp"
 
 namespace devices {
@@ -37,7 +37,7 @@ std::vector<WheelEncoder::Wheel> wheels_of(const WheelEncoder::Params& params, c
 WheelEncoder::WheelEncoder(const Params& params, const sim::DeviceContext& context)
     : params_(params),
       wheels_(wheels_of(params, context)),
-      noise_(context.noise(params.noise, static_cast<int>(wheels_.size()), "noise")),
+      noise_(context, params, static_cast<int>(wheels_.size())),
       angles_rad_(wheels_.size()),
       believed_rad_(wheels_.size()),
       passed_(wheels_.size()),
@@ -94,28 +94,19 @@ void WheelEncoder::disturb(double dt_s, sim::Random& random) {
   }
 }
 
-void WheelEncoder::change(const Params& params) {
-  params_.missed_ticks = params.missed_ticks;
-  noise_.change(params.noise);
-}
-
 void WheelEncoder::visit_state(sim::StateArchive& archive) {
   for (auto* angles : {&angles_rad_, &believed_rad_, &rates_radps_}) visit_same_size(archive, *angles, "wheels");
   for (auto* counts : {&passed_, &counted_, &ticks_}) visit_same_size(archive, *counts, "wheels");
   archive(noise_);
 }
 
-void WheelEncoderReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  shoal::wheel_encoder_t message;
-  message.utime = out.utime(sampled_at);
-  message.count = static_cast<std::int32_t>(encoder_.wheels().size());
-  for (const WheelEncoder::Wheel& wheel : encoder_.wheels()) message.joint.push_back(wheel.name);
-  message.ticks.assign(encoder_.ticks().begin(), encoder_.ticks().end());
-  message.rate_radps = encoder_.rates_radps();
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
+void fill(const WheelEncoder& encoder, shoal::wheel_encoder_t& message) {
+  message.count = static_cast<std::int32_t>(encoder.wheels().size());
+  for (const WheelEncoder::Wheel& wheel : encoder.wheels()) message.joint.push_back(wheel.name);
+  message.ticks.assign(encoder.ticks().begin(), encoder.ticks().end());
+  message.rate_radps = encoder.rates_radps();
 }
 
-SHOAL_SENSOR("wheel_encoder", WheelEncoder, WheelEncoderReporter);
+SHOAL_SENSOR("wheel_encoder", WheelEncoder, shoal::wheel_encoder_t);
 
 }  // namespace devices

@@ -31,7 +31,8 @@ class WheelEncoder final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   /// The errors; joints and ticks stay.
-  void change(const Params& params);
+  void change(const Params& params) { params_.missed_ticks = params.missed_ticks; }
+  auto noises() { return std::tie(noise_); }
   void visit_state(sim::StateArchive& archive) override;
   const std::vector<Wheel>& wheels() const { return wheels_; }
   const std::vector<std::int64_t>& ticks() const { return ticks_; }
@@ -43,24 +44,13 @@ class WheelEncoder final : public sim::Sensor {
 
   Params params_;
   std::vector<Wheel> wheels_;
-  sim::Noise noise_;
+  sim::NoiseOf<&Params::noise> noise_;
   std::vector<double> angles_rad_;     ///< true, at the last sample
   std::vector<double> believed_rad_;   ///< with the noise
   std::vector<std::int64_t> passed_;   ///< ticks of the believed angle
   std::vector<std::int64_t> counted_;  ///< of those the ones not missed
   std::vector<std::int64_t> ticks_;    ///< the reading
   std::vector<double> rates_radps_;    ///< the reading
-};
-
-/// Publishes shoal.wheel_encoder_t.
-class WheelEncoderReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.wheel_encoder_t";
-  explicit WheelEncoderReporter(const WheelEncoder& encoder) : encoder_(encoder) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const WheelEncoder& encoder_;
 };
 
 }  // namespace devices

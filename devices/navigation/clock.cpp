@@ -3,8 +3,8 @@
 
 #include <limits>
 
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/clock_status_t.hpp"
-#include "shoal/message_codec.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
@@ -25,19 +25,15 @@ void Clock::disturb(double, sim::Random&) {
   reading_.error_s = reading_.rate_error = std::numeric_limits<double>::quiet_NaN();
 }
 
-void ClockReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  const Clock::Reading& reading = clock_.reading();
-  shoal::clock_status_t message;
-  message.utime = out.utime(sampled_at);
+void fill(const Clock& clock, shoal::clock_status_t& message) {
+  const Clock::Reading& reading = clock.reading();
   message.disciplined = reading.disciplined;
   message.since_fix_s = reading.since_fix_s;
   message.estimated_std_s = reading.estimated_std_s;
   message.error_s = reading.error_s;
   message.rate_error = reading.rate_error;
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
 }
 
-SHOAL_SENSOR("clock", Clock, ClockReporter);
+SHOAL_SENSOR("clock", Clock, shoal::clock_status_t);
 
 }  // namespace devices

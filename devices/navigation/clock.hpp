@@ -39,15 +39,4 @@ class Clock final : public sim::Sensor {
   double last_error_s_ = 0;
 };
 
-/// Publishes shoal.clock_status_t.
-class ClockReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.clock_status_t";
-  explicit ClockReporter(const Clock& clock) : clock_(clock) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Clock& clock_;
-};
-
 }  // namespace devices

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/ctd_t.hpp"
-#include "shoal/message_codec.hpp"
 #include "sim/medium/practical_salinity.hpp"
 #include "sim/world/world.hpp"
 
@@ -20,18 +20,10 @@ void Ctd::Params::read(sim::ParamReader& in) {
 
 Ctd::Ctd(const Params& params, const sim::DeviceContext& context)
     : params_(params),
-      conductivity_noise_(context.noise(params.conductivity_noise, 1, "conductivity_noise")),
-      temperature_noise_(context.noise(params.temperature_noise, 1, "temperature_noise")),
-      pressure_noise_(context.noise(params.pressure_noise, 1, "pressure_noise")),
-      sound_speed_noise_(context.noise(params.sound_speed_noise, 1, "sound_speed_noise")) {}
-
-void Ctd::change(const Params& params) {
-  params_ = params;
-  conductivity_noise_.change(params.conductivity_noise);
-  temperature_noise_.change(params.temperature_noise);
-  pressure_noise_.change(params.pressure_noise);
-  sound_speed_noise_.change(params.sound_speed_noise);
-}
+      conductivity_noise_(context, params),
+      temperature_noise_(context, params),
+      pressure_noise_(context, params),
+      sound_speed_noise_(context, params) {}
 
 void Ctd::measure(const sim::SenseContext& context) {
   const sim::Medium& medium = context.world.medium();
@@ -59,21 +51,17 @@ double Ctd::salinity_psu() const {
   return sim::practical_salinity_psu(reading_.conductivity_Spm, reading_.temperature_C, pressure_dbar());
 }
 
-void CtdReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  const Ctd::Reading& reading = ctd_.reading();
-  shoal::ctd_t message;
-  message.utime = out.utime(sampled_at);
+void fill(const Ctd& ctd, shoal::ctd_t& message) {
+  const Ctd::Reading& reading = ctd.reading();
   message.valid = reading.valid;
   message.conductivity_Spm = reading.conductivity_Spm;
   message.temperature_C = reading.temperature_C;
   message.pressure_Pa = reading.pressure_Pa;
-  message.depth_m = ctd_.depth_m();
-  message.salinity_psu = ctd_.salinity_psu();
+  message.depth_m = ctd.depth_m();
+  message.salinity_psu = ctd.salinity_psu();
   message.sound_speed_mps = reading.sound_speed_mps;
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
 }
 
-SHOAL_SENSOR("ctd", Ctd, CtdReporter);
+SHOAL_SENSOR("ctd", Ctd, shoal::ctd_t);
 
 }  // namespace devices

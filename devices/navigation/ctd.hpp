@@ -30,7 +30,8 @@ class Ctd final : public sim::Sensor {
   };
 
   Ctd(const Params& params, const sim::DeviceContext& context);
-  void change(const Params& params);
+  void change(const Params& params) { params_ = params; }
+  auto noises() { return std::tie(conductivity_noise_, temperature_noise_, pressure_noise_, sound_speed_noise_); }
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override {
@@ -45,19 +46,11 @@ class Ctd final : public sim::Sensor {
   double pressure_dbar() const { return (reading_.pressure_Pa - params_.depth.assumed_surface_Pa) * 1e-4; }
 
   Params params_;
-  sim::Noise conductivity_noise_, temperature_noise_, pressure_noise_, sound_speed_noise_;
+  sim::NoiseOf<&Params::conductivity_noise> conductivity_noise_;
+  sim::NoiseOf<&Params::temperature_noise> temperature_noise_;
+  sim::NoiseOf<&Params::pressure_noise> pressure_noise_;
+  sim::NoiseOf<&Params::sound_speed_noise> sound_speed_noise_;
   Reading reading_;
-};
-
-/// Publishes shoal.ctd_t.
-class CtdReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.ctd_t";
-  explicit CtdReporter(const Ctd& ctd) : ctd_(ctd) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Ctd& ctd_;
 };
 
 }  // namespace devices

@@ -7,8 +7,8 @@
 
 #include "devices/navigation/dvl_presets.hpp"
 #include "devices/ranging/ray_filter.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/dvl_t.hpp"
-#include "shoal/message_codec.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
@@ -84,12 +84,12 @@ Dvl::Dvl(const Params& params, const sim::DeviceContext& context)
     : physics_(context.world.physics()),
       medium_(context.world.medium()),
       own_group_(context.vehicle.group()),
-      beam_fault_(context.faults.noise_of("beam")),
-      beam_noise_(context.noise(params.beam_noise, dvl_beams, "beam_noise")),
-      water_beam_noise_(context.noise(params.beam_noise, dvl_beams, "beam_noise")),
-      velocity_noise_(context.noise(params.velocity_noise, 3, "velocity_noise")),
-      water_velocity_noise_(context.noise(params.velocity_noise, 3, "velocity_noise")),
-      range_noise_(context.noise(params.range_noise, dvl_beams, "range_noise")) {
+      beam_fault_(*context.noise_origin(params.beam_noise).fault),
+      beam_noise_(context, params, dvl_beams),
+      water_beam_noise_(context, params, dvl_beams),
+      velocity_noise_(context, params, 3),
+      water_velocity_noise_(context, params, 3),
+      range_noise_(context, params, dvl_beams) {
   sim::Random scale(context.world.seed(), context.full_name() + "#scale");
   scale.begin_step(0);
   scale_draw_ = scale.gaussian();
@@ -98,11 +98,6 @@ Dvl::Dvl(const Params& params, const sim::DeviceContext& context)
 
 void Dvl::change(const Params& params) {
   params_ = params;
-  beam_noise_.change(params.beam_noise);
-  water_beam_noise_.change(params.beam_noise);
-  velocity_noise_.change(params.velocity_noise);
-  water_velocity_noise_.change(params.velocity_noise);
-  range_noise_.change(params.range_noise);
   filter_ = make_ray_filter(physics_, sim::RayKind::sound, params.see_through, own_group_, false);
   const double s = std::sin(params.beam_angle_rad), c = std::cos(params.beam_angle_rad);
   for (std::size_t i = 0; i < dvl_beams; ++i) {
@@ -214,11 +209,9 @@ void Dvl::visit_state(sim::StateArchive& archive) {
   archive(sound_scale_, speed_mps_, reading_);
 }
 
-void DvlReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  const Dvl::Reading& reading = dvl_.reading();
+void fill(const Dvl& dvl, shoal::dvl_t& message) {
+  const Dvl::Reading& reading = dvl.reading();
   const double nothing = std::numeric_limits<double>::quiet_NaN();
-  shoal::dvl_t message;
-  message.utime = out.utime(sampled_at);
   message.bottom_lock = reading.velocity_S.has_value();
   message.water_lock = reading.water_velocity_S.has_value();
   for (int i = 0; i < 3; ++i) {
@@ -233,10 +226,8 @@ void DvlReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
     message.beam_range_m[i] = beam.sees_bottom ? beam.range_m : nothing;
     message.beam_velocity_mps[i] = beam.sees_bottom ? beam.velocity_mps : nothing;
   }
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
 }
 
-SHOAL_SENSOR("dvl", Dvl, DvlReporter);
+SHOAL_SENSOR("dvl", Dvl, shoal::dvl_t);
 
 }  // namespace devices

@@ -59,6 +59,9 @@ class Dvl final : public sim::Sensor {
 
   Dvl(const Params& params, const sim::DeviceContext& context);
   void change(const Params& params);
+  auto noises() {
+    return std::tie(beam_noise_, water_beam_noise_, velocity_noise_, water_velocity_noise_, range_noise_);
+  }
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   std::int64_t rays() const override { return dvl_beams; }
@@ -78,23 +81,16 @@ class Dvl final : public sim::Sensor {
   int own_group_;
   const sim::NoiseFault& beam_fault_;
   sim::RayFilter filter_;
-  sim::Noise beam_noise_, water_beam_noise_, velocity_noise_, water_velocity_noise_, range_noise_;
+  sim::NoiseOf<&Params::beam_noise> beam_noise_;
+  sim::NoiseOf<&Params::beam_noise> water_beam_noise_;
+  sim::NoiseOf<&Params::velocity_noise> velocity_noise_;
+  sim::NoiseOf<&Params::velocity_noise> water_velocity_noise_;
+  sim::NoiseOf<&Params::range_noise> range_noise_;
   double scale_draw_;       ///< standard normal, once in a run
   double sound_scale_ = 1;  ///< assumed over true speed of sound
   double speed_mps_ = 0;    ///< true, for the noise
   std::array<sim::Vector3d, dvl_beams> beams_S_;
   Reading reading_;
-};
-
-/// Publishes shoal.dvl_t.
-class DvlReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.dvl_t";
-  explicit DvlReporter(const Dvl& dvl) : dvl_(dvl) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Dvl& dvl_;
 };
 
 }  // namespace devices

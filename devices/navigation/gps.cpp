@@ -51,17 +51,10 @@ Gps::Gps(const Params& params, const sim::DeviceContext& context)
       faults_(context.faults),
       config_(context.config),
       step_s_(sim::to_seconds(context.world.step_time())),
-      horizontal_noise_(context.noise(params.horizontal_noise, 2, "horizontal_noise")),
-      vertical_noise_(context.noise(params.vertical_noise, 1, "vertical_noise")),
-      velocity_noise_(context.noise(params.velocity_noise, 3, "velocity_noise")) {
+      horizontal_noise_(context, params, 2),
+      vertical_noise_(context, params),
+      velocity_noise_(context, params, 3) {
   if (params.disciplines_clock) refuse_two_masters(context);
-}
-
-void Gps::change(const Params& params) {
-  params_ = params;
-  horizontal_noise_.change(params.horizontal_noise);
-  vertical_noise_.change(params.vertical_noise);
-  velocity_noise_.change(params.velocity_noise);
 }
 
 void Gps::measure(const sim::SenseContext& context) {

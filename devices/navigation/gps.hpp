@@ -40,7 +40,8 @@ class Gps final : public sim::Sensor {
   };
 
   Gps(const Params& params, const sim::DeviceContext& context);
-  void change(const Params& params);
+  void change(const Params& params) { params_ = params; }
+  auto noises() { return std::tie(horizontal_noise_, vertical_noise_, velocity_noise_); }
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override {
@@ -60,7 +61,9 @@ class Gps final : public sim::Sensor {
   const sim::DeviceFaults& faults_;
   const sim::DeviceConfig& config_;
   double step_s_;
-  sim::Noise horizontal_noise_, vertical_noise_, velocity_noise_;
+  sim::NoiseOf<&Params::horizontal_noise> horizontal_noise_;
+  sim::NoiseOf<&Params::vertical_noise> vertical_noise_;
+  sim::NoiseOf<&Params::velocity_noise> velocity_noise_;
   Reading reading_;
   sim::Time sampled_at_{0};
   std::optional<sim::Time> denied_at_;  ///< when it was last under water or in a zone that denies it

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/leak_t.hpp"
-#include "shoal/message_codec.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
@@ -18,13 +18,7 @@ void Leak::Params::read(sim::ParamReader& in) {
   in.read("water_noise", water_noise, "error of the water in the hull, litres; a fault's bias is a false alarm");
 }
 
-Leak::Leak(const Params& params, const sim::DeviceContext& context)
-    : params_(params), water_noise_(context.noise(params.water_noise, 1, "water_noise")) {}
-
-void Leak::change(const Params& params) {
-  params_ = params;
-  water_noise_.change(params.water_noise);
-}
+Leak::Leak(const Params& params, const sim::DeviceContext& context) : params_(params), water_noise_(context, params) {}
 
 void Leak::measure(const sim::SenseContext& context) {
   const double depth_m = context.world.medium().depth_m(context.X_WS.translation());
@@ -43,15 +37,11 @@ void Leak::visit_state(sim::StateArchive& archive) {
   archive(water_l_, burst_, reading_l_, water_noise_);
 }
 
-void LeakReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  shoal::leak_t message;
-  message.utime = out.utime(sampled_at);
-  message.leak = leak_.leak();
-  message.water_l = leak_.water_l();
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
+void fill(const Leak& leak, shoal::leak_t& message) {
+  message.leak = leak.leak();
+  message.water_l = leak.water_l();
 }
 
-SHOAL_SENSOR("leak", Leak, LeakReporter);
+SHOAL_SENSOR("leak", Leak, shoal::leak_t);
 
 }  // namespace devices

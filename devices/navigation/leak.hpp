@@ -25,7 +25,8 @@ class Leak final : public sim::Sensor {
   };
 
   Leak(const Params& params, const sim::DeviceContext& context);
-  void change(const Params& params);
+  void change(const Params& params) { params_ = params; }
+  auto noises() { return std::tie(water_noise_); }
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override;
@@ -34,21 +35,10 @@ class Leak final : public sim::Sensor {
 
  private:
   Params params_;
-  sim::Noise water_noise_;
+  sim::NoiseOf<&Params::water_noise> water_noise_;
   double water_l_ = 0;  ///< in the hull
   bool burst_ = false;  ///< it has been too deep: it leaks wherever there is water
   double reading_l_ = 0;
-};
-
-/// Publishes shoal.leak_t.
-class LeakReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.leak_t";
-  explicit LeakReporter(const Leak& leak) : leak_(leak) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Leak& leak_;
 };
 
 }  // namespace devices

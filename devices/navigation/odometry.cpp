@@ -6,7 +6,7 @@
 
 #include "devices/drive/wheel_geometry.hpp"
 #include "devices/joint/joint_of_device.hpp"
-#include "shoal/message_codec.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/odometry_t.hpp"
 #include "sim/world/vehicle.hpp"
 #include "sim/world/world.hpp"
@@ -42,7 +42,7 @@ Odometry::Odometry(const Params& params, const sim::DeviceContext& context)
     : params_(params),
       left_(wheel_joint(context, params.left_joint)),
       right_(wheel_joint(context, params.right_joint)),
-      noise_(context.noise(params.noise, 2, "noise")),
+      noise_(context, params, 2),
       X_W0_(context.vehicle.X_WV()) {
   const sim::VehicleConfig& vehicle = context.vehicle.config();
   const LengthOfDevice radius{"wheel_radius_m", params.wheel_radius_m,
@@ -110,10 +110,8 @@ void Odometry::visit_state(sim::StateArchive& archive) {
       archive.fail("a wheel that turned further than can be counted");
 }
 
-void OdometryReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  const Odometry::Reading& reading = odometry_.reading();
-  shoal::odometry_t message;
-  message.utime = out.utime(sampled_at);
+void fill(const Odometry& odometry, shoal::odometry_t& message) {
+  const Odometry::Reading& reading = odometry.reading();
   message.x_m = reading.x_m;
   message.y_m = reading.y_m;
   message.theta_rad = reading.theta_rad;
@@ -121,10 +119,8 @@ void OdometryReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   message.turn_radps = reading.turn_radps;
   message.left_ticks = reading.left_ticks;
   message.right_ticks = reading.right_ticks;
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
 }
 
-SHOAL_SENSOR("odometry", Odometry, OdometryReporter);
+SHOAL_SENSOR("odometry", Odometry, shoal::odometry_t);
 
 }  // namespace devices

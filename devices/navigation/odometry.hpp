@@ -46,24 +46,13 @@ class Odometry final : public sim::Sensor {
   double wheel_radius_m_, track_m_;  ///< that it believes in
   const sim::Joint& left_;
   const sim::Joint& right_;
-  sim::Noise noise_;
+  sim::NoiseOf<&Params::noise> noise_;
   sim::Pose X_W0_;  ///< where the vehicle started
   double truth_theta_rad_ = 0;
   double wheel_rad_[2] = {0, 0};     ///< true angles at the last sample
   double believed_rad_[2] = {0, 0};  ///< with the noise, before they are cut into ticks
   Reading reading_;
   Reading reckoned_;
-};
-
-/// Publishes shoal.odometry_t.
-class OdometryReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.odometry_t";
-  explicit OdometryReporter(const Odometry& odometry) : odometry_(odometry) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Odometry& odometry_;
 };
 
 }  // namespace devices

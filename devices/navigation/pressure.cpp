@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "devices/navigation/pressure.hpp"
 
-#include "shoal/message_codec.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/pressure_t.hpp"
 #include "sim/world/world.hpp"
 
@@ -14,15 +14,7 @@ void Pressure::Params::read(sim::ParamReader& in) {
 }
 
 Pressure::Pressure(const Params& params, const sim::DeviceContext& context)
-    : params_(params),
-      pressure_noise_(context.noise(params.pressure_noise, 1, "pressure_noise")),
-      temperature_noise_(context.noise(params.temperature_noise, 1, "temperature_noise")) {}
-
-void Pressure::change(const Params& params) {
-  params_ = params;
-  pressure_noise_.change(params.pressure_noise);
-  temperature_noise_.change(params.temperature_noise);
-}
+    : params_(params), pressure_noise_(context, params), temperature_noise_(context, params) {}
 
 void Pressure::measure(const sim::SenseContext& context) {
   const sim::Medium& medium = context.world.medium();
@@ -39,16 +31,12 @@ void Pressure::visit_state(sim::StateArchive& archive) {
   archive(pressure_Pa_, temperature_C_, pressure_noise_, temperature_noise_);
 }
 
-void PressureReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  shoal::pressure_t message;
-  message.utime = out.utime(sampled_at);
-  message.pressure_Pa = pressure_.pressure_Pa();
-  message.depth_m = pressure_.depth_m();
-  message.temperature_C = pressure_.temperature_C();
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
+void fill(const Pressure& pressure, shoal::pressure_t& message) {
+  message.pressure_Pa = pressure.pressure_Pa();
+  message.depth_m = pressure.depth_m();
+  message.temperature_C = pressure.temperature_C();
 }
 
-SHOAL_SENSOR("pressure", Pressure, PressureReporter);
+SHOAL_SENSOR("pressure", Pressure, shoal::pressure_t);
 
 }  // namespace devices

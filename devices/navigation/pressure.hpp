@@ -20,7 +20,8 @@ class Pressure final : public sim::Sensor {
   };
 
   Pressure(const Params& params, const sim::DeviceContext& context);
-  void change(const Params& params);
+  void change(const Params& params) { params_ = params; }
+  auto noises() { return std::tie(pressure_noise_, temperature_noise_); }
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override;
@@ -31,19 +32,9 @@ class Pressure final : public sim::Sensor {
 
  private:
   Params params_;
-  sim::Noise pressure_noise_, temperature_noise_;
+  sim::NoiseOf<&Params::pressure_noise> pressure_noise_;
+  sim::NoiseOf<&Params::temperature_noise> temperature_noise_;
   double pressure_Pa_ = 0, temperature_C_ = 0;
-};
-
-/// Publishes shoal.pressure_t.
-class PressureReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.pressure_t";
-  explicit PressureReporter(const Pressure& pressure) : pressure_(pressure) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Pressure& pressure_;
 };
 
 }  // namespace devices

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "shoal/message_codec.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/swarm_position_t.hpp"
 #include "sim/world/world.hpp"
 
@@ -20,11 +20,7 @@ void SwarmPosition::Params::read(sim::ParamReader& in) {
 }
 
 SwarmPosition::SwarmPosition(const Params& params, const sim::DeviceContext& context)
-    : params_(params),
-      seed_(context.world.seed()),
-      full_name_(context.full_name()),
-      relative_fault_(context.faults.noise_of("relative")),
-      absolute_fault_(context.faults.noise_of("absolute")) {
+    : params_(params), relative_noises_(context, params), absolute_noises_(context, params) {
   for (const std::string& category : params.see_through) categories_ &= ~context.world.physics().category_bit(category);
 }
 
@@ -64,11 +60,7 @@ SwarmPosition::Errors& SwarmPosition::errors_of(const Sighting& sighting) {
 }
 
 SwarmPosition::Errors SwarmPosition::new_errors(int vehicle, const std::string& name) const {
-  const auto noise = [&](const sim::NoiseParams& params, const char* what, const sim::NoiseFault& fault) {
-    return sim::Noise(params, 3, sim::Random(seed_, full_name_ + what + name), &fault);
-  };
-  return {vehicle, noise(params_.relative_noise, "#relative/", relative_fault_),
-          noise(params_.absolute_noise, "#absolute/", absolute_fault_), now_s_};
+  return {vehicle, relative_noises_.to(name, params_, 3), absolute_noises_.to(name, params_, 3), now_s_};
 }
 
 void SwarmPosition::disturb(double, sim::Random& random) {
@@ -103,22 +95,18 @@ void SwarmPosition::make_errors_of(const std::vector<int>& seen, const sim::Stat
   if (static_cast<std::size_t>(known) != errors_.size()) archive.fail("a vehicle was seen that has no errors");
 }
 
-void SwarmPositionReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
+void fill(const SwarmPosition& sensor, shoal::swarm_position_t& message) {
   const double nothing = std::numeric_limits<double>::quiet_NaN();
-  shoal::swarm_position_t message;
-  message.utime = out.utime(sampled_at);
-  message.count = static_cast<std::int32_t>(sensor_.sightings().size());
-  for (const SwarmPosition::Sighting& sighting : sensor_.sightings()) {
+  message.count = static_cast<std::int32_t>(sensor.sightings().size());
+  for (const SwarmPosition::Sighting& sighting : sensor.sightings()) {
     const sim::Vector3d& r = sighting.p_SV_S;
-    const sim::Vector3d a = sensor_.absolute() ? sighting.p_WV : sim::Vector3d::Constant(nothing);
+    const sim::Vector3d a = sensor.absolute() ? sighting.p_WV : sim::Vector3d::Constant(nothing);
     message.vehicle.push_back(sighting.name);
     message.relative_m.push_back({r.x(), r.y(), r.z()});
     message.absolute_m.push_back({a.x(), a.y(), a.z()});
   }
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
 }
 
-SHOAL_SENSOR("swarm_position", SwarmPosition, SwarmPositionReporter);
+SHOAL_SENSOR("swarm_position", SwarmPosition, shoal::swarm_position_t);
 
 }  // namespace devices

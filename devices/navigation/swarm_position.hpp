@@ -52,25 +52,12 @@ class SwarmPosition final : public sim::Sensor {
 
   Params params_;
   std::uint32_t categories_ = ~0u;
-  std::uint64_t seed_;
-  std::string full_name_;
-  const sim::NoiseFault& relative_fault_;
-  const sim::NoiseFault& absolute_fault_;
+  sim::NoisesOf<&Params::relative_noise> relative_noises_;
+  sim::NoisesOf<&Params::absolute_noise> absolute_noises_;
   std::vector<Sighting> sightings_;
   std::vector<Errors> errors_;     ///< of each vehicle seen so far, in the order of first sight
   std::vector<int> errors_index_;  ///< by vehicle number; -1: not seen yet
   double now_s_ = 0;
-};
-
-/// Publishes shoal.swarm_position_t.
-class SwarmPositionReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.swarm_position_t";
-  explicit SwarmPositionReporter(const SwarmPosition& sensor) : sensor_(sensor) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const SwarmPosition& sensor_;
 };
 
 }  // namespace devices

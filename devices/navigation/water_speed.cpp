@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shoal/message_codec.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/water_speed_t.hpp"
 #include "sim/world/world.hpp"
 
@@ -21,12 +21,7 @@ void WaterSpeed::Params::read(sim::ParamReader& in) {
 }
 
 WaterSpeed::WaterSpeed(const Params& params, const sim::DeviceContext& context)
-    : params_(params), speed_noise_(context.noise(params.speed_noise, 1, "speed_noise")) {}
-
-void WaterSpeed::change(const Params& params) {
-  params_ = params;
-  speed_noise_.change(params.speed_noise);
-}
+    : params_(params), speed_noise_(context, params) {}
 
 void WaterSpeed::measure(const sim::SenseContext& context) {
   const sim::Medium& medium = context.world.medium();
@@ -51,15 +46,11 @@ void WaterSpeed::visit_state(sim::StateArchive& archive) {
   archive(speed_mps_, valid_, speed_noise_);
 }
 
-void WaterSpeedReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  shoal::water_speed_t message;
-  message.utime = out.utime(sampled_at);
-  message.speed_mps = sensor_.speed_mps();
-  message.valid = sensor_.valid();
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
+void fill(const WaterSpeed& sensor, shoal::water_speed_t& message) {
+  message.speed_mps = sensor.speed_mps();
+  message.valid = sensor.valid();
 }
 
-SHOAL_SENSOR("water_speed", WaterSpeed, WaterSpeedReporter);
+SHOAL_SENSOR("water_speed", WaterSpeed, shoal::water_speed_t);
 
 }  // namespace devices

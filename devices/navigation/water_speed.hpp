@@ -22,7 +22,8 @@ class WaterSpeed final : public sim::Sensor {
   };
 
   WaterSpeed(const Params& params, const sim::DeviceContext& context);
-  void change(const Params& params);
+  void change(const Params& params) { params_ = params; }
+  auto noises() { return std::tie(speed_noise_); }
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override;
@@ -31,20 +32,9 @@ class WaterSpeed final : public sim::Sensor {
 
  private:
   Params params_;
-  sim::Noise speed_noise_;
+  sim::NoiseOf<&Params::speed_noise> speed_noise_;
   double speed_mps_ = 0;
   bool valid_ = false;
-};
-
-/// Publishes shoal.water_speed_t.
-class WaterSpeedReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.water_speed_t";
-  explicit WaterSpeedReporter(const WaterSpeed& sensor) : sensor_(sensor) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const WaterSpeed& sensor_;
 };
 
 }  // namespace devices

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "devices/joint/joint_of_device.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/battery_t.hpp"
-#include "shoal/message_codec.hpp"
 #include "sim/world/mounted_device.hpp"
 
 namespace devices {
@@ -29,9 +29,9 @@ void Battery::Params::read(sim::ParamReader& in) {
 Battery::Battery(const Params& params, const sim::DeviceContext& context)
     : params_(params),
       vehicle_(context.vehicle),
-      voltage_noise_(context.noise(params.voltage_noise, 1, "voltage_noise")),
-      current_noise_(context.noise(params.current_noise, 1, "current_noise")),
-      charge_noise_(context.noise(params.charge_noise, 1, "charge_noise")),
+      voltage_noise_(context, params),
+      current_noise_(context, params),
+      charge_noise_(context, params),
       energy_J_(capacity_J() * params.initial_charge) {
   if (vehicle_.systems().metered) refuse(context, "the vehicle has a battery already");
   vehicle_.systems().metered = true;
@@ -89,24 +89,17 @@ void Battery::change(const Params& params) {
   const double charge = energy_J_ / capacity_J();
   params_ = params;
   energy_J_ = charge * capacity_J();
-  voltage_noise_.change(params.voltage_noise);
-  current_noise_.change(params.current_noise);
-  charge_noise_.change(params.charge_noise);
 }
 
-void BatteryReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  const Battery::Reading& reading = battery_.reading();
-  shoal::battery_t message;
-  message.utime = out.utime(sampled_at);
+void fill(const Battery& battery, shoal::battery_t& message) {
+  const Battery::Reading& reading = battery.reading();
   message.voltage_V = reading.voltage_V;
   message.current_A = reading.current_A;
   message.charge = reading.charge;
   message.energy_J = reading.energy_J;
   message.empty = reading.empty;
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
 }
 
-SHOAL_SENSOR("battery", Battery, BatteryReporter);
+SHOAL_SENSOR("battery", Battery, shoal::battery_t);
 
 }  // namespace devices

@@ -40,6 +40,7 @@ class Battery final : public sim::Sensor {
   void disturb(double dt_s, sim::Random& random) override;
   /// Its charge stays the same share of the capacity.
   void change(const Params& params);
+  auto noises() { return std::tie(voltage_noise_, current_noise_, charge_noise_); }
   void visit_state(sim::StateArchive& archive) override {
     archive(voltage_noise_, current_noise_, charge_noise_, energy_J_, current_A_, reading_);
   }
@@ -53,21 +54,12 @@ class Battery final : public sim::Sensor {
 
   Params params_;
   sim::Vehicle& vehicle_;
-  sim::Noise voltage_noise_, current_noise_, charge_noise_;
+  sim::NoiseOf<&Params::voltage_noise> voltage_noise_;
+  sim::NoiseOf<&Params::current_noise> current_noise_;
+  sim::NoiseOf<&Params::charge_noise> charge_noise_;
   double energy_J_;
   double current_A_ = 0;
   Reading reading_;
-};
-
-/// Publishes shoal.battery_t.
-class BatteryReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.battery_t";
-  explicit BatteryReporter(const Battery& battery) : battery_(battery) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Battery& battery_;
 };
 
 }  // namespace devices

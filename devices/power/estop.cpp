@@ -5,6 +5,7 @@
 
 #include "devices/joint/bumper.hpp"
 #include "devices/joint/joint_of_device.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/estop_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/world/mounted_device.hpp"
@@ -44,18 +45,14 @@ void EmergencyStop::set_engaged(bool engaged) {
   vehicle_.systems().estopped = engaged;
 }
 
-void EmergencyStopReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  shoal::estop_t message;
-  message.utime = out.utime(sampled_at);
-  message.engaged = estop_.engaged();
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
+void fill(const EmergencyStop& estop, shoal::estop_t& message) {
+  message.engaged = estop.engaged();
 }
 
 void EmergencyStopController::receive(sim::Time, std::span<const std::byte> payload) {
   estop_.set_engaged(shoal::decode<shoal::estop_t>(payload, shoal::Finite::required).engaged != 0);
 }
 
-SHOAL_TRANSCEIVER("estop", EmergencyStop, EmergencyStopReporter, EmergencyStopController);
+SHOAL_TRANSCEIVER("estop", EmergencyStop, shoal::estop_t, EmergencyStopController);
 
 }  // namespace devices

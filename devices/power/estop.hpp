@@ -40,17 +40,6 @@ class EmergencyStop final : public sim::Sensor {
   bool engaged_ = false;  ///< as sampled
 };
 
-/// Publishes shoal.estop_t.
-class EmergencyStopReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.estop_t";
-  explicit EmergencyStopReporter(const EmergencyStop& estop) : estop_(estop) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const EmergencyStop& estop_;
-};
-
 /// Takes shoal.estop_t.
 class EmergencyStopController final : public sim::Controller {
  public:

@@ -132,7 +132,7 @@ Camera::Camera(const Params& params, const sim::DeviceContext& context)
       config_(context.config),
       step_(sim::from_seconds(context.world.config().physics.step_s)),
       own_group_(context.vehicle.group()),
-      noise_(context.noise(params.noise, params.image == Kind::rgb ? 3 : 1, "noise")) {
+      noise_(context, params, params.image == Kind::rgb ? 3 : 1) {
   change(params);
   renderer_->clear(frame_);
   levels_ = sim::develop(params_.image == Kind::grey ? sim::grey_of(frame_.light) : frame_.light, 1);
@@ -141,7 +141,6 @@ Camera::Camera(const Params& params, const sim::DeviceContext& context)
 
 void Camera::change(const Params& params) {
   params_ = params;
-  noise_.change(params.noise);
   auto& shared = world_.shared<SharedByCameras>();
   sim::RenderOptions options;
   options.kind = render_kind(params.image);
@@ -293,7 +292,5 @@ std::string Camera::label_text() const {
     text += std::to_string(label) + " " + sim::Renderer::label_name(physics_, render_kind(params_.image), label) + "\n";
   return text;
 }
-
-SHOAL_SENSOR("camera", Camera, CameraReporter);
 
 }  // namespace devices

@@ -29,6 +29,7 @@ class Camera final : public sim::Sensor {
   static constexpr bool casts_rays = true;
   static constexpr bool sweeps = true;
   static constexpr const char* fixed_keys[] = {"image", "readout_s", "exposure_time_s", "blur_samples"};
+  static constexpr bool reuses_message = true;
   enum class Kind { rgb, grey, depth, parts, vehicles };
   enum class Encoding { raw, raw16, png, jpeg };
   struct Params {
@@ -59,6 +60,7 @@ class Camera final : public sim::Sensor {
 
   Camera(const Params& params, const sim::DeviceContext& context);
   void change(const Params& params);
+  auto noises() { return std::tie(noise_); }
   void sweep(const sim::SweepContext& context) override;
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
@@ -101,7 +103,7 @@ class Camera final : public sim::Sensor {
   int own_group_;
   Params params_;
   std::unique_ptr<sim::Renderer> renderer_;
-  sim::Noise noise_;
+  sim::NoiseOf<&Params::noise> noise_;
   sim::Frame under_way_, frame_;  // the next image, and the last one
   int next_exposure_ = 0;
   std::deque<Place> places_;                // at the ends of steps, the last one now
@@ -112,17 +114,6 @@ class Camera final : public sim::Sensor {
   sim::FloatImage depth_m_;
   ReadingDigest image_digest_;  // of the last image
   std::vector<double> values_;  // what noise works on
-};
-
-/// Publishes shoal.image_t, equal on the wire to bot_core's.
-class CameraReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.image_t";
-  explicit CameraReporter(const Camera& camera) : camera_(camera) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Camera& camera_;
 };
 
 /// FourCC numbers of bot_core's pixel formats, as signed 32-bit integers.  PNG is none of bot_core's: the letters

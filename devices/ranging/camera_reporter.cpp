@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "devices/ranging/camera.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/image_t.hpp"
-#include "shoal/message_codec.hpp"
 #include "sim/image/image_file.hpp"
 
 namespace devices {
@@ -77,10 +77,9 @@ void set_depth(shoal::image_t& message, const Camera& camera) {
 
 }  // namespace
 
-void CameraReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  static thread_local shoal::image_t message;  // keeps its memory from image to image
-  const Camera::Params& params = camera_.params();
-  message.utime = out.utime(sampled_at);
+// Publishes shoal.image_t, equal on the wire to bot_core's.
+void fill(const Camera& camera, shoal::image_t& message) {
+  const Camera::Params& params = camera.params();
   message.width = params.optics.width;
   message.height = params.optics.height;
   message.metadata.clear();
@@ -88,21 +87,21 @@ void CameraReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   switch (params.image) {
     case Camera::Kind::rgb:
     case Camera::Kind::grey:
-      set_levels(message, camera_);
+      set_levels(message, camera);
       break;
     case Camera::Kind::depth:
-      set_depth(message, camera_);
+      set_depth(message, camera);
       break;
     case Camera::Kind::parts:
     case Camera::Kind::vehicles:
-      set_16_bits(message, camera_.labels(), params.encoding == Camera::Encoding::png);
-      add_metadata(message, "labels", camera_.label_text());
+      set_16_bits(message, camera.labels(), params.encoding == Camera::Encoding::png);
+      add_metadata(message, "labels", camera.label_text());
       break;
   }
   message.size = static_cast<std::int32_t>(message.data.size());
   message.nmetadata = static_cast<std::int32_t>(message.metadata.size());
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
 }
+
+SHOAL_SENSOR("camera", Camera, shoal::image_t);
 
 }  // namespace devices

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "devices/common/param_checks.hpp"
-#include "shoal/message_codec.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/sonar_image_t.hpp"
 #include "sim/world/world.hpp"
 
@@ -78,24 +78,20 @@ void ImagingSonar::disturb(double dt_s, sim::Random& random) {
   bins_.disturb(dt_s, random);
 }
 
-void ImagingSonarReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  static thread_local shoal::sonar_image_t message;  // keeps its memory from ping to ping
-  const SonarBins& picture = sonar_.picture();
-  message.utime = out.utime(sampled_at);
+void fill(const ImagingSonar& sonar, shoal::sonar_image_t& message) {
+  const SonarBins& picture = sonar.picture();
   message.nbins = picture.bins();
   message.nbeams = picture.beams();
-  message.range_min_m = static_cast<float>(sonar_.sonar().range_min_m);
-  message.range_max_m = static_cast<float>(sonar_.sonar().range_max_m);
-  message.rad0 = static_cast<float>(sonar_.first_bearing_rad());
-  message.radstep = static_cast<float>(sonar_.bearing_step_rad());
+  message.range_min_m = static_cast<float>(sonar.sonar().range_min_m);
+  message.range_max_m = static_cast<float>(sonar.sonar().range_max_m);
+  message.rad0 = static_cast<float>(sonar.first_bearing_rad());
+  message.radstep = static_cast<float>(sonar.bearing_step_rad());
   message.floor_dB = static_cast<float>(picture.params().floor_dB);
   message.dB_per_count = static_cast<float>(picture.params().dB_per_count());
   message.size = static_cast<std::int32_t>(picture.pixels().size());
   message.data.assign(picture.pixels().begin(), picture.pixels().end());
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
 }
 
-SHOAL_SENSOR("imaging_sonar", ImagingSonar, ImagingSonarReporter);
+SHOAL_SENSOR("imaging_sonar", ImagingSonar, shoal::sonar_image_t);
 
 }  // namespace devices

@@ -14,6 +14,7 @@ class ImagingSonar final : public sim::Sensor {
   static constexpr const char* meaning = "Forward-looking sonar: a picture of echo levels over range and bearing.";
   static constexpr double default_rate_hz = 5;
   static constexpr bool casts_rays = true;
+  static constexpr bool reuses_message = true;
   struct Params {
     int beams = 128;
     double fov_rad = sim::degrees_to_radians(90);
@@ -48,17 +49,6 @@ class ImagingSonar final : public sim::Sensor {
   std::vector<SonarRay> rays_S_;  ///< beam by beam
   /// Of each ray: towards more elevation, times the elevation that the ray stands for; and towards more bearing.
   std::vector<sim::Vector3d> up_S_, left_S_;
-};
-
-/// Publishes shoal.sonar_image_t.
-class ImagingSonarReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.sonar_image_t";
-  explicit ImagingSonarReporter(const ImagingSonar& sonar) : sonar_(sonar) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const ImagingSonar& sonar_;
 };
 
 }  // namespace devices

@@ -59,14 +59,14 @@ void LaserReturns::assign(std::size_t beams, double range_m) {
 LaserReceiver::LaserReceiver(const LaserParams& params, const sim::DeviceContext& context)
     : physics_(context.world.physics()),
       own_group_(context.vehicle.group()),
-      noise_(context.noise(params.noise, 1, "noise")),
-      fault_(context.faults.noise_of("noise")) {
+      noise_(context, params),
+      fault_(*context.noise_origin(params.noise).fault) {
   change(params);
 }
 
 void LaserReceiver::change(const LaserParams& params) {
   params_ = params;
-  noise_.change(params.noise);
+  noise_.change(params);
   filter_ = make_ray_filter(physics_, sim::RayKind::laser, params.see_through, own_group_, params.sees_own_vehicle);
   pattern_ = cone_pattern(params.beam_divergence_rad / 2, params.beam_samples);
 }

@@ -91,7 +91,7 @@ class LaserReceiver {
   int own_group_;
   LaserParams params_;
   sim::RayFilter filter_;
-  sim::Noise noise_;
+  sim::NoiseOf<&LaserParams::noise> noise_;
   const sim::NoiseFault& fault_;
   std::vector<sim::Vector3d> pattern_;
   std::vector<Echo> echoes_;  ///< of one beam

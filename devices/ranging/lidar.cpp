@@ -6,7 +6,7 @@
 
 #include "devices/common/param_checks.hpp"
 #include "devices/ranging/lidar_presets.hpp"
-#include "shoal/message_codec.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "sim/world/world.hpp"
 
@@ -106,23 +106,20 @@ void Lidar::visit_state(sim::StateArchive& archive) {
   archive(receiver_);
 }
 
-void LidarReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  static thread_local shoal::planar_lidar_t message;  // keeps its vectors from scan to scan
-  const std::vector<double>& ranges_m = lidar_.ranges_m();
-  const std::span<const double> intensities = lidar_.intensities();
-  message.utime = out.utime(sampled_at);
+// Publishes shoal.planar_lidar_t, equal on the wire to bot_core's.
+void fill(const Lidar& lidar, shoal::planar_lidar_t& message) {
+  const std::vector<double>& ranges_m = lidar.ranges_m();
+  const std::span<const double> intensities = lidar.intensities();
   message.nranges = static_cast<std::int32_t>(ranges_m.size());
   message.ranges.resize(ranges_m.size());
   for (std::size_t i = 0; i < ranges_m.size(); ++i) message.ranges[i] = static_cast<float>(ranges_m[i]);
   message.nintensities = static_cast<std::int32_t>(intensities.size());
   message.intensities.resize(intensities.size());
   for (std::size_t i = 0; i < intensities.size(); ++i) message.intensities[i] = static_cast<float>(intensities[i]);
-  message.rad0 = static_cast<float>(lidar_.first_angle_rad());
-  message.radstep = static_cast<float>(lidar_.step_rad());
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
+  message.rad0 = static_cast<float>(lidar.first_angle_rad());
+  message.radstep = static_cast<float>(lidar.step_rad());
 }
 
-SHOAL_SENSOR("lidar", Lidar, LidarReporter);
+SHOAL_SENSOR("lidar", Lidar, shoal::planar_lidar_t);
 
 }  // namespace devices

@@ -15,6 +15,7 @@ class Lidar final : public sim::Sensor {
   static constexpr const char* meaning = "Planar laser scanner: ranges over a fan of beams.";
   static constexpr double default_rate_hz = 10;
   static constexpr bool casts_rays = true;
+  static constexpr bool reuses_message = true;
   struct Params {
     std::string preset = "none";
     int beams = 180;
@@ -50,17 +51,6 @@ class Lidar final : public sim::Sensor {
   std::vector<sim::Vector3d> directions_S_;  ///< of the beams; of all their rays when several sample one
   std::vector<sim::Ray> rays_;
   std::vector<sim::RayHit> hits_;
-};
-
-/// Publishes shoal.planar_lidar_t, equal on the wire to bot_core's.
-class LidarReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.planar_lidar_t";
-  explicit LidarReporter(const Lidar& lidar) : lidar_(lidar) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Lidar& lidar_;
 };
 
 }  // namespace devices

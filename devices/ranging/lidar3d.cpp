@@ -8,7 +8,7 @@
 
 #include "devices/common/param_checks.hpp"
 #include "devices/ranging/lidar_presets.hpp"
-#include "shoal/message_codec.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/point_cloud_t.hpp"
 #include "sim/world/world.hpp"
 
@@ -171,10 +171,8 @@ void Lidar3d::visit_begun_turn(sim::StateArchive& archive) {
   archive.raw(returns_.returned.data(), passed);
 }
 
-void Lidar3dReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  static thread_local shoal::point_cloud_t message;  // keeps its vectors from turn to turn
-  message.utime = out.utime(sampled_at);
-  const LaserReturns& returns = lidar_.returns();
+void fill(const Lidar3d& lidar, shoal::point_cloud_t& message) {
+  const LaserReturns& returns = lidar.returns();
   message.x_m.clear();
   message.y_m.clear();
   message.z_m.clear();
@@ -182,22 +180,20 @@ void Lidar3dReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   message.rings.clear();
   message.time_offsets_us.clear();
   std::size_t beam = 0;
-  for (int column = 0; column < lidar_.columns(); ++column)
-    for (int ring = 0; ring < lidar_.rings(); ++ring, ++beam) {
+  for (int column = 0; column < lidar.columns(); ++column)
+    for (int ring = 0; ring < lidar.rings(); ++ring, ++beam) {
       if (!returns.returned[beam]) continue;
-      const sim::Vector3d p_S = returns.ranges_m[beam] * lidar_.direction_S(column, ring);
+      const sim::Vector3d p_S = returns.ranges_m[beam] * lidar.direction_S(column, ring);
       message.x_m.push_back(static_cast<float>(p_S.x()));
       message.y_m.push_back(static_cast<float>(p_S.y()));
       message.z_m.push_back(static_cast<float>(p_S.z()));
       message.intensities.push_back(static_cast<float>(returns.intensities[beam]));
       message.rings.push_back(static_cast<std::int16_t>(ring));
-      message.time_offsets_us.push_back(static_cast<std::int32_t>(lidar_.offset(column).count()));
+      message.time_offsets_us.push_back(static_cast<std::int32_t>(lidar.offset(column).count()));
     }
   message.count = static_cast<std::int32_t>(message.x_m.size());
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
 }
 
-SHOAL_SENSOR("lidar3d", Lidar3d, Lidar3dReporter);
+SHOAL_SENSOR("lidar3d", Lidar3d, shoal::point_cloud_t);
 
 }  // namespace devices

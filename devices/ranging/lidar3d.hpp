@@ -18,6 +18,7 @@ class Lidar3d final : public sim::Sensor {
   static constexpr double default_rate_hz = 10;
   static constexpr bool casts_rays = true;
   static constexpr bool sweeps = true;
+  static constexpr bool reuses_message = true;
   struct Params {
     std::string preset = "none";
     int rings = 16;
@@ -65,17 +66,6 @@ class Lidar3d final : public sim::Sensor {
   int next_column_ = 0;
   std::vector<sim::Ray> rays_;
   std::vector<sim::RayHit> hits_;
-};
-
-/// Publishes shoal.point_cloud_t.
-class Lidar3dReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.point_cloud_t";
-  explicit Lidar3dReporter(const Lidar3d& lidar) : lidar_(lidar) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Lidar3d& lidar_;
 };
 
 }  // namespace devices

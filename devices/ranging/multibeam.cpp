@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "devices/common/param_checks.hpp"
-#include "shoal/message_codec.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/multibeam_t.hpp"
 #include "sim/world/world.hpp"
 
@@ -31,17 +31,13 @@ void Multibeam::Params::read(sim::ParamReader& in) {
 }
 
 Multibeam::Multibeam(const Params& params, const sim::DeviceContext& context)
-    : receiver_(params.sonar, context),
-      noise_(context.noise(params.noise, 1, "noise")),
-      strength_noise_(context.noise(params.strength_noise, 1, "strength_noise")) {
+    : receiver_(params.sonar, context), noise_(context, params), strength_noise_(context, params) {
   change(params);
 }
 
 void Multibeam::change(const Params& params) {
   params_ = params;
   receiver_.change(params.sonar);
-  noise_.change(params.noise);
-  strength_noise_.change(params.strength_noise);
   const auto beams = static_cast<std::size_t>(params.beams);
   ranges_m_.assign(beams, params.sonar.range_max_m);
   true_ranges_m_ = ranges_m_;
@@ -141,22 +137,18 @@ void Multibeam::visit_state(sim::StateArchive& archive) {
   archive(receiver_, noise_, strength_noise_);
 }
 
-void MultibeamReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  static thread_local shoal::multibeam_t message;  // keeps its vectors from ping to ping
-  message.utime = out.utime(sampled_at);
+void fill(const Multibeam& multibeam, shoal::multibeam_t& message) {
   const auto floats = [](const std::vector<double>& from, std::vector<float>& to) {
     to.resize(from.size());
     for (std::size_t i = 0; i < from.size(); ++i) to[i] = static_cast<float>(from[i]);
   };
-  message.count = static_cast<std::int32_t>(multibeam_.ranges_m().size());
-  floats(multibeam_.angles_rad(), message.angles_rad);
-  floats(multibeam_.ranges_m(), message.ranges_m);
-  floats(multibeam_.strengths_dB(), message.strengths_dB);
-  message.valid.assign(multibeam_.valid().begin(), multibeam_.valid().end());
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
+  message.count = static_cast<std::int32_t>(multibeam.ranges_m().size());
+  floats(multibeam.angles_rad(), message.angles_rad);
+  floats(multibeam.ranges_m(), message.ranges_m);
+  floats(multibeam.strengths_dB(), message.strengths_dB);
+  message.valid.assign(multibeam.valid().begin(), multibeam.valid().end());
 }
 
-SHOAL_SENSOR("multibeam", Multibeam, MultibeamReporter);
+SHOAL_SENSOR("multibeam", Multibeam, shoal::multibeam_t);
 
 }  // namespace devices

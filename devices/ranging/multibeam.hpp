@@ -15,6 +15,7 @@ class Multibeam final : public sim::Sensor {
   static constexpr const char* meaning = "Multibeam sonar: ranges and strengths over a swath across the track.";
   static constexpr double default_rate_hz = 5;
   static constexpr bool casts_rays = true;
+  static constexpr bool reuses_message = true;
   struct Params {
     int beams = 128;
     double swath_rad = sim::degrees_to_radians(120);
@@ -33,6 +34,7 @@ class Multibeam final : public sim::Sensor {
 
   Multibeam(const Params& params, const sim::DeviceContext& context);
   void change(const Params& params);
+  auto noises() { return std::tie(noise_, strength_noise_); }
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   std::int64_t rays() const override { return static_cast<std::int64_t>(rays_S_.size()); }
@@ -50,24 +52,14 @@ class Multibeam final : public sim::Sensor {
 
   Params params_;
   SonarReceiver receiver_;
-  sim::Noise noise_, strength_noise_;
+  sim::NoiseOf<&Params::noise> noise_;
+  sim::NoiseOf<&Params::strength_noise> strength_noise_;
   std::vector<double> angles_rad_;
   std::vector<SonarRay> rays_S_;  ///< beam by beam
   std::vector<SonarEcho> echoes_;
   std::vector<double> ranges_m_, true_ranges_m_, strengths_dB_;
   std::vector<std::uint8_t> valid_;
   ReadingDigest digest_;
-};
-
-/// Publishes shoal.multibeam_t.
-class MultibeamReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.multibeam_t";
-  explicit MultibeamReporter(const Multibeam& multibeam) : multibeam_(multibeam) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Multibeam& multibeam_;
 };
 
 }  // namespace devices

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shoal/message_codec.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/side_scan_t.hpp"
 #include "sim/world/world.hpp"
 
@@ -78,12 +78,10 @@ void SideScan::visit_state(sim::StateArchive& archive) {
   archive(receiver_, bins_);
 }
 
-void SideScanReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  static thread_local shoal::side_scan_t message;  // keeps its memory from ping to ping
-  const SonarBins& picture = sonar_.picture();
-  message.utime = out.utime(sampled_at);
-  message.range_min_m = static_cast<float>(sonar_.sonar().range_min_m);
-  message.range_max_m = static_cast<float>(sonar_.sonar().range_max_m);
+void fill(const SideScan& sonar, shoal::side_scan_t& message) {
+  const SonarBins& picture = sonar.picture();
+  message.range_min_m = static_cast<float>(sonar.sonar().range_min_m);
+  message.range_max_m = static_cast<float>(sonar.sonar().range_max_m);
   message.floor_dB = static_cast<float>(picture.params().floor_dB);
   message.dB_per_count = static_cast<float>(picture.params().dB_per_count());
   message.nbins = picture.bins();
@@ -93,10 +91,8 @@ void SideScanReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
     message.port[bin] = picture.pixels()[2 * bin];
     message.starboard[bin] = picture.pixels()[2 * bin + 1];
   }
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
 }
 
-SHOAL_SENSOR("side_scan", SideScan, SideScanReporter);
+SHOAL_SENSOR("side_scan", SideScan, shoal::side_scan_t);
 
 }  // namespace devices

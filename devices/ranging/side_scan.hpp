@@ -15,6 +15,7 @@ class SideScan final : public sim::Sensor {
   static constexpr const char* meaning = "Side-scan sonar: echo levels over slant range, to port and starboard.";
   static constexpr double default_rate_hz = 5;
   static constexpr bool casts_rays = true;
+  static constexpr bool reuses_message = true;
   struct Params {
     double along_rad = sim::degrees_to_radians(0.5);
     double vertical_rad = sim::degrees_to_radians(60);
@@ -46,17 +47,6 @@ class SideScan final : public sim::Sensor {
   SonarBins bins_;
   std::vector<SonarRay> rays_S_;       ///< port, then starboard
   std::vector<sim::Vector3d> down_S_;  ///< of each ray: towards more depression, times the angle it stands for
-};
-
-/// Publishes shoal.side_scan_t.
-class SideScanReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.side_scan_t";
-  explicit SideScanReporter(const SideScan& sonar) : sonar_(sonar) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const SideScan& sonar_;
 };
 
 }  // namespace devices

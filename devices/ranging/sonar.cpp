@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "devices/ranging/beam_pattern.hpp"
-#include "shoal/message_codec.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/sonar_range_t.hpp"
 #include "sim/world/world.hpp"
 
@@ -22,18 +22,13 @@ void RangeSonar::Params::read(sim::ParamReader& in) {
 }
 
 RangeSonar::RangeSonar(const Params& params, const sim::DeviceContext& context, const sim::Vector3d& axis_S)
-    : axis_S_(axis_S),
-      receiver_(params.sonar, context),
-      noise_(context.noise(params.noise, 1, "noise")),
-      strength_noise_(context.noise(params.strength_noise, 1, "strength_noise")) {
+    : axis_S_(axis_S), receiver_(params.sonar, context), noise_(context, params), strength_noise_(context, params) {
   change(params);
 }
 
 void RangeSonar::change(const Params& params) {
   params_ = params;
   receiver_.change(params.sonar);
-  noise_.change(params.noise);
-  strength_noise_.change(params.strength_noise);
   const sim::Quaterniond R_SA = sim::Quaterniond::FromTwoVectors(sim::Vector3d::UnitX(), axis_S_);
   const double share_sr = cone_solid_angle_sr(params.beam_rad / 2) / params.rays;
   rays_S_.clear();
@@ -90,17 +85,13 @@ void RangeSonar::visit_state(sim::StateArchive& archive) {
   archive(range_m_, strength_dB_, valid_, receiver_, noise_, strength_noise_);
 }
 
-void RangeSonarReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  shoal::sonar_range_t message;
-  message.utime = out.utime(sampled_at);
-  message.range_m = sonar_.range_m();
-  message.strength_dB = sonar_.strength_dB();
-  message.valid = sonar_.valid();
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
+void fill(const RangeSonar& sonar, shoal::sonar_range_t& message) {
+  message.range_m = sonar.range_m();
+  message.strength_dB = sonar.strength_dB();
+  message.valid = sonar.valid();
 }
 
-SHOAL_SENSOR("sonar", Sonar, RangeSonarReporter);
-SHOAL_SENSOR("altimeter", Altimeter, RangeSonarReporter);
+SHOAL_SENSOR("sonar", Sonar, shoal::sonar_range_t);
+SHOAL_SENSOR("altimeter", Altimeter, shoal::sonar_range_t);
 
 }  // namespace devices

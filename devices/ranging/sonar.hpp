@@ -26,6 +26,7 @@ class RangeSonar : public sim::Sensor {
 
   RangeSonar(const Params& params, const sim::DeviceContext& context, const sim::Vector3d& axis_S);
   void change(const Params& params);
+  auto noises() { return std::tie(noise_, strength_noise_); }
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   std::int64_t rays() const override { return static_cast<std::int64_t>(rays_S_.size()); }
@@ -41,7 +42,8 @@ class RangeSonar : public sim::Sensor {
   Params params_;
   sim::Vector3d axis_S_;
   SonarReceiver receiver_;
-  sim::Noise noise_, strength_noise_;
+  sim::NoiseOf<&Params::noise> noise_;
+  sim::NoiseOf<&Params::strength_noise> strength_noise_;
   std::vector<SonarRay> rays_S_;
   std::vector<SonarEcho> echoes_;
   double range_m_ = 0;
@@ -63,17 +65,6 @@ class Altimeter final : public RangeSonar {
   static constexpr const char* meaning = "Single-beam sonar that looks down: height above the ground.";
   Altimeter(const Params& params, const sim::DeviceContext& context)
       : RangeSonar(params, context, -sim::Vector3d::UnitZ()) {}
-};
-
-/// Publishes shoal.sonar_range_t.
-class RangeSonarReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.sonar_range_t";
-  explicit RangeSonarReporter(const RangeSonar& sonar) : sonar_(sonar) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const RangeSonar& sonar_;
 };
 
 }  // namespace devices

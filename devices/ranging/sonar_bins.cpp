@@ -33,11 +33,11 @@ void SonarPictureParams::read(sim::ParamReader& in, const SonarParams& sonar) {
 }
 
 SonarBins::SonarBins(const SonarPictureParams& params, const sim::DeviceContext& context)
-    : params_(params), level_noise_(context.noise(params.level_noise, 1, "level_noise")) {}
+    : params_(params), level_noise_(context, params) {}
 
 void SonarBins::change(const SonarPictureParams& params, const SonarParams& sonar, int beams) {
   params_ = params;
-  level_noise_.change(params.level_noise);
+  level_noise_.change(params);
   speckle_ = sonar.speckle;
   beams_ = beams;
   range_min_m_ = sonar.range_min_m;

@@ -47,7 +47,7 @@ class SonarBins {
   void quantize();
 
   SonarPictureParams params_;
-  sim::Noise level_noise_;
+  sim::NoiseOf<&SonarPictureParams::level_noise> level_noise_;
   bool speckle_ = true;
   int beams_ = 0;
   double range_min_m_ = 0, range_max_m_ = 0, pulse_m_ = 0, range_scale_ = 1;

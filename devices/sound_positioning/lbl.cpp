@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/lbl_t.hpp"
-#include "shoal/message_codec.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
@@ -27,14 +27,11 @@ void Lbl::Params::read(sim::ParamReader& in) {
 }
 
 Lbl::Lbl(const Params& params, const sim::DeviceContext& context)
-    : params_(params),
-      interrogator_(params.interrogator, context),
-      time_noise_(context.noise(params.time_noise, 1, "time_noise")) {}
+    : params_(params), interrogator_(params.interrogator, context), time_noise_(context, params) {}
 
 void Lbl::change(const Params& params) {
   params_ = params;
   interrogator_.change(params.interrogator);
-  time_noise_.change(params.time_noise);
 }
 
 void Lbl::measure(const sim::SenseContext& context) {
@@ -78,20 +75,18 @@ void Lbl::visit_state(sim::StateArchive& archive) {
   archive(interrogator_, asking_, next_ping_, ranges_, since_ping_s_, time_noise_);
 }
 
-void LblReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  if (lbl_.ranges().empty()) return;
-  shoal::lbl_t message;
-  message.utime = out.utime(sampled_at);
-  message.n = static_cast<std::int32_t>(lbl_.ranges().size());
-  for (const Lbl::Range& range : lbl_.ranges()) {
+// Publishes one shoal.lbl_t for each ping.
+bool fill(const Lbl& lbl, shoal::lbl_t& message) {
+  if (lbl.ranges().empty()) return false;
+  message.n = static_cast<std::int32_t>(lbl.ranges().size());
+  for (const Lbl::Range& range : lbl.ranges()) {
     message.transponder.push_back(range.transponder);
     message.travel_time_s.push_back(range.travel_time_s);
     message.range_m.push_back(range.range_m);
   }
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
+  return true;
 }
 
-SHOAL_SENSOR("lbl", Lbl, LblReporter);
+SHOAL_SENSOR("lbl", Lbl, shoal::lbl_t);
 
 }  // namespace devices

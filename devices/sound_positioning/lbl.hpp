@@ -37,6 +37,7 @@ class Lbl final : public sim::Sensor {
 
   Lbl(const Params& params, const sim::DeviceContext& context);
   void change(const Params& params);
+  auto noises() { return std::tie(time_noise_); }
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override;
@@ -48,23 +49,12 @@ class Lbl final : public sim::Sensor {
 
   Params params_;
   Interrogator interrogator_;
-  sim::Noise time_noise_;
+  sim::NoiseOf<&Params::time_noise> time_noise_;
   bool asking_ = false;
   sim::Time next_ping_{0};
   std::vector<Range> ranges_;
   double assumed_mps_ = 0;   ///< that turns the times of this sample into ranges
   double since_ping_s_ = 0;  ///< for the slow parts of the error
-};
-
-/// Publishes one shoal.lbl_t for each ping.
-class LblReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.lbl_t";
-  explicit LblReporter(const Lbl& lbl) : lbl_(lbl) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Lbl& lbl_;
 };
 
 }  // namespace devices

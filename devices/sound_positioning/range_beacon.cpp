@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "shoal/message_codec.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/range_beacon_t.hpp"
 #include "sim/world/world.hpp"
 
@@ -57,11 +57,10 @@ RangeBeacon::RangeBeacon(const Params& params, const sim::DeviceContext& context
       body_(context.body),
       p_BS_(context.config.position_m),
       full_name_(context.full_name()),
-      seed_(context.world.seed()),
       faults_(context.faults),
-      range_fault_(context.faults.noise_of("range")),
-      bearing_fault_(context.faults.noise_of("bearing")),
-      elevation_fault_(context.faults.noise_of("elevation")) {
+      range_noises_(context, params),
+      bearing_noises_(context, params),
+      elevation_noises_(context, params) {
   network_.join(*this);
 }
 
@@ -120,12 +119,8 @@ void RangeBeacon::measure(const sim::SenseContext& context) {
 RangeBeacon::Errors& RangeBeacon::errors_of(const std::string& beacon) {
   for (Errors& errors : errors_)
     if (errors.beacon == beacon) return errors;
-  const auto noise = [&](const sim::NoiseParams& params, const char* what, const sim::NoiseFault& fault) {
-    return sim::Noise(params, 1, sim::Random(seed_, full_name_ + what + beacon), &fault);
-  };
-  errors_.push_back({beacon, noise(params_.range_noise, "#range/", range_fault_),
-                     noise(params_.bearing_noise, "#bearing/", bearing_fault_),
-                     noise(params_.elevation_noise, "#elevation/", elevation_fault_), now_s_});
+  errors_.push_back({beacon, range_noises_.to(beacon, params_), bearing_noises_.to(beacon, params_),
+                     elevation_noises_.to(beacon, params_), now_s_});
   return errors_.back();
 }
 
@@ -161,22 +156,19 @@ void RangeBeacon::visit_state(sim::StateArchive& archive) {
   for (Errors& errors : errors_) archive(errors.range, errors.bearing, errors.elevation, errors.seen_at_s);
 }
 
-void RangeBeaconReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  if (sensor_.params().beacon_only) return;
+bool fill(const RangeBeacon& sensor, shoal::range_beacon_t& message) {
+  if (sensor.params().beacon_only) return false;
   const double nothing = std::numeric_limits<double>::quiet_NaN();
-  shoal::range_beacon_t message;
-  message.utime = out.utime(sampled_at);
-  message.count = static_cast<std::int32_t>(sensor_.sightings().size());
-  for (const RangeBeacon::Sighting& sighting : sensor_.sightings()) {
+  message.count = static_cast<std::int32_t>(sensor.sightings().size());
+  for (const RangeBeacon::Sighting& sighting : sensor.sightings()) {
     message.beacon.push_back(sighting.beacon);
     message.range_m.push_back(sighting.range_m);
-    message.bearing_rad.push_back(sensor_.params().bearing ? sighting.bearing_rad : nothing);
-    message.elevation_rad.push_back(sensor_.params().elevation ? sighting.elevation_rad : nothing);
+    message.bearing_rad.push_back(sensor.params().bearing ? sighting.bearing_rad : nothing);
+    message.elevation_rad.push_back(sensor.params().elevation ? sighting.elevation_rad : nothing);
   }
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
+  return true;
 }
 
-SHOAL_SENSOR("range_beacon", RangeBeacon, RangeBeaconReporter);
+SHOAL_SENSOR("range_beacon", RangeBeacon, shoal::range_beacon_t);
 
 }  // namespace devices

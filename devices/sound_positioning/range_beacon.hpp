@@ -75,25 +75,13 @@ class RangeBeacon final : public sim::Sensor {
   const sim::Body& body_;
   sim::Vector3d p_BS_;
   std::string full_name_;
-  std::uint64_t seed_;
   const sim::DeviceFaults& faults_;
-  const sim::NoiseFault& range_fault_;
-  const sim::NoiseFault& bearing_fault_;
-  const sim::NoiseFault& elevation_fault_;
+  sim::NoisesOf<&Params::range_noise> range_noises_;
+  sim::NoisesOf<&Params::bearing_noise> bearing_noises_;
+  sim::NoisesOf<&Params::elevation_noise> elevation_noises_;
   double now_s_ = 0;
   std::vector<Sighting> sightings_;
   std::vector<Errors> errors_;
-};
-
-/// Publishes shoal.range_beacon_t.
-class RangeBeaconReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.range_beacon_t";
-  explicit RangeBeaconReporter(const RangeBeacon& sensor) : sensor_(sensor) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const RangeBeacon& sensor_;
 };
 
 }  // namespace devices

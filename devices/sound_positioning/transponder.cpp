@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shoal/message_codec.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "shoal/transponder_t.hpp"
 #include "sim/world/vehicle.hpp"
 #include "sim/world/world.hpp"
@@ -68,15 +68,11 @@ void Transponder::visit_state(sim::StateArchive& archive) {
   if (archive.restoring() && !(answer_Hz_ > 0)) archive.fail("a transponder's frequency must be above 0");
 }
 
-void TransponderReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
-  shoal::transponder_t message;
-  message.utime = out.utime(sampled_at);
-  message.answers = transponder_.answers();
-  message.asked_by = transponder_.asked_by();
-  shoal::encode_into(message, out.buffer());
-  out.publish(out.buffer());
+void fill(const Transponder& transponder, shoal::transponder_t& message) {
+  message.answers = transponder.answers();
+  message.asked_by = transponder.asked_by();
 }
 
-SHOAL_SENSOR("transponder", Transponder, TransponderReporter);
+SHOAL_SENSOR("transponder", Transponder, shoal::transponder_t);
 
 }  // namespace devices

@@ -57,15 +57,4 @@ class Transponder final : public sim::Sensor, public sim::AcousticListener {
   std::string asked_by_;
 };
 
-/// Publishes shoal.transponder_t.
-class TransponderReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "shoal.transponder_t";
-  explicit TransponderReporter(const Transponder& transponder) : transponder_(transponder) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override;
-
- private:
-  const Transponder& transponder_;
-};
-
 }  // namespace devices

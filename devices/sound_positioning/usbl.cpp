@@ -24,16 +24,13 @@ void Usbl::Params::read(sim::ParamReader& in) {
 Usbl::Usbl(const Params& params, const sim::DeviceContext& context)
     : params_(params),
       interrogator_(params.interrogator, context),
-      range_noise_(context.noise(params.range_noise, 1, "range_noise")),
-      azimuth_noise_(context.noise(params.azimuth_noise, 1, "azimuth_noise")),
-      elevation_noise_(context.noise(params.elevation_noise, 1, "elevation_noise")) {}
+      range_noise_(context, params),
+      azimuth_noise_(context, params),
+      elevation_noise_(context, params) {}
 
 void Usbl::change(const Params& params) {
   params_ = params;
   interrogator_.change(params.interrogator);
-  range_noise_.change(params.range_noise);
-  azimuth_noise_.change(params.azimuth_noise);
-  elevation_noise_.change(params.elevation_noise);
 }
 
 sim::Vector3d Usbl::Fix::position_S() const {

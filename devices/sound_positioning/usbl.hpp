@@ -40,6 +40,7 @@ class Usbl final : public sim::Sensor {
 
   Usbl(const Params& params, const sim::DeviceContext& context);
   void change(const Params& params);
+  auto noises() { return std::tie(range_noise_, azimuth_noise_, elevation_noise_); }
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override;
@@ -48,7 +49,9 @@ class Usbl final : public sim::Sensor {
  private:
   Params params_;
   Interrogator interrogator_;
-  sim::Noise range_noise_, azimuth_noise_, elevation_noise_;
+  sim::NoiseOf<&Params::range_noise> range_noise_;
+  sim::NoiseOf<&Params::azimuth_noise> azimuth_noise_;
+  sim::NoiseOf<&Params::elevation_noise> elevation_noise_;
   sim::Time next_ping_{0};
   std::vector<Fix> fixes_;
   double assumed_mps_ = 0;  ///< that turns the times of this sample into ranges

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "shoal/message_codec.hpp"
+#include "messages/reporter/message_reporter.hpp"
 #include "sim/device/plugin.hpp"
 #include "sim/random/noise.hpp"
 #include "sim/world/device_context.hpp"
@@ -24,8 +24,8 @@ class Thermometer final : public sim::Sensor {
     }
   };
 
-  Thermometer(const Params& params, const sim::DeviceContext& context)
-      : params_(params), noise_(context.noise(params.noise, 1, "noise")) {}
+  Thermometer(const Params& params, const sim::DeviceContext& context) : params_(params), noise_(context, params) {}
+  auto noises() { return std::tie(noise_); }
 
   void measure(const sim::SenseContext& context) override {
     temperature_degc_ = params_.origin_degc + params_.slope_degcpm.dot(context.X_WS.translation());
@@ -37,27 +37,15 @@ class Thermometer final : public sim::Sensor {
 
  private:
   Params params_;
-  sim::Noise noise_;
+  sim::NoiseOf<&Params::noise> noise_;
   double temperature_degc_ = 0;
 };
 
-class ThermometerReporter final : public sim::Reporter {
- public:
-  static constexpr const char* report_message = "thermometer.temperature_t";
-  explicit ThermometerReporter(const Thermometer& thermometer) : thermometer_(thermometer) {}
-  void report(sim::Time sampled_at, sim::Publisher& out) const override {
-    thermometer::temperature_t message;
-    message.utime = out.utime(sampled_at);
-    message.temperature_degc = thermometer_.temperature_degc();
-    shoal::encode_into(message, out.buffer());
-    out.publish(out.buffer());
-  }
+void fill(const Thermometer& thermometer, thermometer::temperature_t& message) {
+  message.temperature_degc = thermometer.temperature_degc();
+}
 
- private:
-  const Thermometer& thermometer_;
-};
-
-SHOAL_SENSOR("thermometer", Thermometer, ThermometerReporter);
+SHOAL_SENSOR("thermometer", Thermometer, thermometer::temperature_t);
 
 }  // namespace
 

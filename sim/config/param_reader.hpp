@@ -76,7 +76,7 @@ class ParamReader {
 
   // A key without a value (`parts:` and nothing after it) is an empty map or list, or an unset optional.
 
-  /// A nested map.
+  /// A nested map.  A T that has set_key() is given `key`, whether the key is present or not.
   template <ReadsParams T>
   void read(const char* key, T& value, const char* meaning);
   template <ReadsParams T>

@@ -37,6 +37,7 @@ void ParamReader::read(const char* key, T& value, const char* meaning) {
     describe_nested(key, ParamKind::map, "{}", &detail::type_mark<T>, read_copy, meaning);
     return;
   }
+  if constexpr (requires { value.set_key(key); }) value.set_key(key);
   if (const ConfigNode* node = take(key)) read_nested(key, *node, [&value](ParamReader& in) { value.read(in); });
 }
 

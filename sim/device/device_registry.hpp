@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -14,6 +15,10 @@
 namespace sim {
 
 struct DeviceContext;
+
+/// Fills and publishes one message a sample.  Defined where messages are known: messages/reporter/message_reporter.hpp.
+template <typename Model, typename Message>
+class MessageReporter;
 
 /// The name of a quantity for faults: the key of its noise without `_noise`.
 std::string quantity_of(const std::string& noise_key);
@@ -119,6 +124,29 @@ concept Acts = requires(Model& model, const ActContext& context) {
   model.act(context);
 };
 
+/// The reporter of a device that is registered with `Output`: a Reporter or nothing (void), or else a message.
+template <typename Model, typename Output>
+using ReporterOf = std::conditional_t<std::is_void_v<Output> || std::is_base_of_v<Reporter, Output>, Output,
+                                      MessageReporter<Model, Output>>;
+
+/// Models with parameters that can change while they run: change() takes them, and noises() names the errors, as a
+/// tuple of references to NoiseOf, that change with them.
+template <typename Model>
+concept Changes = requires(Model& model, const typename Model::Params& params) {
+  model.change(params);
+};
+template <typename Model>
+concept HasNoises = requires(Model& model) {
+  model.noises();
+};
+
+template <typename Model>
+void change_model(Model& model, const typename Model::Params& params) {
+  if constexpr (Changes<Model>) model.change(params);
+  if constexpr (HasNoises<Model>)
+    std::apply([&params](auto&... noises) { (noises.change(params), ...); }, model.noises());
+}
+
 /// ReporterType or ControllerType void: the device has none.
 template <typename Model, typename ReporterType, typename ControllerType>
 BuiltDevice build_device(const DeviceParams& params, const DeviceContext& context) {
@@ -126,9 +154,9 @@ BuiltDevice build_device(const DeviceParams& params, const DeviceContext& contex
   auto model = make_model<Model>(params, context);
   if constexpr (!std::is_void_v<ReporterType>) built.reporter = std::make_unique<ReporterType>(*model);
   if constexpr (!std::is_void_v<ControllerType>) built.controller = std::make_unique<ControllerType>(*model);
-  if constexpr (requires(const typename Model::Params& changed) { model->change(changed); })
+  if constexpr (Changes<Model> || HasNoises<Model>)
     built.change = [raw = model.get()](const DeviceParams& changed) {
-      raw->change(static_cast<const ParamsOf<typename Model::Params>&>(changed).params);
+      change_model(*raw, static_cast<const ParamsOf<typename Model::Params>&>(changed).params);
     };
   if constexpr (std::is_base_of_v<Actuator, Model>) {
     built.actuator = std::move(model);
@@ -139,21 +167,23 @@ BuiltDevice build_device(const DeviceParams& params, const DeviceContext& contex
   return built;
 }
 
-template <typename Model, typename ReporterType, typename ControllerType>
+template <typename Model, typename Output, typename ControllerType>
 bool add_device(const char* name) {
+  using ReporterType = ReporterOf<Model, Output>;
   DeviceType type;
   type.name = name;
   type.meaning = Model::meaning;
   if constexpr (requires { Model::default_rate_hz; }) type.default_rate_hz = Model::default_rate_hz;
-  if constexpr (!std::is_void_v<ReporterType>) type.report_message = ReporterType::report_message;
+  if constexpr (requires { ReporterType::message_name(); })
+    type.report_message = ReporterType::message_name();
+  else if constexpr (!std::is_void_v<ReporterType>)
+    type.report_message = ReporterType::report_message;
   if constexpr (!std::is_void_v<ControllerType>) type.command_messages = ControllerType::command_messages;
   if constexpr (requires { Model::safe_states; })
     type.safe_states.assign(std::begin(Model::safe_states), std::end(Model::safe_states));
   else if constexpr (std::is_base_of_v<Actuator, Model>)
     type.safe_states = {SafeState::stop};
-  type.changeable = requires(Model & model, const typename Model::Params& changed) {
-    model.change(changed);
-  };
+  type.changeable = Changes<Model> || HasNoises<Model>;
   if constexpr (requires { Model::fixed_keys; })
     type.fixed_keys.assign(std::begin(Model::fixed_keys), std::end(Model::fixed_keys));
   if constexpr (requires { Model::always_on; }) type.always_on = Model::always_on;
@@ -167,13 +197,13 @@ bool add_device(const char* name) {
 
 }  // namespace detail
 
-#define SHOAL_DEVICE(name, Model, ReporterType, ControllerType) \
-  [[maybe_unused]] static const bool registered_##Model =       \
-      ::sim::detail::add_device<Model, ReporterType, ControllerType>(name)
-#define SHOAL_SENSOR(name, Model, ReporterType) SHOAL_DEVICE(name, Model, ReporterType, void)
+/// `output`: what is reported: a message, filled by fill() (see MessageReporter), or a Reporter for a device that
+/// publishes several messages or stamps them itself.
+#define SHOAL_SENSOR(name, Model, output) SHOAL_DEVICE(name, Model, output, void)
 #define SHOAL_ACTUATOR(name, Model, ControllerType) SHOAL_DEVICE(name, Model, void, ControllerType)
 /// For a device that is both: its model is a Sensor that may also have act(), make_safe() and power_W().
-#define SHOAL_TRANSCEIVER(name, Model, ReporterType, ControllerType) \
-  SHOAL_DEVICE(name, Model, ReporterType, ControllerType)
+#define SHOAL_TRANSCEIVER(name, Model, output, ControllerType) SHOAL_DEVICE(name, Model, output, ControllerType)
+#define SHOAL_DEVICE(name, Model, output, ControllerType) \
+  [[maybe_unused]] static const bool registered_##Model = ::sim::detail::add_device<Model, output, ControllerType>(name)
 
 }  // namespace sim

@@ -44,7 +44,7 @@ class TouchWatch final : public ConditionWatch {
     }
     for (const auto& [name, object] : world.objects()) {
       whose_[object.group] = 2 * object.number + 1;
-      const auto is_plane = [](const PartConfig& part) { return part.shape == "plane"; };
+      const auto is_plane = [](const PartConfig& part) { return part.shape == PartShape::plane; };
       const auto& shapes = object.config.parts;
       consider(name, object.group, !std::all_of(shapes.begin(), shapes.end(), is_plane));
     }

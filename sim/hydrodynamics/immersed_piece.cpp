@@ -5,6 +5,8 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "sim/config/diagnostics.hpp"
 
@@ -12,18 +14,9 @@ namespace sim {
 
 namespace {
 
-Vector3d default_drag(const std::string& shape) {
-  // Hoerner, Fluid-Dynamic Drag (1965), chapter 3: sphere and cylinders below the critical Reynolds number, cube.
-  if (shape == "sphere") return Vector3d::Constant(0.47);
-  if (shape == "capsule") return {1.1, 1.1, 0.3};
-  if (shape == "cylinder") return {1.1, 1.1, 0.8};
-  if (shape == "mesh") return Vector3d::Ones();
-  return Vector3d::Constant(1.05);
-}
-
 Vector3d drag_of(const PartConfig& part) {
   const std::vector<double>& given = part.drag_coefficient;
-  if (given.empty()) return default_drag(part.shape);
+  if (given.empty()) return shape_info(part.shape).drag_coefficient;
   return given.size() == 1 ? Vector3d(Vector3d::Constant(given[0])) : Vector3d(given[0], given[1], given[2]);
 }
 
@@ -65,7 +58,7 @@ ImmersedPiece round_piece(const PartConfig& part, double low, double high, const
   ImmersedPiece piece;
   piece.shape = ImmersedPiece::Shape::round;
   const double r = part.radius_m;
-  piece.round = {r, part.length_m / 2, part.shape == "capsule", low, high};
+  piece.round = {r, part.length_m / 2, part.shape == PartShape::capsule, low, high};
   piece.size_m = {2 * r, 2 * r, high - low};
   piece.p_BP.z() = (low + high) / 2;
   piece.radius_m = std::hypot(r, (high - low) / 2);
@@ -113,47 +106,76 @@ std::shared_ptr<const Mesh> closed_mesh(const PartConfig& part, const std::strin
   return nullptr;
 }
 
-/// The pieces in the frame of the part.
-std::vector<ImmersedPiece> pieces_in_part(const PartConfig& part, double longest_m,
-                                          const std::shared_ptr<const Mesh>& mesh) {
-  const Vector3d C = drag_of(part);
-  if (part.shape == "sphere") return {sphere_piece(part, C)};
-  std::vector<ImmersedPiece> pieces;
+/// Lowest and highest corner along the axes of a part that is no sphere.
+std::pair<Vector3d, Vector3d> extent_of(const PartConfig& part, const Mesh* mesh) {
   Vector3d low = -part.size_m / 2, high = part.size_m / 2;
-  int axis = 2;
-  if (part.shape == "mesh") {
+  if (mesh != nullptr) {
     low = high = mesh->vertices_m[mesh->triangles.front()[0]];
     for (const Vector3d& p : mesh->vertices_m) {
       low = low.cwiseMin(p);
       high = high.cwiseMax(p);
     }
-  }
-  if (part.shape == "box" || part.shape == "mesh") {
-    (high - low).maxCoeff(&axis);
-  } else {
-    const double half = part.length_m / 2 + (part.shape == "capsule" ? part.radius_m : 0);
+  } else if (shape_info(part.shape).round) {
+    const double half = part.length_m / 2 + (part.shape == PartShape::capsule ? part.radius_m : 0);
     low.z() = -half;
     high.z() = half;
   }
+  return {low, high};
+}
+
+struct Section {
+  int axis;
+  double from, length;
+  bool whole;  ///< it is all of the part
+};
+
+/// The section of a part; empty: nothing of it is there.
+std::optional<ImmersedPiece> section_piece(const PartConfig& part, const Mesh* mesh, const Section& section,
+                                           const Vector3d& C) {
+  const auto [axis, from, length, whole] = section;
+  const double to = from + length;
+  switch (part.shape) {
+    case PartShape::box: {
+      Vector3d size = part.size_m;
+      size[axis] = length;
+      ImmersedPiece piece = box_piece(size, C);
+      piece.p_BP[axis] = (from + to) / 2;
+      return piece;
+    }
+    case PartShape::mesh: {
+      Mesh cut = whole ? *mesh : section_of(*mesh, axis, from, to);
+      if (cut.triangles.empty()) return std::nullopt;
+      return mesh_piece(std::move(cut), C);
+    }
+    case PartShape::capsule:
+    case PartShape::cylinder:
+      return round_piece(part, from, to, C);
+    case PartShape::sphere:
+      return sphere_piece(part, C);
+    case PartShape::plane:
+    case PartShape::terrain:
+      break;
+  }
+  return std::nullopt;
+}
+
+/// The pieces in the frame of the part.
+std::vector<ImmersedPiece> pieces_in_part(const PartConfig& part, double longest_m, const Mesh* mesh) {
+  const Vector3d C = drag_of(part);
+  if (part.shape == PartShape::sphere) return {sphere_piece(part, C)};
+  const auto [low, high] = extent_of(part, mesh);
+  int axis = 2;
+  if (!shape_info(part.shape).round) (high - low).maxCoeff(&axis);
   const double whole = high[axis] - low[axis];
   const int sections = static_cast<int>(std::clamp(std::ceil(whole / longest_m), 1.0, 8.0));
   const double from = low[axis], length = whole / sections;
   Vector3d shared_ends = Vector3d::Ones();  // all sections together have one end against the flow
   shared_ends[axis] = 1.0 / sections;
   const Vector3d C_section = C.cwiseProduct(shared_ends);
+  std::vector<ImmersedPiece> pieces;
   for (int i = 0; i < sections; ++i) {
-    const double begin = from + i * length, end = begin + length;
-    if (part.shape == "box") {
-      Vector3d size = part.size_m;
-      size[axis] = length;
-      pieces.push_back(box_piece(size, C_section));
-      pieces.back().p_BP[axis] = (begin + end) / 2;
-    } else if (part.shape == "mesh") {
-      Mesh section = sections == 1 ? *mesh : section_of(*mesh, axis, begin, end);
-      if (!section.triangles.empty()) pieces.push_back(mesh_piece(std::move(section), C_section));
-    } else {
-      pieces.push_back(round_piece(part, begin, end, C_section));
-    }
+    auto piece = section_piece(part, mesh, {axis, from + i * length, length, sections == 1}, C_section);
+    if (piece) pieces.push_back(std::move(*piece));
   }
   return pieces;
 }
@@ -180,13 +202,13 @@ ImmersedVolume ImmersedPiece::immersed(const WaterPlane& plane) const {
 
 std::vector<ImmersedPiece> pieces_of(const PartConfig& part, double longest_m, const std::string& who,
                                      PieceMeshes& meshes, std::optional<std::string>& warning) {
-  if (!part.displaces || part.shape == "plane" || part.shape == "terrain") return {};
+  if (!part.displaces || !shape_info(part.shape).solid) return {};
   std::shared_ptr<const Mesh> mesh;
-  if (part.shape == "mesh") {
+  if (part.shape == PartShape::mesh) {
     mesh = closed_mesh(part, who, meshes, warning);
     if (!mesh) return {};
   }
-  std::vector<ImmersedPiece> pieces = pieces_in_part(part, longest_m, mesh);
+  std::vector<ImmersedPiece> pieces = pieces_in_part(part, longest_m, mesh.get());
   const Matrix3d R_BG = rotation_from_rpy(part.rpy_rad);
   for (ImmersedPiece& piece : pieces) {
     piece.R_BP = R_BG;

@@ -61,21 +61,11 @@ Rule part_length() {
 }
 
 /// A key of another shape is a mistake: it would do nothing.
-void check_keys_of_shape(ParamReader& in, const std::string& shape) {
-  const auto only_for = [&](const char* key, std::initializer_list<const char*> shapes) {
-    if (in.has(key) && std::find(shapes.begin(), shapes.end(), shape) == shapes.end())
-      in.error(key, std::string("'") + key + "' is not for shape " + shape);
-  };
-  only_for("size_m", {"box"});
-  only_for("radius_m", {"sphere", "capsule", "cylinder"});
-  only_for("length_m", {"capsule", "cylinder"});
-  only_for("mesh", {"mesh"});
-  only_for("scale", {"mesh"});
-  only_for("terrain", {"terrain"});
-  only_for("mass_kg", {"box", "sphere", "capsule", "cylinder", "mesh"});
-  for (const char* key : {"displaces", "drag_coefficient", "added_mass_coefficient"})
-    only_for(key, {"box", "sphere", "capsule", "cylinder", "mesh"});
-  only_for("density_kgpm3", {"box", "sphere", "capsule", "cylinder", "mesh"});
+void check_keys_of_shape(ParamReader& in, PartShape shape) {
+  const ShapeInfo& info = shape_info(shape);
+  const std::string word(info.word);
+  for (const char* key : keys_of_some_shapes())
+    if (in.has(key) && !has_key(shape, key)) in.error(key, std::string("'") + key + "' is not for shape " + word);
 }
 
 }  // namespace
@@ -86,8 +76,7 @@ void PartConfig::read(ParamReader& in) {
     if (place.file) directory = std::filesystem::path(*place.file).parent_path().string();
   }
   in.read("name", name, "name of the part");
-  in.read_choice("shape", shape, {"box", "sphere", "capsule", "cylinder", "plane", "mesh", "terrain"},
-                 "shape of the part");
+  in.read_choice("shape", shape, shape_words(), "shape of the part");
   in.read("size_m", size_m, part_length(), "box: lengths along x, y and z");
   in.read("radius_m", radius_m, part_length(), "sphere, capsule, cylinder");
   in.read("length_m", length_m, part_length(), "capsule (without its caps) and cylinder: length along z");
@@ -107,8 +96,8 @@ void PartConfig::read(ParamReader& in) {
   if (in.describing()) return;
   check_keys_of_shape(in, shape);
   if (mass_kg && density_kgpm3) in.error("density_kgpm3", "give 'mass_kg' or 'density_kgpm3', not both");
-  if (shape == "mesh" && mesh.empty()) in.error("a part of shape mesh needs the key 'mesh'");
-  if (shape == "terrain" && !terrain) in.error("a part of shape terrain needs the key 'terrain'");
+  if (shape == PartShape::mesh && mesh.empty()) in.error("a part of shape mesh needs the key 'mesh'");
+  if (shape == PartShape::terrain && !terrain) in.error("a part of shape terrain needs the key 'terrain'");
   if (!color.empty() && !parse_color(color)) in.error("color", "'color' must look like #rrggbb, got '" + color + "'");
 }
 

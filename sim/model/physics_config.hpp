@@ -8,6 +8,7 @@
 #include "sim/base/math.hpp"
 #include "sim/config/param_reader.hpp"
 #include "sim/model/hydrodynamics_config.hpp"
+#include "sim/model/part_shape.hpp"
 #include "sim/scene/material.hpp"
 #include "sim/terrain/terrain_config.hpp"
 
@@ -53,7 +54,7 @@ struct ContactConfig {
 /// A solid: shape, mass, material, and its pose in the body frame.
 struct PartConfig {
   std::string name;
-  std::string shape = "box";           ///< box, sphere, capsule, cylinder, plane, mesh, terrain
+  PartShape shape = PartShape::box;
   Vector3d size_m = Vector3d::Ones();  ///< box: x, y, z
   double radius_m = 0.5;               ///< sphere, capsule, cylinder
   double length_m = 1.0;               ///< along z: capsule without its caps, cylinder

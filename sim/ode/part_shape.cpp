@@ -75,12 +75,22 @@ const CollisionMesh* MeshCache::find(dTriMeshDataID data) const {
 }
 
 GeomHandle make_geom(const PartConfig& part, const CollisionMesh* mesh) {
-  if (part.shape == "box") return GeomHandle(dCreateBox(nullptr, part.size_m.x(), part.size_m.y(), part.size_m.z()));
-  if (part.shape == "sphere") return GeomHandle(dCreateSphere(nullptr, part.radius_m));
-  if (part.shape == "capsule") return GeomHandle(dCreateCapsule(nullptr, part.radius_m, part.length_m));
-  if (part.shape == "cylinder") return GeomHandle(dCreateCylinder(nullptr, part.radius_m, part.length_m));
-  if (part.shape == "plane") return GeomHandle(dCreatePlane(nullptr, 0, 0, 1, 0));
-  assert(part.shape == "mesh" && mesh != nullptr);
+  switch (part.shape) {
+    case PartShape::box:
+      return GeomHandle(dCreateBox(nullptr, part.size_m.x(), part.size_m.y(), part.size_m.z()));
+    case PartShape::sphere:
+      return GeomHandle(dCreateSphere(nullptr, part.radius_m));
+    case PartShape::capsule:
+      return GeomHandle(dCreateCapsule(nullptr, part.radius_m, part.length_m));
+    case PartShape::cylinder:
+      return GeomHandle(dCreateCylinder(nullptr, part.radius_m, part.length_m));
+    case PartShape::plane:
+      return GeomHandle(dCreatePlane(nullptr, 0, 0, 1, 0));
+    case PartShape::mesh:
+    case PartShape::terrain:  // is made from its heights, elsewhere
+      break;
+  }
+  assert(part.shape == PartShape::mesh && mesh != nullptr);
   return GeomHandle(dCreateTriMesh(nullptr, mesh->data.get(), nullptr, nullptr, nullptr));
 }
 
@@ -91,19 +101,30 @@ dMass unit_density_mass(const PartConfig& part, const CollisionMesh* mesh) {
   dMass mass;
   dMassSetZero(&mass);
   constexpr int along_z = 3;
-  if (part.shape == "box") {
-    dMassSetBox(&mass, 1, part.size_m.x(), part.size_m.y(), part.size_m.z());
-  } else if (part.shape == "sphere") {
-    dMassSetSphere(&mass, 1, part.radius_m);
-  } else if (part.shape == "capsule") {
-    dMassSetCapsule(&mass, 1, along_z, part.radius_m, part.length_m);
-  } else if (part.shape == "cylinder") {
-    dMassSetCylinder(&mass, 1, along_z, part.radius_m, part.length_m);
-  } else if (mesh != nullptr) {
-    const MeshSolid& solid = mesh->solid;
-    dMassSetParameters(&mass, solid.volume_m3, 0, 0, 0, solid.inertia(0, 0), solid.inertia(1, 1), solid.inertia(2, 2),
-                       solid.inertia(0, 1), solid.inertia(0, 2), solid.inertia(1, 2));
-    dMassTranslate(&mass, solid.centroid_m.x(), solid.centroid_m.y(), solid.centroid_m.z());
+  switch (part.shape) {
+    case PartShape::box:
+      dMassSetBox(&mass, 1, part.size_m.x(), part.size_m.y(), part.size_m.z());
+      break;
+    case PartShape::sphere:
+      dMassSetSphere(&mass, 1, part.radius_m);
+      break;
+    case PartShape::capsule:
+      dMassSetCapsule(&mass, 1, along_z, part.radius_m, part.length_m);
+      break;
+    case PartShape::cylinder:
+      dMassSetCylinder(&mass, 1, along_z, part.radius_m, part.length_m);
+      break;
+    case PartShape::mesh: {
+      if (mesh == nullptr) break;
+      const MeshSolid& solid = mesh->solid;
+      dMassSetParameters(&mass, solid.volume_m3, 0, 0, 0, solid.inertia(0, 0), solid.inertia(1, 1), solid.inertia(2, 2),
+                         solid.inertia(0, 1), solid.inertia(0, 2), solid.inertia(1, 2));
+      dMassTranslate(&mass, solid.centroid_m.x(), solid.centroid_m.y(), solid.centroid_m.z());
+      break;
+    }
+    case PartShape::plane:
+    case PartShape::terrain:
+      break;
   }
   return mass;
 }

@@ -97,14 +97,15 @@ void PhysicsWorld::Impl::add_parts(Body& body, const BodyConfig& config_) {
 
 PhysicsWorld::Impl::NewPart PhysicsWorld::Impl::make_part(const Body& body, const PartConfig& part,
                                                           const std::string& who) {
-  if ((part.shape == "plane" || part.shape == "terrain") && !body.fixed())
-    throw_config_error(part.place, who, "a " + part.shape + " can only be part of a fixed body");
+  if (!shape_info(part.shape).solid && !body.fixed())
+    throw_config_error(part.place, who,
+                       "a " + std::string(shape_info(part.shape).word) + " can only be part of a fixed body");
   NewPart made;
-  if (part.shape == "terrain") {
+  if (part.shape == PartShape::terrain) {
     made.terrain = std::make_unique<CollisionTerrain>(part, who, collider.table(), meshes);
     made.geom = make_terrain_geom(*made.terrain);
   } else {
-    made.mesh = part.shape == "mesh" ? &meshes.get(part, who) : nullptr;
+    made.mesh = part.shape == PartShape::mesh ? &meshes.get(part, who) : nullptr;
     made.geom = make_geom(part, made.mesh);
   }
   return made;
@@ -115,7 +116,7 @@ void PhysicsWorld::Impl::add_part(Body& body, const BodyConfig& config_, std::si
   const dGeomID geom = made.geom.get();
   const Pose X_BG = make_pose(part.position_m, part.rpy_rad);
   if (body.fixed()) {
-    body.fixed_geoms_.push_back({geom, X_BG, part.shape == "plane"});
+    body.fixed_geoms_.push_back({geom, X_BG, part.shape == PartShape::plane});
   } else {
     // An offset of nothing would still cost a product of matrices in each step.
     const Vector3d p_CG = X_BG.translation() - body.p_BC_;
@@ -134,9 +135,14 @@ void PhysicsWorld::Impl::add_part(Body& body, const BodyConfig& config_, std::si
                                 made.terrain.get()};
   const int number = part_numbers.take();
   groups[body.group_].parts.push_back(number);
-  slot(parts, number) = {part_name(body, part, index), body.group_,          body.number_,
-                         collision.material,           collision.category,   X_BG,
-                         parse_color(part.color),      part.shape == "plane"};
+  slot(parts, number) = {part_name(body, part, index),
+                         body.group_,
+                         body.number_,
+                         collision.material,
+                         collision.category,
+                         X_BG,
+                         parse_color(part.color),
+                         part.shape == PartShape::plane};
   scene->add_part(number,
                   {geom, body.group_, collision.category, collision.material,
                    collider.table().material(collision.material).transmits(), !body.fixed(),

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "sim/config/param_reader.hpp"
@@ -27,8 +29,10 @@ struct NoiseParams {
   double outlier_std = 0;
   double quantization = 0;           ///< step of the output; 0: none
   std::optional<double> saturation;  ///< the output is cut to +- this
+  const char* key = "";              ///< that it was read by, such as `gyro_noise`: its quantity is named after it
 
   void read(ParamReader& in);
+  void set_key(const char* read_by) { key = read_by; }
   bool any() const;
 };
 
@@ -39,12 +43,19 @@ struct NoiseFault {
   double factor = 1;  ///< of the random parts: random walk, Gauss-Markov, gaussian, uniform, outliers
 };
 
+/// Where the errors of one quantity of a device come from: the random stream and the faults.
+struct NoiseOrigin {
+  std::uint64_t seed;
+  std::string stream;       ///< its name, such as `rover1/imu#gyro`
+  const NoiseFault* fault;  ///< outlives the device
+};
+
 /// The state of the error of a few values of one quantity (one for a range scanner's beams: only white parts differ
 /// by value; one per axis for a vector).  The slow parts (bias, random walk, Gauss-Markov) are one per value.
 class Noise {
  public:
   /// `values`: how many values have a slow state of their own.  `fault` must outlive the noise; null: it has none.
-  /// Devices get theirs by DeviceContext::noise().
+  /// Devices have NoiseOf.
   Noise(const NoiseParams& params, int values, Random bias_source, const NoiseFault* fault = nullptr);
 
   /// Disturbs `values` in place.  values.size() may be larger than the number of slow states: value i then uses
@@ -86,6 +97,39 @@ class Noise {
   bool started_ = false;
   double planned_dt_s_ = -1;
   double walk_root_s_ = 0, kept_ = 0, fresh_std_ = 0;
+};
+
+/// The error of a device's quantity, described by `member` of its Params: `NoiseOf<&Params::range_noise>`.  The key
+/// that `member` was read by names its random stream and its faults.
+template <auto member>
+class NoiseOf : public Noise {
+ public:
+  /// `context`: a DeviceContext; `values` as in Noise.
+  template <typename Context, typename Params>
+  NoiseOf(const Context& context, const Params& params, int values = 1)
+      : Noise(context.noise(params.*member, values)) {}
+
+  template <typename Params>
+  void change(const Params& params) {
+    Noise::change(params.*member);
+  }
+};
+
+/// The same for a quantity that has errors of their own for each of several targets, which are removed and added.
+template <auto member>
+class NoisesOf {
+ public:
+  template <typename Context, typename Params>
+  NoisesOf(const Context& context, const Params& params) : origin_(context.noise_origin(params.*member)) {}
+
+  /// The errors to `target`.
+  template <typename Params>
+  Noise to(const std::string& target, const Params& params, int values = 1) const {
+    return {params.*member, values, Random(origin_.seed, origin_.stream + "/" + target), origin_.fault};
+  }
+
+ private:
+  NoiseOrigin origin_;
 };
 
 }  // namespace sim

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world/device_context.hpp"
 
+#include <cassert>
+
 #include "sim/acoustics/channel.hpp"
 #include "sim/world/vehicle.hpp"
 #include "sim/world/world.hpp"
@@ -15,9 +17,15 @@ std::string DeviceContext::full_name() const {
   return vehicle.name() + "/" + config.name;
 }
 
-Noise DeviceContext::noise(const NoiseParams& params, int values, const std::string& key) const {
-  const std::string quantity = quantity_of(key);
-  return {params, values, Random(world.seed(), full_name() + "#" + quantity), &faults.noise_of(quantity)};
+Noise DeviceContext::noise(const NoiseParams& params, int values) const {
+  const NoiseOrigin origin = noise_origin(params);
+  return {params, values, Random(origin.seed, origin.stream), origin.fault};
+}
+
+NoiseOrigin DeviceContext::noise_origin(const NoiseParams& params) const {
+  assert(*params.key != '\0');  // it was read
+  const std::string quantity = quantity_of(params.key);
+  return {world.seed(), full_name() + "#" + quantity, &faults.noise_of(quantity)};
 }
 
 SoundSite DeviceContext::sound_site() const {

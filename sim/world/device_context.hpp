@@ -26,9 +26,10 @@ struct DeviceContext {
   /// Throws std::out_of_range: names were checked when the file was read.
   Joint& joint(const std::string& name) const;
   std::string full_name() const;  ///< such as `rover1/lidar`
-  /// The error of a quantity, with a random stream of its own, which faults can reach.  `key`: its key in YAML, such
-  /// as `gyro_noise`.  `values`: how many have slow parts of their own (axes of a vector).
-  Noise noise(const NoiseParams& params, int values, const std::string& key) const;
+  /// The error of a quantity, with a random stream of its own, which faults can reach; both are named after the key
+  /// that `params` was read by.  `values`: how many have slow parts of their own (axes of a vector).
+  Noise noise(const NoiseParams& params, int values) const;
+  NoiseOrigin noise_origin(const NoiseParams& params) const;
   /// For a Transducer or a ContinuousSound.  Throws ConfigError at the device's place when the world has no water.
   SoundSite sound_site() const;
 };

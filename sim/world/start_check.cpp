@@ -49,7 +49,7 @@ std::set<int> groups_of_terrain(const World& world) {
   std::set<int> groups;
   for (const auto& [name, object] : world.objects())
     if (std::any_of(object.config.parts.begin(), object.config.parts.end(),
-                    [](const PartConfig& part) { return part.shape == "terrain"; }))
+                    [](const PartConfig& part) { return part.shape == PartShape::terrain; }))
       groups.insert(object.group);
   return groups;
 }

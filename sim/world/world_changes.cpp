@@ -144,7 +144,7 @@ const Vehicle& World::add_vehicle(const VehicleInstance& instance) {
 void World::check_removable(const std::string& name) const {
   vehicle_named(name);
   for (const MetricConfig& metric : config_.metrics)
-    if (metric.vehicle == name)
+    if (metric.params && metric.params->vehicle == name)
       throw WorldError("vehicle " + quoted(name) + " cannot be removed: metric '" + metric.name + "' scores it");
 }
 
@@ -199,7 +199,7 @@ const WorldObject& World::place_object(const ObjectConfig& config, const std::st
                                [&](const ActorConfig& actor) { return actor.object == name; });
   if (!led || config.kinematic) return build_object(config, name, X_WE);
   const bool has_plane = std::any_of(config.parts.begin(), config.parts.end(),
-                                     [](const PartConfig& part) { return part.shape == "plane"; });
+                                     [](const PartConfig& part) { return part.shape == PartShape::plane; });
   if (config.fixed || has_plane)
     throw_config_error(config.place, "object " + quoted(name), "an actor moves it: it cannot be fixed or a plane");
   ObjectConfig kinematic = config;

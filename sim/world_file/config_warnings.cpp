@@ -35,17 +35,19 @@ class ConfigCheck {
   void check_metrics() const {
     const std::set<std::string> spoken = channels_of(world_);
     for (const MetricConfig& metric : world_.metrics) {
+      if (!metric.params) continue;
       const std::string who = "metric '" + metric.name + "'";
+      const MetricParams& params = *metric.params;
       const double end_s = world_.run.duration_s;
-      if (end_s > 0 && metric.from_s >= end_s)
+      if (end_s > 0 && params.from_s >= end_s)
         warnings_.warn(metric.place, who,
-                       "'from_s' " + number_text(metric.from_s) + " is not before the end of the run at " +
+                       "'from_s' " + number_text(params.from_s) + " is not before the end of the run at " +
                            number_text(end_s) + " s: nothing counts");
       // What programs publish is not known here.
-      if (metric.channel.empty() || !world_.processes.empty()) continue;
-      if (spoken.contains(metric.channel) || metric.channel.starts_with("sim.")) continue;
+      if (params.channel.empty() || !world_.processes.empty()) continue;
+      if (spoken.contains(params.channel) || params.channel.starts_with("sim.")) continue;
       warnings_.warn(metric.place, who,
-                     "nothing in this world publishes on '" + metric.channel + "'" + truth_hint(metric.channel) +
+                     "nothing in this world publishes on '" + params.channel + "'" + truth_hint(params.channel) +
                          ", and it starts no programs: only one started by hand can");
     }
   }

@@ -197,7 +197,7 @@ void WorldConfig::read(ParamReader& in) {
   for (const ProcessConfig& process : processes) in.declare("process", process.name);
   in.read("lockstep", lockstep, "waiting for clients");
   in.read("limits", limits, "what may come while the world runs");
-  declare_position_errors(in);
+  declare_metrics(in);
   in.read_list("metrics", metrics, "metric", "figures that score the run");
   for (const MetricConfig& metric : metrics) in.declare("metric", metric.name);
   declare_figures(in, metrics);

@@ -203,7 +203,8 @@ void BM_KinematicBodies(benchmark::State& state) {
   const auto world = make_world(config);
   add_ground(*world);
   std::vector<sim::Body*> walkers;
-  const PartConfig torso = at(round("capsule", 0.2, 1, 0), {0, 0, 0.9}), head = at(sphere(0.15, 0), {0, 0, 1.7});
+  const PartConfig torso = at(round(PartShape::capsule, 0.2, 1, 0), {0, 0, 0.9}),
+                   head = at(sphere(0.15, 0), {0, 0, 1.7});
   for (int i = 0; i < actors; ++i) {
     const Pose X_WB = sim::make_pose(cell(i, actors), Vector3d::Zero());
     walkers.push_back(&add(*world, body("walker" + std::to_string(i), {torso, head}), X_WB, Motion::kinematic));

@@ -4,7 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "sim/world_file/metric_types.hpp"
+#include "sim/world_file/metric_registry.hpp"
 #include "tests/system/shoal_program.hpp"
 
 // Every type of metric goes back with its world: by rewind, by restore, into a branch, and with --from.
@@ -117,7 +117,7 @@ void expect_same(const nlohmann::json& got, const nlohmann::json& wanted, const 
 }
 
 TEST_F(MetricsInTime, OfEveryTypeGoBackWithTheWorld) {
-  for (const std::string& type : sim::metric_type_words())
+  for (const std::string& type : sim::MetricRegistry::instance().words())
     ASSERT_TRUE(cases().contains(type)) << "metric type '" << type << "' needs a case here: does it go back?";
   const auto at2 = straight("2"), at4 = straight("4"), at6 = straight("6");
   for (const auto& [type, metrics] : cases())

@@ -201,7 +201,7 @@ bool in_ground(const sim::Vector3d& p_W, const sim::World& world) {
   for (const auto& [name, object] : world.objects())
     if (object.body == body)
       for (const sim::PartConfig& each : object.config.parts)
-        if (each.shape == "terrain") return true;
+        if (each.shape == sim::PartShape::terrain) return true;
   return false;
 }
 

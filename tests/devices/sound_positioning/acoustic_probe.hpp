@@ -25,7 +25,7 @@ class AcousticProbe final : public sim::AcousticListener {
   };
 
   AcousticProbe(LoadedTestWorld& test, const std::string& vehicle, const sim::ReceiverConfig& receiver = {})
-      : world_(test.world), transducer(*this, receiver, context(vehicle)) {}
+      : world_(test.world), transducer(*this, receiver, context(vehicle).sound_site()) {}
 
   bool listens_to(const sim::Signal&) const override { return listening; }
   void heard(const sim::Reception& heard) override {

@@ -170,7 +170,7 @@ TEST(Mesh, ErrorsSayWhatIsWrong) {
 
 PartConfig mesh_part(const std::string& path, double density_kgpm3) {
   PartConfig part;
-  part.shape = "mesh";
+  part.shape = PartShape::mesh;
   part.mesh = path;
   part.place = {sim::intern_file_name("boat.yaml"), 7, 3};
   if (density_kgpm3 > 0) part.density_kgpm3 = density_kgpm3;
@@ -197,7 +197,7 @@ TEST(Mesh, TrianglesWithoutAreaStayOutOrDoNoHarm) {
   const TemporaryFile file("sliver.obj",
                            "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv 0 0 0\nf 1 2 3\nf 1 3 4\nf 1 5 3\n");
   PartConfig part;
-  part.shape = "mesh";
+  part.shape = PartShape::mesh;
   part.mesh = file.path();
   const auto world = make_world();
   add(*world, body("table", {part}), Pose::Identity(), Motion::fixed);

@@ -119,15 +119,16 @@ ShapeCase capsule_case(double r, double l) {
   const double along = (v_cylinder * r * r / 2 + v_caps * 2 * r * r / 5) / v;
   const double across =
       (v_cylinder * (r * r / 4 + l * l / 12) + v_caps * (2 * r * r / 5 + l * l / 4 + 3 * l * r / 8)) / v;
-  return {round("capsule", r, l, 1), v, {across, across, along}};
+  return {round(PartShape::capsule, r, l, 1), v, {across, across, along}};
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Shapes, ShapeMass,
-    testing::Values(ShapeCase{box({1, 2, 3}, 1), 6, {13.0 / 12, 10.0 / 12, 5.0 / 12}},
-                    ShapeCase{sphere(0.5, 1), pi / 6, {0.1, 0.1, 0.1}},  // 2/5 r^2
-                    ShapeCase{round("cylinder", 0.5, 2, 1), pi / 2, {0.25 / 4 + 4.0 / 12, 0.25 / 4 + 4.0 / 12, 0.125}},
-                    capsule_case(0.5, 2)));
+INSTANTIATE_TEST_SUITE_P(Shapes, ShapeMass,
+                         testing::Values(ShapeCase{box({1, 2, 3}, 1), 6, {13.0 / 12, 10.0 / 12, 5.0 / 12}},
+                                         ShapeCase{sphere(0.5, 1), pi / 6, {0.1, 0.1, 0.1}},  // 2/5 r^2
+                                         ShapeCase{round(PartShape::cylinder, 0.5, 2, 1),
+                                                   pi / 2,
+                                                   {0.25 / 4 + 4.0 / 12, 0.25 / 4 + 4.0 / 12, 0.125}},
+                                         capsule_case(0.5, 2)));
 
 TEST(CompositeBody, AddsMassesCentresAndInertias) {
   const auto world = make_world();
@@ -181,7 +182,7 @@ TEST(Gyroscopic, SymmetricBodyPrecessesAtTheEulerRate) {
   const double r = 0.5, axial = 0.35, transverse = 0.2, m = 2 * axial / (r * r);
   const double l = std::sqrt(12 * transverse / m - 3 * r * r);
   const auto world = make_world(with_step(0.001, 0));
-  sim::Body& top = add(*world, body("top", {round("cylinder", r, l, m)}), Pose::Identity());
+  sim::Body& top = add(*world, body("top", {round(PartShape::cylinder, r, l, m)}), Pose::Identity());
   EXPECT_NEAR(top.inertia_C_B()(2, 2), axial, 1e-12);
   EXPECT_NEAR(top.inertia_C_B()(0, 0), transverse, 1e-12);
   top.set_velocity_W(Vector3d::Zero(), {0.5, 0, 6});

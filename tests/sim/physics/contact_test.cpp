@@ -101,8 +101,8 @@ TEST(Contact, EachShapeRestsOnThePlane) {
   };
   const Case cases[] = {{box({1, 1, 0.4}, 2), 0.2},
                         {sphere(0.3, 2), 0.3},
-                        {round("cylinder", 0.3, 0.8, 2), 0.4},
-                        {at(round("capsule", 0.3, 1, 2), {0, 0, 0}, {0, std::numbers::pi / 2, 0}), 0.3}};
+                        {round(PartShape::cylinder, 0.3, 0.8, 2), 0.4},
+                        {at(round(PartShape::capsule, 0.3, 1, 2), {0, 0, 0}, {0, std::numbers::pi / 2, 0}), 0.3}};
   std::vector<sim::Body*> bodies;
   for (const Case& c : cases)
     bodies.push_back(&add(*world, body("b" + std::to_string(bodies.size()), {c.part}),

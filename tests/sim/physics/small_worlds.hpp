@@ -17,6 +17,7 @@ using sim::JointConfig;
 using sim::MaterialConfig;
 using sim::Motion;
 using sim::PartConfig;
+using sim::PartShape;
 using sim::PhysicsConfig;
 using sim::PhysicsWorld;
 using sim::Pose;
@@ -24,7 +25,7 @@ using sim::Vector3d;
 
 inline PartConfig box(const Vector3d& size_m, double mass_kg) {
   PartConfig part;
-  part.shape = "box";
+  part.shape = PartShape::box;
   part.size_m = size_m;
   if (mass_kg > 0) part.mass_kg = mass_kg;
   return part;
@@ -32,14 +33,14 @@ inline PartConfig box(const Vector3d& size_m, double mass_kg) {
 
 inline PartConfig sphere(double radius_m, double mass_kg) {
   PartConfig part;
-  part.shape = "sphere";
+  part.shape = PartShape::sphere;
   part.radius_m = radius_m;
   if (mass_kg > 0) part.mass_kg = mass_kg;
   return part;
 }
 
 /// Capsule or cylinder along z.
-inline PartConfig round(const std::string& shape, double radius_m, double length_m, double mass_kg) {
+inline PartConfig round(PartShape shape, double radius_m, double length_m, double mass_kg) {
   PartConfig part = sphere(radius_m, mass_kg);
   part.shape = shape;
   part.length_m = length_m;
@@ -48,7 +49,7 @@ inline PartConfig round(const std::string& shape, double radius_m, double length
 
 inline PartConfig plane() {
   PartConfig part;
-  part.shape = "plane";
+  part.shape = PartShape::plane;
   return part;
 }
 

@@ -85,17 +85,17 @@ struct Heap {
     world = make_world(config);
     add_ground(*world, translation(center.x(), center.y(), center.z() - 3));
     PartConfig mesh;
-    mesh.shape = "mesh";
+    mesh.shape = PartShape::mesh;
     mesh.mesh = dented_ball();
     for (int i = 0; i < 80; ++i) {
       std::vector<PartConfig> parts;
       for (unsigned k = 0; k <= uniform.below(3); ++k) {
         const double a = uniform(0.1, 2), b = uniform(0.1, 3), r = uniform(0.1, 0.8);
-        const std::array<PartConfig, 4> shapes = {box({a, b, r}, 1), sphere(r, 1), round("capsule", r, b, 1),
-                                                  round("cylinder", r, a, 1)};
+        const std::array<PartConfig, 4> shapes = {box({a, b, r}, 1), sphere(r, 1), round(PartShape::capsule, r, b, 1),
+                                                  round(PartShape::cylinder, r, a, 1)};
         PartConfig part = meshes && uniform.below(10) == 0 ? mesh : shapes[uniform.below(4)];
-        if (part.shape == "mesh") part.mass_kg = 1;
-        part.name = part.shape + std::to_string(k);
+        if (part.shape == PartShape::mesh) part.mass_kg = 1;
+        part.name = std::string(sim::shape_info(part.shape).word) + std::to_string(k);
         const Vector3d position(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
         configs.push_back(part);
         parts.push_back(at(part, position, {uniform(-3, 3), uniform(-1.5, 1.5), uniform(-3, 3)}));
@@ -122,7 +122,7 @@ struct Heap {
   /// The ray begins in a capsule and the hit is where it leaves it, by the distance from the capsule's axis.  ODE loses
   /// the far cap then.
   bool leaves_capsule(const RayHit& hit, const Ray& ray) const {
-    if (!hit.hit() || configs[hit.part].shape != "capsule") return false;
+    if (!hit.hit() || configs[hit.part].shape != PartShape::capsule) return false;
     const double half = configs[hit.part].length_m / 2, radius = configs[hit.part].radius_m;
     const auto depth_m = [&](const Vector3d& p_W) {
       const Vector3d p = world->X_WP(hit.part).inverse() * p_W;
@@ -215,7 +215,7 @@ TEST(EmbreeScene, SeesTerrainAsOdeDoes) {
     auto world = std::make_unique<PhysicsWorld>(config, std::vector<MaterialConfig>{{"mud"}},
                                                 std::vector<ContactConfig>{}, std::vector<std::string>{}, 1);
     PartConfig ground = plane();
-    ground.shape = "terrain";
+    ground.shape = PartShape::terrain;
     sim::TerrainConfig& terrain = ground.terrain.emplace();
     terrain.source = "fractal";
     terrain.size_m = {60, 40};

@@ -85,14 +85,14 @@ TEST_P(Ray, HitsASphere) {
 }
 
 TEST_P(Ray, HitsTheSideAndTheCapOfACapsule) {
-  const PartConfig capsule = round("capsule", 1, 4, 0);
+  const PartConfig capsule = round(PartShape::capsule, 1, 4, 0);
   expect_hit(look_at(capsule, {0, 0.6, 1}, {1, 0, 0}), {5 - 0.8, {-0.8, 0.6, 0}});
   expect_hit(look_at(capsule, {0, 0, 2.6}, {1, 0, 0}), {5 - 0.8, {-0.8, 0, 0.6}});
   expect_hit(look_at(capsule, {5, 0, 10}, {0, 0, -1}), {7, {0, 0, 1}});
 }
 
 TEST_P(Ray, HitsTheSideAndTheEndOfACylinder) {
-  const PartConfig cylinder = round("cylinder", 1, 4, 0);
+  const PartConfig cylinder = round(PartShape::cylinder, 1, 4, 0);
   expect_hit(look_at(cylinder, {0, 0.6, 1}, {1, 0, 0}), {5 - 0.8, {-0.8, 0.6, 0}});
   expect_hit(look_at(cylinder, {5.5, 0, 10}, {0, 0, -1}), {8, {0, 0, 1}});
   EXPECT_FALSE(look_at(cylinder, {0, 0, 2.1}, {1, 0, 0}).has_value());
@@ -135,7 +135,7 @@ TEST_P(Ray, OfTwoPartsInOnePlaceHitsTheLowerNumber) {
 TEST_P(Ray, HitsAMesh) {
   // A tetrahedron standing on z = 0, its slope towards -x through (-1, y, 0) and (0, 0, 1).
   PartConfig part;
-  part.shape = "mesh";
+  part.shape = PartShape::mesh;
   const test_support::ScratchFolder folder;
   part.mesh = folder.file("tetrahedron.obj");
   FILE* file = std::fopen(part.mesh.c_str(), "w");
@@ -230,18 +230,18 @@ TEST_P(Fan, TiltedDownSeesTheGround) {
 TEST_P(Ray, ThatBeginsInsideEndsWhereItLeaves) {
   expect_hit(look_at(box({2, 4, 6}, 0), {5.5, 0, 0}, {1, 0, 0}), {0.5, {-1, 0, 0}});
   expect_hit(look_at(sphere(1, 0), {5.5, 0, 0}, {1, 0, 0}), {0.5, {-1, 0, 0}});
-  expect_hit(look_at(round("cylinder", 1, 4, 0), {5.5, 0, 0}, {1, 0, 0}), {0.5, {-1, 0, 0}});
-  expect_hit(look_at(round("cylinder", 1, 4, 0), {5.5, 0, 0}, {0, 0, 1}), {2, {0, 0, -1}});
-  expect_hit(look_at(round("capsule", 1, 4, 0), {5.5, 0, 0}, {1, 0, 0}), {0.5, {-1, 0, 0}});
-  expect_hit(look_at(round("capsule", 1, 4, 0), {5, 0, 0.5}, {0, 0, 1}), {2.5, {0, 0, -1}});
+  expect_hit(look_at(round(PartShape::cylinder, 1, 4, 0), {5.5, 0, 0}, {1, 0, 0}), {0.5, {-1, 0, 0}});
+  expect_hit(look_at(round(PartShape::cylinder, 1, 4, 0), {5.5, 0, 0}, {0, 0, 1}), {2, {0, 0, -1}});
+  expect_hit(look_at(round(PartShape::capsule, 1, 4, 0), {5.5, 0, 0}, {1, 0, 0}), {0.5, {-1, 0, 0}});
+  expect_hit(look_at(round(PartShape::capsule, 1, 4, 0), {5, 0, 0.5}, {0, 0, 1}), {2.5, {0, 0, -1}});
   // A plane has no inside: it is seen from both sides.
   expect_hit(look_at(plane(), {0, 0, -3}, {0, 0, 1}), {3, {0, 0, -1}});
 }
 
 TEST_P(Ray, AlongTheAxisOfARoundPartHitsItsEnd) {
-  expect_hit(look_at(round("cylinder", 1, 4, 0), {5, 0, -9}, {0, 0, 1}), {7, {0, 0, -1}});
-  expect_hit(look_at(round("capsule", 1, 4, 0), {5, 0, -9}, {0, 0, 1}), {6, {0, 0, -1}});
-  EXPECT_FALSE(look_at(round("cylinder", 1, 4, 0), {6.5, 0, -9}, {0, 0, 1}).has_value());
+  expect_hit(look_at(round(PartShape::cylinder, 1, 4, 0), {5, 0, -9}, {0, 0, 1}), {7, {0, 0, -1}});
+  expect_hit(look_at(round(PartShape::capsule, 1, 4, 0), {5, 0, -9}, {0, 0, 1}), {6, {0, 0, -1}});
+  EXPECT_FALSE(look_at(round(PartShape::cylinder, 1, 4, 0), {6.5, 0, -9}, {0, 0, 1}).has_value());
 }
 
 TEST_P(Ray, TellsTheMaterialAndPassesWhatLetsItThrough) {
@@ -333,8 +333,9 @@ std::unique_ptr<PhysicsWorld> RayTest::random_scene(std::mt19937& random) const 
     std::vector<PartConfig> parts;
     for (unsigned k = 0; k <= random() % 3; ++k) {
       const PartConfig shapes[] = {box({uniform(0.1, 2), uniform(0.1, 4), uniform(0.1, 2)}, 1),
-                                   sphere(uniform(0.1, 1), 1), round("capsule", uniform(0.1, 0.5), uniform(0.1, 3), 1),
-                                   round("cylinder", uniform(0.1, 1), uniform(0.1, 3), 1)};
+                                   sphere(uniform(0.1, 1), 1),
+                                   round(PartShape::capsule, uniform(0.1, 0.5), uniform(0.1, 3), 1),
+                                   round(PartShape::cylinder, uniform(0.1, 1), uniform(0.1, 3), 1)};
       parts.push_back(at(shapes[random() % 4], {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)},
                          {uniform(-3, 3), uniform(-1.5, 1.5), uniform(-3, 3)}));
     }

@@ -13,7 +13,7 @@ using namespace small_worlds;
 
 inline PartConfig terrain(const std::string& source, double cell_m, const std::string& collision = "smooth") {
   PartConfig part;
-  part.shape = "terrain";
+  part.shape = PartShape::terrain;
   part.terrain.emplace();
   part.terrain->source = source;
   part.terrain->cell_m = cell_m;
@@ -43,7 +43,7 @@ inline sim::Body& add_terrain(PhysicsWorld& world, const PartConfig& part, const
 
 /// A wheel of radius 0.1 m and width 0.06 m, its axis along y.
 inline PartConfig cylinder_wheel() {
-  return at(round("cylinder", 0.1, 0.06, 0.5), Vector3d::Zero(), {std::numbers::pi / 2, 0, 0});
+  return at(round(PartShape::cylinder, 0.1, 0.06, 0.5), Vector3d::Zero(), {std::numbers::pi / 2, 0, 0});
 }
 
 }  // namespace terrain_worlds

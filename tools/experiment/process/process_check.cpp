@@ -190,10 +190,11 @@ void check_metrics(const sim::WorldConfig& world, const std::vector<Program>& pr
     for (const std::string& channel : known->second) spoken.insert(program.vehicle() + "." + channel);
   }
   for (const sim::MetricConfig& metric : world.metrics) {
-    if (metric.channel.empty() || metric.channel.starts_with("sim.") || spoken.contains(metric.channel)) continue;
-    const std::string meant = sim::closest_name(metric.channel, {spoken.begin(), spoken.end()});
+    const std::string& channel = metric.params->channel;
+    if (channel.empty() || channel.starts_with("sim.") || spoken.contains(channel)) continue;
+    const std::string meant = sim::closest_name(channel, {spoken.begin(), spoken.end()});
     warnings.warn(metric.place, "metric '" + metric.name + "'",
-                  "no device and no program of this world publishes on '" + metric.channel + "'" +
+                  "no device and no program of this world publishes on '" + channel + "'" +
                       (meant.empty() ? "" : "; did you mean '" + meant + "'?"));
   }
 }

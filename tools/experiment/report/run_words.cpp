@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
+#include <string_view>
 
 namespace tools {
 
@@ -37,10 +39,10 @@ std::string percent_text(double share) {
   return fmt::format("{:.3g} %", 100 * share);
 }
 
-Metrics of_type(const std::vector<RunMetric>& metrics, sim::MetricType type) {
+Metrics of_type(const std::vector<RunMetric>& metrics, std::string_view type) {
   Metrics found;
   for (const RunMetric& metric : metrics)
-    if (metric.kind != nullptr && metric.kind->type == type) found.push_back(&metric);
+    if (metric.kind != nullptr && metric.kind->word == type) found.push_back(&metric);
   return found;
 }
 
@@ -103,7 +105,7 @@ std::string many_vehicles_sentence(const std::vector<std::pair<std::string, Metr
 
 std::vector<std::string> position_sentences(const std::vector<RunMetric>& metrics) {
   std::vector<std::pair<std::string, Metrics>> by_vehicle;
-  for (const RunMetric* metric : of_type(metrics, sim::MetricType::position_error)) {
+  for (const RunMetric* metric : of_type(metrics, "position_error")) {
     const auto known = std::find_if(by_vehicle.begin(), by_vehicle.end(),
                                     [&](const auto& each) { return each.first == metric->vehicle; });
     if (known == by_vehicle.end())
@@ -191,30 +193,20 @@ bool has_nothing(const RunMetric& metric) {
                       [](const RunMetric::Figure& figure) { return figure.value.has_value(); });
 }
 
-/// Empty: told elsewhere.
+/// Empty: told elsewhere, or by its figures alone.
 std::string sentence_of(const RunMetric& metric) {
-  const bool counts = metric.kind->figures.front().is_count || metric.kind->type == sim::MetricType::bytes_per_metre;
+  using Sentence = std::string (*)(const RunMetric&);
+  static const std::map<std::string, Sentence> sentences = {{"consistency", consistency_sentence},
+                                                            {"delivery", delivery_sentence},
+                                                            {"bytes_per_metre", cost_sentence},
+                                                            {"mission_time", time_sentence},
+                                                            {"collisions", contact_sentence},
+                                                            {"messages", message_sentence},
+                                                            {"lean", lean_sentence}};
+  const bool counts = metric.kind->figures.front().is_count || metric.kind->word == "bytes_per_metre";
   if (counts && has_nothing(metric)) return metric.name + ": nothing was measured.";
-  switch (metric.kind->type) {
-    case sim::MetricType::position_error:
-    case sim::MetricType::distance:
-      return "";
-    case sim::MetricType::consistency:
-      return consistency_sentence(metric);
-    case sim::MetricType::delivery:
-      return delivery_sentence(metric);
-    case sim::MetricType::bytes_per_metre:
-      return cost_sentence(metric);
-    case sim::MetricType::mission_time:
-      return time_sentence(metric);
-    case sim::MetricType::collisions:
-      return contact_sentence(metric);
-    case sim::MetricType::messages:
-      return message_sentence(metric);
-    case sim::MetricType::lean:
-      return lean_sentence(metric);
-  }
-  return "";
+  const auto found = sentences.find(metric.kind->word);
+  return found == sentences.end() ? "" : found->second(metric);
 }
 
 }  // namespace
@@ -238,10 +230,10 @@ std::string rules_in_words(const std::vector<RunRecord::Rule>& rules) {
 std::vector<std::string> findings_in_words(const std::vector<RunMetric>& metrics) {
   std::vector<std::string> sentences = position_sentences(metrics);
   std::set<std::string> told;
-  for (const RunMetric* metric : of_type(metrics, sim::MetricType::position_error))
+  for (const RunMetric* metric : of_type(metrics, "position_error"))
     if (!after_distance(*metric).empty()) told.insert(metric->vehicle);
   Metrics distances;
-  for (const RunMetric* metric : of_type(metrics, sim::MetricType::distance))
+  for (const RunMetric* metric : of_type(metrics, "distance"))
     if (metric->vehicle.empty() || !told.contains(metric->vehicle)) distances.push_back(metric);
   for (const RunMetric* metric : distances) sentences.push_back(distance_sentence(*metric));
   for (const RunMetric& metric : metrics) {

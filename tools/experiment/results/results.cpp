@@ -31,11 +31,11 @@ std::string outline_of(const sim::PartConfig& part, const sim::Pose& X_WB) {
     const sim::Vector3d p = X_WP * sim::Vector3d(x, y, 0);
     text += fmt::format("{:.4f} {:.4f}\n", p.x(), p.y());
   };
-  if (part.shape == "box") {
+  if (part.shape == sim::PartShape::box) {
     const double x = part.size_m.x() / 2;
     const double y = part.size_m.y() / 2;
     add(x, y), add(-x, y), add(-x, -y), add(x, -y), add(x, y);
-  } else if (part.shape == "sphere" || part.shape == "cylinder" || part.shape == "capsule") {
+  } else if (sim::shape_info(part.shape).round) {
     for (int i = 0; i <= 24; ++i)
       add(part.radius_m * std::cos(i * std::numbers::pi / 12), part.radius_m * std::sin(i * std::numbers::pi / 12));
   }

@@ -26,7 +26,7 @@ std::pair<std::string, std::string> parts_of(const std::string& name) {
 void sort_figures(RunMetric& metric) {
   std::set<std::string> names;
   for (const RunMetric::Figure& figure : metric.figures) names.insert(figure.name);
-  metric.kind = sim::metric_kind_of_figures(names);
+  metric.kind = sim::MetricRegistry::instance().of_figures(names);
   if (metric.kind == nullptr) return;
   const auto& kinds = metric.kind->figures;
   for (RunMetric::Figure& figure : metric.figures) figure.kind = metric.kind->find(figure.name);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/world_file/metric_kind.hpp"
+#include "sim/world_file/metric_registry.hpp"
 #include "tools/experiment/results/run_record.hpp"
 
 namespace tools {

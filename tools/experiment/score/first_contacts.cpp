@@ -21,7 +21,7 @@ constexpr std::size_t max_lines = 20;
 
 bool is_ground(const sim::ObjectConfig& object) {
   return std::all_of(object.parts.begin(), object.parts.end(),
-                     [](const sim::PartConfig& part) { return part.shape == "plane" || part.shape == "terrain"; });
+                     [](const sim::PartConfig& part) { return !sim::shape_info(part.shape).solid; });
 }
 
 bool has_wheels(const sim::VehicleConfig& vehicle) {

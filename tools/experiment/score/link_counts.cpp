@@ -10,16 +10,26 @@
 
 namespace tools {
 
+const std::vector<std::string>& loss_causes() {
+  static const std::vector<std::string> causes = [] {
+    std::vector<std::string> words;
+    for (int loss = 1; loss < sim::signal_losses; ++loss)  // 0: none
+      words.emplace_back(sim::signal_loss_word(static_cast<sim::SignalLoss>(loss)));
+    return words;
+  }();
+  return causes;
+}
+
 namespace {
 
 LinkCounts no_counts() {
   LinkCounts counts;
-  for (const std::string& cause : sim::loss_causes()) counts.lost[cause] = 0;
+  for (const std::string& cause : loss_causes()) counts.lost[cause] = 0;
   return counts;
 }
 
 void add_losses(LinkCounts& sum, const std::array<std::int64_t, sim::signal_losses>& lost) {
-  const std::vector<std::string>& causes = sim::loss_causes();
+  const std::vector<std::string>& causes = loss_causes();
   for (std::size_t i = 0; i < causes.size(); ++i) sum.lost[causes[i]] += lost[i + 1];  // 0: none
 }
 

@@ -4,10 +4,14 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "sim/world/world.hpp"
 
 namespace tools {
+
+/// The words of the sim::SignalLoss, as in `NAME.lost_CAUSE`.
+const std::vector<std::string>& loss_causes();
 
 /// What modems sent, and what came of the messages that were for them: to their address, or to all of their kind.
 struct LinkCounts {
@@ -17,7 +21,7 @@ struct LinkCounts {
   std::int64_t received = 0;                 ///< as often as one that a packet was for understood it
   std::int64_t unsent = 0;                   ///< asked for without power, silent by a fault, or out of the water
   std::int64_t dropped = 0;                  ///< messages that waited in a queue that was full
-  std::map<std::string, std::int64_t> lost;  ///< not understood, by cause: one of sim::loss_causes()
+  std::map<std::string, std::int64_t> lost;  ///< not understood, by cause: one of loss_causes()
 };
 
 /// On the acoustic channel, of a vehicle (empty: of all) and one of its devices (empty: of all).

@@ -3,6 +3,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -43,10 +44,18 @@ enum class History {
   length,  ///< for the same metrics, later: what came after is cut off again
 };
 
+/// What a metric looks at.
+struct MetricContext {
+  const sim::MetricConfig& config;
+  sim::World& world;
+  /// The truth of a vehicle by its name; outlives the metric.
+  std::function<const TruthHistory&(const std::string&)> truth_of;
+};
+
 /// One entry of `metrics:` while the run goes.
 class Metric {
  public:
-  explicit Metric(const sim::MetricConfig& config) : config_(config) {}
+  explicit Metric(const MetricContext& context) : config_(context.config) {}
   virtual ~Metric() = default;
   Metric(const Metric&) = delete;
   Metric& operator=(const Metric&) = delete;
@@ -58,6 +67,8 @@ class Metric {
   virtual bool needs_others() const { return false; }
   /// Null when it compares no estimates.
   virtual const std::vector<ErrorSample>* samples() const { return nullptr; }
+  /// Of the errors of these samples.
+  virtual int dimensions() const { return 0; }
   virtual std::int64_t bad_messages() const { return 0; }
   /// Why a figure is NaN, in a few words for the rule that fails by it.  `figure`: without the name of the metric.
   virtual std::string why_none(const std::string& figure) const = 0;
@@ -73,7 +84,8 @@ class Metric {
   }
   /// For reasons: ` from 120 s on`; empty when the metric counts from the start.
   std::string since_from_s() const {
-    return config_.from_s > 0 ? fmt::format(" from {:.6g} s on", config_.from_s) : "";
+    const double from_s = config_.params->from_s;
+    return from_s > 0 ? fmt::format(" from {:.6g} s on", from_s) : "";
   }
   void add(Figures& figures, const std::string& figure, double value) const {
     figures[config_.name + "." + figure] = value;
@@ -85,19 +97,5 @@ class Metric {
 
 /// The chi-square value below which `dimensions` (2 or 3) squared normal errors lie in 95 of 100 cases.
 double chi_square_95(int dimensions);
-
-/// position_error and consistency.  `truth` must outlive it.
-std::unique_ptr<Metric> make_estimate_metric(const sim::MetricConfig& config, const sim::World& world,
-                                             const TruthHistory& truth);
-/// distance.  `truth` must outlive it.
-std::unique_ptr<Metric> make_distance_metric(const sim::MetricConfig& config, const sim::World& world,
-                                             const TruthHistory& truth);
-/// delivery, bytes_per_metre.
-std::unique_ptr<Metric> make_link_metric(const sim::MetricConfig& config, const sim::World& world);
-/// mission_time, messages.
-std::unique_ptr<Metric> make_event_metric(const sim::MetricConfig& config, sim::World& world);
-/// lean.
-std::unique_ptr<Metric> make_lean_metric(const sim::MetricConfig& config, const sim::World& world);
-std::unique_ptr<Metric> make_collision_metric(const sim::MetricConfig& config, sim::World& world);
 
 }  // namespace tools

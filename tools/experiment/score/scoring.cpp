@@ -5,10 +5,17 @@
 
 #include <cmath>
 
+#include "tools/experiment/score/metric_registry.hpp"
+
 namespace tools {
 
 Scoring::Scoring(sim::World& world) : world_(world), contacts_(world) {
-  for (const sim::MetricConfig& config : world.config().metrics) metrics_.push_back(make(config));
+  for (const sim::MetricConfig& config : world.config().metrics)
+    metrics_.push_back(
+        make_metric({config, world, [this](const auto& vehicle) -> const auto& { return truth_of(vehicle);
+}
+}  // namespace tools
+));
 }
 
 Scoring::~Scoring() = default;
@@ -19,27 +26,6 @@ const TruthHistory& Scoring::truth_of(const std::string& vehicle) {
   return *truth;
 }
 
-std::unique_ptr<Metric> Scoring::make(const sim::MetricConfig& config) {
-  switch (config.type) {
-    case sim::MetricType::position_error:
-    case sim::MetricType::consistency:
-      return make_estimate_metric(config, world_, truth_of(config.vehicle));
-    case sim::MetricType::distance:
-      return make_distance_metric(config, world_, truth_of(config.vehicle));
-    case sim::MetricType::delivery:
-    case sim::MetricType::bytes_per_metre:
-      return make_link_metric(config, world_);
-    case sim::MetricType::mission_time:
-    case sim::MetricType::messages:
-      return make_event_metric(config, world_);
-    case sim::MetricType::lean:
-      return make_lean_metric(config, world_);
-    case sim::MetricType::collisions:
-      break;
-  }
-  return make_collision_metric(config, world_);
-}
-
 void Scoring::after_step() {
   for (const auto& [vehicle, truth] : truths_) truth->after_step();
   for (const auto& metric : metrics_) metric->after_step();
@@ -47,7 +33,7 @@ void Scoring::after_step() {
 }
 
 bool Scoring::is_early(const Metric& metric) const {
-  return sim::to_seconds(world_.now()) < metric.config().from_s;
+  return sim::to_seconds(world_.now()) < metric.config().params->from_s;
 }
 
 Figures Scoring::figures() const {
@@ -88,7 +74,7 @@ std::string Scoring::why_none(const std::string& name) const {
     if (!name.starts_with(config.name + ".")) continue;
     if (is_early(*metric))
       return fmt::format("the run ended at {:.6g} s, before from_s, {:.6g} s", sim::to_seconds(world_.now()),
-                         config.from_s);
+                         config.params->from_s);
     return metric->why_none(name.substr(config.name.size() + 1));
   }
   return "there is no such metric";
@@ -123,8 +109,8 @@ std::vector<Scoring::Track> Scoring::tracks() const {
   std::vector<Track> tracks;
   for (const auto& metric : metrics_)
     if (const std::vector<ErrorSample>* samples = metric->samples())
-      tracks.push_back({metric->config().name, metric->config().vehicle, metric->config().channel,
-                        metric->config().dimensions, samples});
+      tracks.push_back({metric->config().name, metric->config().params->vehicle, metric->config().params->channel,
+                        metric->dimensions(), samples});
   return tracks;
 }
 

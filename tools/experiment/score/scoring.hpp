@@ -58,7 +58,6 @@ class Scoring {
   /// Why a figure, `NAME.figure`, is NaN.
   std::string why_none(const std::string& name) const;
   Verdict judge(const sim::PassRule& rule, const Figures& figures) const;
-  std::unique_ptr<Metric> make(const sim::MetricConfig& config);
 
   sim::World& world_;
   std::map<std::string, std::unique_ptr<TruthHistory>> truths_;  ///< by vehicle

@@ -141,8 +141,7 @@ std::vector<std::string> error_metrics_of(const LoadedStudy& study) {
   std::set<std::string> names;
   for (const sim::LoadedWorld& world : study.worlds)
     for (const sim::MetricConfig& metric : world.config.metrics)
-      if (metric.type == sim::MetricType::position_error || metric.type == sim::MetricType::consistency)
-        names.insert(metric.name);
+      if (metric.kind->find("samples") != nullptr) names.insert(metric.name);
   return {names.begin(), names.end()};
 }
 

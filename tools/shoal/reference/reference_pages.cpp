@@ -9,7 +9,7 @@
 #include "shoal/message_schema.hpp"
 #include "sim/config/param_table.hpp"
 #include "sim/random/noise.hpp"
-#include "sim/world_file/metric_kind.hpp"
+#include "sim/world_file/metric_registry.hpp"
 #include "sim/world_file/world_config.hpp"
 #include "tools/command_line/text_layout.hpp"
 #include "tools/shoal/reference/param_tables.hpp"
@@ -151,8 +151,13 @@ std::string unit_text(const sim::FigureKind& figure) {
 
 std::string keys_text(const sim::MetricKind& kind) {
   std::string text;
-  for (const std::string& key : kind.required) text += (text.empty() ? "" : ", ") + std::string("**`") + key + "`**";
-  for (const std::string& key : kind.optional) text += (text.empty() ? "" : ", ") + std::string("`") + key + "`";
+  const std::vector<sim::ParamInfo> keys = kind.keys();
+  for (const bool required : {true, false})
+    for (const sim::ParamInfo& info : keys) {
+      if (info.required != required) continue;
+      const char* bold = required ? "**" : "";
+      text += (text.empty() ? "" : ", ") + (bold + ("`" + info.key + "`")) + bold;
+    }
   return text;
 }
 
@@ -162,10 +167,10 @@ std::string metrics_page() {
                      "`summary.json`, `metrics.csv` and pass rules. A figure that there is nothing to compute from is "
                      "NaN: null in `summary.json`, `none` in reports. Keys that a type needs are bold; "
                      "[world_format.md](world_format.md) explains them, [scores.md](scores.md) the metrics.\n";
-  for (const sim::MetricKind& kind : sim::metric_kinds()) {
+  for (const sim::MetricKind* kind : sim::MetricRegistry::instance().all()) {
     page += fmt::format("\n## {}\n\nWhat it measures: {}. Keys: {}.\n\n| figure | unit | meaning |\n|---|---|---|\n",
-                        kind.word, kind.meaning, keys_text(kind));
-    for (const sim::FigureKind& figure : kind.figures)
+                        kind->word, kind->meaning, keys_text(*kind));
+    for (const sim::FigureKind& figure : kind->figures)
       page += fmt::format("| `{}` | {} | {} |\n", figure.name, unit_text(figure), figure.meaning);
   }
   return page;
@@ -174,9 +179,9 @@ std::string metrics_page() {
 std::string metrics_text(std::size_t columns) {
   constexpr std::size_t indent = 6;
   std::string text = "Figures of the metrics of a world, NAME.figure.\n";
-  for (const sim::MetricKind& kind : sim::metric_kinds()) {
-    text += "\n" + command_line::wrapped(kind.word + ": " + kind.meaning, columns) + "\n";
-    for (const sim::FigureKind& figure : kind.figures)
+  for (const sim::MetricKind* kind : sim::MetricRegistry::instance().all()) {
+    text += "\n" + command_line::wrapped(kind->word + ": " + kind->meaning, columns) + "\n";
+    for (const sim::FigureKind& figure : kind->figures)
       text += fmt::format("  {} ({})\n{:{}}{}\n", figure.name, unit_text(figure), "", indent,
                           command_line::wrapped(figure.meaning, columns, indent, indent));
   }

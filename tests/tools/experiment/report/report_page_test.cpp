@@ -8,7 +8,7 @@
 #include <fstream>
 #include <map>
 
-#include "sim/world_file/metric_kind.hpp"
+#include "sim/world_file/metric_registry.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tools/experiment/files/html.hpp"
@@ -258,7 +258,7 @@ std::map<std::string, double> sea_figures() {
   };
   error("cooperative", 0.912, 0.7, 0.025);
   error("alone", 61.25, 138, 138.0 / 28);  // per cent of 2800 m
-  for (const sim::FigureKind& figure : sim::metric_kind(sim::MetricType::delivery).figures)
+  for (const sim::FigureKind& figure : sim::MetricRegistry::instance().find("delivery")->figures)
     figures["link." + figure.name] = 0;
   figures["link.sent"] = 130, figures["link.received"] = 75, figures["link.lost"] = figures["link.lost_noise"] = 25;
   figures["link.ratio"] = 0.75;

@@ -404,7 +404,7 @@ TEST(Delivery, OfAWorldWithoutModemsHasNoRatio) {
   EXPECT_EQ(world.figure("d.sent"), 0);
   EXPECT_EQ(world.figure("d.received"), 0);
   EXPECT_TRUE(std::isnan(world.figure("d.ratio")));
-  for (const std::string& cause : sim::loss_causes()) EXPECT_EQ(world.figure("d.lost_" + cause), 0);
+  for (const std::string& cause : tools::loss_causes()) EXPECT_EQ(world.figure("d.lost_" + cause), 0);
 }
 
 TEST(Delivery, CountsWhatModemsSentAndWhatTheOthersHeard) {
@@ -438,7 +438,7 @@ TEST(Delivery, CountsWhatModemsSentAndWhatTheOthersHeard) {
   EXPECT_EQ(figures.at("a.lost_half_duplex"), 1);
   EXPECT_EQ(figures.at("a.ratio"), 0);
   double lost = 0;
-  for (const std::string& cause : sim::loss_causes()) lost += figures.at("all.lost_" + cause);
+  for (const std::string& cause : tools::loss_causes()) lost += figures.at("all.lost_" + cause);
   EXPECT_EQ(figures.at("all.lost"), lost);
   EXPECT_EQ(figures.at("all.ratio"), figures.at("all.received") / (figures.at("all.received") + lost));
 }

@@ -10,7 +10,7 @@
 
 #include "shoal/message_schema.hpp"
 #include "sim/device/device_registry.hpp"
-#include "sim/world_file/metric_kind.hpp"
+#include "sim/world_file/metric_registry.hpp"
 #include "tests/project_paths.hpp"
 
 namespace {
@@ -41,13 +41,12 @@ TEST(ReferencePages, NameEveryDeviceAndEveryMessage) {
 
 TEST(ReferencePages, ExplainEveryFigureWithItsUnit) {
   const std::string page = tools::reference_page("metrics");
-  for (const sim::MetricKind& kind : sim::metric_kinds()) {
-    EXPECT_THAT(page, testing::HasSubstr("\n## " + kind.word + "\n"));
-    EXPECT_EQ(&sim::metric_kind(kind.type), &kind);
+  for (const sim::MetricKind* kind : sim::MetricRegistry::instance().all()) {
+    EXPECT_THAT(page, testing::HasSubstr("\n## " + kind->word + "\n"));
     std::set<std::string> names;
-    for (const sim::FigureKind& figure : kind.figures) {
-      EXPECT_NE(figure.unit, "") << kind.word << "." << figure.name;
-      EXPECT_NE(figure.meaning, "") << kind.word << "." << figure.name;
+    for (const sim::FigureKind& figure : kind->figures) {
+      EXPECT_NE(figure.unit, "") << kind->word << "." << figure.name;
+      EXPECT_NE(figure.meaning, "") << kind->word << "." << figure.name;
       EXPECT_EQ(figure.name.ends_with("_m"), figure.unit == "m") << figure.name;
       EXPECT_EQ(figure.name.ends_with("_s"), figure.unit == "s") << figure.name;
       EXPECT_EQ(figure.name.ends_with("_deg"), figure.unit == "deg") << figure.name;
@@ -55,9 +54,9 @@ TEST(ReferencePages, ExplainEveryFigureWithItsUnit) {
       names.insert(figure.name);
     }
     // Reports find the type of a metric by its figures.
-    EXPECT_EQ(sim::metric_kind_of_figures(names), &kind);
+    EXPECT_EQ(sim::MetricRegistry::instance().of_figures(names), kind);
   }
-  EXPECT_EQ(sim::metric_kind_of_figures({"rms_m"}), nullptr);
+  EXPECT_EQ(sim::MetricRegistry::instance().of_figures({"rms_m"}), nullptr);
 }
 
 TEST(ReferencePages, NoDeviceTakesAKeyThatAllDevicesHave) {

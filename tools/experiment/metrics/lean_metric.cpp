@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tools/experiment/score/metric.hpp"
+#include "tools/experiment/score/metric_registry.hpp"
 
 namespace tools {
 
@@ -14,12 +14,28 @@ constexpr double fallen_rad = std::numbers::pi / 4;
 /// How the first body of a vehicle leans.
 class LeanMetric final : public Metric {
  public:
-  LeanMetric(const sim::MetricConfig& config, const sim::World& world) : Metric(config), world_(world) {}
+  static constexpr const char* meaning = "how far the first body of a vehicle leans";
+  static std::vector<sim::FigureKind> figures() {
+    return {{"max_deg", "deg", "largest angle between its z axis and the vertical"},
+            {"rms_deg", "deg", "root mean square of the pitch about its mean"},
+            {"mean_deg", "deg", "mean pitch, positive with the nose down"},
+            {"fell_s", "s", "simulated time when it leaned more than 45 degrees; none: it did not fall"}};
+  }
+  struct Params final : sim::MetricParams {
+    void read(sim::ParamReader& in) override {
+      in.require("vehicle");
+      read_vehicle(in);
+      read_from_s(in);
+    }
+  };
+
+  LeanMetric(const MetricContext& context, const Params& params)
+      : Metric(context), params_(params), world_(context.world) {}
 
   void after_step() override {
     const double now_s = sim::to_seconds(world_.now());
-    const sim::Vehicle* vehicle = world_.find_vehicle(config().vehicle);
-    if (vehicle == nullptr || now_s < config().from_s) return;
+    const sim::Vehicle* vehicle = world_.find_vehicle(params_.vehicle);
+    if (vehicle == nullptr || now_s < params_.from_s) return;
     const sim::Vector3d up_B = vehicle->bodies().front().second->X_WB().linear().row(2).transpose();
     const double forward_rad = std::atan2(-up_B.x(), std::hypot(up_B.y(), up_B.z()));
     const double lean_rad = std::acos(std::clamp(up_B.z(), -1.0, 1.0));
@@ -48,16 +64,15 @@ class LeanMetric final : public Metric {
   }
 
  private:
+  const Params& params_;
   const sim::World& world_;
   std::int64_t count_ = 0;
   double mean_rad_ = 0, square_rad2_ = 0, most_rad_ = 0;
   double fell_s_ = no_figure;
 };
 
-}  // namespace
+SHOAL_METRIC("lean", LeanMetric);
 
-std::unique_ptr<Metric> make_lean_metric(const sim::MetricConfig& config, const sim::World& world) {
-  return std::make_unique<LeanMetric>(config, world);
-}
+}  // namespace
 
 }  // namespace tools

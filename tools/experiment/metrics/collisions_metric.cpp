@@ -3,8 +3,9 @@
 #include <map>
 #include <utility>
 
+#include "sim/script/action.hpp"
 #include "tools/experiment/score/first_contacts.hpp"
-#include "tools/experiment/score/metric.hpp"
+#include "tools/experiment/score/metric_registry.hpp"
 
 namespace tools {
 
@@ -13,7 +14,22 @@ namespace {
 /// Contacts that began between vehicles, or a vehicle and an object.
 class CollisionMetric final : public Metric {
  public:
-  CollisionMetric(const sim::MetricConfig& config, sim::World& world) : Metric(config), world_(world) {}
+  static constexpr const char* meaning = "contacts that began";
+  static std::vector<sim::FigureKind> figures() {
+    return {{"count", "contacts", "contacts that began; again after the two were apart for more than 0.5 s", true},
+            {"first_s", "s", "simulated time of the first one; none: there was no contact"}};
+  }
+  struct Params final : sim::MetricParams {
+    std::string with;  ///< vehicle or object; empty: all, but planes
+    void read(sim::ParamReader& in) override {
+      read_vehicle(in);
+      read_known_name(in, "with", with, sim::movable_kind, "with this one alone; unset: with all, but planes");
+      read_from_s(in);
+    }
+  };
+
+  CollisionMetric(const MetricContext& context, const Params& params)
+      : Metric(context), params_(params), world_(context.world) {}
 
   void after_step() override {
     if (generation_ != world_.generation()) choose_groups();
@@ -50,15 +66,15 @@ class CollisionMetric final : public Metric {
     groups_.clear();
     whose_.clear();
     for (const auto& vehicle : world_.vehicles()) {
-      const bool subject = config().vehicle.empty() || config().vehicle == vehicle->name();
+      const bool subject = params_.vehicle.empty() || params_.vehicle == vehicle->name();
       add_group(vehicle->group(), 2 * static_cast<std::int64_t>(vehicle->number()),
-                {subject, config().with.empty() || config().with == vehicle->name()});
+                {subject, params_.with.empty() || params_.with == vehicle->name()});
       if (subject) world_.physics().watch_contacts(vehicle->group());
     }
     for (const auto& [name, object] : world_.objects()) {
-      const auto is_plane = [](const sim::PartConfig& part) { return part.shape == "plane"; };
+      const auto is_plane = [](const sim::PartConfig& part) { return part.shape == sim::PartShape::plane; };
       const bool planes = std::all_of(object.config.parts.begin(), object.config.parts.end(), is_plane);
-      add_group(object.group, 2 * object.number + 1, {false, config().with.empty() ? !planes : config().with == name});
+      add_group(object.group, 2 * object.number + 1, {false, params_.with.empty() ? !planes : params_.with == name});
     }
   }
 
@@ -78,10 +94,11 @@ class CollisionMetric final : public Metric {
     const auto [last, fresh] = last_touch_s_.emplace(pair, now_s);
     const bool begins = fresh || now_s - last->second > parted_after_s;
     last->second = now_s;
-    if (!begins || now_s < config().from_s) return;
+    if (!begins || now_s < params_.from_s) return;
     if (count_++ == 0) first_s_ = now_s;
   }
 
+  const Params& params_;
   sim::World& world_;
   std::uint64_t generation_ = ~std::uint64_t{0};
   std::map<int, Group> groups_;
@@ -91,10 +108,8 @@ class CollisionMetric final : public Metric {
   double first_s_ = no_figure;
 };
 
-}  // namespace
+SHOAL_METRIC("collisions", CollisionMetric);
 
-std::unique_ptr<Metric> make_collision_metric(const sim::MetricConfig& config, sim::World& world) {
-  return std::make_unique<CollisionMetric>(config, world);
-}
+}  // namespace
 
 }  // namespace tools
