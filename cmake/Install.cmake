@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # cmake --install build/release --prefix P: the programs, what plugins and clients are built against, worlds and vehicles.
 include(CMakePackageConfigHelpers)
 set(package_dir lib/cmake/Shoal)

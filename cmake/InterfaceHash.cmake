@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # cmake -DHEADERS=... -DVERSION=... -DOUTPUT=... -P InterfaceHash.cmake
 # Writes the header that tells one version of the plugin interface from another: a hash of all headers.
 set(all "")

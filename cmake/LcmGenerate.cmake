@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Debian's LCM 1.3.1 ships no CMake package, so lcm-gen is called here.  Works with 1.5 too.
 find_program(LCM_GEN lcm-gen REQUIRED)
 

@@ -2,11 +2,12 @@
 # Rooms: every folder of sources is a target, which says what other rooms it uses.  docs/architecture.md has the picture;
 # tests/sim/include_direction_test.cpp reads the list that shoal_write_rooms() leaves, and holds includes to it.
 
-# shoal_room(<folder> [USES <room>...] [PUBLIC <library>...] [PRIVATE <library>...] [EXCEPT <file>...])
+# shoal_room(<folder> [MAIN] [USES <room>...] [PUBLIC <library>...] [PRIVATE <library>...] [EXCEPT <file>...])
+# MAIN: one of its sources has main(); the program made of its objects is its test of links.
 # <folder>: from the folder of the calling CMakeLists.txt; `.` is that folder itself.  The target, and the name of the
 # room for USES, is the path from the top with `_` for `/`: sim/physics is sim_physics.
 function(shoal_room folder)
-  cmake_parse_arguments(ARG "" "" "USES;PUBLIC;PRIVATE;EXCEPT" ${ARGN})
+  cmake_parse_arguments(ARG "MAIN" "" "USES;PUBLIC;PRIVATE;EXCEPT" ${ARGN})
   cmake_path(ABSOLUTE_PATH folder NORMALIZE OUTPUT_VARIABLE directory)
   cmake_path(RELATIVE_PATH directory BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE path)
   string(REGEX REPLACE "/$" "" path "${path}")
@@ -31,6 +32,7 @@ function(shoal_room folder)
   target_include_directories(${room} ${scope} ${PROJECT_SOURCE_DIR})
   target_link_libraries(${room} ${scope} ${ARG_USES} ${ARG_PUBLIC})
   set_property(GLOBAL APPEND PROPERTY SHOAL_ROOMS ${room})
+  set_property(GLOBAL PROPERTY SHOAL_ROOM_${room}_MAIN ${ARG_MAIN})
   set_property(GLOBAL PROPERTY SHOAL_ROOM_${room}_PATH ${path})
   set_property(GLOBAL PROPERTY SHOAL_ROOM_${room}_USES ${ARG_USES})
   set_property(GLOBAL PROPERTY SHOAL_ROOM_${room}_LIBRARIES ${ARG_PUBLIC} ${ARG_PRIVATE})
@@ -77,6 +79,10 @@ function(shoal_check_room_links)
   get_property(rooms GLOBAL PROPERTY SHOAL_ROOMS)
   add_custom_target(room_links)
   foreach(room IN LISTS rooms)
+    get_property(has_main GLOBAL PROPERTY SHOAL_ROOM_${room}_MAIN)
+    if(has_main)
+      continue()
+    endif()
     shoal_room_closure(${room} closure)
     shoal_room_objects("${closure}" objects)
     set(libraries "")

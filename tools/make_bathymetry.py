@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Makes a bathymetry file for a part of shape terrain: an ESRI ASCII grid in the frame of a world, heights up.
 
 usage: make_bathymetry.py import FILE OUT.asc --origin LAT,LON --size X,Y --cell M

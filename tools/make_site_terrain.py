@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Writes worlds/terrain/site_2km.png: 2 km x 2 km of rolling ground with a river valley and a levelled yard.
 
 usage: make_site_terrain.py FILE.png

@@ -26,31 +26,29 @@ constexpr double info_rate_hz = 0.1;
 }  // namespace
 
 SimService::SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim::RunControl& control,
-                       LockstepService& lockstep, Info info)
+                       LockstepService& lockstep, Info info, const ServiceLinks& links)
     : bus_(bus),
       network_(network),
       world_(world),
       control_(control),
       lockstep_(lockstep),
       info_(std::move(info)),
-      visitors_(world, bus),
+      visitors_(world, bus, links.journal),
+      journal_(links.journal),
+      others_(links.others),
       notices_(bus, world),
       spawns_("spawn requests", "spawns_per_client", world.config().limits.spawns_per_client),
       rewinds_("rewind and restore requests", "rewinds_per_client", world.config().limits.rewinds_per_client) {
-  serve_vehicles(network);
+  open_line(network);
+  for (sim::Bus* vehicles : links.vehicle_buses) open_line(*vehicles);
   lockstep.set_on_contradiction([this](const std::string& client, const std::string& signer, const std::string& text) {
     notices_.add({0, "contradiction", client, signer, text}, lockstep_.branch());
   });
   lockstep.set_on_heard([this](const std::string& client) { visitors_.heard_of(client); });
 }
 
-void SimService::serve_vehicles(sim::Bus& network) {
+void SimService::open_line(sim::Bus& network) {
   lines_.push_back({&network, network.open_mailbox("sim.control"), network.open_mailbox("sim.info")});
-}
-
-void SimService::use_journal(RunJournal& journal) {
-  journal_ = &journal;
-  visitors_.use_journal(journal);
 }
 
 template <typename Message>
@@ -134,7 +132,7 @@ void SimService::complain(const std::string& text) {
   if (++bad_messages_ <= 100) spdlog::warn("{} (ignored)", sim::shortened(sim::printable(text), 300));
 }
 
-void SimService::handle_requests() {
+void SimService::handle_requests(TimeMachine* machine) {
   visitors_.remove_silent();
   lockstep_.look_at_clock();
   // A flood of requests must not keep the world from stepping; the rest waits, and what overflows is counted.
@@ -143,7 +141,7 @@ void SimService::handle_requests() {
     for (int handled = 0; handled < most_at_once; ++handled) {
       const auto message = line.requests->take();
       if (!message) break;
-      handle_request(line, *message);
+      handle_request(line, *message, machine);
     }
   for (Line& line : lines_)
     while (const auto info = line.infos->take())
@@ -165,7 +163,7 @@ void SimService::warn_of_another(const Line& line, const char* how) {
                lockstep_.called(number_of(line)));
 }
 
-void SimService::handle_request(Line& line, const sim::Message& message) {
+void SimService::handle_request(Line& line, const sim::Message& message, TimeMachine* machine) {
   try {
     const ControlGuard::Opened opened = lockstep_.guard().open(message.channel, message.payload);
     const auto request = shoal::decode<shoal::sim_control_request_t>(opened.content, shoal::Finite::any);
@@ -173,7 +171,7 @@ void SimService::handle_request(Line& line, const sim::Message& message) {
     // A run that starts has no key of ours, and changes nothing.
     const bool is_question = others_ != nullptr && others_->who_asks(request) != OtherSimulators::Asker::nobody;
     if (!opened.refusal.empty() && !is_question) return refuse(line, request, opened);
-    answer(line, request, opened.signer);
+    answer(line, request, opened.signer, machine);
   } catch (const shoal::MessageError& error) {
     complain(std::string("sim.control: ") + error.what());
   }
@@ -213,7 +211,8 @@ void SimService::reply(Line& line, const shoal::sim_control_request_t& request, 
   line.network->end_of_step();
 }
 
-void SimService::answer(Line& line, const shoal::sim_control_request_t& request, const std::string& signer) {
+void SimService::answer(Line& line, const shoal::sim_control_request_t& request, const std::string& signer,
+                        TimeMachine* machine) {
   const bool on_own_bus = &line != &lines_.front();
   const std::int64_t session = sim::session_in(request.text, request.command);
   if (!on_own_bus) visitors_.heard_of(request.client);  // vehicles are brought on the world's bus
@@ -225,7 +224,7 @@ void SimService::answer(Line& line, const shoal::sim_control_request_t& request,
     ClientAccounts* account = account_for(request.command);
     if (account != nullptr) account->check(request.client);
     const bool lets_go = request.command == "leave" && lets_go_of_another(request);
-    const std::optional<std::string> text = obey(line, request);
+    const std::optional<std::string> text = obey(line, request, machine);
     if (!text) return;
     if (account != nullptr) account->use(request.client);
     if (lets_go || request.command != "leave") note(request, signer);
@@ -258,11 +257,12 @@ void SimService::note(const shoal::sim_control_request_t& request, const std::st
   notices_.add({0, request.command, request.client, signer, what}, lockstep_.branch());
 }
 
-std::optional<std::string> SimService::obey(Line& line, const shoal::sim_control_request_t& request) {
+std::optional<std::string> SimService::obey(Line& line, const shoal::sim_control_request_t& request,
+                                            TimeMachine* machine) {
   const std::string& command = request.command;
   const int number = number_of(line);
-  if (time_machine_ != nullptr)
-    if (auto text = time_machine_->obey(command, request.text, request.value)) return text;
+  if (machine != nullptr)
+    if (auto text = machine->obey(command, request.text, request.value)) return text;
   if (command == "quit") {
     control_.quit = true;
   } else if (command == "join") {

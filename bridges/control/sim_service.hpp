@@ -22,6 +22,15 @@
 
 namespace bridges {
 
+/// What a service works with where it is there; all must outlive the service.
+struct ServiceLinks {
+  RunJournal* journal = nullptr;            ///< what changes the world is written down there
+  const OtherSimulators* others = nullptr;  ///< who else starts on the buses: asked by them, which is told of once
+  /// Buses that vehicles have to themselves: there the service gives the time on sim.clock, answers join, leave and
+  /// alive on sim.control, and nothing else.  In the order in which the lockstep knows them.
+  std::vector<sim::Bus*> vehicle_buses = {};
+};
+
 /// The simulator's own channels: publishes sim.info, sim.clock and sim.state, and answers requests on sim.control.
 /// Speaks through any Bus.
 class SimService {
@@ -35,18 +44,8 @@ class SimService {
 
   /// `network`: the bus under `bus`; the handshake goes there directly, so that records leave it out.
   SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim::RunControl& control, LockstepService& lockstep,
-             Info info);
+             Info info, const ServiceLinks& links = {});
 
-  /// A bus that vehicles have to themselves: there the service gives the time on sim.clock, answers join, leave and
-  /// alive on sim.control, and nothing else.  In the order in which the lockstep knows them.
-  void serve_vehicles(sim::Bus& network);
-  /// What changes the world is written down there.  It must outlive this.
-  void use_journal(RunJournal& journal);
-  /// Serves what is about time: pause, resume, step, speed, until, where, snapshot, restore and rewind.  It must
-  /// outlive this; null: nobody does.
-  void set_time_machine(TimeMachine* machine) { time_machine_ = machine; }
-  /// Who else starts on the buses: asked by them, which is told of once.  It must outlive this.
-  void use_others(const OtherSimulators& others) { others_ = &others; }
   /// Whose vehicles there are.
   void visit_state(sim::StateArchive& archive) { visitors_.visit_state(archive); }
   /// While muted only the world's bus is published on.
@@ -59,8 +58,9 @@ class SimService {
   void obey_again(const shoal::sim_control_request_t& request);
   /// Publishes what is due after the world's current step: clock, state, info.
   void publish_step();
-  /// Answers the requests that have come.
-  void handle_requests();
+  /// Answers the requests that have come.  `machine` serves what is about time: pause, resume, step, speed, until,
+  /// where, snapshot, restore and rewind; null: nobody does.
+  void handle_requests(TimeMachine* machine = nullptr);
   /// A client is gone: it leaves the lockstep, and the vehicles that came with it go.
   void client_gone(const std::string& client);
 
@@ -82,14 +82,14 @@ class SimService {
   };
 
   void publish_state();
-  void handle_request(Line& line, const sim::Message& message);
+  void handle_request(Line& line, const sim::Message& message, TimeMachine* machine);
   void refuse(Line& line, const shoal::sim_control_request_t& request, const ControlGuard::Opened& opened);
-  void answer(Line& line, const shoal::sim_control_request_t& request, const std::string& signer);
+  void answer(Line& line, const shoal::sim_control_request_t& request, const std::string& signer, TimeMachine* machine);
   void reply(Line& line, const shoal::sim_control_request_t& request, std::int64_t session, bool ok,
              const std::string& text);
   /// What came of it; nothing: it is not decided yet, and not answered.  Throws std::runtime_error that says why it was
   /// refused.
-  std::optional<std::string> obey(Line& line, const shoal::sim_control_request_t& request);
+  std::optional<std::string> obey(Line& line, const shoal::sim_control_request_t& request, TimeMachine* machine);
   /// What limits how often a client may request this; null: nothing does.
   ClientAccounts* account_for(const std::string& command);
   bool lets_go_of_another(const shoal::sim_control_request_t& request) const;
@@ -98,6 +98,7 @@ class SimService {
   bool is_own_question(Line& line, const shoal::sim_control_request_t& request);
   void warn_of_another(const Line& line, const char* how);
   bool leave(int line, const shoal::sim_control_request_t& request);
+  void open_line(sim::Bus& network);
   void complain(const std::string& text);
   bool due(double rate_hz) const;
   template <typename Message>
@@ -110,11 +111,10 @@ class SimService {
   LockstepService& lockstep_;
   Info info_;
   Visitors visitors_;
-  RunJournal* journal_ = nullptr;
-  TimeMachine* time_machine_ = nullptr;
+  RunJournal* const journal_;
   bool muted_ = false;
   std::int64_t info_step_ = -1;  // of the last sim.info
-  const OtherSimulators* others_ = nullptr;
+  const OtherSimulators* const others_;
   bool warned_of_another_ = false;
   std::vector<Line> lines_;  // the world's first
   RunNotices notices_;

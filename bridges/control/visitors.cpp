@@ -11,6 +11,7 @@
 #include "shoal/message_codec.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/state/state_archive.hpp"
+#include "sim/world/world_editor.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 
 namespace bridges {
@@ -75,7 +76,8 @@ sim::SpawnRequest read_request(const sim::WorldConfig& world, const std::string&
 
 }  // namespace
 
-Visitors::Visitors(sim::World& world, sim::Bus& bus) : world_(world), bus_(bus) {
+Visitors::Visitors(sim::World& world, sim::Bus& bus, RunJournal* journal)
+    : world_(world), bus_(bus), journal_(journal) {
   know_all();
 }
 
@@ -156,7 +158,7 @@ std::string Visitors::spawn_again(const std::string& client, const std::string& 
 std::string Visitors::add(const std::string& client, const sim::SpawnRequest& request) {
   if (request.with_client && client.empty())
     throw std::runtime_error("a vehicle that goes with its client needs a client name");
-  const sim::Vehicle& vehicle = world_.add_vehicle(request.vehicle);
+  const sim::Vehicle& vehicle = world_.editor().add_vehicle(request.vehicle);
   owners_[vehicle.name()] = {client, request.with_client};
   if (request.with_client) {
     Client& owner = clients_[client];
@@ -172,8 +174,8 @@ std::string Visitors::add(const std::string& client, const sim::SpawnRequest& re
 void Visitors::remove(const std::string& client, const std::string& name) {
   write_down(client, "remove", name);
   const sim::Vehicle* vehicle = world_.find_vehicle(name);
-  if (vehicle == nullptr) return world_.remove_object(name);
-  world_.remove_vehicle(std::string(vehicle->name()));
+  if (vehicle == nullptr) return world_.editor().remove_object(name);
+  world_.editor().remove_vehicle(std::string(vehicle->name()));
   tell_changes();
 }
 
@@ -193,7 +195,7 @@ void Visitors::act(const std::string& client, const std::string& text) {
   sim::Diagnostics diagnostics;
   sim::check_untrusted(action, "", diagnostics);
   diagnostics.throw_if_any();
-  world_.run_action(action);
+  world_.editor().run_action(action);
   tell_changes();
 }
 

@@ -22,7 +22,9 @@ class RunJournal;
 /// brings or takes it, is told on `sim.vehicle`.
 class Visitors {
  public:
-  Visitors(sim::World& world, sim::Bus& bus);
+  /// `journal` is given every request that is about to change the world, whoever makes it, and descriptions; may be
+  /// null.
+  Visitors(sim::World& world, sim::Bus& bus, RunJournal* journal);
 
   /// Adds the vehicle that `text` describes (an entry of `vehicles:` in YAML); returns one line that names it, its
   /// channels and rates.  Throws sim::ConfigError, with the same lines as for files.
@@ -50,8 +52,6 @@ class Visitors {
   bool has(const std::string& client) const { return clients_.contains(client); }
   /// Whose vehicles there are.  When restoring, after the world itself, time-outs begin anew.
   void visit_state(sim::StateArchive& archive);
-  /// Told of every request that is about to change the world, whoever makes it, and of descriptions.
-  void use_journal(RunJournal& journal) { journal_ = &journal; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -76,7 +76,7 @@ class Visitors {
 
   sim::World& world_;
   sim::Bus& bus_;
-  RunJournal* journal_ = nullptr;
+  RunJournal* const journal_;
   std::map<std::string, Owner, std::less<>> owners_;    // by vehicle
   std::map<std::string, Client, std::less<>> clients_;  // those with vehicles that go with them
   Known known_;                                         // the vehicles told of, or there from the start

@@ -24,7 +24,10 @@ constexpr milliseconds mail_window{50};
 
 }  // namespace
 
-LockstepService::LockstepService(sim::World& world, sim::RunControl& control) : world_(world), control_(control) {
+LockstepService::LockstepService(sim::World& world, sim::RunControl& control, const std::vector<LockstepBus>& buses,
+                                 bool posts_mail)
+    : world_(world), control_(control), posts_mail_(posts_mail) {
+  for (const LockstepBus& bus : buses) add_line(bus);
   const sim::LockstepConfig& config = world.config().lockstep;
   defaults_.on_timeout = config.on_timeout;
   defaults_.timeout_s = config.timeout_s;
@@ -38,10 +41,10 @@ LockstepService::~LockstepService() {
   }
 }
 
-void LockstepService::add_line(sim::Bus& network, sim::MailGate& gate, const std::string& name) {
+void LockstepService::add_line(const LockstepBus& bus) {
   const int index = static_cast<int>(lines_.size());
-  lines_.push_back(std::make_unique<Line>(network, gate, name));
-  gate.set_order([this, index, line = lines_.back().get()](std::vector<sim::MailGate::Mail>& mail) {
+  lines_.push_back(std::make_unique<Line>(bus.network, bus.gate, bus.name));
+  bus.gate.set_order([this, index, line = lines_.back().get()](std::vector<sim::MailGate::Mail>& mail) {
     if (!suspended_) line->mail.order(mail);
     if (!posts_mail_) return;
     for (const sim::MailGate::Mail& each : mail) lockstep_.post(index, each.channel, each.payload);

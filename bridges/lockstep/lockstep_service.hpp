@@ -41,6 +41,13 @@ enum class LockstepOutcome {
   stopped,  ///< `idle` said so, or the run is to end; the next call goes on with the same step
 };
 
+/// A bus on which clients of the lockstep may be.
+struct LockstepBus {
+  sim::Bus& network;  ///< under `gate`; the handshake goes there directly, so that records leave it out
+  sim::MailGate& gate;
+  std::string name = {};  ///< empty: the world's own, which is the first
+};
+
 /// The lockstep on the bus: sends sim.tick, takes sim.ack, and asks and answers on sim.resend and sim.resent, so that
 /// neither a tick nor a message between world and client is lost.  See docs/lockstep.md.
 class LockstepService {
@@ -48,19 +55,16 @@ class LockstepService {
   /// Has what was published sent, and waits for messages up to the given time, or returns earlier.
   using Wait = std::function<void(std::chrono::milliseconds)>;
 
-  /// The defaults are those of the world's `lockstep`.
-  LockstepService(sim::World& world, sim::RunControl& control);
+  /// The defaults are those of the world's `lockstep`.  All must outlive this.  `posts_mail` false: what comes from
+  /// outside is put on nobody's list, for who plays a record, which holds what came then.
+  LockstepService(sim::World& world, sim::RunControl& control, const std::vector<LockstepBus>& buses = {},
+                  bool posts_mail = true);
   LockstepService(const LockstepService&) = delete;
   LockstepService& operator=(const LockstepService&) = delete;
   ~LockstepService();
 
-  /// A bus on which clients may be: the world's first, whose `name` is empty.  `network` is under `gate`; the handshake
-  /// goes there directly, so that records leave it out.  Both must outlive this.
-  void add_line(sim::Bus& network, sim::MailGate& gate, const std::string& name = {});
   /// `the world's bus`, or `bus 'NAME'`.
   const std::string& called(int line) const;
-  /// False: what comes from outside is put on nobody's list.  For who plays a record, which holds what came then.
-  void set_posts_mail(bool posts) { posts_mail_ = posts; }
   /// Some client on the bus `line` must have every message of this channel.
   bool somebody_receives(std::string_view channel, int line = 0) const {
     return lockstep_.somebody_receives(line, channel);
@@ -159,6 +163,7 @@ class LockstepService {
   /// This session of the client took part, and does no more.
   bool is_over(const std::string& client, std::int64_t session) const;
   void check_session(const std::string& client, std::int64_t session) const;
+  void add_line(const LockstepBus& bus);
   bool may_join(const sim::LockstepMember& first, const sim::LockstepTerms& terms);
   void ask_whether_it_lives(const sim::LockstepMember& member);
   void drop_overflowing();
@@ -217,7 +222,7 @@ class LockstepService {
   bool paused_here_ = false;
   std::int64_t pause_requests_ = 0;  // as they were then
   bool suspended_ = false;
-  bool posts_mail_ = true;
+  const bool posts_mail_;
   std::int32_t branch_ = 0;
   std::int64_t bad_messages_ = 0;
 };

@@ -5,6 +5,7 @@
 
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_hash_t.hpp"
+#include "sim/world/world_state.hpp"
 
 namespace bridges {
 
@@ -31,29 +32,29 @@ sim::Bytes SerialMail::read(const std::string& path, std::int64_t step) {
 }
 
 /// A serial port that writes down what comes in.
-class RunJournal::Port final : public sim::BytePort {
+class JournalPorts::Port final : public sim::BytePort {
  public:
-  Port(RunJournal& journal, std::string path, std::unique_ptr<sim::BytePort> inner)
-      : journal_(journal), path_(std::move(path)), inner_(std::move(inner)) {}
+  Port(JournalPorts& ports, std::string path, std::unique_ptr<sim::BytePort> inner)
+      : ports_(ports), path_(std::move(path)), inner_(std::move(inner)) {}
 
   sim::Bytes read() override {
-    if (journal_.muted_) return journal_.serial_mail_.read(path_, journal_.step());
+    if (ports_.muted_) return ports_.mail_.read(path_, ports_.step_);
     sim::Bytes bytes = inner_->read();
-    if (!bytes.empty()) journal_.letter(serial_bus, path_, bytes);
+    if (!bytes.empty()) ports_.read_.push_back({ports_.step_, path_, bytes});
     return bytes;
   }
   void write(std::span<const std::byte> bytes) override {
-    if (!journal_.muted_) inner_->write(bytes);
+    if (!ports_.muted_) inner_->write(bytes);
   }
   std::uint64_t dropped_bytes() const override { return inner_->dropped_bytes(); }
 
  private:
-  RunJournal& journal_;
+  JournalPorts& ports_;
   std::string path_;
   std::unique_ptr<sim::BytePort> inner_;
 };
 
-sim::PortOpener RunJournal::wrap(sim::PortOpener open) {
+sim::PortOpener JournalPorts::wrap(sim::PortOpener open) {
   if (!open) return {};
   return [this, open = std::move(open)](const std::string& kind,
                                         const std::string& path) -> std::unique_ptr<sim::BytePort> {
@@ -61,9 +62,13 @@ sim::PortOpener RunJournal::wrap(sim::PortOpener open) {
   };
 }
 
-void RunJournal::attach(const sim::World& world) {
-  world_ = &world;
-  every_steps_ = world.config().run.hash_every_steps;
+RunJournal::RunJournal(sim::Bus& bus, const sim::World& world, JournalPorts& ports, std::function<bool()> heard)
+    : bus_(bus),
+      world_(world),
+      ports_(ports),
+      every_steps_(world.config().run.hash_every_steps),
+      heard_(std::move(heard)) {
+  begin_step();
 }
 
 void RunJournal::admitted(const std::string& bus, std::span<const sim::MailGate::Mail> mail) {
@@ -76,11 +81,21 @@ void RunJournal::request(const shoal::sim_control_request_t& request) {
 }
 
 void RunJournal::letter(const std::string& bus, const std::string& channel, std::span<const std::byte> payload) {
-  if (muted_ || world_ == nullptr) return;
-  if (listener_) listener_(step(), {bus, channel, sim::Bytes(payload.begin(), payload.end())});
+  take_readings();
+  add(step(), bus, channel, payload);
+}
+
+void RunJournal::take_readings() {
+  for (const JournalPorts::Reading& reading : ports_.take()) add(reading.step, serial_bus, reading.path, reading.bytes);
+}
+
+void RunJournal::add(std::int64_t step, const std::string& bus, const std::string& channel,
+                     std::span<const std::byte> payload) {
+  if (muted_) return;
+  if (listener_) listener_(step, {bus, channel, sim::Bytes(payload.begin(), payload.end())});
   if (!waiting_.empty() && waiting_bytes_ + payload.size() > most_bytes) publish_mail();
   shoal::sim_letter_t letter;
-  letter.step = step();
+  letter.step = step;
   letter.bus = bus;
   letter.channel = channel;
   letter.size = static_cast<std::int32_t>(payload.size());
@@ -91,22 +106,26 @@ void RunJournal::letter(const std::string& bus, const std::string& channel, std:
 }
 
 void RunJournal::after_step() {
+  begin_step();
   if (muted_) return;
+  take_readings();
   if (!waiting_.empty()) publish_mail();
-  if (every_steps_ > 0 && world_->step_number() % every_steps_ == 0) publish_hash();
+  if (every_steps_ > 0 && world_.step_number() % every_steps_ == 0) publish_hash();
 }
 
 void RunJournal::finish(bool step_is_whole) {
-  if (muted_ || world_ == nullptr) return;
+  if (muted_) return;
+  take_readings();
   if (!waiting_.empty()) publish_mail();
-  if (!step_is_whole || !started_ || last_hash_step_ == world_->step_number()) return;
+  if (!step_is_whole || !started_ || last_hash_step_ == world_.step_number()) return;
   if (every_steps_ > 0) return publish_hash();
   if (heard_ && !heard_()) return;
   publish_mail();  // without letters: a log that ends with this one was not cut off
-  last_hash_step_ = world_->step_number();
+  last_hash_step_ = world_.step_number();
 }
 
 void RunJournal::begin_branch(std::int32_t branch, std::int64_t next_sequence) {
+  begin_step();
   branch_ = branch;
   sequence_ = next_sequence;
   waiting_.clear();
@@ -116,8 +135,8 @@ void RunJournal::begin_branch(std::int32_t branch, std::int64_t next_sequence) {
 
 void RunJournal::publish_mail() {
   shoal::sim_mail_t message;
-  message.utime = world_->epoch_us() + world_->now().count();
-  message.step = world_->step_number();
+  message.utime = world_.epoch_us() + world_.now().count();
+  message.step = world_.step_number();
   message.sequence = sequence_++;
   message.branch = branch_;
   message.count = static_cast<std::int32_t>(waiting_.size());
@@ -125,29 +144,29 @@ void RunJournal::publish_mail() {
   waiting_.clear();
   waiting_bytes_ = 0;
   shoal::encode_into(message, buffer_);
-  bus_.publish("sim.mail", buffer_, world_->now());
+  bus_.publish("sim.mail", buffer_, world_.now());
 }
 
 void RunJournal::publish_hash() {
   if (heard_ && !heard_()) return;
   shoal::sim_hash_t message;
-  message.utime = world_->epoch_us() + world_->now().count();
-  message.step = world_->step_number();
+  message.utime = world_.epoch_us() + world_.now().count();
+  message.step = world_.step_number();
   message.branch = branch_;
   message.mail_sequence = sequence_;
-  sim::StateHash whole;  // World::state_hash() is that of the hashes of all parts; so the state is gone through once
-  for (const sim::PartHash& part : world_->part_hashes()) {
+  sim::StateHash whole;  // WorldState::hash() is that of the hashes of all parts; so the state is gone through once
+  for (const sim::PartHash& part : world_.state().part_hashes()) {
     whole.add(part.hash);
     message.part.push_back(part.part);
     message.part_hash.push_back(static_cast<std::int64_t>(part.hash));
   }
   message.hash = static_cast<std::int64_t>(whole.value());
   message.part.push_back(run_hash_part);
-  message.part_hash.push_back(static_cast<std::int64_t>(world_->run_hash()));
+  message.part_hash.push_back(static_cast<std::int64_t>(world_.state().run_hash()));
   message.count = static_cast<std::int32_t>(message.part.size());
   shoal::encode_into(message, buffer_);
-  bus_.publish("sim.hash", buffer_, world_->now());
-  last_hash_step_ = world_->step_number();
+  bus_.publish("sim.hash", buffer_, world_.now());
+  last_hash_step_ = world_.step_number();
 }
 
 }  // namespace bridges

@@ -31,6 +31,37 @@ class SerialMail {
   std::map<std::string, std::deque<std::pair<std::int64_t, sim::Bytes>>> waiting_;
 };
 
+/// Serial ports of a world that write down what they read, for a RunJournal.
+class JournalPorts {
+ public:
+  struct Reading {
+    std::int64_t step;
+    std::string path;
+    sim::Bytes bytes;
+  };
+
+  /// An opener of such ports, which must not outlive this.  Empty for an empty one.
+  sim::PortOpener wrap(sim::PortOpener open);
+  /// What is read from now on is read at this step.
+  void begin_step(std::int64_t step) { step_ = step; }
+  /// What was read since the last call.
+  std::vector<Reading> take() { return std::exchange(read_, {}); }
+  /// While muted, ports give what is in mail(), and drop what is written to them.
+  void mute(bool muted) {
+    muted_ = muted;
+    mail_.clear();
+  }
+  SerialMail& mail() { return mail_; }
+
+ private:
+  class Port;
+
+  std::int64_t step_ = 0;
+  bool muted_ = false;
+  std::vector<Reading> read_;
+  SerialMail mail_;
+};
+
 /// Writes down on the world's bus what makes a run repeatable: all that comes to the world from outside (sim.mail), and
 /// hashes that prove that a repetition is equal (sim.hash).
 class RunJournal {
@@ -50,18 +81,17 @@ class RunJournal {
     sim::Bytes payload;
   };
 
-  /// `bus`: the world's, recorded.  Both must outlive this.
-  explicit RunJournal(sim::Bus& bus) : bus_(bus) {}
+  /// `bus`: the world's, recorded; `ports`: those of `world`.  All must outlive this.  Hashes are worked out while
+  /// `heard` says that somebody may read them; empty: always.
+  RunJournal(sim::Bus& bus, const sim::World& world, JournalPorts& ports, std::function<bool()> heard = {});
 
-  /// An opener whose ports write down what they read.  Empty for an empty one.
-  sim::PortOpener wrap(sim::PortOpener open);
-  /// To be called once, before anything is written down.
-  void attach(const sim::World& world);
   /// The first reports go out next.
-  void start() { started_ = true; }
-
-  /// Hashes are worked out while `heard` says that somebody may read them; empty: always.
-  void set_heard(std::function<bool()> heard) { heard_ = std::move(heard); }
+  void start() {
+    started_ = true;
+    begin_step();
+  }
+  /// Before each step that is not followed by after_step().
+  void begin_step() { ports_.begin_step(step()); }
 
   /// Mail that was admitted at the begin of a step.
   void admitted(const std::string& bus, std::span<const sim::MailGate::Mail> mail);
@@ -82,9 +112,10 @@ class RunJournal {
   /// serial_mail() and drop what is written to them.
   void mute(bool muted) {
     muted_ = muted;
-    serial_mail_.clear();
+    ports_.mute(muted);
+    begin_step();
   }
-  SerialMail& serial_mail() { return serial_mail_; }
+  SerialMail& serial_mail() { return ports_.mail(); }
   /// A run that went back: what is published from now on belongs to another branch.
   void begin_branch(std::int32_t branch, std::int64_t next_sequence);
   std::int32_t branch() const { return branch_; }
@@ -92,15 +123,16 @@ class RunJournal {
   std::int64_t sequence() const { return sequence_; }
 
  private:
-  class Port;
-
-  std::int64_t step() const { return started_ ? world_->step_number() : before_first_reports; }
+  std::int64_t step() const { return started_ ? world_.step_number() : before_first_reports; }
+  void add(std::int64_t step, const std::string& bus, const std::string& channel, std::span<const std::byte> payload);
+  void take_readings();
   void publish_mail();
   void publish_hash();
 
   sim::Bus& bus_;
-  const sim::World* world_ = nullptr;
-  std::int64_t every_steps_ = 0;
+  const sim::World& world_;
+  JournalPorts& ports_;
+  std::int64_t every_steps_;
   bool started_ = false, muted_ = false;
   std::int32_t branch_ = 0;
   std::int64_t sequence_ = 0;
@@ -110,7 +142,6 @@ class RunJournal {
   sim::Bytes buffer_;
   Listener listener_;
   std::function<bool()> heard_;
-  SerialMail serial_mail_;
 };
 
 }  // namespace bridges

@@ -14,7 +14,7 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/station_command_t.hpp"
 #include "shoal/waypoints_command_t.hpp"
-#include "sim/world/mounted_device.hpp"
+#include "sim/vehicle/mounted_device.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {

@@ -6,8 +6,8 @@
 
 #include "devices/autopilot/autopilot_actuators.hpp"
 #include "devices/autopilot/autopilot_config.hpp"
-#include "sim/world/device_context.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/device_context.hpp"
+#include "sim/vehicle/vehicle.hpp"
 
 namespace shoal {
 class helm_command_t;

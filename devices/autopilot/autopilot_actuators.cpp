@@ -11,7 +11,7 @@
 #include "devices/marine/fin.hpp"
 #include "shoal/actuator_command_t.hpp"
 #include "shoal/message_codec.hpp"
-#include "sim/world/mounted_device.hpp"
+#include "sim/vehicle/mounted_device.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {

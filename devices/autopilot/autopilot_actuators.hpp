@@ -6,8 +6,8 @@
 
 #include "devices/autopilot/autopilot_config.hpp"
 #include "devices/marine/thruster_command.hpp"
-#include "sim/world/device_context.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/device_context.hpp"
+#include "sim/vehicle/vehicle.hpp"
 
 namespace devices {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "sim/base/time.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 
 namespace devices {
 

@@ -13,10 +13,12 @@ struct SerialLosses {
   std::uint64_t dropped_bytes = 0;
 };
 
+const sim::SharedKind<SerialLosses> serial_losses;
+
 }  // namespace
 
-std::uint64_t serial_dropped_bytes(sim::World& world) {
-  return world.shared<SerialLosses>().dropped_bytes;
+std::uint64_t serial_dropped_bytes(const sim::World& world) {
+  return world.shared().of(serial_losses).dropped_bytes;
 }
 
 void SerialParams::read(sim::ParamReader& in) {
@@ -33,12 +35,12 @@ void SerialMessageParams::read(sim::ParamReader& in) {
 }
 
 SerialPort::SerialPort(const SerialParams& params, const sim::DeviceContext& context)
-    : world_(context.world),
+    : host_(context.host),
       who_("vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'"),
       path_(sim::channel_name(params.path, context.vehicle.name(), context.config.name)) {
-  if (!context.world.open_port()) return;
+  if (!context.host.open_port) return;
   try {
-    port_ = context.world.open_port()(params.kind, path_);
+    port_ = context.host.open_port(params.kind, path_);
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(who_ + ": " + error.what());
   }
@@ -53,19 +55,19 @@ void SerialPort::write(std::span<const std::byte> bytes) {
   port_->write(bytes);
   const std::uint64_t dropped_bytes = port_->dropped_bytes();
   if (dropped_bytes == dropped_bytes_) return;
-  world_.shared<SerialLosses>().dropped_bytes += dropped_bytes - dropped_bytes_;
+  host_.shared.of(serial_losses).dropped_bytes += dropped_bytes - dropped_bytes_;
   const bool told = dropped_bytes_ > 0;
   dropped_bytes_ = dropped_bytes;
-  if (!told) world_.complain(who_, "nobody reads '" + path_ + "': what waits longest is dropped");
+  if (!told) host_.warnings.bad_message(who_, "nobody reads '" + path_ + "': what waits longest is dropped");
 }
 
 void SerialPort::write(const std::string& text) {
   write(std::as_bytes(std::span(text.data(), text.size())));
 }
 
-void complain_of_length(sim::World& world, const std::string& device, std::size_t longest_bytes) {
-  world.complain("device '" + device + "'",
-                 "what came by its serial port has more than " + std::to_string(longest_bytes) + " bytes");
+void warn_of_length(sim::WorldWarnings& warnings, const std::string& device, std::size_t max_bytes) {
+  warnings.bad_message("device '" + device + "'",
+                       "what came by its serial port has more than " + std::to_string(max_bytes) + " bytes");
 }
 
 SerialMessages::SerialMessages(const SerialMessageParams& params, const sim::DeviceContext& context)

@@ -8,7 +8,7 @@
 #include "sim/bus/byte_port.hpp"
 #include "sim/config/param_reader.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 
@@ -27,7 +27,7 @@ struct SerialMessageParams : SerialParams {
 
 /// Bytes that nobody fetched from the serial ports of a world, since its start.  It depends on the programs at their
 /// other ends, and is no part of the state.
-std::uint64_t serial_dropped_bytes(sim::World& world);
+std::uint64_t serial_dropped_bytes(const sim::World& world);
 
 /// The port of a device; without one where the program that builds the world offers none.
 class SerialPort {
@@ -41,14 +41,14 @@ class SerialPort {
   void write(const std::string& text);
 
  private:
-  sim::World& world_;
+  sim::DeviceHost& host_;
   std::string who_, path_;
   std::unique_ptr<sim::BytePort> port_;
   std::uint64_t dropped_bytes_ = 0;  // that were counted already
 };
 
-/// What came by a serial port is too long for a message: the world is told, which counts it as a bad message.
-void complain_of_length(sim::World& world, const std::string& device, std::size_t longest_bytes);
+/// What came by a serial port is too long for a message: counted as a bad message.
+void warn_of_length(sim::WorldWarnings& warnings, const std::string& device, std::size_t max_bytes);
 
 /// Messages through a serial port: lines, or what came within a step.
 class SerialMessages {

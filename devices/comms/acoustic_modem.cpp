@@ -122,16 +122,17 @@ void AcousticModem::Params::read(sim::ParamReader& in) {
 AcousticModem::AcousticModem(const Params& params, const sim::DeviceContext& context)
     : params_(params),
       world_(context.world),
+      host_(context.host),
       vehicle_(context.vehicle),
       transducer_(*this, params.receiver, context.sound_site()),
       now_(context.world.now()) {
   if (params.serial) serial_ = std::make_unique<SerialMessages>(*params.serial, context);
   transducer_.belong_to({group_of(params), vehicle_.name()});
-  world_.shared<MessageModems>().join(transducer_.full_name(), *this);
+  host_.shared.of(message_modems).join(transducer_.full_name(), *this);
 }
 
 AcousticModem::~AcousticModem() {
-  world_.shared<MessageModems>().leave(transducer_.full_name());
+  host_.shared.of(message_modems).leave(transducer_.full_name());
 }
 
 void AcousticModem::change(const Params& params) {
@@ -244,7 +245,7 @@ void AcousticModem::visit_state(sim::StateArchive& archive) {
 void AcousticModem::read_serial(sim::Time now) {
   for (sim::Bytes& data : serial_->take(longest_message_bytes()))
     if (data.size() > longest_message_bytes())
-      complain_of_length(world_, transducer_.full_name(), longest_message_bytes());
+      warn_of_length(host_.warnings, transducer_.full_name(), longest_message_bytes());
     else
       send(now, "", std::move(data));
 }

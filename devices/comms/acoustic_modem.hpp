@@ -10,7 +10,7 @@
 #include "devices/common/serial_port.hpp"
 #include "devices/comms/message_modem.hpp"
 #include "sim/acoustics/transducer.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 
@@ -95,7 +95,8 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
   void read_serial(sim::Time now);
 
   Params params_;
-  sim::World& world_;
+  const sim::World& world_;
+  sim::DeviceHost& host_;
   const sim::Vehicle& vehicle_;
   sim::Transducer transducer_;
   std::deque<Outgoing> queue_;

@@ -43,7 +43,7 @@ Gateway::Gateway(const Params& params, const sim::DeviceContext& context)
       world_(context.world),
       vehicle_(context.vehicle),
       faults_(context.faults),
-      all_modems_(context.world.shared<MessageModems>()) {
+      all_modems_(context.shared(message_modems)) {
   const auto fail = [&](const std::string& text) {
     sim::throw_config_error(context.config.place,
                             "vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'", text);

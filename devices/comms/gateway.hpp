@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "devices/comms/message_modem.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

@@ -8,6 +8,7 @@
 
 #include "sim/base/time.hpp"
 #include "sim/bus/bus.hpp"
+#include "sim/device/shared_by_devices.hpp"
 
 namespace devices {
 
@@ -62,5 +63,8 @@ class MessageModems {
   std::map<std::string, MessageModem*, std::less<>> modems_;
   std::int64_t dropped_by_those_gone_ = 0;
 };
+
+/// Of each world.
+inline const sim::SharedKind<MessageModems> message_modems;
 
 }  // namespace devices

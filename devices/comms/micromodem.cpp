@@ -36,6 +36,8 @@ struct Micromodem::Addresses {
   std::map<std::pair<std::string, int>, std::vector<std::string>> names;
 };
 
+const sim::SharedKind<Micromodem::Addresses> Micromodem::addresses_of_world;
+
 void MicromodemBeaconParams::read(sim::ParamReader& in) {
   in.read("network", network, "of the transponders");
   in.read("transponders", transponders, "up to four that are told apart: vehicle, or vehicle/device");
@@ -73,7 +75,7 @@ Micromodem::Micromodem(const Params& params, const sim::DeviceContext& context)
     : params_(params),
       vehicle_(context.vehicle),
       epoch_us_(context.world.epoch_us()),
-      addresses_(context.world.shared<Addresses>()),
+      addresses_(context.shared(addresses_of_world)),
       transducer_(*this, params.receiver, context.sound_site()),
       protocol_(protocol_config(params), *this),
       now_(context.world.now()) {

@@ -10,7 +10,7 @@
 #include "devices/common/serial_port.hpp"
 #include "devices/comms/micromodem_protocol.hpp"
 #include "sim/acoustics/transducer.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 
@@ -72,6 +72,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
 
  private:
   struct Addresses;
+  static const sim::SharedKind<Addresses> addresses_of_world;
   static constexpr std::size_t most_sentences = 4096;  // between two samples
 
   void check_beacons(const sim::DeviceContext& context) const;

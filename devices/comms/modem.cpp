@@ -12,21 +12,18 @@
 
 namespace devices {
 
-/// All modems of a world, in device order, and the events between them.
+/// All modems of a world, in device order.
 class Modem::Network {
  public:
-  void join(Modem& modem, sim::World& world) {
-    members_.push_back(&modem);
-    world_ = &world;
-  }
+  void join(Modem& modem) { members_.push_back(&modem); }
   void leave(Modem& modem) { std::erase(members_, &modem); }
   const std::vector<Modem*>& members() const { return members_; }
-  sim::World& world() const { return *world_; }
 
  private:
   std::vector<Modem*> members_;
-  sim::World* world_ = nullptr;
 };
+
+const sim::SharedKind<Modem::Network> Modem::network_of_world;
 
 void Modem::Params::read(sim::ParamReader& in) {
   in.read("network", network, "modems hear each other only in the same network, such as a radio channel");
@@ -45,7 +42,9 @@ void Modem::Params::read(sim::ParamReader& in) {
 
 Modem::Modem(const Params& params, const sim::DeviceContext& context)
     : params_(params),
-      network_(context.world.shared<Network>()),
+      world_(context.world),
+      host_(context.host),
+      network_(context.shared(network_of_world)),
       vehicle_(context.vehicle.name()),
       clock_(context.vehicle.clock()),
       full_name_(context.full_name()),
@@ -60,12 +59,12 @@ Modem::Modem(const Params& params, const sim::DeviceContext& context)
                             "...}'");
   if (params.serial) serial_ = std::make_unique<SerialMessages>(*params.serial, context);
   // Last: a port that cannot be opened throws.
-  network_.join(*this, context.world);
-  context.world.shared<MessageModems>().join(full_name_, *this);
+  network_.join(*this);
+  host_.shared.of(message_modems).join(full_name_, *this);
 }
 
 Modem::~Modem() {
-  network_.world().shared<MessageModems>().leave(full_name_);
+  host_.shared.of(message_modems).leave(full_name_);
   network_.leave(*this);
 }
 
@@ -131,13 +130,13 @@ void Modem::transmit(sim::Time now, const Outgoing& message) {
     }
     const double distance_m = (receiver->p_WS() - p_WS()).norm();
     const sim::Time due = now + sim::from_seconds(air_time_s + distance_m / propagation_mps());
-    network_.world().schedule_arrival(receiver->device_, due, payload);
+    host_.schedule_arrival(receiver->device_, due, payload);
   }
 }
 
 sim::SignalLoss Modem::loss_to(const Modem& receiver) const {
-  const sim::Zones& zones = network_.world().zones();
-  const sim::Medium& medium = network_.world().medium();
+  const sim::Zones& zones = world_.zones();
+  const sim::Medium& medium = world_.medium();
   for (const Modem* end : {this, &receiver}) {
     if (zones.denied(sim::ZoneFlag::radio_denied, end->p_WS())) return sim::SignalLoss::noise;
     if (!carries(medium, params_.through, end->p_WS())) return sim::SignalLoss::blocked;
@@ -151,7 +150,7 @@ sim::SignalLoss Modem::loss_to(const Modem& receiver) const {
 double Modem::propagation_mps() const {
   constexpr double light_mps = 299792458.0;
   if (params_.propagation_mps) return *params_.propagation_mps;
-  return params_.through == SignalCarrier::acoustic ? network_.world().medium().sound_speed_mps(p_WS()) : light_mps;
+  return params_.through == SignalCarrier::acoustic ? world_.medium().sound_speed_mps(p_WS()) : light_mps;
 }
 
 bool Modem::lost_on_the_way_to(const Modem& receiver) const {
@@ -168,7 +167,7 @@ bool Modem::hidden_from(const Modem& receiver) const {
   const sim::Vector3d way_W = receiver.p_WS() - p_WS();
   const double length_m = way_W.norm();
   if (length_m < 1e-3) return false;
-  const sim::PhysicsWorld& physics = network_.world().physics();
+  const sim::PhysicsWorld& physics = world_.physics();
   const auto hit = physics.scene().cast(p_WS(), way_W / length_m, length_m - 1e-3, filter);
   return hit && physics.parts()[static_cast<std::size_t>(hit->part)].group != receiver.group_;
 }
@@ -199,7 +198,7 @@ void Modem::visit_state(sim::StateArchive& archive) {
 void Modem::read_serial(sim::Time now) {
   for (sim::Bytes& data : serial_->take(longest_message_bytes()))
     if (data.size() > longest_message_bytes())
-      complain_of_length(network_.world(), full_name_, longest_message_bytes());
+      warn_of_length(host_.warnings, full_name_, longest_message_bytes());
     else
       send(now, "", std::move(data));
 }

@@ -12,7 +12,7 @@
 #include "devices/comms/message_modem.hpp"
 #include "devices/sound_positioning/signal_carrier.hpp"
 #include "sim/acoustics/signal.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 
@@ -81,6 +81,7 @@ class Modem final : public sim::Sensor, public MessageModem {
     void visit_state(sim::StateArchive& archive) { archive(destination, data); }
   };
   class Network;
+  static const sim::SharedKind<Network> network_of_world;
 
   void transmit(sim::Time now, const Outgoing& message);
   double propagation_mps() const;
@@ -93,6 +94,8 @@ class Modem final : public sim::Sensor, public MessageModem {
   void read_serial(sim::Time now);
 
   Params params_;
+  const sim::World& world_;
+  sim::DeviceHost& host_;
   Network& network_;
   std::string vehicle_;
   const sim::VehicleClock& clock_;

@@ -10,7 +10,6 @@
 #include "devices/drive/wheel_geometry.hpp"
 #include "devices/joint/joint_of_device.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/world/world_warnings.hpp"
 
 namespace devices {
 
@@ -96,12 +95,11 @@ void AckermannDrive::check_stops(const sim::DeviceContext& context) const {
        {std::pair{params_.left_steer_joint, left.high_stop}, std::pair{params_.right_steer_joint, right.low_stop}}) {
     if (!stop_rad || inner_rad <= std::abs(*stop_rad) + 0.01) continue;
     const sim::DeviceConfig& config = context.config;
-    sim::warnings_of(context.world)
-        .warn(config.source ? sim::place_of(*config.source, "max_steering_deg") : config.place,
-              "vehicle '" + vehicle_.name() + "': device '" + config.name + "'",
-              "at 'max_steering_deg' it steers the inner wheel by " +
-                  sim::number_text(std::round(inner_rad * 1000) / 1000) + " rad, and joint '" + name + "' stops at " +
-                  sim::number_text(*stop_rad));
+    context.host.warnings.building().warn(
+        config.source ? sim::place_of(*config.source, "max_steering_deg") : config.place,
+        "vehicle '" + vehicle_.name() + "': device '" + config.name + "'",
+        "at 'max_steering_deg' it steers the inner wheel by " + sim::number_text(std::round(inner_rad * 1000) / 1000) +
+            " rad, and joint '" + name + "' stops at " + sim::number_text(*stop_rad));
   }
 }
 

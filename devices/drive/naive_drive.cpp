@@ -12,8 +12,7 @@
 #include "shoal/thrust_rudder_command_t.hpp"
 #include "shoal/thrust_rudder_elevator_command_t.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/world/notice.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
@@ -44,6 +43,7 @@ void NaiveDrive::Params::read(sim::ParamReader& in) {
 NaiveDrive::NaiveDrive(const Params& params, const sim::DeviceContext& context)
     : body_(context.body),
       world_(context.world),
+      warnings_(context.host.warnings),
       still_surface_m_(world_.config().medium.water ? world_.config().medium.water->surface_m : 0),
       speed_mps_(params.start_speed_mps),
       speed_target_mps_(params.start_speed_mps) {
@@ -80,8 +80,8 @@ void NaiveDrive::take_pose() {
 void NaiveDrive::look_for_the_current() {
   if (!params_.drifts || left_the_current_ || world_.medium().current_known(p_WB_)) return;
   left_the_current_ = true;
-  sim::notice(world_, "body '" + body_.name() + "'",
-              fmt::format("has left the file of the current at {:.1f}, {:.1f} m", p_WB_.x(), p_WB_.y()));
+  warnings_.notice("body '" + body_.name() + "'",
+                   fmt::format("has left the file of the current at {:.1f}, {:.1f} m", p_WB_.x(), p_WB_.y()));
 }
 
 double NaiveDrive::wanted_turn(double speed_share) const {

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 
@@ -62,6 +62,7 @@ class NaiveDrive final : public sim::Actuator {
   // What each step needs, side by side.
   sim::Body& body_;
   const sim::World& world_;
+  const sim::WorldWarnings& warnings_;
   double still_surface_m_;  // without tide and waves; without water the world's zero stands for it
   double speed_mps_, turn_radps_ = 0, climb_mps_ = 0;
   double yaw_rad_ = 0, pitch_rad_ = 0;

@@ -10,9 +10,8 @@
 
 #include "devices/drive/wheel_geometry.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world.hpp"
-#include "sim/world/world_warnings.hpp"
 
 namespace devices {
 
@@ -134,11 +133,11 @@ void warn_of_shared_weight(const sim::DeviceContext& context, const std::vector<
   for (const Support& support : *supports)
     if (!support.driven && others.find(support.part) == std::string::npos)
       others += (others.empty() ? "" : ", ") + support.part;
-  sim::warnings_of(context.world)
-      .warn(context.config.place, "vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'",
-            "how much weight its driven wheels carry is undetermined: " + others + " stand as low as they (" +
-                std::to_string(supports->size()) +
-                " points of one rigid vehicle), and may take it all; raise one of them by a millimetre");
+  context.host.warnings.building().warn(
+      context.config.place, "vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'",
+      "how much weight its driven wheels carry is undetermined: " + others + " stand as low as they (" +
+          std::to_string(supports->size()) +
+          " points of one rigid vehicle), and may take it all; raise one of them by a millimetre");
 }
 
 }  // namespace devices

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

@@ -7,8 +7,7 @@
 #include <stdexcept>
 
 #include "sim/config/message_text.hpp"
-#include "sim/world/vehicle.hpp"
-#include "sim/world/world_warnings.hpp"
+#include "sim/vehicle/vehicle.hpp"
 
 namespace devices {
 
@@ -119,11 +118,11 @@ void check_length(const sim::DeviceContext& context, const LengthOfDevice& lengt
   std::string result = effect;
   if (const std::size_t at = result.find("{}"); at != std::string::npos) result.replace(at, 2, rounded(factor(ratio)));
   const sim::DeviceConfig& config = context.config;
-  sim::warnings_of(context.world)
-      .warn(config.source ? sim::place_of(*config.source, length.key) : config.place,
-            "vehicle '" + context.vehicle.name() + "': device '" + config.name + "'",
-            "'" + std::string(length.key) + "' is " + rounded(*length.given_m) +
-                ", but its joints and wheels make it " + rounded(*length.real_m) + ": " + result);
+  context.host.warnings.building().warn(config.source ? sim::place_of(*config.source, length.key) : config.place,
+                                        "vehicle '" + context.vehicle.name() + "': device '" + config.name + "'",
+                                        "'" + std::string(length.key) + "' is " + rounded(*length.given_m) +
+                                            ", but its joints and wheels make it " + rounded(*length.real_m) + ": " +
+                                            result);
 }
 
 }  // namespace devices

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/model/physics_config.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace sim {
 class Vehicle;

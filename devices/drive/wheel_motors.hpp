@@ -6,8 +6,8 @@
 
 #include "devices/joint/joint_power.hpp"
 #include "sim/physics/joint.hpp"
-#include "sim/world/device_context.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/device_context.hpp"
+#include "sim/vehicle/vehicle.hpp"
 
 namespace devices {
 

@@ -4,7 +4,7 @@
 #include "sim/base/math.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/random/noise.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

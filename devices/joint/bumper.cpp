@@ -18,7 +18,7 @@ void Bumper::Params::read(sim::ParamReader& in) {
 }
 
 Bumper::Bumper(const Params& params, const sim::DeviceContext& context)
-    : params_(params), world_(context.world), vehicle_(context.vehicle), force_noise_(context, params) {
+    : params_(params), physics_(context.host.physics), vehicle_(context.vehicle), force_noise_(context, params) {
   const sim::PhysicsWorld& physics = context.world.physics();
   for (const std::string& name : params.parts)
     if (const auto part = physics.find_part(vehicle_.group(), name)) parts_.push_back(*part);
@@ -28,11 +28,11 @@ Bumper::Bumper(const Params& params, const sim::DeviceContext& context)
         parts_.push_back(static_cast<int>(i));
   if (parts_.empty()) refuse(context, "there is no part that could touch");
   std::sort(parts_.begin(), parts_.end());
-  world_.physics().watch_contacts(vehicle_.group());
+  physics_.watch_contacts(vehicle_.group());
 }
 
 Bumper::~Bumper() {
-  world_.physics().unwatch_contacts(vehicle_.group());
+  physics_.unwatch_contacts(vehicle_.group());
 }
 
 bool Bumper::is_own(int part) const {
@@ -40,20 +40,20 @@ bool Bumper::is_own(int part) const {
 }
 
 void Bumper::add_place(const sim::ContactReport& contact, int own, std::vector<Place>& places) const {
-  const auto parts = world_.physics().parts();
+  const auto parts = physics_.parts();
   const sim::Pose X_VW = vehicle_.X_WV().inverse();
   const sim::Vector3d normal_V = X_VW.linear() * contact.normal_W;
   const sim::PartInfo& other = parts[static_cast<std::size_t>(contact.parts[1 - own])];
   // Part names begin with the vehicle's.
   const std::string part = parts[static_cast<std::size_t>(contact.parts[own])].name.substr(vehicle_.name().size() + 1);
-  places.push_back({part, world_.physics().group_name(other.group), X_VW * contact.position_W,
+  places.push_back({part, physics_.group_name(other.group), X_VW * contact.position_W,
                     own == 0 ? normal_V : sim::Vector3d(-normal_V), contact.force_W_N.norm()});
 }
 
 void Bumper::look() {
   std::vector<Place> places;
   double force_N = 0;
-  for (const sim::ContactReport& contact : world_.physics().contacts()) {
+  for (const sim::ContactReport& contact : physics_.contacts()) {
     const int own = is_own(contact.parts[0]) ? 0 : is_own(contact.parts[1]) ? 1 : -1;
     if (own < 0 || contact.force_W_N.norm() < params_.min_force_N) continue;
     add_place(contact, own, places);

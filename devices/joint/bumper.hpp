@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/random/noise.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
@@ -55,7 +55,7 @@ class Bumper final : public sim::Sensor {
   bool is_own(int part) const;
 
   Params params_;
-  sim::World& world_;
+  sim::PhysicsWorld& physics_;
   const sim::Vehicle& vehicle_;
   std::vector<int> parts_;  ///< their numbers, sorted
   sim::NoiseOf<&Params::force_noise> force_noise_;

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "sim/config/diagnostics.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 
 namespace devices {
 

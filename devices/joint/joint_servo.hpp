@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "devices/joint/joint_power.hpp"
-#include "sim/world/device_context.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/device_context.hpp"
+#include "sim/vehicle/vehicle.hpp"
 
 namespace devices {
 

@@ -5,7 +5,7 @@
 #include "devices/joint/joint_of_device.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/joint_state_t.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 
 namespace devices {
 

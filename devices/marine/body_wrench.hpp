@@ -3,7 +3,7 @@
 
 #include "devices/common/actuator_lag.hpp"
 #include "sim/physics/body.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

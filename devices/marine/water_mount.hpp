@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/physics/body.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {

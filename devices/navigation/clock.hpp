@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/clock/vehicle_clock.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

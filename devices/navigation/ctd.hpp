@@ -3,7 +3,7 @@
 
 #include "devices/navigation/depth_formula.hpp"
 #include "sim/random/noise.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

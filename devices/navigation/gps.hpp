@@ -6,7 +6,7 @@
 #include "sim/base/geodesy.hpp"
 #include "sim/clock/vehicle_clock.hpp"
 #include "sim/random/noise.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

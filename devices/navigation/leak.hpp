@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "sim/random/noise.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

@@ -8,7 +8,7 @@
 #include "devices/joint/joint_of_device.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/odometry_t.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {

@@ -5,7 +5,7 @@
 
 #include "sim/physics/joint.hpp"
 #include "sim/random/noise.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

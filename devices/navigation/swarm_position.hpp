@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/random/noise.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

@@ -7,7 +7,7 @@
 #include "devices/joint/joint_of_device.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/battery_t.hpp"
-#include "sim/world/mounted_device.hpp"
+#include "sim/vehicle/mounted_device.hpp"
 
 namespace devices {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "sim/random/noise.hpp"
-#include "sim/world/device_context.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/device_context.hpp"
+#include "sim/vehicle/vehicle.hpp"
 
 namespace devices {
 

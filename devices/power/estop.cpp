@@ -8,7 +8,7 @@
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/estop_t.hpp"
 #include "shoal/message_codec.hpp"
-#include "sim/world/mounted_device.hpp"
+#include "sim/vehicle/mounted_device.hpp"
 
 namespace devices {
 

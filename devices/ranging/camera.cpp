@@ -32,6 +32,8 @@ struct SharedByCameras {
   }
 };
 
+const sim::SharedKind<SharedByCameras> shared_by_cameras;
+
 bool takes_light(Camera::Kind kind) {
   return kind == Camera::Kind::rgb || kind == Camera::Kind::grey;
 }
@@ -127,6 +129,7 @@ double Camera::Params::message_bytes() const {
 
 Camera::Camera(const Params& params, const sim::DeviceContext& context)
     : world_(context.world),
+      shared_(context.host.shared),
       physics_(context.world.physics()),
       vehicle_(context.vehicle),
       config_(context.config),
@@ -141,7 +144,7 @@ Camera::Camera(const Params& params, const sim::DeviceContext& context)
 
 void Camera::change(const Params& params) {
   params_ = params;
-  auto& shared = world_.shared<SharedByCameras>();
+  SharedByCameras& shared = shared_.of(shared_by_cameras);
   sim::RenderOptions options;
   options.kind = render_kind(params.image);
   options.filter =

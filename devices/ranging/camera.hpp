@@ -9,7 +9,7 @@
 #include "devices/common/reading_digest.hpp"
 #include "sim/camera/renderer.hpp"
 #include "sim/random/noise.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 
@@ -95,7 +95,8 @@ class Camera final : public sim::Sensor {
     void visit_state(sim::StateArchive& archive) { archive(at, X_WS); }
   };
 
-  sim::World& world_;
+  const sim::World& world_;
+  sim::SharedByDevices& shared_;
   const sim::PhysicsWorld& physics_;
   const sim::Vehicle& vehicle_;
   const sim::DeviceConfig& config_;

@@ -8,7 +8,7 @@
 #include "sim/physics/physics_world.hpp"
 #include "sim/random/noise.hpp"
 #include "sim/scene/scene.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

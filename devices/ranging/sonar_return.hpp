@@ -9,7 +9,7 @@
 #include "sim/medium/medium.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/scene/scene.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/acoustics/transducer.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 
@@ -44,5 +44,8 @@ class TransponderNetwork {
  private:
   std::vector<Transponder*> members_;
 };
+
+/// Of each world.
+inline const sim::SharedKind<TransponderNetwork> transponder_network;
 
 }  // namespace devices

@@ -29,7 +29,7 @@ void InterrogatorParams::read(sim::ParamReader& in) {
 Interrogator::Interrogator(const InterrogatorParams& params, const sim::DeviceContext& context)
     : params_(params),
       context_(context),
-      network_(context.world.shared<TransponderNetwork>()),
+      network_(context.shared(transponder_network)),
       transducer_(*this, params.receiver, context.sound_site()) {}
 
 void Interrogator::change(const InterrogatorParams& params) {

@@ -25,6 +25,8 @@ class RangeBeacon::Network {
   std::vector<RangeBeacon*> members_;
 };
 
+const sim::SharedKind<RangeBeacon::Network> RangeBeacon::network_of_world;
+
 void RangeBeacon::FixedBeacon::read(sim::ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "in the reports");
@@ -52,7 +54,7 @@ void RangeBeacon::Params::read(sim::ParamReader& in) {
 
 RangeBeacon::RangeBeacon(const Params& params, const sim::DeviceContext& context)
     : params_(params),
-      network_(context.world.shared<Network>()),
+      network_(context.shared(network_of_world)),
       vehicle_(context.vehicle),
       body_(context.body),
       p_BS_(context.config.position_m),

@@ -6,7 +6,7 @@
 
 #include "devices/sound_positioning/signal_carrier.hpp"
 #include "sim/random/noise.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 
@@ -56,6 +56,7 @@ class RangeBeacon final : public sim::Sensor {
 
  private:
   class Network;
+  static const sim::SharedKind<Network> network_of_world;
   /// The errors to one beacon have a life of their own.
   struct Errors {
     std::string beacon;

@@ -6,7 +6,7 @@
 
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/transponder_t.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
@@ -27,7 +27,7 @@ void Transponder::Params::read(sim::ParamReader& in) {
 Transponder::Transponder(const Params& params, const sim::DeviceContext& context)
     : params_(params),
       vehicle_(context.vehicle),
-      network_(context.world.shared<TransponderNetwork>()),
+      network_(context.shared(transponder_network)),
       answer_Hz_(params.answer_frequency_Hz ? *params.answer_frequency_Hz
                                             : network_.free_answer_Hz(params.network, params.bandwidth_Hz)),
       transducer_(*this, params.receiver, context.sound_site()) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A client in lockstep with the simulator, over a network that may lose messages: docs/lockstep.md, in Java.
 // Drives rover1 of worlds/minimal.yaml towards the wall, and stops before it.
 //

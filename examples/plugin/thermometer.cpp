@@ -2,7 +2,7 @@
 #include "messages/reporter/message_reporter.hpp"
 #include "sim/device/plugin.hpp"
 #include "sim/random/noise.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 #include "thermometer/array_lengths.hpp"
 #include "thermometer/temperature_t.hpp"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Estimates where an AUV is, beside whatever steers it, in lockstep with the simulator.
 
     PYTHONPATH=build/release/python:examples/python python3 examples/python/coop_auv.py auv --sound-speed 1506

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A client in lockstep with the simulator, over a network that may lose messages: docs/lockstep.md, in Python.
 
     PYTHONPATH=build/release/python:examples/python python3 examples/python/lockstep_client.py rover1

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The filter of shoal-coop-auv in plain Python: position by dead reckoning and one-way ranges.
 
 States: east, north (m), heading bias (rad), speed scale, range bias (m), drift of that (m/s).  The equations are in

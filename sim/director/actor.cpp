@@ -46,7 +46,7 @@ void Actor::command(ActorCommand command, Time now) {
 void Actor::find_body(World& world) {
   if (generation_ == world.generation()) return;
   const WorldObject* object = world.find_object(config_.object);
-  // Only a kinematic body can be led along; World::add_object sees to it that an actor's object is one.
+  // Only a kinematic body can be led along; WorldEditor::add_object sees to it that an actor's object is one.
   body_ = object && object->body->kinematic() ? object->body : nullptr;
   generation_ = world.generation();
 }

@@ -25,7 +25,8 @@ void Script::EventState::begin_draws(std::int64_t step_number) {
   random.begin_step(step_number);
 }
 
-Script::Script(World& world) : world_(world), zones_(world.config().zones), live_random_(world.seed(), "action") {
+Script::Script(World& world, WorldEditor& editor)
+    : world_(world), editor_(editor), zones_(world.config().zones), live_random_(world.seed(), "action") {
   const WorldConfig& config = world.config();
   for (std::size_t i = 0; i < config.zones.size(); ++i)
     if (config.zones[i].speed_limit_mps || config.zones[i].finish) ruled_zones_.push_back(static_cast<int>(i));
@@ -147,7 +148,8 @@ void Script::fire(std::size_t i, int depth) {
 }
 
 void Script::cut(EventState& event, const std::string& why) {
-  if (!event.told_of_cut) world_.complain("event '" + event.config.name + "'", why + "; the rest does not happen");
+  if (!event.told_of_cut)
+    world_.warnings().bad_message("event '" + event.config.name + "'", why + "; the rest does not happen");
   event.told_of_cut = true;
 }
 

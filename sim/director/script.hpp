@@ -16,6 +16,7 @@
 namespace sim {
 
 class World;
+class WorldEditor;
 
 /// How a vehicle did in zones with rules.
 struct ZoneRecord {
@@ -28,8 +29,8 @@ struct ZoneRecord {
 /// Zones, actors and events of a world: stage 4 of a step, at the time of the step's start.
 class Script {
  public:
-  /// `world` is built already.
-  explicit Script(World& world);
+  /// `world` is built already; both must outlive this.
+  Script(World& world, WorldEditor& editor);
   ~Script();
 
   void step();
@@ -64,7 +65,7 @@ class Script {
   struct Doing {
     std::string who;
     Random& random;
-    Diagnostics* diagnostics = nullptr;  ///< null: World::complain
+    Diagnostics* diagnostics = nullptr;  ///< null: WorldWarnings
     int depth = 0;
   };
 
@@ -91,6 +92,7 @@ class Script {
   void make_catalogue();
 
   World& world_;
+  WorldEditor& editor_;
   Zones zones_;
   std::vector<int> ruled_zones_;  ///< those with a speed limit or a finish
   std::map<std::string, ZoneRecord> records_;

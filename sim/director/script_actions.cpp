@@ -8,6 +8,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/director/script.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_editor.hpp"
 
 // What the actions of events do.
 
@@ -27,7 +28,7 @@ void Script::carry_out(const std::vector<Action>& actions, const Doing& doing) {
     if (doing.diagnostics != nullptr)
       doing.diagnostics->error(action.place, action.who, failure);
     else
-      world_.complain(doing.who, failure);
+      world_.warnings().bad_message(doing.who, failure);
   }
 }
 
@@ -42,9 +43,9 @@ void Script::carry_out(const Action& action, const Doing& doing) {
     case ActionKind::one_of:
       return carry_out(*pick_choice(action, doing), doing);
     case ActionKind::fault:
-      return world_.set_fault(action.targets[0], action.fault);
+      return editor_.set_fault(action.targets[0], action.fault);
     case ActionKind::clear_fault:
-      return world_.clear_faults(action.targets[0]);
+      return editor_.clear_faults(action.targets[0]);
     case ActionKind::set:
       return change(action, doing);
     case ActionKind::publish:
@@ -56,11 +57,11 @@ void Script::carry_out(const Action& action, const Doing& doing) {
         if (events_[i].config.name == action.targets[0]) attempt(i, doing.depth + 1);
       return;
     case ActionKind::gravity:
-      return world_.physics().set_gravity(action.gravity_mps2);
+      return editor_.set_gravity(action.gravity_mps2);
     case ActionKind::log:
       return log(doing.who, action.text);
     case ActionKind::end:
-      return world_.end({printable(action.text), action.passed});
+      return editor_.end({printable(action.text), action.passed});
   }
 }
 
@@ -86,10 +87,10 @@ const std::vector<Action>* Script::pick_choice(const Action& action, const Doing
 void Script::move(const Action& action, const Doing& doing) {
   const std::string& name = pick_target(action, doing);
   if (const Vehicle* vehicle = world_.find_vehicle(name))
-    return world_.move_vehicle(name, action.where.choose(vehicle->X_WV(), doing.random));
+    return editor_.move_vehicle(name, action.where.choose(vehicle->X_WV(), doing.random));
   const WorldObject* object = world_.find_object(name);
   if (object == nullptr) throw WorldError("there is no vehicle or object '" + name + "' to move");
-  world_.move_object(name, action.where.choose(object->body->X_WB(), doing.random));
+  editor_.move_object(name, action.where.choose(object->body->X_WB(), doing.random));
 }
 
 void Script::make_catalogue() {
@@ -111,25 +112,25 @@ void Script::add(const Action& action, const Doing& doing) {
   const std::string& name = action.targets[0];
   if (action.object) {
     const Pose X_WE = make_pose(action.object->position_m, action.object->rpy_rad);
-    world_.add_object(*action.object, name, action.where.choose(X_WE, doing.random));
+    editor_.add_object(*action.object, name, action.where.choose(X_WE, doing.random));
     return;
   }
   make_catalogue();
   const auto found = catalogue_.find(name);
   if (found == catalogue_.end()) throw WorldError("the world file has no object '" + name + "' to add");
-  world_.add_object(*found->second.first, name, action.where.choose(found->second.second, doing.random));
+  editor_.add_object(*found->second.first, name, action.where.choose(found->second.second, doing.random));
 }
 
 void Script::remove(const Action& action, const Doing& doing) {
   const std::string& name = pick_target(action, doing);
-  if (world_.find_vehicle(name) != nullptr) return world_.remove_vehicle(name);
+  if (world_.find_vehicle(name) != nullptr) return editor_.remove_vehicle(name);
   if (world_.find_object(name) == nullptr) throw WorldError("there is no vehicle or object '" + name + "' to remove");
-  world_.remove_object(name);
+  editor_.remove_object(name);
 }
 
 void Script::change(const Action& action, const Doing&) {
   Diagnostics diagnostics;
-  world_.change_device(action.targets[0], action.values, diagnostics);
+  editor_.change_device(action.targets[0], action.values, diagnostics);
   diagnostics.throw_if_any();
 }
 
@@ -145,7 +146,7 @@ void Script::log(const std::string& who, const std::string& text) {
 void Script::publish(const Action& action) {
   Bytes payload = action.payload;
   if (action.stamp_utime) set_utime(payload, world_.epoch_us() + world_.now().count());
-  world_.publish(action.channel, payload);
+  editor_.publish(action.channel, payload);
 }
 
 void Script::command(const Action& action) {

@@ -24,8 +24,12 @@ Vector3d flipped(const Vector3d& v) {
 
 }  // namespace
 
-Hydrodynamics::Hydrodynamics(const Medium& medium, double gravity_mps2, double step_s)
-    : medium_(medium), gravity_mps2_(gravity_mps2), step_s_(step_s), floaters_(medium, step_s) {}
+Hydrodynamics::Hydrodynamics(const Medium& medium, double gravity_mps2, double step_s, Notice notice)
+    : medium_(medium),
+      gravity_mps2_(gravity_mps2),
+      step_s_(step_s),
+      floaters_(medium, step_s),
+      notice_(std::move(notice)) {}
 
 void Hydrodynamics::add_body(Body& body, const BodyConfig& config) {
   if (!medium_.has_water()) return;
@@ -98,9 +102,9 @@ void Hydrodynamics::begin_step() {
 
 void Hydrodynamics::tell_of_the_current(Wetted& wetted, const Vector3d& p_WB) {
   wetted.left_the_current = true;
-  if (complain_)
-    complain_("body '" + wetted.body->name() + "'",
-              fmt::format("has left the file of the current at {:.1f}, {:.1f} m", p_WB.x(), p_WB.y()));
+  if (notice_)
+    notice_("body '" + wetted.body->name() + "'",
+            fmt::format("has left the file of the current at {:.1f}, {:.1f} m", p_WB.x(), p_WB.y()));
 }
 
 CraftState Hydrodynamics::state_of(const CoefficientModel& model, const BodyInWater& around) const {
@@ -151,12 +155,11 @@ void Hydrodynamics::step(double gravity_mps2) {
 void Hydrodynamics::tell_of_stiffness(CoefficientBody& craft, const Vector6d& nu_r, double fastest_rate) {
   craft.stiffness_told = true;
   const auto rounded = [](double value) { return fmt::format("{:.3g}", value); };
-  if (complain_)
-    complain_("body '" + craft.body->name() + "'", "what the water does at " + rounded(nu_r.head<3>().norm()) +
-                                                       " m/s and " + rounded(nu_r.tail<3>().norm()) +
-                                                       " rad/s is too fast for 'step_s' " + number_text(step_s_) +
-                                                       ": a step below " + rounded(1 / fastest_rate) +
-                                                       " s follows it; until then it brakes by backward Euler");
+  if (notice_)
+    notice_("body '" + craft.body->name() + "'",
+            "what the water does at " + rounded(nu_r.head<3>().norm()) + " m/s and " + rounded(nu_r.tail<3>().norm()) +
+                " rad/s is too fast for 'step_s' " + number_text(step_s_) + ": a step below " +
+                rounded(1 / fastest_rate) + " s follows it; until then it brakes by backward Euler");
 }
 
 void Hydrodynamics::step_crafts() {

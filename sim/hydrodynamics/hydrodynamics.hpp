@@ -20,7 +20,11 @@ namespace sim {
 /// What the water does to the bodies of a world: stage 3 of a step.
 class Hydrodynamics {
  public:
-  Hydrodynamics(const Medium& medium, double gravity_mps2, double step_s);
+  /// Called in a step with what goes wrong: who and what.
+  using Notice = std::function<void(const std::string& who, const std::string& text)>;
+
+  /// `notice` may be empty.
+  Hydrodynamics(const Medium& medium, double gravity_mps2, double step_s, Notice notice = {});
 
   /// A free body that has come; does nothing for one that water does not touch.  Throws ConfigError.
   void add_body(Body& body, const BodyConfig& config);
@@ -38,9 +42,6 @@ class Hydrodynamics {
   }
   /// Adds what the water does to the forces that actuators have put on the bodies in this step.
   void step(double gravity_mps2);
-  /// Whom to tell, in a step, what goes wrong: who and what.
-  using Complain = std::function<void(const std::string& who, const std::string& text)>;
-  void set_complain(Complain complain) { complain_ = std::move(complain); }
   /// What was found about bodies since the last call; each is one line.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
@@ -74,7 +75,7 @@ class Hydrodynamics {
   const BodyInWater nowhere_;
   std::vector<Wetted> wetted_;  // bodies whose water begin_step() looks at
   std::vector<std::string> warnings_;
-  Complain complain_;
+  Notice notice_;
   // Vehicles that are alike share a model.
   std::map<const HydrodynamicsConfig*, std::weak_ptr<const CoefficientModel>> models_;
 };

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "sim/world/mounted_device.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/mounted_device.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 

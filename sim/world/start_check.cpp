@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "sim/config/message_text.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/config/warnings.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world.hpp"
-#include "sim/world/world_warnings.hpp"
 
 namespace sim {
 
@@ -100,7 +100,7 @@ class StartCheck {
 
 }  // namespace
 
-void warn_of_starts(World& world) {
+void warn_of_starts(const World& world, Warnings& warnings) {
   std::map<std::string, SourcePlace> places;
   for (const VehicleInstance& vehicle : world.config().vehicles) places.emplace(vehicle.name, vehicle.place);
   StartCheck check(world);
@@ -119,8 +119,7 @@ void warn_of_starts(World& world) {
   for (const auto& [starter, complaint] : first) {
     const int others = more.at(starter.place.line > 0 ? starter.place.text() : starter.name);
     const std::string and_more = others > 0 ? " (and " + std::to_string(others) + " more of this entry)" : "";
-    warnings_of(world).warn(starter.place, starter.kind + " '" + starter.name + "'",
-                            "it starts " + complaint + and_more);
+    warnings.warn(starter.place, starter.kind + " '" + starter.name + "'", "it starts " + complaint + and_more);
   }
 }
 

@@ -8,9 +8,8 @@
 #include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/transducer.hpp"
 #include "sim/config/diagnostics.hpp"
-#include "sim/world/world.hpp"
+#include "sim/world/world_parts.hpp"
 #include "sim/world_file/data_files.hpp"
-#include "sim/world_file/vehicle_loader.hpp"
 
 namespace sim {
 
@@ -32,12 +31,12 @@ std::string text_of(const ConfigNode& source) {
 
 }  // namespace
 
-void WorldJournal::Entry::visit_state(StateArchive& archive) {
+void JournalEntry::visit_state(StateArchive& archive) {
   archive(kind, step, name, values, in_file, text_number, bus, X_W, new_surfaces, number, numbers, devices, transducers,
           joints);
 }
 
-std::size_t WorldJournal::Entry::bytes() const {
+std::size_t JournalEntry::bytes() const {
   constexpr std::size_t always = 320;
   const std::size_t numbers_in_lists =
       numbers.bodies.size() + numbers.parts.size() + numbers.joints.size() + devices.size() + transducers.size();
@@ -45,10 +44,10 @@ std::size_t WorldJournal::Entry::bytes() const {
          joints.size() * sizeof(JointPlace);
 }
 
-WorldJournal::Entry WorldJournal::entry(Kind kind, const std::string& name) const {
+WorldJournal::Entry WorldJournal::entry(Entry::Kind kind, const std::string& name) const {
   Entry entry;
   entry.kind = kind;
-  entry.step = world_.step_number();
+  entry.step = parts_.clock.step_number;
   entry.name = name;
   return entry;
 }
@@ -56,10 +55,11 @@ WorldJournal::Entry WorldJournal::entry(Kind kind, const std::string& name) cons
 Bytes WorldJournal::bytes() const {
   StateArchive archive = StateArchive::saver(size_);
   auto& self = const_cast<WorldJournal&>(*this);  // saving changes nothing
-  std::vector<std::pair<std::int64_t, std::string>> texts;
+  Texts texts;
   for (const auto& [number, text] : texts_) texts.emplace_back(number, text.text);
-  auto devices = static_cast<std::int64_t>(world_.devices_.size());
-  archive(texts, self.entries_, world_.free_numbers_, devices);
+  std::vector<int> free = parts_.devices.free_numbers();
+  auto devices = static_cast<std::int64_t>(parts_.devices.size());
+  archive(texts, self.entries_, free, devices);
   return archive.take_bytes();
 }
 
@@ -71,39 +71,54 @@ void WorldJournal::append(Entry entry) {
 }
 
 void WorldJournal::check_size() {
-  if (size_ <= most_bytes) return;
+  if (size_ <= max_bytes) return;
   forget();
   full_ = true;
-  gap_ = "more came and was changed than can be told in 16 MiB";
+  gap_ = "the change journal exceeds 16 MiB";
 }
 
 void WorldJournal::forget() {
   entries_ = {};
   texts_.clear();
   text_numbers_.clear();
-  parsed_.clear();
-  vehicles_.clear();
   size_ = 0;
+}
+
+void WorldJournal::start_again(const Texts& texts) {
+  forget();
+  gap_.clear();
+  full_ = false;
+  for (const auto& [number, text] : texts) {
+    if (number < 0 || !texts_.try_emplace(number, Text{text, 0}).second || !text_numbers_.emplace(text, number).second)
+      throw SnapshotError("the snapshot has the YAML of vehicles or objects twice");
+    size_ += text.size();
+  }
+}
+
+const std::string& WorldJournal::text(std::int64_t number) const {
+  const auto found = texts_.find(number);
+  if (found == texts_.end()) throw SnapshotError("the snapshot tells of a vehicle or object without its YAML");
+  return found->second.text;
 }
 
 void WorldJournal::drop(std::size_t place) {
   const auto at = entries_.begin() + static_cast<std::ptrdiff_t>(place);
   size_ -= at->bytes();
-  let_go_of_text(at->text_number);
+  release_text(at->text_number);
   entries_.erase(at);
 }
 
-std::optional<std::size_t> WorldJournal::place_of(Kind came, const std::string& name) const {
+std::optional<std::size_t> WorldJournal::place_of(Entry::Kind kind, const std::string& name) const {
   for (std::size_t i = entries_.size(); i-- > 0;)
-    if (entries_[i].kind == came && entries_[i].name == name) return i;
+    if (entries_[i].kind == kind && entries_[i].name == name) return i;
   return std::nullopt;
 }
 
 void WorldJournal::drop_changes_of(const std::string& name, std::size_t first) {
   for (std::size_t i = entries_.size(); i-- > first;) {
     const Entry& entry = entries_[i];
-    const bool change = entry.kind == Kind::device_changed && entry.name.starts_with(name + "/");
-    if (change || (entry.kind == Kind::moved && entry.name == name)) drop(i);
+    const bool change = entry.kind == Entry::Kind::device_changed && entry.name.starts_with(name + "/");
+    if (change || (entry.kind == Entry::Kind::moved && entry.name == name)) drop(i);
   }
 }
 
@@ -111,7 +126,7 @@ void WorldJournal::use_text(std::int64_t number) {
   if (number >= 0) ++texts_.at(number).users;
 }
 
-void WorldJournal::let_go_of_text(std::int64_t number) {
+void WorldJournal::release_text(std::int64_t number) {
   if (number < 0) return;
   const auto text = texts_.find(number);
   if (--text->second.users > 0) return;
@@ -134,64 +149,44 @@ void WorldJournal::note_source(Entry& entry, const ConfigNode& source) {
   texts_[entry.text_number].text = std::move(text);
 }
 
-bool WorldJournal::has_new_surfaces(const VehicleConfig& config) const {
-  const auto new_category = [&](const std::string& name) {
-    try {
-      world_.physics_->category_bit(name);
-      return false;
-    } catch (const std::out_of_range&) {
-      return true;
-    }
-  };
-  const auto new_material = [&](const MaterialConfig& each) { return !world_.known_materials_.contains(each.name); };
-  const std::vector<ContactConfig>& known = world_.known_contacts_;
-  const auto new_contact = [&](const ContactConfig& each) {
-    return std::find(known.begin(), known.end(), each) == known.end();
-  };
-  return std::any_of(config.categories.begin(), config.categories.end(), new_category) ||
-         std::any_of(config.materials.begin(), config.materials.end(), new_material) ||
-         std::any_of(config.contacts.begin(), config.contacts.end(), new_contact);
-}
-
 void WorldJournal::note_vehicle(Entry& entry, const VehicleInstance& instance) {
   entry.bus = instance.bus;
   entry.X_W = instance.X_WV;
   if (instance.config->source) return note_source(entry, *instance.config->source);
-  for (std::size_t i = 0; i < world_.config().vehicles.size(); ++i)
-    if (world_.config().vehicles[i].config == instance.config) entry.in_file = static_cast<std::int64_t>(i);
+  for (std::size_t i = 0; i < parts_.config.vehicles.size(); ++i)
+    if (parts_.config.vehicles[i].config == instance.config) entry.in_file = static_cast<std::int64_t>(i);
   if (entry.in_file < 0 && gap_.empty()) gap_ = "vehicle '" + instance.name + "' did not come from YAML";
 }
 
-void WorldJournal::vehicle_came(const VehicleInstance& instance, int number, bool new_surfaces) {
+void WorldJournal::vehicle_added(const VehicleInstance& instance, const Vehicle& vehicle, bool new_surfaces) {
   if (full_) return;
-  Entry came = entry(Kind::vehicle_came, instance.name);
-  note_vehicle(came, instance);
-  came.new_surfaces = new_surfaces;
-  came.number = number;
-  const Vehicle& vehicle = world_.vehicle_named(instance.name);
-  came.numbers = world_.physics_->numbers_of(vehicle.group());
-  for (const MountedDevice* device : vehicle.devices()) came.devices.push_back(device->number());
-  for (const Transducer* transducer : world_.acoustics_->transducers())
+  Entry added = entry(Entry::Kind::vehicle_added, instance.name);
+  note_vehicle(added, instance);
+  added.new_surfaces = new_surfaces;
+  added.number = vehicle.number();
+  added.numbers = parts_.physics.numbers_of(vehicle.group());
+  for (const MountedDevice* device : vehicle.devices()) added.devices.push_back(device->number());
+  for (const Transducer* transducer : parts_.acoustics->transducers())
     if (transducer != nullptr && transducer->group() == vehicle.group())
-      came.transducers.push_back(transducer->number());
-  append(std::move(came));
+      added.transducers.push_back(transducer->number());
+  append(std::move(added));
 }
 
 void WorldJournal::vehicle_failed(const VehicleInstance& instance, bool new_surfaces) {
   // What is in the world file has brought its surfaces at the start.
   if (full_ || !new_surfaces || !instance.config->source) return;
-  Entry surfaces = entry(Kind::surfaces, instance.name);
+  Entry surfaces = entry(Entry::Kind::surfaces, instance.name);
   note_vehicle(surfaces, instance);
   append(std::move(surfaces));
 }
 
-void WorldJournal::vehicle_went(const std::string& name) {
+void WorldJournal::vehicle_removed(const std::string& name) {
   if (full_) return;
-  const std::optional<std::size_t> came = place_of(Kind::vehicle_came, name);
-  drop_changes_of(name, came.value_or(0));
-  if (!came) return append(entry(Kind::vehicle_went, name));
-  Entry& gone = entries_[*came];
-  if (!gone.new_surfaces || gone.text_number < 0) return drop(*came);
+  const std::optional<std::size_t> added = place_of(Entry::Kind::vehicle_added, name);
+  drop_changes_of(name, added.value_or(0));
+  if (!added) return append(entry(Entry::Kind::vehicle_removed, name));
+  Entry& gone = entries_[*added];
+  if (!gone.new_surfaces || gone.text_number < 0) return drop(*added);
   // They stay, and keep their numbers: the place among the others counts.
   size_ -= gone.bytes();
   Entry surfaces;
@@ -202,22 +197,22 @@ void WorldJournal::vehicle_went(const std::string& name) {
   size_ += gone.bytes();
 }
 
-void WorldJournal::object_came(const ObjectConfig& config, const WorldObject& object, const Pose& X_WE) {
+void WorldJournal::object_added(const ObjectConfig& config, const WorldObject& object, const Pose& X_WE) {
   if (full_) return;
-  Entry came = entry(Kind::object_came, object.name);
-  came.X_W = X_WE;
-  came.number = object.number;
-  came.numbers = world_.physics_->numbers_of(object.group);
-  came.in_file = place_in(world_.config().objects, &config);
-  if (came.in_file < 0 && config.source) note_source(came, *config.source);
-  if (came.in_file < 0 && !config.source && gap_.empty()) gap_ = "object '" + object.name + "' did not come from YAML";
-  append(std::move(came));
+  Entry added = entry(Entry::Kind::object_added, object.name);
+  added.X_W = X_WE;
+  added.number = object.number;
+  added.numbers = parts_.physics.numbers_of(object.group);
+  added.in_file = place_in(parts_.config.objects, &config);
+  if (added.in_file < 0 && config.source) note_source(added, *config.source);
+  if (added.in_file < 0 && !config.source && gap_.empty()) gap_ = "object '" + object.name + "' did not come from YAML";
+  append(std::move(added));
 }
 
-void WorldJournal::object_went(const std::string& name) {
+void WorldJournal::object_removed(const std::string& name) {
   if (full_) return;
-  const std::optional<std::size_t> came = place_of(Kind::object_came, name);
-  came ? drop(*came) : append(entry(Kind::object_went, name));
+  const std::optional<std::size_t> added = place_of(Entry::Kind::object_added, name);
+  added ? drop(*added) : append(entry(Entry::Kind::object_removed, name));
 }
 
 /// One entry for each device, with all values that were changed: some may be possible only together.
@@ -229,14 +224,14 @@ void WorldJournal::device_changed(const std::string& full_name, const ConfigNode
     });
   };
   ConfigNode all = values;
-  if (const auto known = place_of(Kind::device_changed, full_name)) {
+  if (const auto known = place_of(Entry::Kind::device_changed, full_name)) {
     Diagnostics diagnostics;
     ConfigNode before = parse_config_text(entries_[*known].values, "journal", diagnostics);
     std::erase_if(before.entries, is_set_again);
     all.entries.insert(all.entries.begin(), before.entries.begin(), before.entries.end());
     drop(*known);
   }
-  Entry changed = entry(Kind::device_changed, full_name);
+  Entry changed = entry(Entry::Kind::device_changed, full_name);
   changed.values = to_yaml(all);
   append(std::move(changed));
 }
@@ -244,9 +239,9 @@ void WorldJournal::device_changed(const std::string& full_name, const ConfigNode
 /// Joints that are made anew are the last ones: so is the entry.
 void WorldJournal::anchored_vehicle_moved(const Vehicle& vehicle) {
   if (full_) return;
-  if (const auto known = place_of(Kind::moved, vehicle.name())) drop(*known);
-  Entry moved = entry(Kind::moved, vehicle.name());
-  moved.joints = world_.physics_->joint_places(vehicle.group());
+  if (const auto known = place_of(Entry::Kind::moved, vehicle.name())) drop(*known);
+  Entry moved = entry(Entry::Kind::moved, vehicle.name());
+  moved.joints = parts_.physics.joint_places(vehicle.group());
   append(std::move(moved));
 }
 

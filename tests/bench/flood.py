@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """What garbage on its bus costs a run: pairs of runs beside the same flooder, on the run's port and on another one.
 
     unshare -rn sh -c 'ip link set lo up; ip route add 224.0.0.0/4 dev lo; tests/bench/flood.py build/release/bin'

@@ -109,8 +109,7 @@ Cost lockstep(const std::string& on, int clients, int steps) {
   sim::MailGate gate(bus);
   sim::World world(loaded.config, gate);
   sim::RunControl control;
-  bridges::LockstepService service_of_clients(world, control);
-  service_of_clients.add_line(bus, gate);
+  bridges::LockstepService service_of_clients(world, control, {{bus, gate}});
   bridges::SimService service(gate, bus, world, control, service_of_clients, {"", ""});
   const auto wait = [&](std::chrono::milliseconds time) { bus.wait_for_message(time); };
   for (int i = 0; i < clients; ++i)

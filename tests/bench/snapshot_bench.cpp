@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "sim/world/world_state.hpp"
 #include "tools/experiment/bench/scale_scene.hpp"
 #include "tools/experiment/snapshot/snapshot_ring.hpp"
 
@@ -41,7 +42,7 @@ void Snapshot(benchmark::State& state) {
   const sim::World& world = scene_of(static_cast<int>(state.range(0))).world();
   std::size_t bytes = 0;
   for (auto _ : state) {
-    const sim::Bytes snapshot = world.snapshot();
+    const sim::Bytes snapshot = world.state().snapshot();
     bytes = snapshot.size();
     benchmark::DoNotOptimize(snapshot.data());
   }
@@ -53,22 +54,22 @@ BENCHMARK(Snapshot)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMicrosecond)
 /// In the world that went on, which saves itself first, so that it can stay as it is when the snapshot does not fit.
 void Restore(benchmark::State& state) {
   sim::World& world = scene_of(static_cast<int>(state.range(0))).world();
-  const sim::Bytes snapshot = world.snapshot();
-  for (auto _ : state) world.restore(snapshot);
+  const sim::Bytes snapshot = world.state().snapshot();
+  for (auto _ : state) world.state().restore(snapshot);
   count_bodies(state, world);
 }
 BENCHMARK(Restore)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMicrosecond);
 
 void Hash(benchmark::State& state) {
   const sim::World& world = scene_of(static_cast<int>(state.range(0))).world();
-  for (auto _ : state) benchmark::DoNotOptimize(world.state_hash());
+  for (auto _ : state) benchmark::DoNotOptimize(world.state().hash());
   count_bodies(state, world);
 }
 BENCHMARK(Hash)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMicrosecond);
 
 void HashByPart(benchmark::State& state) {
   const sim::World& world = scene_of(static_cast<int>(state.range(0))).world();
-  for (auto _ : state) benchmark::DoNotOptimize(world.part_hashes().size());
+  for (auto _ : state) benchmark::DoNotOptimize(world.state().part_hashes().size());
   count_bodies(state, world);
 }
 BENCHMARK(HashByPart)->Arg(10)->Arg(1000)->Unit(benchmark::kMicrosecond);
@@ -82,7 +83,7 @@ void SnapshotOfBoxes(benchmark::State& state) {
   sim::World world(loaded.config, bus);
   for (int i = 0; i < 10; ++i) world.step();
   std::size_t bytes = 0;
-  for (auto _ : state) bytes = world.snapshot().size();
+  for (auto _ : state) bytes = world.state().snapshot().size();
   state.counters["bytes"] = static_cast<double>(bytes);
   count_bodies(state, world);
 }
@@ -105,7 +106,7 @@ void RingOfTenMinutes(benchmark::State& state) {
     for (int second = 0; second < seconds; ++second) {
       scene.run_for(1);
       const double begin_s = wall_s();
-      const sim::Bytes snapshot = world.snapshot();
+      const sim::Bytes snapshot = world.state().snapshot();
       ring.add(world.step_number(), snapshot);
       const double took_s = wall_s() - begin_s;
       save_s += took_s;
@@ -114,7 +115,7 @@ void RingOfTenMinutes(benchmark::State& state) {
     }
     const double begin_s = wall_s();
     const std::int64_t to = world.step_number() - 30 * per_second - per_second / 2;
-    world.restore(ring.get(*ring.newest_until(to)));
+    world.state().restore(ring.get(*ring.newest_until(to)));
     while (world.step_number() < to) world.step();
     back_s = wall_s() - begin_s;
   }

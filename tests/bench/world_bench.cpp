@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tools/experiment/bench/scale_scene.hpp"
@@ -58,10 +60,10 @@ void SpawnAndRemove(benchmark::State& state) {
   };
   for (auto _ : state) {
     timed(spawn_s, [&] {
-      world.add_vehicle(
+      world.editor().add_vehicle(
           sim::read_spawn_request(world.config(), "{name: guest, file: rover.yaml, position_m: [0, 0, 50]}").vehicle);
     });
-    timed(remove_s, [&] { world.remove_vehicle("guest"); });
+    timed(remove_s, [&] { world.editor().remove_vehicle("guest"); });
   }
   const auto iterations = static_cast<double>(state.iterations());
   state.counters["spawn_us"] = spawn_s * 1e6 / iterations;
@@ -73,7 +75,7 @@ BENCHMARK(SpawnAndRemove)->Arg(10)->Arg(1000)->Unit(benchmark::kMicrosecond);
 void StateHash(benchmark::State& state) {
   tools::ScaleScene scene(static_cast<int>(state.range(0)));
   scene.run_for(1);
-  for (auto _ : state) benchmark::DoNotOptimize(scene.world().state_hash());
+  for (auto _ : state) benchmark::DoNotOptimize(scene.world().state().hash());
 }
 BENCHMARK(StateHash)->Arg(100)->Unit(benchmark::kMicrosecond);
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Kills recorded runs (SIGKILL) at random moments: each record must be readable, and lose at most a second.
 
 Each run is started with --record, at the world's full speed, at real time or at a tenth of it, and killed a random

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Runs worlds for many simulated hours, twice each: memory and descriptors must stay flat, and hashes must be equal.
 
 Memory (resident set) and open descriptors of the simulator and of each program of the world are sampled from /proc

@@ -8,7 +8,8 @@
 #include "shoal/joint_command_t.hpp"
 #include "shoal/joint_state_t.hpp"
 #include "shoal/twist_command_t.hpp"
-#include "sim/world/mounted_device.hpp"
+#include "sim/vehicle/mounted_device.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/joint/arm_fixture.hpp"
 
 namespace {
@@ -200,10 +201,10 @@ TEST(ActuatorFault, DeadGivesNoForceAndComesBackWithItsCommand) {
   test::TestWorld test(test::arm_world(motor(), 0));
   turn(test, 1);
   test.run_for(0.1);
-  test.world.set_fault("a1/motor", {.kind = FaultKind::dead});
+  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::dead});
   test.run_for(0.1);
   EXPECT_EQ(shoulder(test).motor_max_force(), 0);
-  test.world.clear_faults("a1/motor");
+  test.world.editor().clear_faults("a1/motor");
   test.run_for(0.01);
   EXPECT_EQ(shoulder(test).motor_max_force(), 50);
   EXPECT_EQ(shoulder(test).motor_velocity(), 1);
@@ -211,10 +212,10 @@ TEST(ActuatorFault, DeadGivesNoForceAndComesBackWithItsCommand) {
 
 TEST(ActuatorFault, PartialFaultsMultiply) {
   test::TestWorld test(test::arm_world(motor(), 0));
-  test.world.set_fault("a1/motor", {.kind = FaultKind::partial, .effectiveness = 0.4});
+  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::partial, .effectiveness = 0.4});
   test.run_for(0.01);
   EXPECT_EQ(shoulder(test).motor_max_force(), 0.4 * 50);
-  test.world.set_fault("a1/motor", {.kind = FaultKind::dead});
+  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::dead});
   test.run_for(0.01);
   EXPECT_EQ(shoulder(test).motor_max_force(), 0);
 }
@@ -223,7 +224,7 @@ TEST(ActuatorFault, StuckKeepsItsLastCommandWhateverComes) {
   test::TestWorld test(test::arm_world(motor(", watchdog_s: 0.05"), 0));
   turn(test, 1);
   test.run_for(0.02);
-  test.world.set_fault("a1/motor", {.kind = FaultKind::stuck});
+  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::stuck});
   turn(test, -2);
   for (const double velocity : targets(test, 200)) ASSERT_EQ(velocity, 1);
 }
@@ -232,7 +233,7 @@ TEST(ActuatorFault, SilentHearsNothingSoThatItsWatchdogStopsIt) {
   test::TestWorld test(test::arm_world(motor(", watchdog_s: 0.05"), 0));
   turn(test, 1);
   test.run_for(0.02);
-  test.world.set_fault("a1/motor", {.kind = FaultKind::silent});
+  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::silent});
   turn(test, -2);
   const auto velocities = targets(test, 100);
   EXPECT_EQ(velocities.front(), 1);
@@ -241,7 +242,7 @@ TEST(ActuatorFault, SilentHearsNothingSoThatItsWatchdogStopsIt) {
 
 TEST(ActuatorFault, DegradedLosesCommands) {
   test::TestWorld test(test::arm_world(motor(), 0));
-  test.world.set_fault("a1/motor", {.kind = FaultKind::degraded, .dropout = 1});
+  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::degraded, .dropout = 1});
   turn(test, 1);
   test.run_for(0.02);
   EXPECT_EQ(shoulder(test).motor_velocity(), 0);
@@ -315,7 +316,7 @@ TEST_P(EveryActuator, GoesToItsSafeStatesAndWithoutEffectivenessGivesNoForce) {
     EXPECT_NO_THROW(actuator->make_safe(safe));
     test.run_for(0.02);
     EXPECT_GE(actuator->power_W(), 0);
-    test.world.set_fault("r1/device", {.kind = FaultKind::dead});
+    test.world.editor().set_fault("r1/device", {.kind = FaultKind::dead});
     test.run_for(0.02);
     for (const auto& [name, joint] : test.world.find_vehicle("r1")->joints())
       EXPECT_EQ(joint->motor_max_force(), 0) << name;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The state of devices by itself, as it is in a snapshot: half read lines, and bytes that are no state.
-#include "sim/world/mounted_device.hpp"
+#include "sim/vehicle/mounted_device.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 #include "tests/project_paths.hpp"

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/project_paths.hpp"
@@ -45,7 +47,7 @@ struct SteppedWorld {
         }) {}
   StepResult step() {
     world.step();
-    return {world.run_hash(), bus.take_hash()};
+    return {world.state().run_hash(), bus.take_hash()};
   }
   HashingBus bus;
   sim::World world;
@@ -81,9 +83,9 @@ class EveryWorld : public testing::TestWithParam<std::string> {
     for (const auto& device : world.devices()) {
       if (!device || !device->senses()) continue;
       sim::Diagnostics diagnostics;
-      EXPECT_TRUE(world.change_device(device->full_name(),
-                                      sim::parse_config_text("{latency_s: 0.013, rate_hz: 7}", "set", diagnostics),
-                                      diagnostics))
+      EXPECT_TRUE(world.editor().change_device(
+          device->full_name(), sim::parse_config_text("{latency_s: 0.013, rate_hz: 7}", "set", diagnostics),
+          diagnostics))
           << diagnostics.lines().front();
       return true;
     }
@@ -93,8 +95,8 @@ class EveryWorld : public testing::TestWithParam<std::string> {
   /// Restored, it is the world that was saved, and goes on like it.
   void expect_goes_on(SteppedWorld& test, std::size_t number) {
     const auto at = static_cast<std::size_t>(saved_at[number]);
-    test.world.restore(snapshots[number]);
-    ASSERT_TRUE(test.world.snapshot() == snapshots[number]) << "saved again it is not the same";
+    test.world.state().restore(snapshots[number]);
+    ASSERT_TRUE(test.world.state().snapshot() == snapshots[number]) << "saved again it is not the same";
     test.bus.take_hash();
     for (std::size_t step = at; step < at + more_steps; ++step) {
       const StepResult result = test.step();
@@ -113,7 +115,7 @@ TEST_P(EveryWorld, GoesOnFromASnapshotBitForBit) {
   SteppedWorld original(loaded);
   for (int step = 0; step < saved_at.back() + more_steps; ++step) {
     for (const int at : saved_at)
-      if (step == at) snapshots.push_back(original.world.snapshot());
+      if (step == at) snapshots.push_back(original.world.state().snapshot());
     results.push_back(original.step());
   }
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
@@ -135,15 +137,15 @@ TEST_P(EveryWorld, GoesOnFromBeforeAndAfterAValueWasSet) {
   saved_at = {20, 60};
   const int set_at = 40;
   for (int step = 0; step < saved_at.back() + more_steps; ++step) {
-    if (step == saved_at[0] || step == saved_at[1]) snapshots.push_back(original.world.snapshot());
+    if (step == saved_at[0] || step == saved_at[1]) snapshots.push_back(original.world.state().snapshot());
     if (step == set_at && !change_a_device(original.world)) GTEST_SKIP() << "it has no sensor";
     results.push_back(original.step());
   }
   for (const std::size_t i : {0u, 1u, 0u}) {
     SCOPED_TRACE("saved after " + std::to_string(saved_at[i]) + " steps");
     const auto at = static_cast<std::size_t>(saved_at[i]);
-    original.world.restore(snapshots[i]);
-    ASSERT_TRUE(original.world.snapshot() == snapshots[i]) << "saved again it is not the same";
+    original.world.state().restore(snapshots[i]);
+    ASSERT_TRUE(original.world.state().snapshot() == snapshots[i]) << "saved again it is not the same";
     original.bus.take_hash();
     for (std::size_t step = at; step < at + more_steps / 3; ++step) {
       if (step == set_at) change_a_device(original.world);

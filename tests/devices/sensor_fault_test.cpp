@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What faults do to the measurements of a sensor, on paper and in its statistics.
 #include "shoal/imu_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -21,10 +22,10 @@ Stretches run(const std::optional<sim::FaultConfig>& fault, double stretch_s = 1
   Stretches result;
   test.run_for(stretch_s);
   result.before = reports.take_all();
-  if (fault) test.world.set_fault("r1/imu", *fault);
+  if (fault) test.world.editor().set_fault("r1/imu", *fault);
   test.run_for(stretch_s);
   result.during = reports.take_all();
-  if (fault) test.world.clear_faults("r1/imu");
+  if (fault) test.world.editor().clear_faults("r1/imu");
   test.run_for(stretch_s);
   result.after = reports.take_all();
   return result;

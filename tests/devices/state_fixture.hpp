@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace test {
@@ -76,8 +77,8 @@ class SavedRun {
     std::vector<std::vector<TapBus::Sent>> sent;
     const int last = *std::max_element(at.begin(), at.end()) + more;
     for (int step = 0; step <= last; ++step) {
-      if (std::find(at.begin(), at.end(), step) != at.end()) snapshots[step] = original.world.snapshot();
-      if (std::find(at.begin(), at.end(), step - more) != at.end()) ends[step] = original.world.part_hashes();
+      if (std::find(at.begin(), at.end(), step) != at.end()) snapshots[step] = original.world.state().snapshot();
+      if (std::find(at.begin(), at.end(), step - more) != at.end()) ends[step] = original.world.state().part_hashes();
       sent.push_back(run_step(original, step));
     }
     EXPECT_EQ(original.world.counts().bad_messages, 0u);
@@ -89,10 +90,10 @@ class SavedRun {
       for (TappedWorld* world : {&fresh, &original}) {
         SCOPED_TRACE("saved after " + std::to_string(step) + " steps, restored in " +
                      (world == &fresh ? "a fresh world" : "the world that went on"));
-        world->world.restore(snapshots[step]);
-        EXPECT_EQ(world->world.snapshot(), snapshots[step]);
+        world->world.state().restore(snapshots[step]);
+        EXPECT_EQ(world->world.state().snapshot(), snapshots[step]);
         if (!goes_on_alike(*world, step, more, sent)) continue;
-        EXPECT_EQ(names_of_differing(world->world.part_hashes(), ends[step + more]), "");
+        EXPECT_EQ(names_of_differing(world->world.state().part_hashes(), ends[step + more]), "");
       }
     }
   }

@@ -11,6 +11,7 @@
 #include "shoal/message_codec.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_editor.hpp"
 #include "sim/world_file/load_world.hpp"
 
 namespace test {
@@ -33,7 +34,7 @@ class LoadedTestWorld {
   std::string change(const std::string& device, const std::string& values) {
     sim::Diagnostics diagnostics;
     const auto node = sim::parse_config_text(values, "change", diagnostics);
-    if (world.change_device(device, node, diagnostics)) return {};
+    if (world.editor().change_device(device, node, diagnostics)) return {};
     return diagnostics.lines().empty() ? "refused" : diagnostics.lines().front();
   }
   template <typename Message>

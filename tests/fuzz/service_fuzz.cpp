@@ -37,9 +37,8 @@ struct Served {
   sim::MailGate gate{network};
   sim::World world{world_file().config, gate};
   sim::RunControl control;
-  bridges::LockstepService lockstep{world, control};
+  bridges::LockstepService lockstep{world, control, {{network, gate}}};
   bridges::SimService service{gate, network, world, control, lockstep, {"{}", "fuzz"}};
-  Served() { lockstep.add_line(network, gate); }
 };
 
 constexpr std::array clients{"pilot", "a", "", "helper", "pilot\n"};

@@ -6,6 +6,7 @@
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/state/state_archive.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_state.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
@@ -48,7 +49,7 @@ struct Restored {
   sim::Bytes base;
   Restored() {
     for (int step = 0; step < 40; ++step) world.step();
-    base = world.snapshot();
+    base = world.state().snapshot();
   }
 };
 
@@ -103,12 +104,12 @@ void change(sim::Bytes& bytes, fuzz::Reader& reader) {
 
 SHOAL_FUZZ_TARGET(snapshot) {
   static Restored restored;
-  restored.world.restore(restored.base);
+  restored.world.state().restore(restored.base);
   sim::Bytes bytes = restored.base;
   fuzz::Reader reader(input);
   for (int changes = 0; !reader.ended() && changes < 16; ++changes) change(bytes, reader);
   fuzz::allow<sim::SnapshotError, sim::PhysicsFault>([&] {
-    restored.world.restore(bytes);
+    restored.world.state().restore(bytes);
     for (int step = 0; step < 3; ++step) restored.world.step();
   });
 }

@@ -4,6 +4,7 @@
 #include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_state.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
@@ -47,11 +48,11 @@ SHOAL_FUZZ_TARGET(world_run) {
     sim::InProcessBus bus;
     sim::World world(loaded.config, bus);
     for (int step = 0; step < 5; ++step) world.step();
-    const sim::Bytes snapshot = world.snapshot();
+    const sim::Bytes snapshot = world.state().snapshot();
     world.step();
-    const std::uint64_t hash = world.state_hash();
-    world.restore(snapshot);
+    const std::uint64_t hash = world.state().hash();
+    world.state().restore(snapshot);
     world.step();
-    fuzz::require(world.state_hash() == hash, "a restored world goes on as before");
+    fuzz::require(world.state().hash() == hash, "a restored world goes on as before");
   });
 }

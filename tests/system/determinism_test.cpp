@@ -11,6 +11,7 @@
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_state.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/system/shoal_program.hpp"
 
@@ -48,7 +49,7 @@ class Determinism : public testing::TestWithParam<Case> {
     std::vector<std::uint64_t> hashes;
     while (world.now() < sim::from_seconds(std::stod(GetParam().duration_s))) {
       world.step();
-      hashes.push_back(world.run_hash());
+      hashes.push_back(world.state().run_hash());
     }
     return hashes;
   }

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Ctrl-C at random moments of a run with programs, serial ports, a record, snapshots and plots: nothing stays behind.
 
     python3 interrupt_test.py BINARIES [HOW_MANY [SEED]]

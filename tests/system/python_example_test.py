@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The programs of examples/python, in runs: coop_auv.py as docs/howto_python.md shows it, lockstep_client.py.
 
     python3 python_example_test.py BINARIES LCM_GEN

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Runs every command of README.md, in order, in a copy of the checkout, as somebody would who has just cloned it.
 
     python3 readme_test.py SOURCE BINARY_DIRECTORY
@@ -70,7 +71,7 @@ STAND_IN_CMAKE = """#!/usr/bin/env python3
 import os, re, shutil, subprocess, sys
 binary_dir, arguments, here = {binary_dir!r}, sys.argv[1:], "build/release"
 os.makedirs(here + "/bin", exist_ok=True)
-if arguments == ["--preset", "release"]:
+if arguments[:2] == ["--preset", "release"]:
     with open(here + "/CMakeCache.txt", "w") as cache:
         cache.write("CMAKE_HOME_DIRECTORY:INTERNAL=" + os.getcwd() + "\\n")
     sys.exit(0)

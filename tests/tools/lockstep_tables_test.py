@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """tools/lockstep_tables.py, with the shortest of its tables.
 
     python3 lockstep_tables_test.py BINARIES

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Checks tools/make_bathymetry.py.  Without gdalwarp the import is left out: exit code 77."""
 import os
 import shutil

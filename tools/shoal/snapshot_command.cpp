@@ -6,6 +6,7 @@
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_state.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
@@ -34,8 +35,8 @@ bool restores(const Snapshot& snapshot, const std::string& path) {
   const sim::LoadedWorld loaded = sim::load_world_text(snapshot.resolved_world, path, load);
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus);
-  world.restore(snapshot.state);
-  const bool equal = world.state_hash() == snapshot.state_hash;
+  world.state().restore(snapshot.state);
+  const bool equal = world.state().hash() == snapshot.state_hash;
   std::cout << (equal ? "restores with the same hash\n" : "restores with another hash\n");
   return equal;
 }

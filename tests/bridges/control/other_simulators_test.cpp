@@ -103,11 +103,9 @@ TEST(OtherSimulators, OneThatAskedAndStartsAllTheSameIsWarnedOf) {
   bridges::LcmBus bus(lcm_test::own_url(2)), others_bus(lcm_test::own_url(2));
   sim::MailGate gate(bus);
   sim::RunControl control;
-  bridges::LockstepService lockstep(test.world, control);
-  lockstep.add_line(bus, gate);
-  bridges::SimService service(bus, bus, test.world, control, lockstep, {"{}", "test"});
+  bridges::LockstepService lockstep(test.world, control, {{bus, gate}});
   OtherSimulators own({}, false);
-  service.use_others(own);
+  bridges::SimService service(bus, bus, test.world, control, lockstep, {"{}", "test"}, {.others = &own});
   OtherSimulators second({{"here", &others_bus}}, false);
   // It is answered, but does not wait for it.
   EXPECT_TRUE(second.look([&](milliseconds time) {
@@ -137,12 +135,10 @@ TEST(OtherSimulators, OneThatWasTooBusyToAnswerIsWarnedOfWhenItPublishes) {
   bridges::LcmBus bus(lcm_test::own_url(3)), others_bus(lcm_test::own_url(3));
   sim::MailGate gate(bus);
   sim::RunControl control;
-  bridges::LockstepService lockstep(test.world, control);
-  lockstep.add_line(bus, gate);
-  bridges::SimService service(bus, bus, test.world, control, lockstep, {"{}", "test"});
+  bridges::LockstepService lockstep(test.world, control, {{bus, gate}});
   OtherSimulators own({{"here", &bus}}, false);
+  bridges::SimService service(bus, bus, test.world, control, lockstep, {"{}", "test"}, {.others = &own});
   EXPECT_FALSE(own.look([&](milliseconds time) { bus.wait_for_message(time); }));  // the other one is silent
-  service.use_others(own);
   testing::internal::CaptureStdout();
   others_bus.publish("sim.info", shoal::encode(shoal::sim_info_t{}), sim::Time(0));
   others_bus.end_of_step();
@@ -160,10 +156,11 @@ TEST(OtherSimulators, OneThatWasTooBusyToAnswerIsWarnedOfWhenItPublishes) {
 TEST(OtherSimulators, OneThatSharesDoesNotLookAndSaysSo) {
   lcm_test::ServedWorld first(world);
   OtherSimulators own({}, false);
-  first.service.use_others(own);
+  bridges::SimService service(first.test.bus, first.test.bus, first.test.world, first.control, first.lockstep,
+                              {"{}", "test"}, {.others = &own});
   OtherSimulators others({{"here", &first.test.bus}}, true);
   testing::internal::CaptureStderr();
-  first.service.handle_requests();
+  service.handle_requests();
   EXPECT_EQ(others.look([](milliseconds) { ADD_FAILURE(); }), std::nullopt);
   testing::internal::GetCapturedStderr();
   shoal::sim_control_request_t request{};

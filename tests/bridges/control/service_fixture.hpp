@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "bridges/control/sim_service.hpp"
 #include "shoal/sim_control_reply_t.hpp"
@@ -12,7 +13,11 @@ namespace lcm_test {
 
 /// A world from YAML text, and its service on the same in-process bus.
 struct ServedWorld {
-  explicit ServedWorld(const std::string& yaml) : test(yaml) { lockstep.add_line(test.bus, gate); }
+  /// `vehicle_buses`: beside the world's.
+  explicit ServedWorld(const std::string& yaml, const std::vector<bridges::LockstepBus>& vehicle_buses = {})
+      : test(yaml),
+        lockstep(test.world, control, with(vehicle_buses)),
+        service(test.bus, test.bus, test.world, control, lockstep, {"{}", "test"}, links_of(vehicle_buses)) {}
 
   /// Sends a request, has it answered, and gives the answer.
   shoal::sim_control_reply_t ask(const std::string& command, double value, const std::string& text,
@@ -24,7 +29,7 @@ struct ServedWorld {
     request.value = value;
     request.text = text;
     test.send("sim.control", request);
-    service.handle_requests();
+    answering->handle_requests(machine);
     return replies.last();
   }
 
@@ -32,9 +37,23 @@ struct ServedWorld {
   test::Listener<shoal::sim_control_reply_t> replies{test, "sim.control.reply"};
   sim::RunControl control;
   sim::MailGate gate{test.bus};
-  bridges::LockstepService lockstep{test.world, control};
-  bridges::SimService service{test.bus, test.bus, test.world, control, lockstep, {"{}", "test"}};
+  bridges::LockstepService lockstep;
+  bridges::SimService service;
+  bridges::SimService* answering = &service;  ///< another one of this world may answer in its place
+  bridges::TimeMachine* machine = nullptr;    ///< serves what is about time
   std::int32_t id = 0;
+
+ private:
+  std::vector<bridges::LockstepBus> with(const std::vector<bridges::LockstepBus>& vehicle_buses) {
+    std::vector<bridges::LockstepBus> all{{test.bus, gate}};
+    for (const bridges::LockstepBus& bus : vehicle_buses) all.push_back(bus);
+    return all;
+  }
+  static bridges::ServiceLinks links_of(const std::vector<bridges::LockstepBus>& buses) {
+    bridges::ServiceLinks links;
+    for (const bridges::LockstepBus& bus : buses) links.vehicle_buses.push_back(&bus.network);
+    return links;
+  }
 };
 
 }  // namespace lcm_test

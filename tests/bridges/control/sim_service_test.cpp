@@ -40,7 +40,7 @@ TEST(SimService, LeavesWhatIsAboutTimeToTheTimeMachine) {
   } machine;
   Service s;
   EXPECT_FALSE(s.ask("speed", 0).ok) << "nobody serves it";
-  s.service.set_time_machine(&machine);
+  s.machine = &machine;
   EXPECT_EQ(s.ask("speed", 0).text, "as fast as possible");
   EXPECT_THAT(s.ask("speed", -1).text, testing::HasSubstr("'speed' must be 0"));
   EXPECT_TRUE(s.ask("alive", 0).ok) << "not the machine's";
@@ -57,8 +57,10 @@ TEST(SimService, SaysWhyItRefuses) {
 TEST(SimService, ItsOwnQuestionForOtherSimulatorsIsNoRequest) {
   Service s;
   bridges::OtherSimulators others({{"here", &s.test.bus}}, false);
-  s.service.use_others(others);
-  s.service.handle_requests();
+  bridges::SimService service(s.test.bus, s.test.bus, s.test.world, s.control, s.lockstep, {"{}", "test"},
+                              {.others = &others});
+  s.answering = &service;
+  service.handle_requests();
   EXPECT_TRUE(s.replies.take_all().empty());
   EXPECT_TRUE(s.ask("alive", 0, "", "shoal-run").ok) << "another run's is answered";
 }

@@ -6,6 +6,7 @@
 #include "shoal/sim_vehicle_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "sim/state/state_archive.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/bridges/control/service_fixture.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 
@@ -86,7 +87,7 @@ TEST(Spawn, RepeatsItselfBitForBit) {
     EXPECT_TRUE(host.ask("remove", "r1").ok);
     EXPECT_TRUE(host.ask("spawn", "{name: r3, file: rover_swarm.yaml, position_m: [-3, 8, 0]}").ok);
     host.test.run_for(0.5);
-    return host.test.world.state_hash();
+    return host.test.world.state().hash();
   };
   EXPECT_EQ(hash(), hash());
 }
@@ -121,9 +122,11 @@ TEST(Spawn, ErrorsReadAsThoseOfFiles) {
 
 TEST(Spawn, OnlyWhatIsAVehicleIsWrittenDown) {
   Host host;
-  bridges::RunJournal journal(host.test.bus);
-  journal.attach(host.test.world);
-  host.service.use_journal(journal);
+  bridges::JournalPorts ports;
+  bridges::RunJournal journal(host.test.bus, host.test.world, ports);
+  bridges::SimService service(host.test.bus, host.test.bus, host.test.world, host.control, host.lockstep,
+                              {"{}", "test"}, {.journal = &journal});
+  host.answering = &service;
   std::vector<std::string> written;
   journal.set_listener([&](std::int64_t, const bridges::RunJournal::Letter& letter) {
     written.emplace_back(reinterpret_cast<const char*>(letter.payload.data()), letter.payload.size());
@@ -247,7 +250,7 @@ TEST(Spawn, AVehicleGoesWhenItsClientIsSilentForTooLong) {
 
 /// The world and whose vehicles there are, as a snapshot has them.
 struct Moment {
-  explicit Moment(Host& host) : world(host.test.world.snapshot()) {
+  explicit Moment(Host& host) : world(host.test.world.state().snapshot()) {
     auto archive = sim::StateArchive::saver();
     archive.section("owners");
     host.service.visit_state(archive);
@@ -255,7 +258,7 @@ struct Moment {
     owners = archive.take_bytes();
   }
   void restore(Host& host) const {
-    host.test.world.restore(world);
+    host.test.world.state().restore(world);
     auto archive = sim::StateArchive::restorer(owners);
     archive.section("owners");
     host.service.visit_state(archive);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bridges/lockstep_client/resend.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/bridges/lockstep/lockstep_fixture.hpp"
 
 namespace {
@@ -454,7 +455,7 @@ TEST(LockstepService, WhatWasPublishedForATickBeforeARewindIsDroppedWithoutCompl
   ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}", 0.02).ok);
   s.synchronize([&] { s.acknowledge(0, "pilot", 5, 1); });
   s.test.world.step();
-  const sim::Bytes before = s.test.world.snapshot();  // at a step without a tick
+  const sim::Bytes before = s.test.world.state().snapshot();  // at a step without a tick
   s.test.world.step();
   EXPECT_THROW(s.lockstep.synchronize([](std::chrono::milliseconds) {},
                                       [&, calls = 0]() mutable {
@@ -462,7 +463,7 @@ TEST(LockstepService, WhatWasPublishedForATickBeforeARewindIsDroppedWithoutCompl
                                         return true;
                                       }),
                std::logic_error);
-  s.test.world.restore(before);
+  s.test.world.state().restore(before);
   s.lockstep.set_branch(1);
   s.lockstep.set_branch(2);  // while it thinks
   s.test.bus.publish("cmd", bytes_of("old"), sim::Time(0));

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "shoal/sim_hash_t.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 
 namespace {
@@ -23,9 +24,7 @@ struct Journalled {
   explicit Journalled(int hash_every_steps = 10)
       : test("shoal: 1\nrun: {hash_every_steps: " + std::to_string(hash_every_steps) +
              "}\nphysics: {step_s: 0.01}\nobjects: [{name: ball, position_m: [0, 0, 5], parts: [{shape: sphere, "
-             "radius_m: 0.1, mass_kg: 1}]}]\n") {
-    journal.attach(test.world);
-  }
+             "radius_m: 0.1, mass_kg: 1}]}]\n") {}
 
   void step() {
     test.world.step();
@@ -44,7 +43,8 @@ struct Journalled {
   }
 
   test::TestWorld test;
-  RunJournal journal{test.bus};
+  bridges::JournalPorts ports;
+  RunJournal journal{test.bus, test.world, ports};
   test::Listener<shoal::sim_mail_t> mail{test, "sim.mail"};
   test::Listener<shoal::sim_hash_t> hashes{test, "sim.hash"};
   std::vector<std::int64_t> sequences;
@@ -84,10 +84,10 @@ TEST(RunJournal, HashesAreThoseOfTheWorldAtEveryNthStepAndAtTheEnd) {
   Journalled run(10);
   run.journal.start();
   run.journal.after_step();
-  std::vector<std::int64_t> expected{static_cast<std::int64_t>(run.test.world.state_hash())};
+  std::vector<std::int64_t> expected{static_cast<std::int64_t>(run.test.world.state().hash())};
   for (int i = 0; i < 25; ++i) {
     run.step();
-    if (i == 9 || i == 19 || i == 24) expected.push_back(static_cast<std::int64_t>(run.test.world.state_hash()));
+    if (i == 9 || i == 19 || i == 24) expected.push_back(static_cast<std::int64_t>(run.test.world.state().hash()));
   }
   run.journal.finish();
   run.journal.finish();
@@ -106,7 +106,7 @@ TEST(RunJournal, TheHashOfTheRunIsTheLastOfTheParts) {
   run.journal.start();
   std::int64_t expected = 0;
   for (int i = 0; i < 10; ++i) run.step();
-  expected = static_cast<std::int64_t>(run.test.world.run_hash());
+  expected = static_cast<std::int64_t>(run.test.world.state().run_hash());
   const auto messages = run.hashes.take_all();
   ASSERT_EQ(messages.size(), 1u);
   ASSERT_EQ(messages[0].part.size(), messages[0].part_hash.size());
@@ -141,7 +141,7 @@ TEST(RunJournal, MutedItWritesNothingAndItsPortsReadWhatTheyReadBefore) {
   const auto end = std::make_shared<test::PortEnd>();
   Journalled run(1);
   const sim::PortOpener open =
-      run.journal.wrap([&](const std::string&, const std::string&) { return std::make_unique<test::FakePort>(end); });
+      run.ports.wrap([&](const std::string&, const std::string&) { return std::make_unique<test::FakePort>(end); });
   const auto port = open("pty", "/nowhere/a");
   run.journal.start();
   end->to_world = "hello";

@@ -31,7 +31,7 @@ struct KeyedWorld : LockstepWorld {
   std::optional<shoal::sim_control_reply_t> answer_to(const sim::Bytes& payload) {
     replies.take_all();
     test.bus.publish("sim.control", payload, test.world.now());
-    service.handle_requests();
+    answering->handle_requests();
     const auto all = replies.take_all();
     if (all.empty()) return std::nullopt;
     return all.back();
@@ -150,7 +150,9 @@ TEST(ControlKey, RefusesALeaveWithoutIt) {
 TEST(ControlKey, IsNotNeededByASimulatorThatAsksWhetherItIsAlone) {
   KeyedWorld w;
   const bridges::OtherSimulators ours({}, false);
-  w.service.use_others(ours);
+  bridges::SimService service(w.test.bus, w.test.bus, w.test.world, w.control, w.lockstep, {"{}", "test"},
+                              {.others = &ours});
+  w.answering = &service;
   EXPECT_TRUE(w.answer_to(shoal::encode(w.request("alive", "", 0, "shoal-run")))->ok);
   EXPECT_FALSE(w.answer_to(shoal::encode(w.request("alive")))->ok);
 }

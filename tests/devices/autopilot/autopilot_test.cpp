@@ -11,7 +11,8 @@
 #include "shoal/helm_command_t.hpp"
 #include "shoal/station_command_t.hpp"
 #include "shoal/waypoints_command_t.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -136,13 +137,13 @@ TEST(Autopilot, GoesOnWithItsCircleFromASnapshot) {
   test.run_for(10);
   test.mode(4);
   test.run_for(30);
-  const auto snapshot = test.world.snapshot();
+  const auto snapshot = test.world.state().snapshot();
   test.run_for(30);
   AutopilotWorld again(yaml);
-  again.world.restore(snapshot);
+  again.world.state().restore(snapshot);
   again.run_for(30);
   EXPECT_EQ(again.states.last().mode, 4);
-  EXPECT_EQ(again.world.state_hash(), test.world.state_hash());
+  EXPECT_EQ(again.world.state().hash(), test.world.state().hash());
 }
 
 TEST(Autopilot, ABoatWithTwoPropellersGoesRoundItsWaypoints) {
@@ -374,7 +375,8 @@ TEST(Autopilot, RefusesBadCommandsAndGoesOn) {
 TEST(Autopilot, ADepthIsAnotherStateThanAnAltitude) {
   const auto hash_of = [](const std::string& hold) {
     return AutopilotWorld(world_with("remus100_survey.yaml", "      devices.autopilot.hold: " + hold + "\n"))
-        .world.state_hash();
+        .world.state()
+        .hash();
   };
   EXPECT_EQ(hash_of("{depth_m: 5}"), hash_of("{depth_m: 5}"));
   EXPECT_NE(hash_of("{depth_m: 5}"), hash_of("{altitude_m: 5}"));

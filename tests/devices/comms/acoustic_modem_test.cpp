@@ -5,6 +5,7 @@
 
 #include "devices/comms/micromodem_rates.hpp"
 #include "sim/acoustics/channel.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 #include "tests/fidelity/closed_forms.hpp"
@@ -289,7 +290,7 @@ TEST(AcousticModem, AChangedLengthHoldsForItsSerialPortToo) {
   test.run_for(0.1);
   sim::Diagnostics diagnostics;
   const auto longer = sim::parse_config_text("{max_message_bytes: 32}", "change", diagnostics);
-  ASSERT_TRUE(test.world.change_device("a/modem", longer, diagnostics));
+  ASSERT_TRUE(test.world.editor().change_device("a/modem", longer, diagnostics));
   test.ends["/nowhere/a"]->to_world = "\n" + line + "\n";  // the end of one that was cut, and a whole one
   test.run_for(8);
   EXPECT_EQ(test.ends["/nowhere/b"]->from_world, line + "\n");
@@ -354,15 +355,15 @@ TEST(AcousticModem, NeedsWater) {
 TEST(AcousticModem, OutOfTheWaterItIsSilentAndDeaf) {
   test::TestWorld test(three());
   test::Listener<Received> at_b(test, "b.modem");
-  test.world.move_vehicle("a", sim::make_pose({0, 0, 1}, {0, 0, 0}));
+  test.world.editor().move_vehicle("a", sim::make_pose({0, 0, 1}, {0, 0, 0}));
   test.send("a.modem.cmd", test::bytes_to("x"));
   test.run_for(5);
   EXPECT_EQ(at_b.take_all().size(), 0u);
   // It leaves the water while it sends: the end of the message is missing.
-  test.world.move_vehicle("a", sim::make_pose({0, 0, -20}, {0, 0, 0}));
+  test.world.editor().move_vehicle("a", sim::make_pose({0, 0, -20}, {0, 0, 0}));
   test.send("a.modem.cmd", test::bytes_to("x"));
   test.run_for(2);
-  test.world.move_vehicle("a", sim::make_pose({0, 0, 1}, {0, 0, 0}));
+  test.world.editor().move_vehicle("a", sim::make_pose({0, 0, 1}, {0, 0, 0}));
   test.run_for(5);
   EXPECT_EQ(at_b.take_all().size(), 0u);
   EXPECT_EQ(lost(test, "b", sim::SignalLoss::out_of_water), 1);

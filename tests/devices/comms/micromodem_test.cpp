@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include "shoal/nmea_sentence_t.hpp"
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/fidelity/closed_forms.hpp"
 #include "tests/sim/medium/log_capture.hpp"
@@ -315,9 +317,10 @@ TEST(Micromodem, StartsAnewWhenItsPowerComesBack) {
   hosts.say("b", "$CCCYC,0,2,1,0,0,1");
   hosts.run_for(0.1);
   hosts.take("a"), hosts.take("b");
-  for (const char* name : {"a/modem", "b/modem"}) hosts.world.set_fault(name, {.kind = sim::FaultKind::silent});
+  for (const char* name : {"a/modem", "b/modem"})
+    hosts.world.editor().set_fault(name, {.kind = sim::FaultKind::silent});
   hosts.run_for(3);
-  for (const char* name : {"a/modem", "b/modem"}) hosts.world.clear_faults(name);
+  for (const char* name : {"a/modem", "b/modem"}) hosts.world.editor().clear_faults(name);
   hosts.run_for(3);
   for (const char* name : {"a", "b"})
     EXPECT_THAT(hosts.take(name), testing::ElementsAre("CAREV,000003,INIT,0.93.0.48")) << name;
@@ -345,11 +348,11 @@ TEST(Micromodem, APingKnowsNothingOfAClockThatIsSet) {
   Hosts hosts(test::modem_sea({{"a", "[0, 0, -0.3]", modem_at(1) + gps, "clock: {offset_s: 0.4}"},
                                {"b", "[750, 0, -5]", modem_at(2)},
                                {"c", "[-300, 0, -5]", modem_at(3)}}));
-  hosts.world.set_fault("a/gps", {.kind = sim::FaultKind::silent});
+  hosts.world.editor().set_fault("a/gps", {.kind = sim::FaultKind::silent});
   hosts.run_for(9.5);
   hosts.say("a", "$CCMPC,1,2");
   hosts.run_for(0.4);
-  hosts.world.clear_faults("a/gps");
+  hosts.world.editor().clear_faults("a/gps");
   hosts.run_for(4);
   EXPECT_LT(std::abs(hosts.world.find_vehicle("a")->clock().error_s(hosts.world.now())), 1e-3);
   EXPECT_THAT(hosts.take("a"), Contains("CAMPR,2,1,0.5000"));
@@ -388,7 +391,7 @@ TEST(Micromodem, TheSameWorldGivesTheSameHashes) {
       hosts.say("a", "$CCMPC,1,2");
       hosts.say("c", "$CCMUC,3,1,0123");
       hosts.run_for(0.7);
-      all.push_back(hosts.world.state_hash());
+      all.push_back(hosts.world.state().hash());
     }
     return all;
   };
@@ -400,8 +403,8 @@ TEST(Micromodem, WarnsOfTwoWithOneAddressAndNotOfOneThatComesBack) {
   const test_support::LogCapture log;
   const sim::VehicleInstance a = hosts.loaded.config.vehicles[0];
   for (int i = 0; i < 3; ++i) {
-    hosts.world.remove_vehicle("a");
-    hosts.world.add_vehicle(a);
+    hosts.world.editor().remove_vehicle("a");
+    hosts.world.editor().add_vehicle(a);
     hosts.run_for(0.1);
   }
   EXPECT_EQ(log.text(), "");

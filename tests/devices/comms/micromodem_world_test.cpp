@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "sim/world/world_state.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 #include "tests/project_paths.hpp"
 
@@ -32,7 +33,7 @@ Session session(int threads) {
     if (step == 1200) one += "$CCMUC,1,2,1234\r\n";
     if (step == 1201) two += "\x80 noise $CC\r\n";
     test.world.step();
-    result.hashes.push_back(test.world.state_hash());
+    result.hashes.push_back(test.world.state().hash());
   }
   for (const auto& [path, end] : test.ends) result.answers += path + "\n" + end->from_world;
   return result;

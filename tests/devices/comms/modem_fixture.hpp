@@ -3,7 +3,7 @@
 
 #include "shoal/acoustic_received_t.hpp"
 #include "shoal/modem_send_t.hpp"
-#include "sim/world/mounted_device.hpp"
+#include "sim/vehicle/mounted_device.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace test {

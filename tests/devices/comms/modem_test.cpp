@@ -2,6 +2,7 @@
 #include "devices/comms/message_modem.hpp"
 #include "shoal/modem_received_t.hpp"
 #include "shoal/modem_send_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 #include "tests/devices/navigation/immersed_sensor_fixture.hpp"
 
@@ -181,7 +182,7 @@ TEST(Modem, DropsTheOldestWhenItsQueueIsFull) {
   EXPECT_EQ(text_of(received[0]), "3");
   EXPECT_EQ(text_of(received[1]), "4");
   EXPECT_EQ(test.world.shared<devices::MessageModems>().dropped_from_queues(), 2);
-  test.world.remove_vehicle("a");
+  test.world.editor().remove_vehicle("a");
   EXPECT_EQ(test.world.shared<devices::MessageModems>().dropped_from_queues(), 2) << "of those gone, too";
 }
 

@@ -8,7 +8,8 @@
 
 #include "shoal/helm_command_t.hpp"
 #include "shoal/thrust_rudder_elevator_command_t.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -157,7 +158,7 @@ TEST_F(NaiveDrive, ASurfaceCraftLiesInTheSurface) {
 TEST_F(NaiveDrive, GoesOnFromWhereSomebodyPutIt) {
   start(", start_speed_mps: 1");
   test->run_for(1);
-  test->world.move_vehicle("a", sim::make_pose({100, 0, -5}, {0, 0, std::numbers::pi / 2}));
+  test->world.editor().move_vehicle("a", sim::make_pose({100, 0, -5}, {0, 0, std::numbers::pi / 2}));
   test->run_for(1);
   EXPECT_NEAR((pose().translation() - sim::Vector3d(100, 1, -5)).norm(), 0, 1e-9);
 }

@@ -6,6 +6,7 @@
 #include "shoal/thrust_rudder_command_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "shoal/wheel_speeds_command_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -103,7 +104,7 @@ TEST(SkidSteer, DeadItRollsOn) {
   test::TestWorld test(skid_world(track));
   test.send("r1.drive.cmd", twist(0.5, 0));
   test.run_for(1);
-  test.world.set_fault("r1/drive", {.kind = sim::FaultKind::dead});
+  test.world.editor().set_fault("r1/drive", {.kind = sim::FaultKind::dead});
   test.run_for(1);
   EXPECT_EQ(rover(test).joint("fl").motor_max_force(), 0);
   EXPECT_NEAR(rover(test).base().v_WB_W().x(), 0.5, 0.01);  // spheres roll without resistance

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "shoal/twist_command_t.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/sim/medium/log_capture.hpp"
 

@@ -6,8 +6,8 @@
 #include "devices/drive/two_sided_drive.hpp"
 #include "shoal/odometry_t.hpp"
 #include "shoal/twist_command_t.hpp"
-#include "sim/world/mounted_device.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/mounted_device.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/sim/medium/log_capture.hpp"
 

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "shoal/compass_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -21,7 +22,7 @@ shoal::compass_t at(const std::string& more, double yaw_deg, double pitch_deg = 
                     const std::string& channel = "r1.compass") {
   test::TestWorld test(test::box_world(compass(more), weightless));
   test::Listener<shoal::compass_t> reports(test, channel);
-  test.world.move_vehicle(
+  test.world.editor().move_vehicle(
       "r1", sim::make_pose({0, 0, 0}, sim::Vector3d(degrees_to_radians(roll_deg), degrees_to_radians(pitch_deg),
                                                     degrees_to_radians(yaw_deg))));
   test.run_for(0.1);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "shoal/bumper_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -151,7 +152,7 @@ TEST(Bumper, NoiseOfTheForceHasTheSpreadAskedFor) {
 TEST(Bumper, GoesWithItsVehicle) {
   test::TestWorld test(sled_world(""));
   test.run_for(0.1);
-  EXPECT_NO_THROW(test.world.remove_vehicle("s1"));
+  EXPECT_NO_THROW(test.world.editor().remove_vehicle("s1"));
   test.run_for(0.1);
   EXPECT_TRUE(test.world.physics().contacts().empty());
 }

@@ -10,7 +10,7 @@
 
 #include "shoal/joint_settings_t.hpp"
 #include "shoal/joint_state_t.hpp"
-#include "sim/world/mounted_device.hpp"
+#include "sim/vehicle/mounted_device.hpp"
 #include "tests/devices/state_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
 

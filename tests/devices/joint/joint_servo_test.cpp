@@ -5,7 +5,8 @@
 
 #include "shoal/joint_command_t.hpp"
 #include "shoal/joint_servo_command_t.hpp"
-#include "sim/world/mounted_device.hpp"
+#include "sim/vehicle/mounted_device.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/joint/arm_fixture.hpp"
 
 namespace {
@@ -135,7 +136,7 @@ TEST(JointServo, ItsRangeCanShrinkWhileItRuns) {
   EXPECT_NEAR(shoulder(test).position(), 0.8, 1e-4);
   sim::Diagnostics diagnostics;
   const auto values = sim::parse_config_text("{high: 0.2, max_velocity: 2}", "change", diagnostics);
-  ASSERT_TRUE(test.world.change_device("a1/servo", values, diagnostics));
+  ASSERT_TRUE(test.world.editor().change_device("a1/servo", values, diagnostics));
   test.run_for(0.15);
   EXPECT_NEAR(shoulder(test).velocity(), -2, 0.01);
   test.run_for(0.5);
@@ -173,7 +174,7 @@ TEST(JointServo, TooWeakForTheArmItSinks) {
 TEST(JointServo, WithoutEffectivenessItGivesNoForceAtAll) {
   const auto fall = [](const std::string& devices, bool dead) {
     test::TestWorld test(test::arm_world(devices));
-    if (dead) test.world.set_fault("a1/servo", {.kind = sim::FaultKind::dead});
+    if (dead) test.world.editor().set_fault("a1/servo", {.kind = sim::FaultKind::dead});
     test.run_for(0.3);
     return shoulder(test).position();
   };
@@ -185,7 +186,7 @@ TEST(JointServo, WithoutEffectivenessItGivesNoForceAtAll) {
 
 TEST(JointServo, PartlyDeadItsLargestEffortIsTheShare) {
   test::TestWorld test(test::arm_world(servo(", max_velocity: 10"), 0));
-  test.world.set_fault("a1/servo", {.kind = sim::FaultKind::partial, .effectiveness = 0.25});
+  test.world.editor().set_fault("a1/servo", {.kind = sim::FaultKind::partial, .effectiveness = 0.25});
   command(test, 2, 10);
   test.run_for(0.1);
   EXPECT_NEAR(shoulder(test).velocity(), 2.5 / test::arm_inertia_kgm2 * 0.1, 1e-6);
@@ -193,11 +194,11 @@ TEST(JointServo, PartlyDeadItsLargestEffortIsTheShare) {
 
 TEST(JointServo, AfterAFaultItStartsFromWhereTheJointIs) {
   test::TestWorld test(test::arm_world(servo(", max_velocity: 0.5, max_effort: 2000")));
-  test.world.set_fault("a1/servo", {.kind = sim::FaultKind::dead});
+  test.world.editor().set_fault("a1/servo", {.kind = sim::FaultKind::dead});
   test.run_for(0.4);
   const double fallen = shoulder(test).position();
   ASSERT_GT(fallen, 0.5);
-  test.world.clear_faults("a1/servo");
+  test.world.editor().clear_faults("a1/servo");
   test.run_for(0.5);
   EXPECT_NEAR(shoulder(test).position(), fallen - 0.25,
               0.02);  // back at 0.5 rad/s, not with a jump; it falls on while it brakes

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/marine/marine_fixture.hpp"
 
 namespace {
@@ -59,7 +60,7 @@ TEST(MovingMass, StaysOrGoesBackWhenItsCommandsAreStaleAndStaysWhenDead) {
   WetBox dead(wet_device("type: moving_mass, rate_mps: 1"));
   dead.command(0.04);
   dead.run_for(0.1);
-  dead.world.set_fault("v/d", {.kind = sim::FaultKind::dead});
+  dead.world.editor().set_fault("v/d", {.kind = sim::FaultKind::dead});
   dead.command(0);
   dead.run_for(0.1);
   EXPECT_NEAR(dead.device<MovingMass>().place(), 0.04, 1e-12);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "shoal/wrench_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/marine/marine_fixture.hpp"
 
 namespace {
@@ -53,9 +54,9 @@ TEST(BodyWrench, StopsWhenItsCommandsAreStaleAndDeadGivesNoForce) {
   push(box, {10, 0, 0});
   box.run_for(0.02);
   EXPECT_NEAR(box.force_W().x(), 10, rounding_N);
-  box.world.set_fault("v/d", {.kind = sim::FaultKind::dead});
+  box.world.editor().set_fault("v/d", {.kind = sim::FaultKind::dead});
   EXPECT_EQ(box.force_W().x(), 0);
-  box.world.clear_faults("v/d");
+  box.world.editor().clear_faults("v/d");
   EXPECT_NEAR(box.force_W().x(), 10, rounding_N);
   box.run_for(0.05);
   EXPECT_EQ(box.force_W().x(), 0);

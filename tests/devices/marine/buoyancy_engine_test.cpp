@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/marine/marine_fixture.hpp"
 
 namespace {
@@ -75,7 +76,7 @@ TEST(BuoyancyEngine, HoldsParksOrEmptiesWhenItsCommandsAreStale) {
 
 TEST(BuoyancyEngine, WithoutEffortItsVolumeStays) {
   WetBox box(wet_device("type: buoyancy_engine, initial_m3: 1e-4"));
-  box.world.set_fault("v/d", {.kind = sim::FaultKind::dead});
+  box.world.editor().set_fault("v/d", {.kind = sim::FaultKind::dead});
   box.command(0);
   box.run_for(0.1);
   EXPECT_EQ(box.device<BuoyancyEngine>().volume_m3(), 1e-4);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/marine/marine_fixture.hpp"
 
 namespace {
@@ -153,7 +154,7 @@ TEST(Fin, ADeadServoLeavesTheFinWhereItIs) {
   WetBox box(wet_device("type: fin"));
   box.command(0.2);
   box.run_for(0.01);
-  box.world.set_fault("v/d", {.kind = sim::FaultKind::dead});
+  box.world.editor().set_fault("v/d", {.kind = sim::FaultKind::dead});
   box.command(-0.2);
   box.run_for(0.01);
   EXPECT_EQ(box.device<Fin>().angle_rad(), 0.2);

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "shoal/actuator_command_t.hpp"
-#include "sim/world/mounted_device.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/mounted_device.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace test {

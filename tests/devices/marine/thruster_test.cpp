@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/marine/marine_fixture.hpp"
 
 namespace {
@@ -209,7 +210,7 @@ TEST(Thruster, StopsWhenItsCommandsAreStaleAndWithAShareOfItsEffortPushesLess) {
   WetBox box(wet_device("type: thruster, ahead: 40, watchdog_s: 0.05"));
   box.command(1);
   box.run_for(0.04);
-  box.world.set_fault("v/d", {.kind = sim::FaultKind::partial, .effectiveness = 0.25});
+  box.world.editor().set_fault("v/d", {.kind = sim::FaultKind::partial, .effectiveness = 0.25});
   EXPECT_NEAR(box.force_W().x(), 10, 1e-8);
   box.run_for(0.02);
   EXPECT_EQ(box.force_W().x(), 0);

@@ -12,6 +12,8 @@
 #include "shoal/modem_received_t.hpp"
 #include "shoal/modem_send_t.hpp"
 #include "sim/bus/utime_stamp.hpp"
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/project_paths.hpp"
 
@@ -112,7 +114,7 @@ TEST(Clock, AStuckSensorGoesOnByIt) {
       two_boats("{offset_s: 2}", "{}", "        - {name: imu, type: imu, rate_hz: 100, phase_s: 0}\n"));
   test::Listener<shoal::imu_t> reports(test, "r1.imu");
   test.run_for(1);
-  test.world.set_fault("r1/imu", {.kind = sim::FaultKind::stuck});
+  test.world.editor().set_fault("r1/imu", {.kind = sim::FaultKind::stuck});
   test.run_for(1);
   const auto all = reports.take_all();
   ASSERT_EQ(all.size(), 200u);
@@ -213,7 +215,7 @@ TEST(Clock, IsPartOfTheStateAndAPerfectOneIsNot) {
   const auto hash = [](const std::string& clock) {
     test::TestWorld test(two_boats(clock, "{}", gps_device));
     test.run_for(30);
-    return test.world.state_hash();
+    return test.world.state().hash();
   };
   EXPECT_EQ(hash("{preset: tcxo}"), hash("{preset: tcxo}"));
   EXPECT_NE(hash("{preset: tcxo}"), hash("{preset: ocxo}"));
@@ -243,9 +245,9 @@ TEST(Clock, OfTwoVehiclesAreIndependent) {
 TEST(Clock, StartsWhenItsVehicleComes) {
   test::TestWorld test(two_boats("{drift_ppm: 100}", "{drift_ppm: 100}", clock_device));
   test.run_for(100);
-  test.world.remove_vehicle("r2");
+  test.world.editor().remove_vehicle("r2");
   sim::VehicleInstance again = test.loaded.config.vehicles[1];
-  test.world.add_vehicle(again);
+  test.world.editor().add_vehicle(again);
   test.run_for(100);
   EXPECT_NEAR(clock_of(test, "r1").error_s(test.world.now()), 0.02, 1e-9);
   EXPECT_NEAR(clock_of(test, "r2").error_s(test.world.now()), 0.01, 1e-9);

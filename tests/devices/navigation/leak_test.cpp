@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "shoal/leak_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/navigation/immersed_sensor_fixture.hpp"
 
 namespace {
@@ -46,7 +47,7 @@ TEST(Leak, ABiasOfItsProbeIsAFalseAlarm) {
   fault.kind = sim::FaultKind::biased;
   fault.quantity = "water";
   fault.bias = 0.5;
-  test.world.set_fault("r1/s", fault);
+  test.world.editor().set_fault("r1/s", fault);
   test.run_for(0.1);
   EXPECT_EQ(reports.last().leak, 1);
   EXPECT_EQ(truths.last().leak, 0);

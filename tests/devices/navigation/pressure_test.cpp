@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "shoal/pressure_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/navigation/immersed_sensor_fixture.hpp"
 
 namespace {
@@ -57,7 +58,7 @@ TEST(Pressure, NoiseHasTheSpreadAskedForAndAFaultShiftsIt) {
   fault.kind = sim::FaultKind::biased;
   fault.quantity = "pressure";
   fault.bias = 1e5;
-  test.world.set_fault("r1/s", fault);
+  test.world.editor().set_fault("r1/s", fault);
   test.run_for(0.1);
   EXPECT_NEAR(reports.last().pressure_Pa - truth_Pa, 1e5, 6 * 300);
 }

@@ -7,6 +7,7 @@
 
 #include "shoal/image_t.hpp"
 #include "sim/image/image_file.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -307,7 +308,7 @@ TEST(Camera, IsTheSameForAnyNumberOfThreads) {
     test::TestWorld test(test::rover_world(cameras, wall_ahead));
     test.world.use_threads(threads);
     test.run_for(0.33);
-    hashes.insert(test.world.state_hash());
+    hashes.insert(test.world.state().hash());
   }
   EXPECT_EQ(hashes.size(), 1u);
 }

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "sim/acoustics/channel.hpp"
-#include "sim/world/device_context.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/device_context.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace test {
@@ -25,7 +25,7 @@ class AcousticProbe final : public sim::AcousticListener {
   };
 
   AcousticProbe(LoadedTestWorld& test, const std::string& vehicle, const sim::ReceiverConfig& receiver = {})
-      : world_(test.world), transducer(*this, receiver, context(vehicle)) {}
+      : world_(test.world), transducer(*this, receiver, context(vehicle).sound_site()) {}
 
   bool listens_to(const sim::Signal&) const override { return listening; }
   void heard(const sim::Reception& heard) override {

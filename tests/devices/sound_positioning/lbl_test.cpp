@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "shoal/lbl_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/ranging/ranging_fixture.hpp"
 #include "tests/devices/sound_positioning/acoustic_probe.hpp"
 
@@ -58,7 +59,7 @@ TEST(Lbl, ATransponderThatLeavesOrIsBlockedIsNaN) {
                                  mooring("a", "[150, 0, -10]") + mooring("b", "[0, 90, -10]")));
   test::Listener<lbl_t> reports(test, "r1.s");
   test.run_for(0.15);
-  test.world.remove_vehicle("a");  // before it answers at 0.13 s its ping was heard; its answer is on its way
+  test.world.editor().remove_vehicle("a");  // before it answers at 0.13 s its ping was heard; its answer is on its way
   test.run_for(0.3);
   const lbl_t first = reports.last();
   ASSERT_EQ(first.n, 2);

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "shoal/actuator_command_t.hpp"
-#include "sim/world/mounted_device.hpp"
+#include "sim/vehicle/mounted_device.hpp"
 #include "tests/devices/sound_positioning/acoustic_probe.hpp"
 
 namespace {

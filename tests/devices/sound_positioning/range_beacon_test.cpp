@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "shoal/range_beacon_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -99,23 +100,23 @@ TEST(RangeBeacon, BeaconsComeAndGoWithTheirVehicles) {
   test.run_for(0.5);
   EXPECT_THAT(reports.last().beacon, ElementsAre("r2/b", "r3/b"));
   sim::VehicleInstance again = test.loaded.config.vehicles[1];
-  test.world.remove_vehicle("r2");
+  test.world.editor().remove_vehicle("r2");
   test.run_for(0.5);
   EXPECT_THAT(reports.last().beacon, ElementsAre("r3/b"));
-  test.world.add_vehicle(again);
+  test.world.editor().add_vehicle(again);
   test.run_for(0.5);
   EXPECT_THAT(reports.last().beacon, ElementsAre("r3/b", "r2/b"));
-  test.world.remove_vehicle("r1");  // the one that measures
+  test.world.editor().remove_vehicle("r1");  // the one that measures
   test.run_for(0.5);
 }
 
 TEST(RangeBeacon, ASilentBeaconDoesNotAnswer) {
   test::TestWorld test(boxes("", other("r2", "[3, 4, 0]")));
   test::Listener<shoal::range_beacon_t> reports(test, "r1.b");
-  test.world.set_fault("r2/b", {});  // silent
+  test.world.editor().set_fault("r2/b", {});  // silent
   test.run_for(0.5);
   EXPECT_EQ(reports.last().count, 0);
-  test.world.clear_faults("r2/b");
+  test.world.editor().clear_faults("r2/b");
   test.run_for(0.5);
   EXPECT_EQ(reports.last().count, 1);
 }

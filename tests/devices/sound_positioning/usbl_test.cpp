@@ -3,6 +3,7 @@
 
 #include "shoal/transponder_t.hpp"
 #include "shoal/usbl_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/navigation/immersed_sensor_fixture.hpp"
 
 namespace {
@@ -189,7 +190,7 @@ TEST(Usbl, TranspondersComeAndGoWithTheirVehicles) {
   test::Listener<usbl_t> fixes(test, "r1.s");
   test.run_for(0.5);
   EXPECT_GE(fixes.take_all().size(), 2u);
-  test.world.remove_vehicle("t");  // with an answer on its way
+  test.world.editor().remove_vehicle("t");  // with an answer on its way
   test.run_for(0.3);
   fixes.take_all();
   test.run_for(0.5);
@@ -200,10 +201,10 @@ TEST(Transponder, ASilentOneDoesNotAnswer) {
   // It waits for answers from as far as its range, 0.2 s.
   test::TestWorld test(usbl_world(", ping_period_s: 0.1, range_max_m: 120", transponder("t", "[100, 0, -10]")));
   test::Listener<usbl_t> fixes(test, "r1.s");
-  test.world.set_fault("t/t", {});  // silent
+  test.world.editor().set_fault("t/t", {});  // silent
   test.run_for(0.5);
   EXPECT_EQ(fixes.take_all().size(), 0u);
-  test.world.clear_faults("t/t");
+  test.world.editor().clear_faults("t/t");
   test.run_for(0.5);
   EXPECT_GE(fixes.take_all().size(), 2u);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Who hears a signal, what overlaps, and what is counted.
 
+#include "sim/world/world_editor.hpp"
 #include "tests/sim/acoustics/sea_of_hydrophones.hpp"
 
 namespace {
@@ -95,10 +96,10 @@ TEST(AcousticChannel, ForgetsTheMessagesForThoseWhoHaveLeft) {
   phone(test, "a").transducer().transmit(to_x, 0ms);
   test.run_for(5);
   const auto& acoustics = test.world.acoustics();
-  test.world.remove_vehicle("b");
+  test.world.editor().remove_vehicle("b");
   EXPECT_EQ(acoustics.messages_for({"modems", "x"}), 1) << "c has the same address";
   EXPECT_EQ(acoustics.counts_of_those_gone().understood, 1);
-  test.world.remove_vehicle("c");
+  test.world.editor().remove_vehicle("c");
   EXPECT_EQ(acoustics.messages_for({"modems", "x"}), 0);
   EXPECT_EQ(acoustics.counts_of_those_gone().understood, 2);
   EXPECT_EQ(acoustics.counts_of_those_gone().lost[static_cast<std::size_t>(SignalLoss::range)], 0);
@@ -125,8 +126,8 @@ TEST(AcousticChannel, TheSoundOfASenderStopsWithItsPower) {
     phone(test, "a").transducer().transmit(message(), 0ms);
     phone(test, "c").transducer().transmit(message(), 2s);
     test.run_for(1);
-    if (std::string(how) == "silent") test.world.set_fault("a/phone", {.kind = sim::FaultKind::silent});
-    if (std::string(how) == "removed") test.world.remove_vehicle("a");
+    if (std::string(how) == "silent") test.world.editor().set_fault("a/phone", {.kind = sim::FaultKind::silent});
+    if (std::string(how) == "removed") test.world.editor().remove_vehicle("a");
     test.run_for(7);
     const bool stops = std::string(how) != "works";
     EXPECT_EQ(lost(test, "b", SignalLoss::sender_off), 0) << "a stronger one took over";

@@ -7,6 +7,8 @@
 #include <array>
 #include <memory>
 
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/sound_positioning/acoustic_probe.hpp"
 
 namespace {
@@ -207,7 +209,7 @@ Chatter chatter(int seed, int threads, bool with_deaf) {
     test.world.step();
   }
   Chatter result;
-  result.state = test.world.state_hash();
+  result.state = test.world.state().hash();
   for (std::size_t i = 0; i < 10; ++i) {
     result.heard[i] = fingerprint(probes[i]->all);
     result.understood += static_cast<std::int64_t>(probes[i]->understood());
@@ -239,7 +241,7 @@ TEST(AcousticChannelProperties, WhatWasSentGoesOnWhenItsSenderIsRemoved) {
   a->send(AcousticProbe::tone());
   test.run_for(0.5);
   a.reset();
-  test.world.remove_vehicle("a");
+  test.world.editor().remove_vehicle("a");
   test.run_for(1);
   ASSERT_EQ(b.all.size(), 1u);
   EXPECT_EQ(b.all[0].loss, SignalLoss::none);
@@ -254,7 +256,7 @@ TEST(AcousticChannelProperties, ASignalIsCutOffWhenItsSenderIsRemovedWhileSendin
   a->send(frame(185, 125));  // 1 s
   test.run_for(0.5);
   a.reset();
-  test.world.remove_vehicle("a");
+  test.world.editor().remove_vehicle("a");
   test.run_for(2);
   EXPECT_EQ(b.understood(), 0u);
 }
@@ -268,7 +270,7 @@ TEST(AcousticChannelProperties, ReceiversMayBeRemovedAtAnyTimeOfAFlight) {
     a.send(frame(185, 12));  // 0.096 s, heard from 1 s on
     test.run_for(removed_s);
     b.reset();
-    test.world.remove_vehicle("b");
+    test.world.editor().remove_vehicle("b");
     test.run_for(2);
     EXPECT_EQ(c.understood(), 1u) << removed_s;
     // The place of what has gone is used again.
@@ -290,7 +292,7 @@ TEST(AcousticChannelProperties, WhoComesWhileASignalIsUnderWayHearsTheNextOne) {
   sim::VehicleInstance instance = test.loaded.config.vehicles.at(1);
   instance.name = "guest";
   instance.X_WV.translation() = Vector3d(0, 900, -20);
-  test.world.add_vehicle(instance);
+  test.world.editor().add_vehicle(instance);
   AcousticProbe guest(test, "guest");
   test.run_for(1);
   EXPECT_EQ(b.understood(), 1u);
@@ -310,7 +312,7 @@ RC_GTEST_PROP(AcousticChannel, SomebodyWhoIsPutElsewhereHearsNoSoonerThanSoundGe
   test.run_for(moved_s);
   sim::Pose X_WV = sim::Pose::Identity();
   X_WV.translation() = place_within(1500, 100);
-  test.world.move_vehicle("b", X_WV);
+  test.world.editor().move_vehicle("b", X_WV);
   test.run_for(5);
   RC_ASSERT(b.all.size() <= 1u);
   for (const Heard& heard : b.all)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/acoustics/channel.hpp"
 
+#include "sim/world/world_editor.hpp"
 #include "tests/sim/acoustics/sea_of_hydrophones.hpp"
 
 namespace {
@@ -135,9 +136,9 @@ TEST(AcousticChannel, WhoIsRemovedNeitherHearsNorIsMissed) {
   phone(test, "a").transducer().transmit(message(), 0ms);
   phone(test, "b").transducer().transmit(message(), 100ms);  // not yet in the water when b goes
   test.run_for(0.05);
-  test.world.remove_vehicle("b");
+  test.world.editor().remove_vehicle("b");
   test.run_for(0.1);
-  test.world.remove_vehicle("a");
+  test.world.editor().remove_vehicle("a");
   test.run_for(6);
   // What a began is heard; its end is missing.
   ASSERT_EQ(test.world.acoustics().flights(), 2);
@@ -151,8 +152,8 @@ TEST(AcousticChannel, WhoTakesThePlaceOfOneThatLeftDoesNotHearWhatWasForThatOne)
   phone(test, "a").transducer().transmit(message(), 0ms);
   test.run_for(0.1);
   const int number = phone(test, "b").transducer().number();
-  test.world.remove_vehicle("b");
-  test.world.add_vehicle(test.loaded.config.vehicles[1]);
+  test.world.editor().remove_vehicle("b");
+  test.world.editor().add_vehicle(test.loaded.config.vehicles[1]);
   ASSERT_EQ(phone(test, "b").transducer().number(), number);
   test.run_for(6);
   EXPECT_TRUE(phone(test, "b").all().empty());
@@ -256,7 +257,7 @@ TEST(AcousticChannel, WhoLeavesTheWaterWhileSendingIsNotUnderstood) {
   TestWorld test(sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]")));
   phone(test, "a").transducer().transmit(message(), 0ms);
   test.run_for(1);
-  test.world.move_vehicle("a", sim::make_pose({0, 0, 5}, {0, 0, 0}));
+  test.world.editor().move_vehicle("a", sim::make_pose({0, 0, 5}, {0, 0, 0}));
   test.run_for(5);
   EXPECT_EQ(phone(test, "b").transducer().counts().understood, 0);
   EXPECT_EQ(phone(test, "b").transducer().counts().lost[static_cast<std::size_t>(SignalLoss::out_of_water)], 1);
@@ -268,9 +269,9 @@ TEST(AcousticChannel, WhoIsOutOfTheWaterForAWhileWhileSendingOrTakingIsNotUnders
     const sim::Pose back = test.world.find_vehicle(who)->X_WV();
     phone(test, "a").transducer().transmit(message(), 0ms);
     test.run_for(1);
-    test.world.move_vehicle(who, sim::make_pose({0, 50, 5}, {0, 0, 0}));
+    test.world.editor().move_vehicle(who, sim::make_pose({0, 50, 5}, {0, 0, 0}));
     test.run_for(0.5);
-    test.world.move_vehicle(who, back);
+    test.world.editor().move_vehicle(who, back);
     test.run_for(5);
     EXPECT_EQ(phone(test, "b").transducer().counts().understood, 0) << who;
     EXPECT_EQ(phone(test, "b").transducer().counts().lost[static_cast<std::size_t>(SignalLoss::out_of_water)], 1);
@@ -286,7 +287,7 @@ TEST(AcousticChannel, WhoHasLostItsPowerIsToldNothing) {
   phone(test, "a").transducer().transmit(blip, 0ms);
   phone(test, "b").transducer().transmit(blip, 60ms);  // it sends when the sound of a comes
   test.run_for(0.12);
-  test.world.set_fault("b/phone", {.kind = sim::FaultKind::silent});
+  test.world.editor().set_fault("b/phone", {.kind = sim::FaultKind::silent});
   test.run_for(1);
   EXPECT_EQ(lost(test, "b", SignalLoss::half_duplex), 1);
   EXPECT_TRUE(phone(test, "b").all().empty());

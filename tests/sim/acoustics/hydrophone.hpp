@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/acoustics/channel.hpp"
-#include "sim/world/device_context.hpp"
+#include "sim/vehicle/device_context.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace test {

@@ -7,6 +7,8 @@
 #include "shoal/planar_lidar_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "sim/director/script.hpp"
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -289,7 +291,7 @@ sim::ConfigNode yaml(const std::string& text) {
 
 std::string failure(sim::World& world, const std::string& action) {
   try {
-    world.run_action(yaml(action));
+    world.editor().run_action(yaml(action));
   } catch (const sim::ConfigError& error) {
     return error.what();
   }
@@ -298,9 +300,10 @@ std::string failure(sim::World& world, const std::string& action) {
 
 TEST(RunAction, DoesInAWorldWithoutEventsWhatAnEventDoes) {
   test::TestWorld test(test::rover_world(drive));
-  test.world.run_action(yaml("{add: {name: post, fixed: true, position_m: [3, 0, 0], parts: [{shape: box}]}}"));
+  test.world.editor().run_action(
+      yaml("{add: {name: post, fixed: true, position_m: [3, 0, 0], parts: [{shape: box}]}}"));
   EXPECT_NE(test.world.find_object("post"), nullptr);
-  test.world.run_action(yaml("[{move: r1, position_m: [1, 1, 0.1]}, {remove: post}]"));
+  test.world.editor().run_action(yaml("[{move: r1, position_m: [1, 1, 0.1]}, {remove: post}]"));
   EXPECT_EQ(test.world.find_object("post"), nullptr);
   EXPECT_NEAR(test.world.vehicles()[0]->X_WV().translation().x(), 1, 1e-12);
 }
@@ -345,7 +348,7 @@ run: {seed: 5}
     std::vector<std::uint64_t> all;
     for (int i = 0; i < 4000; ++i) {
       test.world.step();
-      all.push_back(test.world.state_hash());
+      all.push_back(test.world.state().hash());
     }
     return all;
   };

@@ -8,7 +8,7 @@
 
 #include "sim/hydrodynamics/coefficient_model.hpp"
 #include "sim/model/spheroid.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/sim/hydrodynamics/marine_worlds.hpp"
 

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "shoal/actuator_command_t.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/project_paths.hpp"
 

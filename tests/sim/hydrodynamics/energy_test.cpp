@@ -5,7 +5,7 @@
 
 #include "sim/hydrodynamics/coefficient_model.hpp"
 #include "sim/hydrodynamics/immersed_volume.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "tests/sim/hydrodynamics/floating_worlds.hpp"
 
 // Still water takes energy from what moves in it, and never brings any.  Semi-implicit Euler steps of h let the energy

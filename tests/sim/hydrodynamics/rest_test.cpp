@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "tests/sim/hydrodynamics/floating_worlds.hpp"
 
 // A body at rest in still water stays there, and energy never grows, for steps of 1 to 50 ms.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world/bottom_check.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/sim/hydrodynamics/floating_worlds.hpp"
 
 // Land, water and what goes from one to the other.
@@ -81,7 +83,7 @@ TEST(Shore, SaysThatThereIsNoBottomBelowANewcomerToo) {
   instance.name = "auv2";
   instance.X_WV.translation().x() = 5;
   testing::internal::CaptureStdout();
-  test.world.add_vehicle(instance);
+  test.world.editor().add_vehicle(instance);
   EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("there is no bottom below vehicle 'auv2': what"));
   ASSERT_EQ(sim::bottom_warnings(test.world).size(), 1u);
   EXPECT_THAT(sim::bottom_warnings(test.world)[0], HasSubstr("'auv1' (nor below 1 more)"));
@@ -98,7 +100,7 @@ TEST(Shore, ASecondRunOfFloatingBodiesGivesTheSameBits) {
         "  - {name: spar, position_m: [-5, 0, 0], parts: [{shape: capsule, radius_m: 0.1, length_m: 1, "
         "density_kgpm3: 600, added_mass_coefficient: 0.5}]}\n");
     test.run_for(10);
-    return test.world.state_hash();
+    return test.world.state().hash();
   };
   EXPECT_EQ(hash_after(), hash_after());
 }

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/sim/hydrodynamics/marine_worlds.hpp"
 

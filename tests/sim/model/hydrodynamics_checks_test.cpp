@@ -6,7 +6,7 @@
 
 #include "sim/config/message_text.hpp"
 #include "sim/hydrodynamics/coefficient_model.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/sim/hydrodynamics/marine_worlds.hpp"
 

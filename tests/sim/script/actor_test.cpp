@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "shoal/twist_command_t.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -103,14 +104,14 @@ TEST(Actor, LeadsWhatComesInPlaceOfItsObjectAndRefusesWhatCannotBeLed) {
       "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nobjects: [{name: lift, parts: [{shape: box, mass_kg: "
       "1}]}]\nactors: [{name: up, object: lift, points: [[0, 0, 0], [0, 0, 9]], speed_mps: 1}]\n");
   test.run_for(1);
-  test.world.remove_object("lift");
+  test.world.editor().remove_object("lift");
   test.run_for(0.1);
   sim::ObjectConfig other = test.loaded.config.objects.front();
   other.kinematic = false;
   other.fixed = true;
-  EXPECT_THROW(test.world.add_object(other, "lift", sim::Pose::Identity()), sim::ConfigError);
+  EXPECT_THROW(test.world.editor().add_object(other, "lift", sim::Pose::Identity()), sim::ConfigError);
   other.fixed = false;
-  test.world.add_object(other, "lift", sim::Pose::Identity());
+  test.world.editor().add_object(other, "lift", sim::Pose::Identity());
   test.run_for(0.9);
   EXPECT_NEAR(test.world.find_object("lift")->body->X_WB().translation().z(), 2, 1e-9);  // 1 m/s for 2 s
 }

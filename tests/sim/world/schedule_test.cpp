@@ -2,6 +2,8 @@
 #include <map>
 
 #include "shoal/planar_lidar_t.hpp"
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -42,9 +44,9 @@ TEST(Schedule, ARateThatDoesNotDivideTheStepIsRightOnAverage) {
 TEST(Schedule, ASensorThatComesLateKeepsItsRateFromItsFirstSample) {
   TestWorld test(test::rover_world(lidar(", rate_hz: 10, phase_s: 0.05")));
   test.run_for(1.02);
-  test.world.remove_vehicle("r1");
+  test.world.editor().remove_vehicle("r1");
   const sim::VehicleInstance again = test.loaded.config.vehicles[0];
-  test.world.add_vehicle(again);
+  test.world.editor().add_vehicle(again);
   Listener<shoal::planar_lidar_t> scans(test, "r1.lidar");
   test.run_for(0.3);
   std::vector<std::int64_t> times;
@@ -121,13 +123,13 @@ TEST(Schedule, TruthIsPublishedOnlyWhenAskedFor) {
 TEST(Schedule, ASensorTakesTheRateOfTheWorldThatASnapshotIsRestoredIn) {
   TestWorld before(test::rover_world(lidar(", rate_hz: 20, phase_s: 0")));
   before.run_for(5);
-  const sim::Bytes snapshot = before.world.snapshot();
+  const sim::Bytes snapshot = before.world.state().snapshot();
   for (const auto& [keys, period_us] : {std::pair{", rate_hz: 5, phase_s: 0", 200000},
                                         {", rate_hz: 50", 20000},
                                         {", rate_hz: 0", 1000},
                                         {", rate_hz: 20, phase_s: 0", 50000}}) {
     TestWorld after(test::rover_world(lidar(keys)));
-    after.world.restore(snapshot);
+    after.world.state().restore(snapshot);
     Listener<shoal::planar_lidar_t> scans(after, "r1.lidar");
     after.run_for(1);
     std::vector<std::int64_t> times;

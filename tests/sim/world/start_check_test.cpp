@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/sim/medium/log_capture.hpp"
 
@@ -82,10 +84,10 @@ TEST(StartCheck, IsSilentWhenAWorldIsBuiltAgain) {
   const test_support::LogCapture log;
   test::TestWorld built(spheres({"[1.7, 0, 0]"}, rock));
   const std::string said = log.text();
-  const sim::Bytes start = built.world.snapshot();
+  const sim::Bytes start = built.world.state().snapshot();
   built.run_for(0.1);
-  built.world.remove_object("rock");
-  built.world.restore(start);
+  built.world.editor().remove_object("rock");
+  built.world.state().restore(start);
   EXPECT_NE(built.world.find_object("rock"), nullptr);
   EXPECT_EQ(log.text(), said);
 }

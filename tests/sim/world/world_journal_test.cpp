@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "shoal/modem_send_t.hpp"
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tests/devices/state_fixture.hpp"
 
@@ -87,7 +89,7 @@ sim::VehicleInstance a_guest(const sim::World& world, const std::string& model) 
 void spawn(sim::World& world, const std::string& name, const sim::Vector3d& at_m, sim::VehicleInstance guest) {
   guest.name = name;
   guest.X_WV = sim::make_pose(at_m, sim::Vector3d::Zero());
-  world.add_vehicle(guest);
+  world.editor().add_vehicle(guest);
 }
 
 void spawn(sim::World& world, const std::string& name, const sim::Vector3d& at_m, const std::string& model) {
@@ -96,7 +98,7 @@ void spawn(sim::World& world, const std::string& name, const sim::Vector3d& at_m
 
 void change(sim::World& world, const std::string& device, const std::string& values) {
   sim::Diagnostics diagnostics;
-  ASSERT_TRUE(world.change_device(device, sim::parse_config_text(values, "change", diagnostics), diagnostics))
+  ASSERT_TRUE(world.editor().change_device(device, sim::parse_config_text(values, "change", diagnostics), diagnostics))
       << device;
 }
 
@@ -113,10 +115,10 @@ class Meddler {
     const std::string stone = "stone" + std::to_string(draw(4));
     if (draw(4) == 0) {
       if (world.find_object(stone) != nullptr)
-        world.remove_object(stone);
+        world.editor().remove_object(stone);
       else
-        world.add_object(world.config().objects[1], stone,
-                         sim::make_pose({5.0 * (stone.back() - '0'), 50, -20}, {0, 0, 0}));
+        world.editor().add_object(world.config().objects[1], stone,
+                                  sim::make_pose({5.0 * (stone.back() - '0'), 50, -20}, {0, 0, 0}));
     }
     if (draw(10) == 0) test.send("ship.modem.cmd", shoal::modem_send_t{0, "", 3, {1, 2, 3}});
     if (draw(20) == 0) move(world, "mast", {40, -20, -20}, draw);
@@ -126,7 +128,7 @@ class Meddler {
   template <typename Draw>
   static void move(sim::World& world, const std::string& name, const sim::Vector3d& home_m, const Draw& draw) {
     const sim::Vector3d by_m(0.1 * draw(20), 0.1 * draw(20), 0.1 * draw(20));
-    world.move_vehicle(name, sim::make_pose(home_m + by_m, {0.1 * draw(10), 0, 0.1 * draw(60)}));
+    world.editor().move_vehicle(name, sim::make_pose(home_m + by_m, {0.1 * draw(10), 0, 0.1 * draw(60)}));
   }
 
   template <typename Draw>
@@ -137,7 +139,7 @@ class Meddler {
       const char* const models[] = {masted, talking, drifting};
       spawn(world, name, home_m(place), models[draw(3)]);
     } else if (draw(2) == 0) {
-      world.remove_vehicle(name);
+      world.editor().remove_vehicle(name);
     } else if (draw(2) == 0) {
       move(world, name, home_m(place), draw);
     } else {
@@ -164,22 +166,22 @@ TEST(WorldJournal, RollingSpawnsKeepItsSize) {
   std::size_t largest = 0;
   for (int i = 0; i < rounds; ++i) {
     spawn(world, "r" + std::to_string(i), home_m(i % 4), models[i % 2]);
-    if (i >= 3) world.remove_vehicle("r" + std::to_string(i - 3));
-    if (i % 10'000 == 9'999) largest = std::max(largest, world.snapshot().size());
+    if (i >= 3) world.editor().remove_vehicle("r" + std::to_string(i - 3));
+    if (i % 10'000 == 9'999) largest = std::max(largest, world.state().snapshot().size());
     if (i % 10'000 == 5'000) world.step();
   }
   // Four vehicles of a few hundred bytes each, their YAML, and the state of all that is there.
   EXPECT_LT(largest, 40'000u);
   TappedWorld fresh(sea);
-  const sim::Bytes snapshot = world.snapshot();
-  fresh.world.restore(snapshot);
-  EXPECT_EQ(fresh.world.snapshot(), snapshot);
+  const sim::Bytes snapshot = world.state().snapshot();
+  fresh.world.state().restore(snapshot);
+  EXPECT_EQ(fresh.world.state().snapshot(), snapshot);
   for (int i = 0; i < 20; ++i) {
     if (i == 5)
       for (sim::World* each : {&world, &fresh.world}) spawn(*each, "last", {10, 30, -20}, talking);
     world.step();
     fresh.world.step();
-    ASSERT_EQ(fresh.world.state_hash(), world.state_hash()) << i;
+    ASSERT_EQ(fresh.world.state().hash(), world.state().hash()) << i;
   }
 }
 
@@ -187,17 +189,17 @@ TEST(WorldJournal, MovesOfWhatIsJoinedToTheWorldKeepItsSize) {
   TappedWorld test(sea);
   const auto bytes_after = [&](int moves) {
     for (int i = 0; i < moves; ++i)
-      test.world.move_vehicle("mast", sim::make_pose({40 + 1e-4 * i, -20, -20}, {0, 0, 1e-3 * i}));
-    return test.world.snapshot().size();
+      test.world.editor().move_vehicle("mast", sim::make_pose({40 + 1e-4 * i, -20, -20}, {0, 0, 1e-3 * i}));
+    return test.world.state().snapshot().size();
   };
   const std::size_t once = bytes_after(1);
   EXPECT_EQ(bytes_after(10'000), once);
   TappedWorld fresh(sea);
-  fresh.world.restore(test.world.snapshot());
+  fresh.world.state().restore(test.world.state().snapshot());
   for (int i = 0; i < 100; ++i) {
     test.world.step();
     fresh.world.step();
-    ASSERT_EQ(fresh.world.state_hash(), test.world.state_hash()) << i;
+    ASSERT_EQ(fresh.world.state().hash(), test.world.state().hash()) << i;
   }
 }
 

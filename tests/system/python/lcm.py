@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """As much of LCM's Python package as the examples use, for machines that have none: UDP multicast, short messages.
 
 The datagram is magic, number and channel, then the payload; longer messages come in parts, which are left out here.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The Python examples: the filter against the truth and closed forms, the frame against the bytes of the C++ codec."""
 import math
 import os

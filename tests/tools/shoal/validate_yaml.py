@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Holds YAML files against the JSON Schemas of docs/schema/, by python3-jsonschema: a second opinion on what the
 loader accepts.
 

@@ -11,6 +11,7 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "shoal/twist_command_t.hpp"
+#include "sim/world/world_state.hpp"
 #include "tools/autonomy/behaviours/wander.hpp"
 
 namespace tools {
@@ -197,7 +198,7 @@ ScaleFigures measure_scale(int robots, const ScaleOptions& options) {
   scene.run_for(options.measure_s);
   figures.cpu_ms_per_robot_second = 1e3 * (cpu_seconds() - cpu_s) / robots / options.measure_s;
   figures.real_time_factor = options.measure_s / (wall_seconds() - wall_s);
-  figures.run_hash = scene.world().run_hash();
+  figures.run_hash = scene.world().state().run_hash();
   return figures;
 }
 

@@ -12,6 +12,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_editor.hpp"
 #include "sim/world_file/load_world.hpp"
 
 namespace tools {
@@ -105,7 +106,7 @@ void send_inputs(const FidelityCase& of, const FidelityReference& reference, con
     sim::Diagnostics diagnostics;
     const sim::Bytes bytes = shoal::encode_own_message(input.message, fields, diagnostics);
     diagnostics.throw_if_any();
-    world.publish(vehicle + "." + input.device + ".cmd", bytes);
+    world.editor().publish(vehicle + "." + input.device + ".cmd", bytes);
   }
 }
 

@@ -77,17 +77,14 @@ class Player {
         others_({{bus_.url(), &bus_}}, false),
         gate_(bus_),
         world_(empty_.config, inner_),
-        lockstep_(world_, control_),
-        service_(inner_, bus_, world_, control_, lockstep_, {log_.info.resolved_config, log_.info.versions}),
+        lockstep_(world_, control_, {{bus_, gate_}}, false),
+        service_(inner_, bus_, world_, control_, lockstep_, {log_.info.resolved_config, log_.info.versions},
+                 {.others = &others_}),
         requests_(log_, control_, bus_, [this] { return where(); }),
         steps_(log_),
         answers_(log_),
         progress_(sim::to_seconds(world_.step_time()) * static_cast<double>(last_step()), options.quiet) {
     control_.speed = options.speed;
-    service_.use_others(others_);
-    lockstep_.add_line(bus_, gate_);
-    lockstep_.set_posts_mail(false);
-    service_.set_time_machine(&requests_);
     for (const auto& [channel, known] : answers_.channels()) mailboxes_.push_back(gate_.open_mailbox(channel));
   }
 
@@ -121,7 +118,7 @@ class Player {
 
   void obey() {
     requests_.look_at_joins();
-    service_.handle_requests();
+    service_.handle_requests(&requests_);
     if (!bus_.connected()) throw RunError(4, "bus", "the connection to " + bus_.url() + " was lost");
   }
 

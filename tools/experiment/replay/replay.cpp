@@ -18,6 +18,7 @@
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/bus/mail_gate.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/world/world_state.hpp"
 #include "tools/experiment/replay/line_difference.hpp"
 #include "tools/experiment/replay/replay_messages.hpp"
 #include "tools/experiment/replay/replay_ports.hpp"
@@ -78,7 +79,6 @@ class Replay {
     check_times();
     restore();
     world_.use_threads(options.threads);
-    serial_.attach(world_);
     for (const Letter& letter : log_.letters)
       if (letter.bus == RunJournal::serial_bus) serial_.add(letter);
   }
@@ -95,6 +95,7 @@ class Replay {
       while (world_.step_number() < last && caught_signal() == 0) {
         hand_over(world_.step_number());
         for_each_line([](Line& line) { line.gate->admit(); });
+        serial_.begin_step(world_.step_number());
         world_.step();
         after_step();
         progress.update(world_.now(), messages_.equal(), control_, false);
@@ -153,7 +154,7 @@ class Replay {
     const std::string who = log_.path + ": sim.snapshot";
     check_version(*log_.snapshot, who, short_version());
     try {
-      world_.restore(log_.snapshot->state);
+      world_.state().restore(log_.snapshot->state);
       auto owners = sim::StateArchive::restorer(log_.snapshot->owners);
       owners.section("owners");
       service_.visit_state(owners);
@@ -161,7 +162,7 @@ class Replay {
     } catch (const sim::SnapshotError& error) {
       throw std::runtime_error(who + ": " + error.what());
     }
-    if (world_.state_hash() != log_.snapshot->state_hash && options_.load.sets.empty() && options_.world.empty())
+    if (world_.state().hash() != log_.snapshot->state_hash && options_.load.sets.empty() && options_.world.empty())
       throw std::runtime_error(who + ": restored here it has another state hash than where it was written");
   }
 
@@ -243,8 +244,8 @@ class Replay {
 
   void compare_hashes(const ReplayLog::Hashes& logged) {
     ++outcome_.hashes;
-    if (logged.whole == world_.state_hash()) {
-      if (logged.run && *logged.run != world_.run_hash() && !outcome_.first)
+    if (logged.whole == world_.state().hash()) {
+      if (logged.run && *logged.run != world_.state().run_hash() && !outcome_.first)
         differ("the world",
                "its run hash differs and its state hash does not: a message or a state before was another");
       if (equal_parts_.size() < logged.parts.size())
@@ -254,7 +255,7 @@ class Replay {
     if (!outcome_.first || outcome_.first->step == world_.step_number()) differ("the world", "its state hash differs");
     if (!parts_.empty() && motion_step_) return;  // later on nearly all differ
     std::map<std::string, std::uint64_t> here;
-    for (const auto& part : world_.part_hashes()) here[part.part] = part.hash;
+    for (const auto& part : world_.state().part_hashes()) here[part.part] = part.hash;
     compare_motion(logged, here);
     compare_parts(logged, here);
   }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "bridges/log/run_journal.hpp"
 #include "sim/bus/byte_port.hpp"
-#include "sim/world/world.hpp"
 #include "tools/experiment/replay/replay_log.hpp"
 
 namespace tools {
@@ -19,15 +19,14 @@ class ReplayPorts {
   sim::PortOpener opener() {
     return [this](const std::string&, const std::string& path) { return std::make_unique<Port>(*this, path); };
   }
-  void attach(const sim::World& world) { world_ = &world; }
+  /// What is read from now on was read at this step.
+  void begin_step(std::int64_t step) { step_ = step; }
 
  private:
   class Port final : public sim::BytePort {
    public:
     Port(ReplayPorts& ports, std::string path) : ports_(ports), path_(std::move(path)) {}
-    sim::Bytes read() override {
-      return ports_.world_ != nullptr ? ports_.mail_.read(path_, ports_.world_->step_number()) : sim::Bytes{};
-    }
+    sim::Bytes read() override { return ports_.mail_.read(path_, ports_.step_); }
     void write(std::span<const std::byte>) override {}
     std::uint64_t dropped_bytes() const override { return 0; }
 
@@ -36,7 +35,7 @@ class ReplayPorts {
     std::string path_;
   };
 
-  const sim::World* world_ = nullptr;
+  std::int64_t step_ = 0;
   bridges::SerialMail mail_;
 };
 

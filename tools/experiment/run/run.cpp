@@ -28,32 +28,21 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       files_(files_text(loaded.resolved)),
       buses_(loaded.config, options),
       others_(buses_.networks(), options.lcm_shared),
-      journal_(buses_.outer()),
       world_(loaded.config, buses_.outer(),
-             options.serial_ports ? journal_.wrap(serial_ports_of(loaded.config, options)) : sim::PortOpener(),
+             options.serial_ports ? ports_.wrap(serial_ports_of(loaded.config, options)) : sim::PortOpener(),
              [this](const std::string& name) -> sim::Bus& { return buses_.of(name); }),
-      lockstep_(world_, control_),
+      journal_(buses_.outer(), world_, ports_, [this] { return heard() || buses_.gate().reads("sim.hash"); }),
+      lockstep_(world_, control_, lockstep_buses()),
       service_(buses_.outer(), buses_.network(), world_, control_, lockstep_,
-               {sim::to_yaml(loaded.resolved), version_text(), build_text(), files_}),
+               {sim::to_yaml(loaded.resolved), version_text(), build_text(), files_}, service_links()),
       scoring_(world_),
       mail_(buses_, journal_, service_, lockstep_),
       branch_log_(buses_, journal_, options.record, options.overwrite),
-      time_(world_, control_, scoring_, service_, mail_, time_options(),
-            {[this](std::int64_t to_step, bool ours) { leave_branch(to_step, ours); }, [this] { stay(); },
-             [this](bool ours) { begin_branch(ours); }}),
+      time_(world_, control_, scoring_, service_, mail_, time_options(), *this),
       duration_s_(options.duration_s.value_or(loaded.config.run.duration_s)),
       progress_(duration_s_, options.quiet || !spdlog::should_log(spdlog::level::info)),
       programs_(loaded.config, options, buses_) {
-  journal_.attach(world_);
-  journal_.set_heard([this] { return heard() || buses_.gate().reads("sim.hash"); });
-  service_.use_journal(journal_);
-  service_.use_others(others_);
   world_.use_threads(options.threads);
-  lockstep_.add_line(buses_.network(), buses_.gate());
-  for (const sim::BusConfig& bus : loaded.config.buses) {
-    service_.serve_vehicles(buses_.network(bus.name));
-    lockstep_.add_line(buses_.network(bus.name), buses_.gate(bus.name), bus.name);
-  }
   control_.speed = options.speed.value_or(loaded.config.run.speed);
   control_.paused = options.paused;
   if (options.from) {
@@ -79,6 +68,19 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
         [this](const std::string& text) { progress_.ask(text); });
     progress_.say(RunKeys::help());
   }
+}
+
+std::vector<bridges::LockstepBus> Run::lockstep_buses() {
+  std::vector<bridges::LockstepBus> all{{buses_.network(), buses_.gate()}};
+  for (const sim::BusConfig& bus : loaded_.config.buses)
+    all.push_back({buses_.network(bus.name), buses_.gate(bus.name), bus.name});
+  return all;
+}
+
+bridges::ServiceLinks Run::service_links() {
+  bridges::ServiceLinks links{&journal_, &others_};
+  for (const sim::BusConfig& bus : loaded_.config.buses) links.vehicle_buses.push_back(&buses_.network(bus.name));
+  return links;
 }
 
 void Run::make_key() {
@@ -109,7 +111,7 @@ TimeControl::Options Run::time_options() const {
 }
 
 void Run::obey() {
-  service_.handle_requests();
+  service_.handle_requests(&time_);
   if (keys_) keys_->read();
   if (!time_.broken().empty()) throw RunError(3, "fault", time_.broken());
 }
@@ -167,7 +169,7 @@ void Run::await(const std::vector<std::string>& clients) {
   for (const std::string& client : clients) {
     bool said = false;
     while (!lockstep_.has(client) && wanted()) {
-      service_.handle_requests();
+      service_.handle_requests(&time_);
       check_programs();
       check_bus();
       if (programs_.is_gone(client)) break;
@@ -289,7 +291,7 @@ void Run::check_bus() const {
 
 RunPrograms::Clients Run::clients(bool goes_on) {
   return {[this, goes_on](const std::string& client) {
-            if (goes_on) service_.handle_requests();  // its last may be that it leaves
+            if (goes_on) service_.handle_requests(&time_);  // its last may be that it leaves
             return lockstep_.has_left(client);
           },
           [this](const std::string& client) {

@@ -27,7 +27,7 @@
 namespace tools {
 
 /// One run of a world: its parts, and the loop over steps.
-class Run {
+class Run final : private Timeline {
  public:
   /// Both must outlive this.  Throws ConfigError, BusError, std::runtime_error.
   Run(const sim::LoadedWorld& loaded, const RunOptions& options);
@@ -45,9 +45,11 @@ class Run {
   void admit_mail();
   void end_of_step();
   TimeControl::Options time_options() const;
-  void leave_branch(std::int64_t to_step, bool ours);
-  void stay();
-  void begin_branch(bool ours);
+  void leave_branch(std::int64_t to_step, bool ours) override;
+  void stay() override;
+  void begin_branch(bool ours) override;
+  std::vector<bridges::LockstepBus> lockstep_buses();
+  bridges::ServiceLinks service_links();
   /// What the run goes on from: a log that begins here can be run again.
   void publish_snapshot();
   bool heard();
@@ -79,8 +81,9 @@ class Run {
   RunBuses buses_;
   bridges::OtherSimulators others_;  ///< are asked before the world is built
   sim::RunControl control_;
-  bridges::RunJournal journal_;
+  bridges::JournalPorts ports_;
   sim::World world_;
+  bridges::RunJournal journal_;
   bridges::LockstepService lockstep_;
   bridges::SimService service_;
   Scoring scoring_;

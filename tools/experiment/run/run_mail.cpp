@@ -47,6 +47,7 @@ void RunMail::begin_again(std::int64_t from_step) {
 }
 
 void RunMail::deliver(std::int64_t step) {
+  journal_.begin_step();
   for (; next_ < kept_.size() && kept_[next_].step <= step; ++next_) deliver(kept_[next_].letter);
   buses_.admit([](const std::string&, std::span<const sim::MailGate::Mail>) {});
 }

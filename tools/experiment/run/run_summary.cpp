@@ -4,6 +4,7 @@
 #include "devices/common/serial_port.hpp"
 #include "devices/comms/message_modem.hpp"
 #include "sim/acoustics/channel.hpp"
+#include "sim/world/world_state.hpp"
 #include "tools/experiment/run/run.hpp"
 
 namespace tools {
@@ -59,8 +60,8 @@ void Run::add_figures(Summary& summary) {
   summary.steps = world_.step_number();
   summary.sim_time_s = sim::to_seconds(world_.now());
   summary.duration_s = duration_s_;
-  summary.state_hash = world_.state_hash();
-  summary.run_hash = world_.run_hash();
+  summary.state_hash = world_.state().hash();
+  summary.run_hash = world_.state().run_hash();
   summary.messages = counts.published + counts.received;
   summary.dropped_messages = counts.dropped_incoming + counts.dropped_outgoing + lockstep_.dropped_messages();
   summary.bad_messages =
@@ -68,7 +69,7 @@ void Run::add_figures(Summary& summary) {
   summary.quick_steps = world_.physics().quick_steps();
   const LinkCounts links = link_counts(world_, "", "");
   if (!world_.acoustics().transducers().empty()) summary.acoustics = links;
-  summary.modem_dropped_messages = world_.shared<devices::MessageModems>().dropped_from_queues();
+  summary.modem_dropped_messages = world_.shared().of(devices::message_modems).dropped_from_queues();
   summary.serial_dropped_bytes = devices::serial_dropped_bytes(world_);
   summary.metrics = scoring_.figures();
   summary.verdicts = scoring_.verdicts();

@@ -12,6 +12,7 @@
 #include "sim/base/state_hash.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/state/state_archive.hpp"
+#include "sim/world/world_state.hpp"
 
 namespace tools {
 
@@ -71,23 +72,22 @@ std::string first_difference(const std::string& there, const std::string& here) 
 }  // namespace
 
 TimeControl::TimeControl(sim::World& world, sim::RunControl& control, Scoring& scoring, bridges::SimService& service,
-                         RunMail& mail, Options options, Hooks hooks)
+                         RunMail& mail, Options options, Timeline& timeline)
     : world_(world),
       control_(control),
       scoring_(scoring),
       service_(service),
       mail_(mail),
       options_(std::move(options)),
-      hooks_(std::move(hooks)),
+      timeline_(timeline),
       steps_per_second_(std::max<std::int64_t>(1, std::llround(1e6 / static_cast<double>(world.step_time().count())))),
       ring_(std::llround(options_.rewind_s * static_cast<double>(steps_per_second_)), options_.most_bytes) {
-  service_.set_time_machine(this);
   if (options_.rewind_s > 0) mail_.keep(options_.most_bytes, [this] { forget_all(); });
 }
 
 TimeControl::Saved TimeControl::save(History history) const {
   Saved saved;
-  saved.state = world_.snapshot();
+  saved.state = world_.state().snapshot();
   auto scores = sim::StateArchive::saver();
   scoring_.visit_state(scores, history);
   scores.end();
@@ -101,7 +101,7 @@ TimeControl::Saved TimeControl::save(History history) const {
 }
 
 void TimeControl::load(const Saved& saved, History history) {
-  world_.restore(saved.state);
+  world_.state().restore(saved.state);
   load_beside(saved, history);
 }
 
@@ -278,9 +278,9 @@ void TimeControl::simulate_again(std::int64_t to_step) {
 void TimeControl::travel(const std::function<void()>& work, std::int64_t to_step, bool run_on, bool ours) {
   const Saved before = save(History::whole);
   try {
-    if (hooks_.leaving) hooks_.leaving(to_step, ours);
+    timeline_.leave_branch(to_step, ours);
   } catch (const std::exception&) {
-    if (hooks_.stayed) hooks_.stayed();
+    timeline_.stay();
     throw;
   }
   mail_.begin_again(world_.step_number());
@@ -296,7 +296,7 @@ void TimeControl::travel(const std::function<void()>& work, std::int64_t to_step
   control_.set_paused(!run_on);
   moved_ = true;
   try {
-    if (hooks_.arrived) hooks_.arrived(ours);
+    timeline_.begin_branch(ours);
   } catch (const std::exception& error) {  // half of the run is there: it cannot go on
     broken_ = error.what();
     throw;
@@ -310,7 +310,7 @@ void TimeControl::put_back(const Saved& before) {
     broken_ = error.what();
   }
   mail_.end_again();
-  if (hooks_.stayed) hooks_.stayed();
+  timeline_.stay();
 }
 
 void TimeControl::go_on_from(const Snapshot& snapshot) {
@@ -318,7 +318,7 @@ void TimeControl::go_on_from(const Snapshot& snapshot) {
     throw std::runtime_error(fmt::format(
         "the snapshot has a step of {} us and an epoch of {}, this world {} us and {}: they cannot be changed",
         snapshot.step_us, snapshot.epoch_us, world_.step_time().count(), world_.epoch_us()));
-  world_.restore(snapshot.state);
+  world_.state().restore(snapshot.state);
   first_step_ = world_.step_number();
   options_.scores_from_s = snapshot.from_s;
   try {
@@ -340,7 +340,7 @@ Snapshot TimeControl::snapshot() const {
   s.step = world_.step_number();
   s.branch = control_.branch;
   s.from_s = options_.scores_from_s;
-  s.state_hash = world_.state_hash();
+  s.state_hash = world_.state().hash();
   for (const auto& vehicle : world_.vehicles()) s.vehicles.push_back(vehicle->name());
   Saved saved = save(History::whole);
   s.state = std::move(saved.state);

@@ -14,6 +14,7 @@
 #include "sim/run/run_control.hpp"
 #include "sim/world/world.hpp"
 #include "tools/experiment/run/run_mail.hpp"
+#include "tools/experiment/run/timeline.hpp"
 #include "tools/experiment/score/scoring.hpp"
 #include "tools/experiment/snapshot/snapshot_file.hpp"
 #include "tools/experiment/snapshot/snapshot_ring.hpp"
@@ -36,18 +37,9 @@ class TimeControl final : public bridges::TimeMachine {
     std::string version;         ///< of shoal
     double scores_from_s = 0;    ///< since when the scores count
   };
-  /// What the run does when the world goes elsewhere in time.
-  struct Hooks {
-    /// Before: the branch is as it was left.  `ours`: the new one begins at a step that this run has been at.  The
-    /// world stays where it is when this throws.
-    std::function<void(std::int64_t to_step, bool ours)> leaving;
-    std::function<void()> stayed;            ///< the world is where it was after all
-    std::function<void(bool ours)> arrived;  ///< after
-  };
-
   /// All must outlive this.
   TimeControl(sim::World& world, sim::RunControl& control, Scoring& scoring, bridges::SimService& service,
-              RunMail& mail, Options options, Hooks hooks);
+              RunMail& mail, Options options, Timeline& timeline);
 
   /// Call before the first step, and after each.
   void after_step();
@@ -117,7 +109,7 @@ class TimeControl final : public bridges::TimeMachine {
   bridges::SimService& service_;
   RunMail& mail_;
   Options options_;
-  Hooks hooks_;
+  Timeline& timeline_;
   std::int64_t steps_per_second_;
   SnapshotRing ring_;
   Clock::time_point not_before_;  // the next snapshot for going back

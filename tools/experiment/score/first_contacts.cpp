@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "devices/drive/wheel_geometry.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
 
 namespace tools {
 

@@ -13,6 +13,7 @@
 #include "bridges/log/recording_bus.hpp"
 #include "bridges/log/run_journal.hpp"
 #include "shoal/message_codec.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
@@ -28,18 +29,17 @@ class RecordedRun {
       : loaded(sim::load_world_text(yaml, "worlds/test.yaml", LoadedTestWorld::with_messages({}))),
         recorder(network, log, loaded.config.epoch_us),
         gate(recorder),
-        journal(gate),
-        world(loaded.config, gate, journal.wrap([this](const std::string&, const std::string& path) {
+        world(loaded.config, gate, ports.wrap([this](const std::string&, const std::string& path) {
           ends[path] = std::make_shared<PortEnd>();
           return std::make_unique<FakePort>(ends[path]);
         })),
+        journal(gate, world, ports),
         service(gate, network, world, control, lockstep,
                 {sim::to_yaml(loaded.resolved), tools::version_text(), tools::build_text(),
-                 tools::files_text(loaded.resolved)}) {
-    journal.attach(world);
-    service.use_journal(journal);
+                 tools::files_text(loaded.resolved)},
+                {.journal = &journal}) {
     if (from != nullptr) {
-      world.restore(from->state);
+      world.state().restore(from->state);
       auto owners = sim::StateArchive::restorer(from->owners);
       owners.section("owners");
       service.visit_state(owners);
@@ -60,8 +60,8 @@ class RecordedRun {
     s.epoch_us = world.epoch_us();
     s.step_us = world.step_time().count();
     s.step = world.step_number();
-    s.state_hash = world.state_hash();
-    s.state = world.snapshot();
+    s.state_hash = world.state().hash();
+    s.state = world.state().snapshot();
     auto owners = sim::StateArchive::saver();
     owners.section("owners");
     service.visit_state(owners);
@@ -111,9 +111,10 @@ class RecordedRun {
   sim::InProcessBus network;
   bridges::RecordingBus recorder;
   sim::MailGate gate;
-  bridges::RunJournal journal;
+  bridges::JournalPorts ports;
   sim::RunControl control;
   sim::World world;
+  bridges::RunJournal journal;
   bridges::LockstepService lockstep{world, control};
   bridges::SimService service;
 };

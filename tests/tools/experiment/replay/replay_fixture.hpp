@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "shoal/twist_command_t.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/experiment/replay/recorded_run.hpp"
 #include "tools/experiment/replay/replay.hpp"
@@ -42,7 +43,7 @@ class ReplayTest : public testing::Test {
       if (step % 10 == 0) run.send("r1.drive.cmd", forward(0.5 + 0.001 * static_cast<double>(step)));
       if (more) more(run, step);
     });
-    state_hash = run.world.state_hash();
+    state_hash = run.world.state().hash();
   }
 
   /// What is on the log up to a byte is another log.

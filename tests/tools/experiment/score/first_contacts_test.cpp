@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 
 #include "shoal/twist_command_t.hpp"
-#include "sim/world/vehicle.hpp"
+#include "sim/vehicle/vehicle.hpp"
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -68,8 +70,8 @@ TEST(FirstContacts, CountContactsThatBeginAnew) {
   for (int i = 0; i < 3; ++i) {
     watched.push("v1", 2);
     watched.run_for(1);
-    watched.test.world.move_vehicle("v1", sim::Pose::Identity());
-    watched.test.world.move_vehicle("v2", sim::make_pose({2, 0, 0}, sim::Vector3d::Zero()));
+    watched.test.world.editor().move_vehicle("v1", sim::Pose::Identity());
+    watched.test.world.editor().move_vehicle("v2", sim::make_pose({2, 0, 0}, sim::Vector3d::Zero()));
   }
   EXPECT_THAT(watched.pairs(), ElementsAre("v1-v2 3"));
   EXPECT_THAT(watched.lines, ElementsAre("0.5 s: v1 hits v2"));
@@ -104,13 +106,13 @@ TEST(FirstContacts, GoBackWithTheWorld) {
   WatchedWorld watched(balls(3, 2));
   watched.push("v1", 2);
   watched.run_for(0.3);
-  const sim::Bytes world = watched.test.world.snapshot();
+  const sim::Bytes world = watched.test.world.state().snapshot();
   auto saver = sim::StateArchive::saver();
   watched.contacts.visit_state(saver);
   saver.end();
   const sim::Bytes before = saver.take_bytes();
   const auto go_back = [&] {
-    watched.test.world.restore(world);
+    watched.test.world.state().restore(world);
     auto restorer = sim::StateArchive::restorer(before);
     watched.contacts.visit_state(restorer);
     restorer.end();
@@ -133,7 +135,7 @@ TEST(FirstContacts, CountAFallThatEndsRightAfterAWayBack) {
   yaml.replace(yaml.find("[-3, 0, 0]"), 10, "[0, 0, -2]");  // the ball falls 1 m, for 0.45 s
   WatchedWorld watched(yaml);
   watched.run_for(0.4);
-  const sim::Bytes world = watched.test.world.snapshot();
+  const sim::Bytes world = watched.test.world.state().snapshot();
   auto saver = sim::StateArchive::saver();
   watched.contacts.visit_state(saver);
   saver.end();
@@ -141,7 +143,7 @@ TEST(FirstContacts, CountAFallThatEndsRightAfterAWayBack) {
   watched.run_for(0.5);
   const auto straight = watched.pairs();
   EXPECT_THAT(straight, ElementsAre("v1-rock 1"));
-  watched.test.world.restore(world);
+  watched.test.world.state().restore(world);
   auto restorer = sim::StateArchive::restorer(before);
   watched.contacts.visit_state(restorer);
   restorer.end();
@@ -160,7 +162,7 @@ TEST(FirstContacts, DoNotChangeTheRun) {
       test.world.step();
       if (contacts) contacts->after_step();
     }
-    return test.world.state_hash();
+    return test.world.state().hash();
   };
   EXPECT_EQ(hash(true), hash(false));
 }

@@ -12,6 +12,8 @@
 #include "shoal/estimate_t.hpp"
 #include "shoal/pose_t.hpp"
 #include "shoal/twist_command_t.hpp"
+#include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/sim/medium/log_capture.hpp"
@@ -382,7 +384,7 @@ TEST(Collisions, DoNotChangeTheRun) {
     world->run_for(4);
   }
   EXPECT_EQ(with.figure("all.count"), 1);
-  EXPECT_EQ(with.test.world.run_hash(), without.test.world.run_hash());
+  EXPECT_EQ(with.test.world.state().run_hash(), without.test.world.state().run_hash());
 }
 
 TEST(Messages, AreCountedWithTheirBytes) {
@@ -561,7 +563,7 @@ TEST(Delivery, OfModemsThatHaveLeftIsStillAboutThem) {
   tools::Scoring scoring(test.world);
   test.send("a.modem.cmd", test::bytes_to("hello"));
   test.run_for(10);
-  for (const char* name : {"a", "b"}) test.world.remove_vehicle(name);
+  for (const char* name : {"a", "b"}) test.world.editor().remove_vehicle(name);
   EXPECT_EQ(scoring.figures().at("all.sent"), 1);
   EXPECT_EQ(scoring.figures().at("all.ratio"), 1);
 }

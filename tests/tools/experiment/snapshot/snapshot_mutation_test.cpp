@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "sim/physics/physics_world.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 #include "tests/devices/state_fixture.hpp"
 #include "tests/project_paths.hpp"
@@ -123,7 +124,7 @@ TEST_P(SnapshotMutation, NeitherHangsNorCrashes) {
     for (int i = 0; i < count; ++i) world.step();
   };
   step(300);
-  const sim::Bytes good = world.snapshot();
+  const sim::Bytes good = world.state().snapshot();
   tools::Snapshot file;
   file.step_us = world.step_time().count();
   file.step = world.step_number();
@@ -139,13 +140,13 @@ TEST_P(SnapshotMutation, NeitherHangsNorCrashes) {
     // As a file: its checksum is that of what was changed.
     const tools::Snapshot crafted = tools::snapshot_from_bytes(tools::to_bytes(file), "crafted.snapshot");
     try {
-      world.restore(crafted.state);
+      world.state().restore(crafted.state);
       step(20);
     } catch (const sim::SnapshotError&) {
       ++refused;
     } catch (const sim::PhysicsFault&) {  // a number that is possible, and too large for this world
     }
-    ASSERT_NO_THROW(world.restore(good)) << i;
+    ASSERT_NO_THROW(world.state().restore(good)) << i;
   }
   ASSERT_NO_THROW(step(20));
   RecordProperty("refused", static_cast<int>(refused));

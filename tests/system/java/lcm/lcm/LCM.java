@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A stand-in for LCM's Java classes, with what examples/java needs to compile; it sends nothing.
 package lcm.lcm;
 

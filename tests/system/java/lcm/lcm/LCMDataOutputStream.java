@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 package lcm.lcm;
 
 import java.io.ByteArrayOutputStream;

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/vehicle/world_warnings.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "sim/config/message_text.hpp"
+
+namespace sim {
+
+void WorldWarnings::bad_message(const std::string& who, const std::string& text) {
+  ++bad_messages_;
+  // One line for each kind of mistake: a flood of bad messages must not become a flood of lines.
+  constexpr std::size_t max_lines = 100;
+  const std::string line = who + ": " + shortened(printable(text), 300);
+  if (lines_.size() >= max_lines || std::find(lines_.begin(), lines_.end(), line) != lines_.end()) return;
+  lines_.push_back(line);
+  spdlog::warn("{} (ignored, at {:.3f} s)", line, to_seconds(clock_.now()));
+}
+
+void WorldWarnings::notice(const std::string& who, const std::string& text) const {
+  spdlog::warn("{}: {} (at {:.3f} s)", who, text, to_seconds(clock_.now()));
+}
+
+}  // namespace sim

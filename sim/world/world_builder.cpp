@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world/world_builder.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "sim/config/diagnostics.hpp"
+#include "sim/vehicle/limit_check.hpp"
+#include "sim/world/world_parts.hpp"
+#include "sim/world_file/device_change.hpp"
+
+namespace sim {
+
+WorldBuilder::WorldBuilder(WorldParts& parts) : parts_(parts) {
+  StateArchive start = StateArchive::saver();
+  start(parts_.medium);
+  medium_at_start_ = start.take_bytes();
+}
+
+void WorldBuilder::build() {
+  const WorldConfig& config = parts_.config;
+  parts_.hydrodynamics.emplace(
+      parts_.medium, config.physics.gravity_mps2, config.physics.step_s,
+      [&parts = parts_](const std::string& who, const std::string& text) { parts.warnings.notice(who, text); });
+  parts_.acoustics = std::make_unique<AcousticChannel>(
+      config.acoustics, AcousticSurroundings{parts_.medium, parts_.physics, parts_.events, parts_.seed()});
+  parts_.surfaces.start(config);
+  add_objects();
+  add_vehicles();
+  sort_devices();
+}
+
+void WorldBuilder::add_objects() {
+  for (const ObjectConfig& object : parts_.config.objects) {
+    if (!object.present) continue;
+    const Pose X_WE = make_pose(object.position_m, object.rpy_rad);
+    const std::vector<Pose> poses =
+        object.count == 1 ? std::vector<Pose>{X_WE}
+                          : place_instances(object.placement, object.count, X_WE, parts_.seed(), object.name);
+    for (int i = 0; i < object.count; ++i)
+      build_object(object, object.count == 1 ? object.name : object.name + std::to_string(i + 1),
+                   poses[static_cast<std::size_t>(i)]);
+  }
+}
+
+void WorldBuilder::add_vehicles() {
+  std::vector<std::string> errors;  // of all vehicles, not of the first alone; the same of many of a kind once
+  std::set<std::string> known;
+  for (const VehicleInstance& instance : parts_.config.vehicles) {
+    try {
+      build_vehicle(instance);
+    } catch (const ConfigError& error) {
+      for (const std::string& line : error.lines()) {
+        std::string without_name = line;
+        if (const auto name = without_name.find("'" + instance.name + "'"); name != std::string::npos)
+          without_name.erase(name, instance.name.size() + 2);
+        if (known.insert(without_name).second) errors.push_back(line);
+      }
+    }
+  }
+  if (!errors.empty()) throw ConfigError(errors);
+}
+
+const WorldObject& WorldBuilder::build_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE) {
+  WorldObject object{parts_.entities.take_object_number(), name, parts_.physics.add_group(name), nullptr, config};
+  BodyConfig body;
+  body.parts = config.parts;
+  body.name = "body";
+  const Motion motion = config.kinematic ? Motion::kinematic : config.fixed ? Motion::fixed : Motion::free;
+  try {
+    object.body = &parts_.physics.add_body(object.group, body, X_WE, motion);
+    if (motion == Motion::free) parts_.hydrodynamics->add_body(*object.body, body);
+  } catch (...) {
+    parts_.hydrodynamics->remove_group(object.group);
+    parts_.physics.remove_group(object.group);
+    throw;
+  }
+  parts_.physics.close_group(object.group);
+  parts_.entities.mark_changed();
+  return parts_.entities.add(std::move(object));
+}
+
+const WorldObject& WorldBuilder::place_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE) {
+  // What an actor leads along must be kinematic, also when something else of its name comes.
+  const bool led = std::any_of(parts_.config.actors.begin(), parts_.config.actors.end(),
+                               [&](const ActorConfig& actor) { return actor.object == name; });
+  if (!led || config.kinematic) return build_object(config, name, X_WE);
+  const bool has_plane = std::any_of(config.parts.begin(), config.parts.end(),
+                                     [](const PartConfig& part) { return part.shape == PartShape::plane; });
+  if (config.fixed || has_plane)
+    throw_config_error(config.place, "object " + shown_name(name), "an actor moves it: it cannot be fixed or a plane");
+  ObjectConfig kinematic = config;
+  kinematic.kinematic = true;
+  return build_object(kinematic, name, X_WE);
+}
+
+Vehicle& WorldBuilder::build_vehicle(const VehicleInstance& instance) {
+  const int group = parts_.physics.add_group(instance.name, instance.config->self_collision);
+  Vehicle& vehicle = parts_.entities.add(std::make_unique<Vehicle>(
+      instance.name, parts_.entities.take_vehicle_number(), group, instance.config, parts_.buses.named(instance.bus),
+      VehicleClock(instance.config->clock, parts_.seed(), instance.name, parts_.clock.now())));
+  try {
+    build_parts_of(vehicle, instance);
+  } catch (...) {  // a mesh that is no solid, a port that is taken: nothing of it stays
+    take_apart(vehicle);
+    throw;
+  }
+  parts_.entities.mark_changed();
+  return vehicle;
+}
+
+void WorldBuilder::build_parts_of(Vehicle& vehicle, const VehicleInstance& instance) {
+  const VehicleConfig& config = *instance.config;
+  for (const BodyConfig& body : config.bodies) {
+    Body& built = parts_.physics.add_body(vehicle.group(), body, instance.X_WV,
+                                          body.kinematic ? Motion::kinematic : Motion::free);
+    vehicle.add_body(body.name, built);
+    if (!body.kinematic) parts_.hydrodynamics->add_body(built, body);
+  }
+  // What could be wrong with joints and devices of a kind showed in the first ones.
+  constexpr int max_of_kind_as_a_whole = 100;
+  if (parts_.config.bodies_only_of_many && parts_.config.events.empty() &&
+      ++built_of_kind_[&config] > max_of_kind_as_a_whole)
+    return parts_.physics.close_group(vehicle.group());
+  build_joints_of(vehicle, instance);
+  parts_.physics.close_group(vehicle.group());
+  std::vector<std::string> errors;
+  for (const DeviceConfig& device : config.devices) {
+    try {
+      add_device(vehicle, device);
+    } catch (const ConfigError& error) {
+      errors.insert(errors.end(), error.lines().begin(), error.lines().end());
+    }
+  }
+  if (!errors.empty()) throw ConfigError(errors);
+}
+
+void WorldBuilder::build_joints_of(Vehicle& vehicle, const VehicleInstance& instance) {
+  for (const JointConfig& joint : instance.config->joints) {
+    Body* second = joint.bodies[1] == "world" ? nullptr : &vehicle.body(joint.bodies[1]);
+    vehicle.add_joint(joint.name, parts_.physics.add_joint(vehicle.group(), joint, vehicle.body(joint.bodies[0]),
+                                                           second, instance.X_WV));
+  }
+}
+
+void WorldBuilder::add_device(Vehicle& vehicle, const DeviceConfig& config) {
+  auto device = std::make_unique<MountedDevice>(vehicle, config, parts_.host, parts_.devices.next_number());
+  vehicle.add_device(*device);
+  for (const ChannelKind kind : all_channel_kinds)
+    parts_.buses.take(device_channel(parts_.config.channels, vehicle.name(), config, kind), vehicle.bus());
+  parts_.devices.add(std::move(device));
+}
+
+void WorldBuilder::sort_devices() {
+  parts_.schedule.sort(parts_.entities, parts_.devices);
+}
+
+void WorldBuilder::take_apart(Vehicle& vehicle) {
+  for (const MountedDevice* device : vehicle.devices()) remove_device(*device);
+  parts_.hydrodynamics->remove_group(vehicle.group());
+  parts_.physics.remove_group(vehicle.group());
+  parts_.entities.mark_changed();
+  parts_.entities.remove(vehicle);
+}
+
+void WorldBuilder::remove_device(const MountedDevice& device) {
+  parts_.events.forget_device(device.number());
+  for (const ChannelKind kind : all_channel_kinds)
+    parts_.buses.release(device_channel(parts_.config.channels, device.vehicle().name(), device.config(), kind));
+  parts_.devices.remove(device.number());
+}
+
+void WorldBuilder::take_apart(const WorldObject& object) {
+  parts_.hydrodynamics->remove_group(object.group);
+  parts_.physics.remove_group(object.group);
+  parts_.entities.mark_changed();
+  parts_.entities.remove(object);
+}
+
+bool WorldBuilder::change_device(const std::string& full_name, const ConfigNode& values, Diagnostics& diagnostics) {
+  MountedDevice* device = parts_.entities.find_device(full_name);
+  const std::string who = "device " + shown_name(full_name);
+  if (device == nullptr) {
+    diagnostics.error(values.place, who, "there is no such device; devices are named VEHICLE/DEVICE");
+    return false;
+  }
+  const auto changed =
+      changed_device(device->config(), device->vehicle().config(), parts_.config, values, who, diagnostics);
+  if (changed) device->change(*changed, parts_.clock.now());
+  parts_.schedule.plan_again(*device);
+  return changed.has_value();
+}
+
+/// Devices before what they hold on to, as at the end of the world.
+void WorldBuilder::take_all_apart() {
+  parts_.script.reset();
+  parts_.schedule.clear();
+  parts_.devices.clear();
+  parts_.entities.clear();
+  parts_.buses.release_all();
+  parts_.acoustics.reset();
+  parts_.hydrodynamics.reset();
+  parts_.shared = {};
+  parts_.events = {};
+  parts_.ended.reset();
+  parts_.clock.step_number = 0;
+}
+
+void WorldBuilder::rebuild() {
+  take_all_apart();
+  const WorldConfig& config = parts_.config;
+  parts_.physics.start_again(config.physics, config.materials, config.contacts, config.categories, parts_.seed());
+  StateArchive start = StateArchive::restorer(medium_at_start_);
+  start(parts_.medium);
+  build();
+  parts_.entities.mark_changed();
+}
+
+}  // namespace sim

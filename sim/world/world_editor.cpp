@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world/world_editor.hpp"
+
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "sim/config/diagnostics.hpp"
+#include "sim/vehicle/limit_check.hpp"
+#include "sim/world/bottom_check.hpp"
+#include "sim/world/world.hpp"
+#include "sim/world/world_builder.hpp"
+#include "sim/world/world_journal.hpp"
+#include "sim/world/world_parts.hpp"
+
+namespace sim {
+
+void WorldEditor::check_new_vehicle(const VehicleInstance& instance) const {
+  const std::string who = "vehicle " + shown_name(instance.name);
+  parts_.entities.check_new_name(instance.name, instance.place, who);
+  const VehicleConfig& config = *instance.config;
+  const LimitsConfig& limits = parts_.config.limits;
+  check_limit("vehicles", parts_.entities.vehicles().size() + 1, limits.vehicles, instance.place, who);
+  check_limit("bodies in a vehicle", config.bodies.size(), limits.bodies_per_vehicle, instance.place, who);
+  check_limit("devices in a vehicle", config.devices.size(), limits.devices_per_vehicle, instance.place, who);
+  std::size_t parts = 0;
+  for (const BodyConfig& body : config.bodies) parts += body.parts.size();
+  check_limit("parts in a vehicle", parts, limits.parts, instance.place, who);
+  std::set<std::string, std::less<>> own;
+  for (const DeviceConfig& device : config.devices)
+    for (const ChannelKind kind : all_channel_kinds) {
+      const std::string channel = device_channel(parts_.config.channels, instance.name, device, kind);
+      const std::string error = channel_error(channel, parts_.buses.taken(channel) || !own.insert(channel).second);
+      if (!error.empty()) throw_config_error(device.place, who + ": device " + shown_name(device.name), error);
+    }
+}
+
+void WorldEditor::check_place_is_free(Vehicle& vehicle, const VehicleInstance& instance) {
+  constexpr double allowed_m = 0.05;
+  const auto [other, depth_m] = parts_.physics.deepest_overlap(vehicle.group());
+  if (depth_m <= allowed_m) return;
+  builder_.take_apart(vehicle);
+  throw_config_error(instance.place, "vehicle " + shown_name(instance.name),
+                     "'position_m' is taken: it would stand " + number_text(std::round(depth_m * 1000) / 1000) +
+                         " m deep in '" + other + "'");
+}
+
+const Vehicle& WorldEditor::add_vehicle(const VehicleInstance& instance) {
+  check_new_vehicle(instance);
+  parts_.surfaces.check_new(instance);
+  const bool new_surfaces = parts_.surfaces.has_new(*instance.config);
+  try {
+    parts_.physics.add_categories(instance.config->categories);
+  } catch (const std::length_error& error) {
+    throw_config_error(instance.place, "vehicle " + shown_name(instance.name), error.what());
+  }
+  parts_.surfaces.add(*instance.config);
+  try {
+    check_place_is_free(builder_.build_vehicle(instance), instance);
+  } catch (...) {
+    journal_.vehicle_failed(instance, new_surfaces);
+    throw;
+  }
+  const Vehicle& vehicle = *parts_.entities.vehicles().back();
+  journal_.vehicle_added(instance, vehicle, new_surfaces);
+  for (const std::vector<std::string>& found :
+       {parts_.hydrodynamics->take_warnings(), bottom_warnings(world_, vehicle)})
+    for (const std::string& warning : found) parts_.warnings.building().warn({}, "", warning);
+  builder_.sort_devices();
+  return vehicle;
+}
+
+void WorldEditor::check_removable(const std::string& name) const {
+  parts_.entities.vehicle_named(name);
+  for (const MetricConfig& metric : parts_.config.metrics)
+    if (metric.params && metric.params->vehicle == name)
+      throw WorldError("vehicle " + shown_name(name) + " cannot be removed: metric '" + metric.name + "' scores it");
+}
+
+void WorldEditor::remove_vehicle(const std::string& name) {
+  check_removable(name);
+  Vehicle& vehicle = parts_.entities.vehicle_named(name);
+  const std::string own_name = vehicle.name();  // the caller's may be that of the vehicle
+  builder_.take_apart(vehicle);
+  journal_.vehicle_removed(own_name);
+  builder_.sort_devices();
+}
+
+void WorldEditor::move_vehicle(const std::string& name, const Pose& X_WV) {
+  const Vehicle& vehicle = parts_.entities.vehicle_named(name);
+  parts_.physics.move_group(vehicle.group(), X_WV * vehicle.X_WV().inverse());
+  if (parts_.physics.anchored(vehicle.group())) journal_.anchored_vehicle_moved(vehicle);
+  parts_.acoustics->forget_places();
+}
+
+const WorldObject& WorldEditor::add_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE) {
+  const std::string who = "object " + shown_name(name);
+  const LimitsConfig& limits = parts_.config.limits;
+  parts_.entities.check_new_name(name, config.place, who);
+  check_limit("objects", parts_.entities.objects().size() + 1, limits.objects, config.place, who);
+  check_limit("parts in an object", config.parts.size(), limits.parts, config.place, who);
+  const WorldObject& object = builder_.place_object(config, name, X_WE);
+  journal_.object_added(config, object, X_WE);
+  return object;
+}
+
+void WorldEditor::remove_object(const std::string& name) {
+  const WorldObject& object = parts_.entities.object_named(name);
+  const std::string own_name = object.name;  // the caller's may be that of the object
+  builder_.take_apart(object);
+  journal_.object_removed(own_name);
+}
+
+void WorldEditor::move_object(const std::string& name, const Pose& X_WE) {
+  const WorldObject& object = parts_.entities.object_named(name);
+  object.body->set_pose(X_WE);
+  object.body->set_velocity_W(Vector3d::Zero(), Vector3d::Zero());
+}
+
+void WorldEditor::set_fault(const std::string& device, const FaultConfig& fault) {
+  MountedDevice& mounted = parts_.entities.device_named(device);
+  const std::string error = fault_misfit(*mounted.config().device_type, fault);
+  if (!error.empty()) throw WorldError("device " + shown_name(device) + ": " + error);
+  mounted.set_fault(fault);
+}
+
+void WorldEditor::clear_faults(const std::string& device) {
+  parts_.entities.device_named(device).clear_faults();
+}
+
+bool WorldEditor::change_device(const std::string& full_name, const ConfigNode& values, Diagnostics& diagnostics) {
+  const bool changed = builder_.change_device(full_name, values, diagnostics);
+  if (changed) journal_.device_changed(full_name, values);
+  return changed;
+}
+
+void WorldEditor::set_gravity(double gravity_mps2) {
+  parts_.physics.set_gravity(gravity_mps2);
+}
+
+void WorldEditor::publish(const std::string& channel, std::span<const std::byte> payload) {
+  parts_.buses.of_channel(channel).publish(channel, payload, parts_.clock.now());
+}
+
+void WorldEditor::end(const EndOfRun& end) {
+  if (!parts_.ended) parts_.ended = end;
+}
+
+void WorldEditor::run_action(const ConfigNode& action) {
+  Diagnostics diagnostics(parts_.config.files);
+  parts_.script->run_now(action, diagnostics);
+  diagnostics.throw_if_any();
+}
+
+}  // namespace sim

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world/world_parts.hpp"
+
+#include <utility>
+
+namespace sim {
+
+namespace {
+
+/// Whom the events are for is looked up by number when they are due.
+void check_events(EventQueue& queue, std::size_t devices, const AcousticChannel& acoustics,
+                  const StateArchive& archive) {
+  StateArchive saver = StateArchive::saver();
+  saver(queue);
+  const Bytes bytes = saver.take_bytes();
+  StateArchive reader = StateArchive::restorer(bytes);
+  std::int64_t reached = 0;  // what the queue saves before its events
+  std::uint64_t next_sequence = 0;
+  std::vector<Event> events;
+  reader(reached, next_sequence, events);
+  for (const Event& event : events)
+    if (event.device != Event::of_acoustics && static_cast<std::size_t>(event.device) >= devices)
+      archive.fail("an event of a device that is not there");
+  acoustics.check_events(events, archive);
+}
+
+}  // namespace
+
+WorldParts::WorldParts(const World& world, const WorldConfig& config_, Bus& bus, PortOpener open_port_,
+                       BusFinder find_bus)
+    : config(config_),
+      open_port(std::move(open_port_)),
+      clock{from_seconds(config.physics.step_s)},
+      geodesy(config.origin.position),
+      warnings(clock),
+      physics(config.physics, config.materials, config.contacts, config.categories, seed()),
+      medium(config.medium, config.physics.gravity_mps2, seed()),
+      buses(bus, std::move(find_bus)),
+      surfaces(physics),
+      host{world,     config.channels, clock,     config.epoch_us, seed(), physics,
+           acoustics, events,          open_port, warnings,        shared} {}
+
+void WorldParts::visit_state(StateArchive& archive) {
+  archive.section("world");
+  archive(clock.step_number, ended);
+  archive.require(clock.step_number, 0, StateArchive::max_time.count() / clock.step.count(), "a step");
+  archive.unhashed(entities, schedule.samples(), warnings, buses.run_hash());
+  physics.visit_state(archive);
+  archive.section("medium");
+  archive(medium, *hydrodynamics);
+  for (const auto& vehicle : entities.vehicles()) {
+    archive.section(vehicle->name());
+    archive(*vehicle);
+    // It would be advanced from there in as many small steps as a forger likes.
+    if (archive.restoring() && !vehicle->clock().stands_at(clock.now()))
+      archive.fail("a clock that stands at another time than the world");
+    for (MountedDevice* device : vehicle->devices()) {
+      archive.section(device->full_name());
+      archive(*device);
+    }
+  }
+  archive.section("objects");
+  for (const auto& [name, object] : entities.objects()) archive(*object.body);
+  archive.section("events");
+  archive(events);
+  archive.section("acoustics");
+  archive(*acoustics);
+  if (archive.restoring()) check_events(events, devices.size(), *acoustics, archive);
+  archive.section("script");
+  archive(*script);
+  if (!archive.hashing()) {  // what the world itself has sent to its devices in the step that ended
+    archive.section("mail");
+    devices.visit_mail(archive);
+  }
+  archive.end();
+}
+
+}  // namespace sim

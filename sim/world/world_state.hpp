@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/bus/bus.hpp"
+#include "sim/state/state_archive.hpp"
+
+namespace sim {
+
+class World;
+class WorldBuilder;
+class WorldEditor;
+class WorldJournal;
+struct WorldParts;
+
+/// The state of a world: hashed, saved and restored.  World::state() is the one of a world.
+class WorldState {
+ public:
+  /// All must outlive this.
+  WorldState(World& world, WorldParts& parts, WorldBuilder& builder, WorldEditor& editor, WorldJournal& journal)
+      : world_(world), parts_(parts), builder_(builder), editor_(editor), journal_(journal) {}
+
+  /// A hash over all that is state: bodies, joints, devices, clocks, medium, events, sound under way, script.
+  std::uint64_t hash() const;
+  /// A hash over the whole way here: every message that devices and events have published, the motion of every body
+  /// after each step, the whole state after every tenth step and now.  Equal ones prove equal runs, equal state hashes
+  /// only equal ends.  What is published for observation alone does not count; see RunHash.  A snapshot holds it.
+  std::uint64_t run_hash() const;
+  /// The state hash by part, in an order that does not change: `world`, `medium`, vehicles such as `auv1`, devices such
+  /// as `auv1/dvl`, `objects`, `events`, `acoustics`, `script`.
+  std::vector<PartHash> part_hashes() const;
+  /// All of the state between two steps, and what was added, removed and changed since the start.  Throws
+  /// SnapshotError when a vehicle or object was added that was not read from YAML.
+  Bytes snapshot() const;
+  /// Goes to a snapshot of a world of the same configuration, of this one or of another process, and on from there
+  /// with the same bits.  When vehicles, objects or the parameters of devices are not those of the snapshot, the world
+  /// is built anew in place: references to vehicles, bodies, devices and scene are then void, and World::generation()
+  /// has grown; those to World and PhysicsWorld hold.  Throws SnapshotError when it does not fit; the world is then as
+  /// before, or where that is not possible as well the error says so.  It may have been built anew on the way there:
+  /// see World::generation().
+  void restore(std::span<const std::byte> snapshot);
+
+ private:
+  void load(std::span<const std::byte> snapshot);
+
+  World& world_;
+  WorldParts& parts_;
+  WorldBuilder& builder_;
+  WorldEditor& editor_;
+  WorldJournal& journal_;
+  mutable std::size_t last_bytes_ = 0;  // of a snapshot: about what the next one needs
+};
+
+}  // namespace sim
