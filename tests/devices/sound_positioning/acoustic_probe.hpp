@@ -50,8 +50,9 @@ class AcousticProbe final : public sim::AcousticListener {
   sim::SoundSite site(const std::string& vehicle) {
     for (const auto& each : world_.vehicles())
       if (each->name() == vehicle)
-        return {world_.acoustics(), each->body("hull"), sim::Pose::Identity(), each->group(), each->systems().powered,
-                faults_, vehicle + "/probe"};
+        return {world_.acoustics(), each->body("hull"),      sim::Pose::Identity(),
+                each->group(),      each->systems().powered, faults_,
+                vehicle + "/probe"};
     throw std::runtime_error("no vehicle '" + vehicle + "'");
   }
 
