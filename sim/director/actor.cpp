@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/world/world.hpp"
+#include "sim/director/stage.hpp"
+#include "sim/vehicle/entities.hpp"
 
 namespace sim {
 
@@ -43,28 +44,28 @@ void Actor::command(ActorCommand command, Time now) {
   direction_ = command == ActorCommand::forward ? 1 : -1;
 }
 
-void Actor::find_body(World& world) {
-  if (generation_ == world.generation()) return;
-  const WorldObject* object = world.find_object(config_.object);
-  // Only a kinematic body can be led along; WorldEditor::add_object sees to it that an actor's object is one.
+void Actor::find_body(Stage& stage) {
+  if (generation_ == stage.entities().generation()) return;
+  const WorldObject* object = stage.entities().find_object(config_.object);
+  // Only a kinematic body can be led along; the world sees to it that an actor's object is one.
   body_ = object && object->body->kinematic() ? object->body : nullptr;
-  generation_ = world.generation();
+  generation_ = stage.entities().generation();
 }
 
-void Actor::place(World& world) {
-  find_body(world);
+void Actor::place(Stage& stage) {
+  find_body(stage);
   X_WB_ = pose_at(Time{0});
   if (body_ != nullptr) body_->set_pose(X_WB_);
 }
 
-void Actor::step(World& world, Time now) {
-  find_body(world);
+void Actor::step(Stage& stage, Time now) {
+  find_body(stage);
   if (body_ == nullptr) return;  // removed; it is in its place again when it comes back
   // Someone put it elsewhere, or it is new: it jumps back, for a way in one step would hit others like a bullet.
   if ((body_->X_WB().translation() - X_WB_.translation()).squaredNorm() > 1e-12) body_->set_pose(pose_at(now));
-  const Time end = now + world.step_time();
-  X_WB_ = pose_at(end);
-  body_->move_to(X_WB_, to_seconds(world.step_time()));
+  const Time step = stage.clock().step;
+  X_WB_ = pose_at(now + step);
+  body_->move_to(X_WB_, to_seconds(step));
 }
 
 }  // namespace sim

@@ -8,7 +8,7 @@
 namespace sim {
 
 class Body;
-class World;
+class Stage;
 
 /// An actor in the world.  Where it is follows from its last command and the time since, with no sum over steps.
 class Actor {
@@ -18,13 +18,13 @@ class Actor {
   void command(ActorCommand command, Time now);
   Pose pose_at(Time now) const;
   /// Puts its object at the beginning of the path.
-  void place(World& world);
+  void place(Stage& stage);
   /// Moves its object so that it is in its place at the end of the step that begins now.
-  void step(World& world, Time now);
+  void step(Stage& stage, Time now);
   void visit_state(StateArchive& archive) { archive(since_, from_, direction_, moving_, X_WB_); }
 
  private:
-  void find_body(World& world);
+  void find_body(Stage& stage);
   double progress_at(Time now) const;
   void anchor(Time now);
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/director/condition_watch.hpp"
 
+#include "sim/director/stage.hpp"
 #include "sim/director/touch_watch.hpp"
 #include "sim/geometry/zone.hpp"
-#include "sim/world/world.hpp"
+#include "sim/vehicle/entities.hpp"
 
 namespace sim {
 
@@ -14,7 +15,7 @@ class VehicleWatch : public ConditionWatch {
  public:
   explicit VehicleWatch(std::string vehicle) : vehicle_(std::move(vehicle)) {}
 
-  int count_new(World& world) final {
+  int count_new(Stage& stage) final {
     int count = 0;
     const auto look_at = [&](const Vehicle& vehicle) {
       const auto number = static_cast<std::size_t>(vehicle.number());
@@ -24,8 +25,8 @@ class VehicleWatch : public ConditionWatch {
       states_[number] = now;
     };
     if (vehicle_ == "any") {
-      for (const auto& vehicle : world.vehicles()) look_at(*vehicle);
-    } else if (const Vehicle* vehicle = world.find_vehicle(vehicle_)) {
+      for (const auto& vehicle : stage.entities().vehicles()) look_at(*vehicle);
+    } else if (const Vehicle* vehicle = stage.entities().find_vehicle(vehicle_)) {
       look_at(*vehicle);
     }
     return count;
@@ -73,10 +74,10 @@ class SpeedWatch final : public VehicleWatch {
 
 class MessageWatch final : public ConditionWatch {
  public:
-  MessageWatch(const Condition& condition, World& world)
+  MessageWatch(const Condition& condition, Stage& stage)
       : mailbox_(
-            world.bus_of_channel(condition.subject).open_mailbox(condition.subject, Bus::default_mailbox_capacity)) {}
-  int count_new(World&) override {
+            stage.bus_of_channel(condition.subject).open_mailbox(condition.subject, Bus::default_mailbox_capacity)) {}
+  int count_new(Stage&) override {
     int count = 0;
     while (mailbox_->take()) ++count;
     return count;
@@ -93,7 +94,7 @@ class MessageWatch final : public ConditionWatch {
 
 }  // namespace
 
-std::unique_ptr<ConditionWatch> make_watch(const Condition& condition, World& world, const Zones& zones) {
+std::unique_ptr<ConditionWatch> make_watch(const Condition& condition, Stage& stage, const Zones& zones) {
   switch (condition.kind) {
     case Condition::Kind::enters:
     case Condition::Kind::leaves:
@@ -102,9 +103,9 @@ std::unique_ptr<ConditionWatch> make_watch(const Condition& condition, World& wo
     case Condition::Kind::faster:
       return std::make_unique<SpeedWatch>(condition);
     case Condition::Kind::message:
-      return std::make_unique<MessageWatch>(condition, world);
+      return std::make_unique<MessageWatch>(condition, stage);
     case Condition::Kind::touches:
-      return make_touch_watch(condition, world);
+      return make_touch_watch(condition, stage);
     case Condition::Kind::none:
     case Condition::Kind::fires:
       break;

@@ -8,7 +8,7 @@
 
 namespace sim {
 
-class World;
+class Stage;
 class Zones;
 
 /// Sees when the condition of an event becomes true.
@@ -16,11 +16,11 @@ class ConditionWatch {
  public:
   virtual ~ConditionWatch() = default;
   /// How often it became true since the last call; called once in each step.
-  virtual int count_new(World& world) = 0;
+  virtual int count_new(Stage& stage) = 0;
   virtual void visit_state(StateArchive& archive) = 0;
 };
 
 /// Null when there is nothing to watch: no condition, or one of another event.
-std::unique_ptr<ConditionWatch> make_watch(const Condition& condition, World& world, const Zones& zones);
+std::unique_ptr<ConditionWatch> make_watch(const Condition& condition, Stage& stage, const Zones& zones);
 
 }  // namespace sim

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <set>
 
-#include "sim/world/world.hpp"
+#include "sim/director/stage.hpp"
+#include "sim/vehicle/entities.hpp"
+#include "sim/vehicle/mounted_device.hpp"
+#include "sim/vehicle/world_warnings.hpp"
 #include "sim/world_file/check_script.hpp"
 
 namespace sim {
@@ -13,6 +16,10 @@ namespace {
 
 constexpr int most_firings_per_step = 1000;
 constexpr int most_depth = 100;
+
+std::uint64_t seed_of(const Stage& stage) {
+  return static_cast<std::uint64_t>(stage.config().run.seed);
+}
 
 }  // namespace
 
@@ -25,18 +32,17 @@ void Script::EventState::begin_draws(std::int64_t step_number) {
   random.begin_step(step_number);
 }
 
-Script::Script(World& world, WorldEditor& editor)
-    : world_(world), editor_(editor), zones_(world.config().zones), live_random_(world.seed(), "action") {
-  const WorldConfig& config = world.config();
+Script::Script(Stage& stage) : stage_(stage), zones_(stage.config().zones), live_random_(seed_of(stage), "action") {
+  const WorldConfig& config = stage.config();
   for (std::size_t i = 0; i < config.zones.size(); ++i)
     if (config.zones[i].speed_limit_mps || config.zones[i].finish) ruled_zones_.push_back(static_cast<int>(i));
   for (const ActorConfig& actor : config.actors) {
     actors_.emplace_back(actor);
-    actors_.back().place(world);
+    actors_.back().place(stage);
   }
   for (const EventConfig& event : config.events) {
-    plan_next(events_.emplace_back(event, world.seed()));
-    watches_.push_back(make_watch(event.when, world, zones_));
+    plan_next(events_.emplace_back(event, seed_of(stage)));
+    watches_.push_back(make_watch(event.when, stage, zones_));
   }
   for (std::size_t i = 0; i < events_.size(); ++i)
     for (EventState& cause : events_)
@@ -57,14 +63,14 @@ bool Script::empty() const {
 }
 
 void Script::step() {
-  const Time now = world_.now();
+  const Time now = stage_.now();
   firings_ = 0;
   if (!ruled_zones_.empty()) update_records(now);
   // All conditions are looked at before anything happens, so that no event sees half of what another one did.
   std::vector<int> counts(events_.size(), 0);
   for (std::size_t i = 0; i < events_.size(); ++i) {
     if (events_[i].next && *events_[i].next <= now) counts[i] += due_times(events_[i], now);
-    if (watches_[i]) counts[i] += watches_[i]->count_new(world_);
+    if (watches_[i]) counts[i] += watches_[i]->count_new(stage_);
   }
   while (!delayed_.empty() && delayed_.begin()->first.first <= now) {
     const std::size_t event = delayed_.begin()->second;
@@ -73,11 +79,11 @@ void Script::step() {
   }
   for (std::size_t i = 0; i < events_.size(); ++i)
     for (int k = 0; k < counts[i]; ++k) attempt(i, 0);
-  for (Actor& actor : actors_) actor.step(world_, now);
+  for (Actor& actor : actors_) actor.step(stage_, now);
 }
 
 void Script::update_records(Time now) {
-  for (const auto& vehicle : world_.vehicles()) {
+  for (const auto& vehicle : stage_.entities().vehicles()) {
     ZoneRecord& record = records_[vehicle->name()];
     const Vector3d p_WV = vehicle->X_WV().translation();
     bool speeding = false;
@@ -90,7 +96,7 @@ void Script::update_records(Time now) {
     }
     if (!speeding) continue;
     ++record.speeding_steps;
-    record.speeding_s = static_cast<double>(record.speeding_steps) * to_seconds(world_.step_time());
+    record.speeding_s = static_cast<double>(record.speeding_steps) * to_seconds(stage_.clock().step);
   }
 }
 
@@ -128,12 +134,12 @@ void Script::attempt(std::size_t i, int depth) {
   if (event.config.times > 0 && event.fired >= event.config.times) return;
   if (firings_ >= most_firings_per_step) return cut(event, "more than 1000 events fired in a step");
   if (depth > most_depth) return cut(event, "events fire each other more than 100 deep");
-  event.begin_draws(world_.step_number());
+  event.begin_draws(stage_.clock().step_number);
   if (event.config.probability < 1 && event.random.uniform() >= event.config.probability) return;
   ++event.fired;
   if (event.config.delay_s > 0) {
     ++firings_;
-    delayed_[{world_.now() + from_seconds(event.config.delay_s), next_delayed_++}] = i;
+    delayed_[{stage_.now() + from_seconds(event.config.delay_s), next_delayed_++}] = i;
   } else {
     fire(i, depth);
   }
@@ -142,14 +148,14 @@ void Script::attempt(std::size_t i, int depth) {
 void Script::fire(std::size_t i, int depth) {
   EventState& event = events_[i];
   ++firings_;
-  event.begin_draws(world_.step_number());
+  event.begin_draws(stage_.clock().step_number);
   carry_out(event.config.actions, {"event '" + event.config.name + "'", event.random, nullptr, depth});
   for (const int next : event.fired_by_this) attempt(static_cast<std::size_t>(next), depth + 1);
 }
 
 void Script::cut(EventState& event, const std::string& why) {
   if (!event.told_of_cut)
-    world_.warnings().bad_message("event '" + event.config.name + "'", why + "; the rest does not happen");
+    stage_.warnings().bad_message("event '" + event.config.name + "'", why + "; the rest does not happen");
   event.told_of_cut = true;
 }
 
@@ -160,13 +166,13 @@ std::vector<Action> Script::parse_now(const ConfigNode& action, Diagnostics& dia
   list.items = {action};
   const ConfigNode map = map_node("do", action.kind == ConfigNode::Kind::list ? action : list);
   ParamReader in(map, "", diagnostics);
-  const WorldConfig& config = world_.config();
+  const WorldConfig& config = stage_.config();
   std::set<std::string> objects, movable;
   for (const auto& [name, pose] : catalogue_) objects.insert(name);
-  for (const auto& [name, object] : world_.objects()) objects.insert(name);
+  for (const auto& [name, object] : stage_.entities().objects()) objects.insert(name);
   for (std::string& name : names_added_by(map)) objects.insert(std::move(name));
   movable = objects;
-  for (const auto& vehicle : world_.vehicles()) movable.insert(vehicle->name());
+  for (const auto& vehicle : stage_.entities().vehicles()) movable.insert(vehicle->name());
   for (const std::string& name : objects) in.declare("object", name);
   for (const std::string& name : movable) in.declare(movable_kind, name);
   for (const ActorConfig& actor : config.actors) in.declare("actor", actor.name);
@@ -182,14 +188,14 @@ void Script::run_now(const ConfigNode& action, Diagnostics& diagnostics) {
   std::vector<Action> actions = parse_now(action, diagnostics);
   if (!diagnostics.ok()) return;
   const auto find = [this](const std::string& name) -> NamedDevice {
-    const MountedDevice* device = world_.find_device(name);
+    const MountedDevice* device = stage_.entities().find_device(name);
     if (device == nullptr) return {};
     return {&device->vehicle().config(), &device->config()};
   };
-  check_actions(actions, world_.config(), find, diagnostics);
+  check_actions(actions, stage_.config(), find, diagnostics);
   if (!diagnostics.ok()) return;
-  if (live_random_step_ != world_.step_number()) {
-    live_random_step_ = world_.step_number();
+  if (live_random_step_ != stage_.clock().step_number) {
+    live_random_step_ = stage_.clock().step_number;
     live_random_.begin_step(live_random_step_);
   }
   firings_ = 0;
@@ -210,7 +216,7 @@ void Script::visit_state(StateArchive& archive) {
     archive(events_[i]);
     // It would be made up for at once, as often as a forger likes.
     const std::optional<Time>& next = events_[i].next;
-    if (archive.restoring() && next && *next <= world_.now() - world_.step_time())
+    if (archive.restoring() && next && *next <= stage_.now() - stage_.clock().step)
       archive.fail("an event that should have fired long ago");
     if (watches_[i]) archive(*watches_[i]);
   }

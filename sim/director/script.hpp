@@ -15,8 +15,7 @@
 
 namespace sim {
 
-class World;
-class WorldEditor;
+class Stage;
 
 /// How a vehicle did in zones with rules.
 struct ZoneRecord {
@@ -29,8 +28,8 @@ struct ZoneRecord {
 /// Zones, actors and events of a world: stage 4 of a step, at the time of the step's start.
 class Script {
  public:
-  /// `world` is built already; both must outlive this.
-  Script(World& world, WorldEditor& editor);
+  /// The world of `stage` is built already; it must outlive this.
+  explicit Script(Stage& stage);
   ~Script();
 
   void step();
@@ -91,8 +90,7 @@ class Script {
   const std::vector<Action>* pick_choice(const Action& action, const Doing& doing) const;
   void make_catalogue();
 
-  World& world_;
-  WorldEditor& editor_;
+  Stage& stage_;
   Zones zones_;
   std::vector<int> ruled_zones_;  ///< those with a speed limit or a finish
   std::map<std::string, ZoneRecord> records_;

@@ -7,8 +7,11 @@
 #include "sim/bus/utime_stamp.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/director/script.hpp"
-#include "sim/world/world.hpp"
-#include "sim/world/world_editor.hpp"
+#include "sim/director/stage.hpp"
+#include "sim/vehicle/end_of_run.hpp"
+#include "sim/vehicle/entities.hpp"
+#include "sim/vehicle/world_error.hpp"
+#include "sim/vehicle/world_warnings.hpp"
 
 // What the actions of events do.
 
@@ -28,7 +31,7 @@ void Script::carry_out(const std::vector<Action>& actions, const Doing& doing) {
     if (doing.diagnostics != nullptr)
       doing.diagnostics->error(action.place, action.who, failure);
     else
-      world_.warnings().bad_message(doing.who, failure);
+      stage_.warnings().bad_message(doing.who, failure);
   }
 }
 
@@ -43,9 +46,9 @@ void Script::carry_out(const Action& action, const Doing& doing) {
     case ActionKind::one_of:
       return carry_out(*pick_choice(action, doing), doing);
     case ActionKind::fault:
-      return editor_.set_fault(action.targets[0], action.fault);
+      return stage_.set_fault(action.targets[0], action.fault);
     case ActionKind::clear_fault:
-      return editor_.clear_faults(action.targets[0]);
+      return stage_.clear_faults(action.targets[0]);
     case ActionKind::set:
       return change(action, doing);
     case ActionKind::publish:
@@ -57,11 +60,11 @@ void Script::carry_out(const Action& action, const Doing& doing) {
         if (events_[i].config.name == action.targets[0]) attempt(i, doing.depth + 1);
       return;
     case ActionKind::gravity:
-      return editor_.set_gravity(action.gravity_mps2);
+      return stage_.set_gravity(action.gravity_mps2);
     case ActionKind::log:
       return log(doing.who, action.text);
     case ActionKind::end:
-      return editor_.end({printable(action.text), action.passed});
+      return stage_.end({printable(action.text), action.passed});
   }
 }
 
@@ -86,23 +89,24 @@ const std::vector<Action>* Script::pick_choice(const Action& action, const Doing
 
 void Script::move(const Action& action, const Doing& doing) {
   const std::string& name = pick_target(action, doing);
-  if (const Vehicle* vehicle = world_.find_vehicle(name))
-    return editor_.move_vehicle(name, action.where.choose(vehicle->X_WV(), doing.random));
-  const WorldObject* object = world_.find_object(name);
+  if (const Vehicle* vehicle = stage_.entities().find_vehicle(name))
+    return stage_.move_vehicle(name, action.where.choose(vehicle->X_WV(), doing.random));
+  const WorldObject* object = stage_.entities().find_object(name);
   if (object == nullptr) throw WorldError("there is no vehicle or object '" + name + "' to move");
-  editor_.move_object(name, action.where.choose(object->body->X_WB(), doing.random));
+  stage_.move_object(name, action.where.choose(object->body->X_WB(), doing.random));
 }
 
 void Script::make_catalogue() {
   if (catalogued_) return;
   catalogued_ = true;
-  for (const ObjectConfig& object : world_.config().objects) {
+  for (const ObjectConfig& object : stage_.config().objects) {
     const Pose X_WE = make_pose(object.position_m, object.rpy_rad);
     if (object.count == 1) {
       catalogue_[object.name] = {&object, X_WE};
       continue;
     }
-    const std::vector<Pose> poses = place_instances(object.placement, object.count, X_WE, world_.seed(), object.name);
+    const std::vector<Pose> poses = place_instances(object.placement, object.count, X_WE,
+                                                    static_cast<std::uint64_t>(stage_.config().run.seed), object.name);
     for (std::size_t i = 0; i < poses.size(); ++i)
       catalogue_[object.name + std::to_string(i + 1)] = {&object, poses[i]};
   }
@@ -112,25 +116,26 @@ void Script::add(const Action& action, const Doing& doing) {
   const std::string& name = action.targets[0];
   if (action.object) {
     const Pose X_WE = make_pose(action.object->position_m, action.object->rpy_rad);
-    editor_.add_object(*action.object, name, action.where.choose(X_WE, doing.random));
+    stage_.add_object(*action.object, name, action.where.choose(X_WE, doing.random));
     return;
   }
   make_catalogue();
   const auto found = catalogue_.find(name);
   if (found == catalogue_.end()) throw WorldError("the world file has no object '" + name + "' to add");
-  editor_.add_object(*found->second.first, name, action.where.choose(found->second.second, doing.random));
+  stage_.add_object(*found->second.first, name, action.where.choose(found->second.second, doing.random));
 }
 
 void Script::remove(const Action& action, const Doing& doing) {
   const std::string& name = pick_target(action, doing);
-  if (world_.find_vehicle(name) != nullptr) return editor_.remove_vehicle(name);
-  if (world_.find_object(name) == nullptr) throw WorldError("there is no vehicle or object '" + name + "' to remove");
-  editor_.remove_object(name);
+  if (stage_.entities().find_vehicle(name) != nullptr) return stage_.remove_vehicle(name);
+  if (stage_.entities().find_object(name) == nullptr)
+    throw WorldError("there is no vehicle or object '" + name + "' to remove");
+  stage_.remove_object(name);
 }
 
 void Script::change(const Action& action, const Doing&) {
   Diagnostics diagnostics;
-  editor_.change_device(action.targets[0], action.values, diagnostics);
+  stage_.change_device(action.targets[0], action.values, diagnostics);
   diagnostics.throw_if_any();
 }
 
@@ -140,18 +145,18 @@ void Script::log(const std::string& who, const std::string& text) {
   if (log_lines_ > most_lines)
     spdlog::warn("events have said {} lines; what they say from now on is left out", most_lines);
   else
-    spdlog::info("{}{}{} (at {:.3f} s)", who, who.empty() ? "" : ": ", printable(text), to_seconds(world_.now()));
+    spdlog::info("{}{}{} (at {:.3f} s)", who, who.empty() ? "" : ": ", printable(text), to_seconds(stage_.now()));
 }
 
 void Script::publish(const Action& action) {
   Bytes payload = action.payload;
-  if (action.stamp_utime) set_utime(payload, world_.epoch_us() + world_.now().count());
-  editor_.publish(action.channel, payload);
+  if (action.stamp_utime) set_utime(payload, stage_.config().epoch_us + stage_.now().count());
+  stage_.publish(action.channel, payload);
 }
 
 void Script::command(const Action& action) {
   for (Actor& actor : actors_)
-    if (actor.config().name == action.targets[0]) actor.command(action.command, world_.now());
+    if (actor.config().name == action.targets[0]) actor.command(action.command, stage_.now());
 }
 
 }  // namespace sim

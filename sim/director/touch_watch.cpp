@@ -5,7 +5,9 @@
 #include <map>
 #include <set>
 
-#include "sim/world/world.hpp"
+#include "sim/director/stage.hpp"
+#include "sim/physics/physics_world.hpp"
+#include "sim/vehicle/entities.hpp"
 
 namespace sim {
 
@@ -15,11 +17,11 @@ class TouchWatch final : public ConditionWatch {
  public:
   explicit TouchWatch(const Condition& condition) : condition_(condition) {}
 
-  int count_new(World& world) override {
-    if (generation_ != world.generation()) choose_groups(world);
-    const auto parts = world.physics().parts();
+  int count_new(Stage& stage) override {
+    if (generation_ != stage.entities().generation()) choose_groups(stage);
+    const auto parts = stage.physics().parts();
     std::set<std::pair<std::int64_t, std::int64_t>> touching;
-    for (const ContactReport& contact : world.physics().contacts()) {
+    for (const ContactReport& contact : stage.physics().contacts()) {
       const int a = parts[static_cast<std::size_t>(contact.parts[0])].group;
       const int b = parts[static_cast<std::size_t>(contact.parts[1])].group;
       if (matches(a, b) || matches(b, a)) touching.insert(std::minmax(whose_.at(a), whose_.at(b)));
@@ -33,16 +35,16 @@ class TouchWatch final : public ConditionWatch {
   void visit_state(StateArchive& archive) override { archive(touching_); }
 
  private:
-  void choose_groups(World& world) {
-    generation_ = world.generation();
+  void choose_groups(Stage& stage) {
+    generation_ = stage.entities().generation();
     first_.clear();
     second_.clear();
     whose_.clear();
-    for (const auto& vehicle : world.vehicles()) {
+    for (const auto& vehicle : stage.entities().vehicles()) {
       whose_[vehicle->group()] = 2 * static_cast<std::int64_t>(vehicle->number());
       consider(vehicle->name(), vehicle->group(), true);
     }
-    for (const auto& [name, object] : world.objects()) {
+    for (const auto& [name, object] : stage.entities().objects()) {
       whose_[object.group] = 2 * object.number + 1;
       const auto is_plane = [](const PartConfig& part) { return part.shape == PartShape::plane; };
       const auto& shapes = object.config.parts;
@@ -50,7 +52,7 @@ class TouchWatch final : public ConditionWatch {
     }
     // A group that came may have the number of one that went, whose watch ended with it; watching twice does no harm.
     const bool any_first = condition_.subject == "any";
-    for (const int group : any_first ? second_ : first_) world.physics().watch_contacts(group);
+    for (const int group : any_first ? second_ : first_) stage.physics().watch_contacts(group);
   }
 
   void consider(const std::string& name, int group, bool any) {
@@ -70,7 +72,7 @@ class TouchWatch final : public ConditionWatch {
 
 }  // namespace
 
-std::unique_ptr<ConditionWatch> make_touch_watch(const Condition& condition, World&) {
+std::unique_ptr<ConditionWatch> make_touch_watch(const Condition& condition, Stage&) {
   return std::make_unique<TouchWatch>(condition);
 }
 

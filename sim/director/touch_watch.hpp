@@ -6,6 +6,6 @@
 namespace sim {
 
 /// Of `NAME touches NAME`.  `any`: every vehicle and object but those made of planes, which everything stands on.
-std::unique_ptr<ConditionWatch> make_touch_watch(const Condition& condition, World& world);
+std::unique_ptr<ConditionWatch> make_touch_watch(const Condition& condition, Stage& stage);
 
 }  // namespace sim

@@ -24,9 +24,9 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
       builder_(std::make_unique<WorldBuilder>(*parts_)),
       journal_(std::make_unique<WorldJournal>(*parts_)),
       editor_(std::make_unique<WorldEditor>(*this, *parts_, *builder_, *journal_)),
-      state_(std::make_unique<WorldState>(*this, *parts_, *builder_, *editor_, *journal_)) {
+      state_(std::make_unique<WorldState>(*parts_, *builder_, *editor_, *journal_)) {
   builder_->build();
-  parts_->script = std::make_unique<Script>(*this, *editor_);
+  parts_->script = std::make_unique<Script>(*editor_);
   Warnings& warnings = parts_->warnings.building();
   warn_of_starts(*this, warnings);
   for (const std::vector<std::string>& found :
@@ -83,6 +83,10 @@ void World::add_to_run_hash() {
 
 const Hydrodynamics& World::hydrodynamics() const {
   return *parts_->hydrodynamics;
+}
+
+AcousticChannel& World::acoustics() {
+  return *parts_->acoustics;
 }
 
 const AcousticChannel& World::acoustics() const {

@@ -70,6 +70,30 @@ const Vehicle& WorldEditor::add_vehicle(const VehicleInstance& instance) {
   return vehicle;
 }
 
+const WorldConfig& WorldEditor::config() const {
+  return parts_.config;
+}
+
+const StepClock& WorldEditor::clock() const {
+  return parts_.clock;
+}
+
+const Entities& WorldEditor::entities() const {
+  return parts_.entities;
+}
+
+PhysicsWorld& WorldEditor::physics() {
+  return parts_.physics;
+}
+
+Bus& WorldEditor::bus_of_channel(const std::string& channel) {
+  return parts_.buses.of_channel(channel);
+}
+
+WorldWarnings& WorldEditor::warnings() {
+  return parts_.warnings;
+}
+
 void WorldEditor::check_removable(const std::string& name) const {
   parts_.entities.vehicle_named(name);
   for (const MetricConfig& metric : parts_.config.metrics)

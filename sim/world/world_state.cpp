@@ -102,7 +102,7 @@ void WorldState::load(std::span<const std::byte> snapshot) {
   const bool same_structure = head.journal == journal_.bytes() && journal_.gap().empty();
   if (!same_structure || !parts_.script || parts_.in_step) {
     builder_.rebuild();
-    parts_.script = std::make_unique<Script>(world_, editor_);
+    parts_.script = std::make_unique<Script>(stage_);
     JournalReplay(parts_, builder_, journal_).replay(head.journal, head.step);
   }
   parts_.visit_state(archive);

@@ -11,9 +11,8 @@
 
 namespace sim {
 
-class World;
+class Stage;
 class WorldBuilder;
-class WorldEditor;
 class WorldJournal;
 struct WorldParts;
 
@@ -21,8 +20,8 @@ struct WorldParts;
 class WorldState {
  public:
   /// All must outlive this.
-  WorldState(World& world, WorldParts& parts, WorldBuilder& builder, WorldEditor& editor, WorldJournal& journal)
-      : world_(world), parts_(parts), builder_(builder), editor_(editor), journal_(journal) {}
+  WorldState(WorldParts& parts, WorldBuilder& builder, Stage& stage, WorldJournal& journal)
+      : parts_(parts), builder_(builder), stage_(stage), journal_(journal) {}
 
   /// A hash over all that is state: bodies, joints, devices, clocks, medium, events, sound under way, script.
   std::uint64_t hash() const;
@@ -47,10 +46,9 @@ class WorldState {
  private:
   void load(std::span<const std::byte> snapshot);
 
-  World& world_;
   WorldParts& parts_;
   WorldBuilder& builder_;
-  WorldEditor& editor_;
+  Stage& stage_;
   WorldJournal& journal_;
   mutable std::size_t last_bytes_ = 0;  // of a snapshot: about what the next one needs
 };

@@ -22,7 +22,8 @@ std::vector<ParamInfo> keys_of_all_types() {
       types[info.key].push_back(kind->word);
       const auto same = [&](const ParamInfo& other) { return other.key == info.key; };
       if (std::any_of(keys.begin(), keys.end(), same)) continue;
-      info.required = false;  // not by every type
+      if (info.required) info.initial = "\"\"";  // of types that do not require it
+      info.required = false;
       keys.push_back(std::move(info));
     }
   for (ParamInfo& info : keys) {

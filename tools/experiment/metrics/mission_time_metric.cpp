@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/director/condition_watch.hpp"
 #include "sim/script/event_config.hpp"
+#include "sim/world/world_editor.hpp"
 #include "tools/experiment/score/metric_registry.hpp"
 
 namespace tools {
@@ -25,18 +26,18 @@ class MissionTimeMetric final : public Metric {
       : Metric(context),
         params_(params),
         world_(context.world),
-        watch_(sim::make_watch(params.when, context.world, context.world.zones())) {}
+        watch_(sim::make_watch(params.when, context.world.editor(), context.world.zones())) {}
 
   void after_step() override {
     if (time_s_ == time_s_) return;  // it has a time
-    if (watch_ ? watch_->count_new(world_) > 0 : is_there()) time_s_ = sim::to_seconds(world_.now());
+    if (watch_ ? watch_->count_new(world_.editor()) > 0 : is_there()) time_s_ = sim::to_seconds(world_.now());
   }
   void add_figures(Figures& figures) const override { add(figures, "time_s", time_s_); }
   std::string why_none(const std::string&) const override { return "it did not happen"; }
   void visit_state(sim::StateArchive& archive, History) override {
     archive(time_s_);
     // A restored world may have built anew what the watch looks at.
-    if (watch_ && archive.restoring()) watch_ = sim::make_watch(params_.when, world_, world_.zones());
+    if (watch_ && archive.restoring()) watch_ = sim::make_watch(params_.when, world_.editor(), world_.zones());
     if (watch_) watch_->visit_state(archive);
   }
 
