@@ -70,7 +70,7 @@ class RunJournal {
   static constexpr const char* serial_bus = "serial";
   /// In sim_letter_t::channel, for a request that changes the world.
   static constexpr const char* request_channel = "sim.control";
-  /// In sim_hash_t::part, after the parts of the state: World::run_hash().  No name in a world has a space.
+  /// In sim_hash_t::part, after the parts of the state: WorldState::run_hash().  No name in a world has a space.
   static constexpr const char* run_hash_part = "run hash";
   /// In sim_letter_t::step, before the first reports.
   static constexpr std::int64_t before_first_reports = -1;

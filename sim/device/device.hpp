@@ -60,7 +60,7 @@ class Sensor {
   virtual std::int64_t rays() const { return 0; }
   /// It looks for the bottom though it does not cast rays as the scanners do: a world without one is worth a warning.
   virtual bool needs_bottom() const { return false; }
-  /// Something sent to this device at a simulated time arrives, see World::schedule_arrival.
+  /// Something sent to this device at a simulated time arrives, see DeviceHost::schedule_arrival.
   virtual void arrive(Time /*at*/, std::span<const std::byte> /*payload*/) {}
   /// The reading and everything that outlasts a sample.
   virtual void visit_state(StateArchive& archive) = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// World::run_hash(): over every step and message of a run, and over nothing that observation switches on.
+// WorldState::run_hash(): over every step and message of a run, and over nothing that observation switches on.
 #include <gtest/gtest.h>
 
 #include <set>

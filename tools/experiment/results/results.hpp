@@ -39,7 +39,7 @@ struct Summary {
   double duration_s = 0;  ///< asked for; 0: until somebody ends it
   double wall_s = 0;
   std::uint64_t state_hash = 0;  ///< of the last state
-  std::uint64_t run_hash = 0;    ///< of the whole run: World::run_hash()
+  std::uint64_t run_hash = 0;    ///< of the whole run: WorldState::run_hash()
   std::uint64_t messages = 0;
   std::uint64_t dropped_messages = 0;
   std::int64_t bad_messages = 0;

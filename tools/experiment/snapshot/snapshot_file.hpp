@@ -30,7 +30,7 @@ struct Snapshot {
   double from_s = 0;  ///< since when the scores count
   std::uint64_t state_hash = 0;
   std::vector<std::string> vehicles;
-  sim::Bytes state;   ///< World::snapshot()
+  sim::Bytes state;   ///< WorldState::snapshot()
   sim::Bytes scores;  ///< Scoring::visit_state()
   sim::Bytes owners;  ///< SimService::visit_state()
 
