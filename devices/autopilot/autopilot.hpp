@@ -25,6 +25,7 @@ class Autopilot final : public sim::Sensor {
   static constexpr const char* meaning =
       "Autopilot: heading, depth, altitude, speed, waypoints, station keeping, by thrusters and fins of its vehicle.";
   static constexpr double default_rate_hz = 10;
+  static constexpr const char* example = "thrusters: [push]";
   using Params = AutopilotParams;
   using Mode = AutopilotMode;
 

@@ -18,6 +18,7 @@ class Gateway final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Gateway: passes messages between two modems of its vehicle.";
   static constexpr double default_rate_hz = 1;
+  static constexpr const char* example = "between: [radio, sound]";
   struct Params {
     std::vector<std::string> between;
     std::vector<std::string> destinations{"", ""};

@@ -16,6 +16,8 @@ namespace devices {
 /// Control, 2nd ed., 2012).
 class AckermannDrive final : public sim::Actuator {
  public:
+  static constexpr const char* example =
+      "left_steer_joint: front_left, right_steer_joint: front_right, drive_joints: [left, right]";
   static constexpr const char* meaning =
       "Steered front wheels and driven wheels, commanded by speed and steering, by twist, or by thrust and rudder.";
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::coast};

@@ -17,6 +17,7 @@ class NaiveDrive final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
       "Moves a kinematic body by speed, heading and depth, or by thrust, rudder and elevator; no forces.";
+  static constexpr const char* example = "body: ghost";
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::hold};
   struct Params {
     double max_speed_mps = 2;

@@ -15,7 +15,10 @@ std::vector<ParamInfo> merged_keys(const std::vector<std::pair<std::string, std:
       const auto same = [&](const ParamInfo& other) { return other.key == info.key; };
       if (std::any_of(keys.begin(), keys.end(), same)) continue;
       keys.push_back(info);
-      keys.back().required = false;  // not by every type
+      ParamInfo& merged = keys.back();
+      const bool is_text = merged.kind == ParamKind::text || merged.kind == ParamKind::name;
+      if (merged.required && is_text && merged.choices.empty()) merged.initial = "\"\"";  // of types without it
+      merged.required = false;
     }
   for (ParamInfo& info : keys) {
     const std::vector<std::string>& whose = owners[info.key];

@@ -38,6 +38,7 @@ struct DeviceType {
   std::string name;
   std::string meaning;  ///< one sentence
   double default_rate_hz = 0;
+  std::string example;                  ///< keys in YAML on the vehicle of every_device_test; empty: joints are enough
   std::string report_message;           ///< such as `shoal.pose_t`; empty: does not report
   std::string command_messages;         ///< comma separated; empty: takes no commands
   std::vector<SafeState> safe_states;   ///< of an actuator, the default first; empty: no actuator
@@ -173,6 +174,7 @@ bool add_device(const char* name) {
   DeviceType type;
   type.name = name;
   type.meaning = Model::meaning;
+  if constexpr (requires { Model::example; }) type.example = Model::example;
   if constexpr (requires { Model::default_rate_hz; }) type.default_rate_hz = Model::default_rate_hz;
   if constexpr (requires { ReporterType::message_name(); })
     type.report_message = ReporterType::message_name();

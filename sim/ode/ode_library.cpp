@@ -12,6 +12,7 @@
 #include <string>
 
 #include "sim/base/step_memory.hpp"
+#include "sim/ode/ode_version.hpp"
 #include "sim/ode/physics_fault.hpp"
 
 namespace sim {
@@ -75,6 +76,10 @@ void start_ode() {
 
 std::int64_t ode_messages() {
   return message_count;
+}
+
+const char* ode_configuration() {
+  return dGetConfiguration();
 }
 
 }  // namespace sim

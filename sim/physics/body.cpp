@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <span>
+#include <type_traits>
 
 #include "sim/ode/ode_math.hpp"
 #include "sim/physics/physics_world.hpp"
@@ -12,6 +13,12 @@
 #include "sim/state/state_archive.hpp"
 
 namespace sim {
+
+static_assert(std::is_same_v<dReal, double>, "Body keeps pointers into ODE's numbers");
+
+void BodyDeleter::operator()(dxBody* body) const {
+  dBodyDestroy(body);
+}
 
 Pose Body::X_WB() const {
   if (fixed()) return seat_X_WB_;

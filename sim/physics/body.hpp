@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ode/ode.h>
-
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,13 +9,16 @@
 #include "sim/base/step_memory.hpp"
 #include "sim/physics/motion.hpp"
 
+struct dxBody;  // ODE's, whose headers only the sources of physics read
+struct dxGeom;
+
 namespace sim {
 
 class StateArchive;
 struct SceneMoves;
 
 struct BodyDeleter {
-  void operator()(dBodyID body) const { dBodyDestroy(body); }
+  void operator()(dxBody* body) const;
 };
 using BodyHandle = std::unique_ptr<dxBody, BodyDeleter>;
 
@@ -80,7 +81,7 @@ class Body : public VisitedInSteps {
  private:
   friend class PhysicsWorld;
   struct FixedGeom {
-    dGeomID geom;
+    dxGeom* geom;
     Pose X_BG;
     bool plane;
   };
@@ -95,10 +96,10 @@ class Body : public VisitedInSteps {
   // What each step needs, side by side.
   BodyHandle ode_;
   // Into the ODE body, which does not move in memory.
-  const dReal* p_WC_ = nullptr;
-  const dReal* v_WC_W_ = nullptr;
-  const dReal* w_WB_W_ = nullptr;
-  const dReal* R_WB_ = nullptr;
+  const double* p_WC_ = nullptr;
+  const double* v_WC_W_ = nullptr;
+  const double* w_WB_W_ = nullptr;
+  const double* R_WB_ = nullptr;
   bool gyroscopic_ = true;
   Motion motion_ = Motion::free;
   bool move_is_due_ = false;  // move_to was called for the next step

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sim/ode/ode_math.hpp"
+#include "sim/physics/joint_load.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/state/state_archive.hpp"
 
@@ -21,7 +22,7 @@ dJointType kind_of(const std::string& type) {
   throw std::invalid_argument("unknown type of joint '" + type + "'");
 }
 
-int axes_of(dJointType kind, bool ball_motor) {
+int axes_of(int kind, bool ball_motor) {
   switch (kind) {
     case dJointTypeBall:
       return ball_motor ? 3 : 0;
@@ -53,6 +54,12 @@ void set_ode_pose(dBodyID body, const Vector3d& p_WC, const dQuaternion q_WC) {
 }
 
 }  // namespace
+
+void JointDeleter::operator()(dxJoint* joint) const {
+  dJointDestroy(joint);
+}
+
+Joint::~Joint() = default;
 
 Joint::Joint(dWorldID world, std::string name, const JointConfig& config, dBodyID first, dBodyID second,
              const Pose& X_WV)
@@ -165,6 +172,10 @@ void Joint::put_stops(const OdeStops& stops, int axis) {
   // ODE forgets that an axis is at a stop only when it looks again, and without any stop it does not look.
   set_parameter(dParamHiStop, dInfinity, axis);
   set_parameter(dParamLoStop, stop_never_reached(), axis);
+}
+
+double Joint::stop_never_reached() const {
+  return kind_ == dJointTypeSlider ? -1e300 : -std::numbers::pi;
 }
 
 Joint::OdeStops Joint::stops_of(int axis) const {

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ode/ode.h>
-
 #include <array>
+#include <limits>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,12 +11,16 @@
 #include "sim/base/math.hpp"
 #include "sim/model/physics_config.hpp"
 
+struct dxBody;  // ODE's, whose headers only the sources of physics read
+struct dxJoint;
+struct dxWorld;
+
 namespace sim {
 
 class StateArchive;
 
 struct JointDeleter {
-  void operator()(dJointID joint) const { dJointDestroy(joint); }
+  void operator()(dxJoint* joint) const;
 };
 using JointHandle = std::unique_ptr<dxJoint, JointDeleter>;
 
@@ -30,6 +32,10 @@ using JointHandle = std::unique_ptr<dxJoint, JointDeleter>;
 /// body counts how the moving body moves.
 class Joint {
  public:
+  ~Joint();
+  Joint(const Joint&) = delete;
+  Joint& operator=(const Joint&) = delete;
+
   const std::string& name() const { return name_; }  ///< such as `rover1/left`
   const std::string& type() const { return type_; }
   /// 0 fixed, and ball without a motor; 1 hinge and slider; 2 hinge2 and universal; 3 ball with a motor.
@@ -53,10 +59,10 @@ class Joint {
   /// What the joint applied in the last step on its second body; where only one body moves, on that one.  All that
   /// goes through the joint: constraint, motor, stops and efforts.  The torque is about the joint's anchor, which the
   /// body takes along.
-  Vector3d force_W_N() const { return load_ ? load_->force_W_N : Vector3d(Vector3d::Zero()); }
-  Vector3d torque_W_Nm() const { return load_ ? load_->torque_W_Nm : Vector3d(Vector3d::Zero()); }
+  Vector3d force_W_N() const;
+  Vector3d torque_W_Nm() const;
   /// Of that, what motor, stops and add_effort applied about or along an axis, in the joint's sign.
-  double effort(int axis = 0) const { return load_ ? load_->effort[axis] : 0; }
+  double effort(int axis = 0) const;
 
   /// Restoring needs a joint that was made, and moved by move_group, as the one that was saved.
   void visit_state(StateArchive& archive);
@@ -64,19 +70,7 @@ class Joint {
  private:
   friend class PhysicsWorld;
   static constexpr int most_axes = 3;
-  struct Load {
-    dJointFeedback feedback = {};
-    dJointFeedback motor_feedback = {};  // of a ball's motor
-    // At the start of the step: the load acts at the poses that the bodies have then.
-    Vector3d p_CA_W = Vector3d::Zero();  // from the centre of mass of the loaded body to the anchor
-    Vector3d p_AM_W = Vector3d::Zero();  // to where ODE lets the added force of a slider act
-    Vector3d axis_W[most_axes] = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
-    double added[most_axes] = {};   // by add_effort
-    double beside[most_axes] = {};  // not by the solver's rows: added, and a motor at a stop
-    Vector3d force_W_N = Vector3d::Zero();
-    Vector3d torque_W_Nm = Vector3d::Zero();
-    double effort[most_axes] = {};
-  };
+  struct Load;  // sim/physics/joint_load.hpp
   /// Of a joint to the world: how it was made, so that it can be made again elsewhere.
   struct WorldSide {
     JointConfig config;
@@ -85,18 +79,18 @@ class Joint {
   };
   /// As ODE counts and signs them.
   struct OdeStops {
-    double low = -dInfinity, high = dInfinity;
+    double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
   };
   /// Attaches at the poses the bodies have now.  `second` null: the world.
-  Joint(dWorldID world, std::string name, const JointConfig& config, dBodyID first, dBodyID second, const Pose& X_WV);
-  void create(dWorldID world, const JointConfig& config, const Pose& X_WV, dBodyID first, dBodyID second);
-  void create_ball_motor(dWorldID world, const Pose& X_WV, dBodyID first, dBodyID second);
+  Joint(dxWorld* world, std::string name, const JointConfig& config, dxBody* first, dxBody* second, const Pose& X_WV);
+  void create(dxWorld* world, const JointConfig& config, const Pose& X_WV, dxBody* first, dxBody* second);
+  void create_ball_motor(dxWorld* world, const Pose& X_WV, dxBody* first, dxBody* second);
   Vector3d rotation_of_ball() const;
   void configure_axis(const JointAxisConfig& config, int axis);
   void place_stops(std::optional<double> low, std::optional<double> high, int axis);
   void put_stops(const OdeStops& stops, int axis);
   OdeStops stops_of(int axis) const;  ///< stops that do nothing are told as none
-  double stop_never_reached() const { return kind_ == dJointTypeSlider ? -1e300 : -std::numbers::pi; }
+  double stop_never_reached() const;
   void visit_stops(StateArchive& archive, int axis);
   void visit_load(StateArchive& archive);
   void measure_no_load();
@@ -119,7 +113,7 @@ class Joint {
   JointHandle ball_motor_;                    // ODE's angular motor
   Matrix3d R_F_axes_ = Matrix3d::Identity();  // the ball's axes in the frame of its first body (or the world)
   Matrix3d R_FS_ = Matrix3d::Identity();      // of its second body, when the joint was made
-  dJointType kind_ = dJointTypeHinge;
+  int kind_ = 0;                              // ODE's dJointType
   int axes_ = 0;
   double sign_ = 1;  // ODE counts the first body relative to the second
   double position_[most_axes] = {};
@@ -128,7 +122,7 @@ class Joint {
   double motor_max_force_[most_axes] = {};
   std::array<OdeStops, most_axes> configured_stops_;
   bool stops_were_set_ = false;                     ///< at run time
-  dBodyID loaded_ = nullptr;                        // whose load is measured
+  dxBody* loaded_ = nullptr;                        // whose load is measured
   Vector3d p_CA_C_ = Vector3d::Zero();              // the anchor in ODE's frame of the loaded body
   std::unique_ptr<Load> load_;                      // when it is measured
   std::vector<Joint*>* measured_joints_ = nullptr;  // of the world

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "sim/physics/joint_load.hpp"
+
+#include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "sim/ode/ode_math.hpp"
-#include "sim/physics/joint.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/state/state_archive.hpp"
 
@@ -103,6 +105,18 @@ void Joint::note_load() {
   const double cosine = a.dot(b), scale = 1 / (1 - cosine * cosine);
   load.effort[0] = scale * (along.dot(a) - cosine * along.dot(b));
   load.effort[1] = scale * (along.dot(b) - cosine * along.dot(a));
+}
+
+Vector3d Joint::force_W_N() const {
+  return load_ ? load_->force_W_N : Vector3d(Vector3d::Zero());
+}
+
+Vector3d Joint::torque_W_Nm() const {
+  return load_ ? load_->torque_W_Nm : Vector3d(Vector3d::Zero());
+}
+
+double Joint::effort(int axis) const {
+  return load_ ? load_->effort[axis] : 0;
 }
 
 void Joint::visit_load(StateArchive& archive) {

@@ -45,7 +45,7 @@ class EmbreeScene final : public WorldScene {
 
     bool moves = false;
     std::vector<RayShape> shapes;
-    std::vector<dGeomID> geoms;  // of each
+    std::vector<dxGeom*> geoms;  // of each
     EmbreeSceneHandle scene;
     EmbreeGeometryHandle geometry;
     Vector3d origin_W = Vector3d::Zero();  // what the tree counts from

@@ -49,7 +49,7 @@ struct alignas(32) RayShape {
 /// Throws std::logic_error for a geom that rays know nothing of.
 RayShape make_ray_shape(int number, const ScenePart& part, const TriangleScene* mesh);
 /// Takes over the pose of the geom.
-void follow(RayShape& shape, dGeomID geom);
+void follow(RayShape& shape, dxGeom* geom);
 
 /// Up to eight rays on their way, one to a lane, and what each has hit so far.
 struct alignas(64) RayPacket {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ode/ode.h>
-
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
 
 #include "sim/scene/scene.hpp"
+
+struct dxGeom;  // ODE's
 
 namespace sim {
 
@@ -22,7 +22,7 @@ struct SceneMoves {
 
 /// A part as rays see it.  Its pose and its sizes are the geom's.
 struct ScenePart {
-  dGeomID geom = nullptr;
+  dxGeom* geom = nullptr;
   int group = -1;
   std::uint32_t category = 0;
   int material = 0;

@@ -85,6 +85,10 @@ const Hydrodynamics& World::hydrodynamics() const {
   return *parts_->hydrodynamics;
 }
 
+AcousticChannel& World::acoustics() {
+  return *parts_->acoustics;
+}
+
 const AcousticChannel& World::acoustics() const {
   return *parts_->acoustics;
 }

@@ -78,6 +78,7 @@ class World {
   const Medium& medium() const { return medium_; }
   const Hydrodynamics& hydrodynamics() const;
   /// What carries sound between transducers.
+  AcousticChannel& acoustics();
   const AcousticChannel& acoustics() const;
   const Geodesy& geodesy() const { return geodesy_; }
 

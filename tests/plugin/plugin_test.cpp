@@ -15,6 +15,7 @@ using system_test::Ended;
 using system_test::source;
 using system_test::write_file;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 Ended run(std::vector<std::string> arguments) {
@@ -42,9 +43,9 @@ class Plugin : public testing::Test {
   static std::string path(const std::string& name) { return folder_->file(name); }
   static std::string example() { return path("example/build/thermometer.so"); }
 
-  static void build(const std::string& directory) {
-    const Ended configured =
-        run({"cmake", "-S", directory, "-B", directory + "/build", "-DCMAKE_PREFIX_PATH=" + path("prefix")});
+  static void build(const std::string& directory, const std::string& flags = "") {
+    const Ended configured = run({"cmake", "-S", directory, "-B", directory + "/build",
+                                  "-DCMAKE_PREFIX_PATH=" + path("prefix"), "-DCMAKE_CXX_FLAGS=" + flags});
     ASSERT_EQ(configured.exit_code, 0) << configured.output << configured.errors;
     const Ended built = run({"cmake", "--build", directory + "/build"});
     ASSERT_EQ(built.exit_code, 0) << built.output << built.errors;
@@ -66,6 +67,13 @@ class Plugin : public testing::Test {
   static Ended shoal(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), path("prefix/bin/shoal"));
     return run(std::move(arguments));
+  }
+
+  /// A folder for the compiler's path whose ode/ode.h ends a compilation.
+  static std::string folder_without_ode() {
+    fs::create_directories(path("without_ode/ode"));
+    write_file(path("without_ode/ode/ode.h"), "#error a plugin reads the headers of ODE\n");
+    return path("without_ode");
   }
 
   /// A library of this text, compiled without anything of Shoal.
@@ -123,6 +131,17 @@ TEST_F(Plugin, IsDescribedAndListedLikeAnyOtherDevice) {
   EXPECT_THAT(shoal({"describe", "--schema", "world", "--plugin", example()}).output,
               HasSubstr("\"device_thermometer\""));
   EXPECT_EQ(shoal({"describe", "thermometer"}).exit_code, 2);
+}
+
+TEST_F(Plugin, IsBuiltWithoutTheHeadersOfOde) {
+  fs::copy(path("example"), path("ode_free"), fs::copy_options::recursive);
+  fs::remove_all(path("ode_free/build"));
+  write_file(path("ode_free/thermometer.cpp"),
+             "#include \"sim/physics/physics_world.hpp\"\n#include \"sim/world/world.hpp\"\n" +
+                 system_test::text_of_file(path("ode_free/thermometer.cpp")));
+  build(path("ode_free"), "-I" + folder_without_ode());
+  EXPECT_EQ(shoal({"describe", "thermometer", "--plugin", path("ode_free/build/thermometer.so")}).exit_code, 0);
+  EXPECT_THAT(system_test::text_of_file(path("prefix/lib/cmake/Shoal/ShoalConfig.cmake")), Not(HasSubstr("ODE")));
 }
 
 TEST_F(Plugin, MayBeNamedTwice) {

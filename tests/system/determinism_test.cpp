@@ -122,19 +122,6 @@ INSTANTIATE_TEST_SUITE_P(Worlds, Determinism,
                                          Case{"worlds/coop_relay.yaml", "10"}, Case{"worlds/clock_bench.yaml", "60"}),
                          [](const auto& test) { return std::filesystem::path(test.param.world).stem().string(); });
 
-TEST(ProvingGroundAndSea, HaveEveryDevice) {
-  sim::LoadOptions options;
-  options.encode_message = shoal::encode_own_message;
-  std::set<std::string> types;
-  for (const char* file : {"worlds/proving_ground.yaml", "worlds/proving_sea.yaml"}) {
-    const auto loaded = sim::load_world(source(file), options);
-    for (const sim::VehicleInstance& vehicle : loaded.config.vehicles)
-      for (const sim::DeviceConfig& device : vehicle.config->devices) types.insert(device.type);
-  }
-  for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all())
-    EXPECT_TRUE(types.contains(type->name)) << type->name;
-}
-
 TEST(CoopLand, IsTheSameRunAtAnySpeedWithItsProcesses) {
   const ScratchFolder folder;
   std::string hashes[2];

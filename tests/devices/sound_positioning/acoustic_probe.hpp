@@ -25,7 +25,7 @@ class AcousticProbe final : public sim::AcousticListener {
   };
 
   AcousticProbe(LoadedTestWorld& test, const std::string& vehicle, const sim::ReceiverConfig& receiver = {})
-      : world_(test.world), transducer(*this, receiver, context(vehicle).sound_site()) {}
+      : world_(test.world), transducer(*this, receiver, site(vehicle)) {}
 
   bool listens_to(const sim::Signal&) const override { return listening; }
   void heard(const sim::Reception& heard) override {
@@ -47,17 +47,16 @@ class AcousticProbe final : public sim::AcousticListener {
   }
 
  private:
-  sim::DeviceContext context(const std::string& vehicle) {
+  sim::SoundSite site(const std::string& vehicle) {
     for (const auto& each : world_.vehicles())
-      if (each->name() == vehicle) {
-        config_.name = "probe";
-        return {world_, *each, config_, each->body("hull"), -1, faults_};
-      }
+      if (each->name() == vehicle)
+        return {world_.acoustics(), each->body("hull"),      sim::Pose::Identity(),
+                each->group(),      each->systems().powered, faults_,
+                vehicle + "/probe"};
     throw std::runtime_error("no vehicle '" + vehicle + "'");
   }
 
   sim::World& world_;
-  sim::DeviceConfig config_;
   sim::DeviceFaults faults_;
 
  public:

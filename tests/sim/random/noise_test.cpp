@@ -313,6 +313,45 @@ TEST(NoiseParams, AreReadByTheirNames) {
   EXPECT_EQ(params.saturation, 12);
 }
 
+TEST(NoiseParams, KnowTheKeyTheyWereReadByWhetherItIsThereOrNot) {
+  struct Params {
+    NoiseParams range_noise, bearing_noise;
+    void read(sim::ParamReader& in) {
+      in.read("range_noise", range_noise, "error of the range");
+      in.read("bearing_noise", bearing_noise, "error of the bearing");
+    }
+  } params;
+  sim::Diagnostics diagnostics;
+  const sim::ConfigNode node = sim::parse_config_text("range_noise: {bias: 2}", "n.yaml", diagnostics);
+  sim::ParamReader in(node, "device", diagnostics);
+  params.read(in);
+  in.finish();
+  EXPECT_TRUE(diagnostics.lines().empty());
+  EXPECT_STREQ(params.range_noise.key, "range_noise");
+  EXPECT_STREQ(params.bearing_noise.key, "bearing_noise");
+}
+
+TEST(NoiseOf, IsMadeOfItsMemberAndChangesWithIt) {
+  struct Params {
+    NoiseParams first, second;
+  } params;
+  struct Context {
+    Noise noise(const NoiseParams& of, int values) const { return {of, values, Random(1, "d#q")}; }
+  };
+  params.first.bias = 1;
+  params.second.bias = 10;
+  sim::NoiseOf<&Params::second> noise(Context{}, params);
+  Random random(1, "d");
+  double value = 0;
+  noise.apply(value, 0, random);
+  EXPECT_EQ(value, 10);
+  params.second.bias = 20;
+  noise.change(params);
+  value = 0;
+  noise.apply(value, 0, random);
+  EXPECT_EQ(value, 20);
+}
+
 TEST(NoiseParams, RefuseWhatHasNoMeaning) {
   std::string errors;
   read("gaussian_std: -1\noutlier_probability: 2\ngauss_markov_time_s: 0\n", errors);

@@ -371,7 +371,7 @@ TEST(WorldSnapshot, AJournalThatGrewTooLargeIsRefusedAndLetGo) {
       error = refused.what();
     }
   }
-  EXPECT_EQ(error, "this world cannot be saved: more came and was changed than can be told in 16 MiB");
+  EXPECT_EQ(error, "this world cannot be saved: the change journal exceeds 16 MiB");
   EXPECT_EQ(error_of(test.world, start), "");
   EXPECT_EQ(test.world.state().snapshot(), start);  // back there it can be saved again
 }

@@ -37,6 +37,7 @@ SKIPPED = {
     "derivative_that_drives": "the names of derivatives are a grammar of their own",
     "dvl_layer_that_ends_before_it_begins": "one number depends on another",
     "sonar_picture_too_large": "the product of two numbers is limited",
+    "metric_with_a_key_of_another_type": "the keys depend on another key",
     "metric_without_its_channel": "one key needs another",
     "metric_of_no_vehicle": "names are not in the schema",
     "rule_without_a_value": "one of several keys is needed",

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ode/ode.h>
 #include <spdlog/fmt/fmt.h>
 
 #include "bridges/bus/lcm_version.hpp"
+#include "sim/ode/ode_version.hpp"
 #include "tools/experiment/run/runner.hpp"
 
 namespace tools {
@@ -17,7 +17,7 @@ std::string version_text() {
       "ODE: {}\n"
       "LCM {}, Eigen {}.{}.{}, fmt {}\n"
       "compiler: {}\n",
-      short_version(), dGetConfiguration(), bridges::lcm_version(), EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
+      short_version(), sim::ode_configuration(), bridges::lcm_version(), EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
       EIGEN_MINOR_VERSION, FMT_VERSION, __VERSION__);
 }
 
