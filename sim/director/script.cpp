@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "sim/director/action_run.hpp"
 #include "sim/director/stage.hpp"
 #include "sim/vehicle/entities.hpp"
 #include "sim/vehicle/mounted_device.hpp"
@@ -149,7 +150,7 @@ void Script::fire(std::size_t i, int depth) {
   EventState& event = events_[i];
   ++firings_;
   event.begin_draws(stage_.clock().step_number);
-  carry_out(event.config.actions, {"event '" + event.config.name + "'", event.random, nullptr, depth});
+  carry_out(event.config.actions, {*this, stage_, "event '" + event.config.name + "'", event.random, nullptr, depth});
   for (const int next : event.fired_by_this) attempt(static_cast<std::size_t>(next), depth + 1);
 }
 
@@ -159,7 +160,7 @@ void Script::cut(EventState& event, const std::string& why) {
   event.told_of_cut = true;
 }
 
-std::vector<Action> Script::parse_now(const ConfigNode& action, Diagnostics& diagnostics) const {
+std::vector<ActionEntry> Script::parse_now(const ConfigNode& action, Diagnostics& diagnostics) const {
   ConfigNode list;
   list.kind = ConfigNode::Kind::list;
   list.place = action.place;
@@ -168,7 +169,7 @@ std::vector<Action> Script::parse_now(const ConfigNode& action, Diagnostics& dia
   ParamReader in(map, "", diagnostics);
   const WorldConfig& config = stage_.config();
   std::set<std::string> objects, movable;
-  for (const auto& [name, pose] : catalogue_) objects.insert(name);
+  for (const auto& [name, listed] : catalogue_) objects.insert(name);
   for (const auto& [name, object] : stage_.entities().objects()) objects.insert(name);
   for (std::string& name : names_added_by(map)) objects.insert(std::move(name));
   movable = objects;
@@ -178,14 +179,14 @@ std::vector<Action> Script::parse_now(const ConfigNode& action, Diagnostics& dia
   for (const ActorConfig& actor : config.actors) in.declare("actor", actor.name);
   for (const EventConfig& event : config.events) in.declare("event", event.name);
   declare_surfaces(in, config);
-  std::vector<Action> actions;
+  std::vector<ActionEntry> actions;
   in.read_list("do", actions, "action", "");
   return actions;
 }
 
 void Script::run_now(const ConfigNode& action, Diagnostics& diagnostics) {
   make_catalogue();
-  std::vector<Action> actions = parse_now(action, diagnostics);
+  std::vector<ActionEntry> actions = parse_now(action, diagnostics);
   if (!diagnostics.ok()) return;
   const auto find = [this](const std::string& name) -> NamedDevice {
     const MountedDevice* device = stage_.entities().find_device(name);
@@ -199,7 +200,7 @@ void Script::run_now(const ConfigNode& action, Diagnostics& diagnostics) {
     live_random_.begin_step(live_random_step_);
   }
   firings_ = 0;
-  carry_out(actions, {"", live_random_, &diagnostics, 0});
+  carry_out(actions, {*this, stage_, "", live_random_, &diagnostics, 0});
 }
 
 void Script::EventState::visit_state(StateArchive& archive) {

@@ -11,11 +11,13 @@
 #include "sim/director/actor.hpp"
 #include "sim/director/condition_watch.hpp"
 #include "sim/geometry/zone.hpp"
+#include "sim/random/random.hpp"
 #include "sim/world_file/world_config.hpp"
 
 namespace sim {
 
 class Stage;
+struct ActionRun;
 
 /// How a vehicle did in zones with rules.
 struct ZoneRecord {
@@ -44,6 +46,22 @@ class Script {
   bool empty() const;
   void visit_state(StateArchive& archive);
 
+  // For actions.
+  /// An object of the world file, whether it is there or not.
+  struct ListedObject {
+    const ObjectConfig* config = nullptr;
+    Pose X_WE = Pose::Identity();
+  };
+  /// By its name, numbered where there are several.  Null when there is none.
+  const ListedObject* find_listed(const std::string& name);
+  /// One after the other; what fails is reported, and the next one follows.
+  void carry_out(const std::vector<ActionEntry>& actions, const ActionRun& run);
+  /// Lets an event fire, as far as its `times` and `probability` allow.
+  void trigger(const std::string& event, int depth);
+  void command_actor(const std::string& actor, ActorCommand command);
+  /// A line of text from an event; a run logs 1000 of them.
+  void log(const std::string& who, const std::string& text);
+
  private:
   struct EventState {
     explicit EventState(const EventConfig& config, std::uint64_t seed);
@@ -60,34 +78,13 @@ class Script {
     bool told_of_cut = false;
     void visit_state(StateArchive& archive);
   };
-  /// Where the failures of an action go, and its random choices come from.
-  struct Doing {
-    std::string who;
-    Random& random;
-    Diagnostics* diagnostics = nullptr;  ///< null: WorldWarnings
-    int depth = 0;
-  };
-
   void update_records(Time now);
   void plan_next(EventState& event);
   int due_times(EventState& event, Time now);
   void attempt(std::size_t event, int depth);
   void fire(std::size_t event, int depth);
   void cut(EventState& event, const std::string& why);
-  std::vector<Action> parse_now(const ConfigNode& action, Diagnostics& diagnostics) const;
-
-  // script_actions.cpp
-  void carry_out(const std::vector<Action>& actions, const Doing& doing);
-  void carry_out(const Action& action, const Doing& doing);
-  void move(const Action& action, const Doing& doing);
-  void add(const Action& action, const Doing& doing);
-  void remove(const Action& action, const Doing& doing);
-  void change(const Action& action, const Doing& doing);
-  void log(const std::string& who, const std::string& text);
-  void publish(const Action& action);
-  void command(const Action& action);
-  const std::string& pick_target(const Action& action, const Doing& doing) const;
-  const std::vector<Action>* pick_choice(const Action& action, const Doing& doing) const;
+  std::vector<ActionEntry> parse_now(const ConfigNode& action, Diagnostics& diagnostics) const;
   void make_catalogue();
 
   Stage& stage_;
@@ -99,9 +96,8 @@ class Script {
   std::vector<std::unique_ptr<ConditionWatch>> watches_;           ///< by event; null: it waits for nothing
   std::map<std::pair<Time, std::uint64_t>, std::size_t> delayed_;  ///< due, order of scheduling: event
   std::uint64_t next_delayed_ = 0;
-  int firings_ = 0;  ///< in this step
-  /// Every object of the world file, whether it is there or not: what `add: NAME` adds.
-  std::map<std::string, std::pair<const ObjectConfig*, Pose>> catalogue_;
+  int firings_ = 0;                                ///< in this step
+  std::map<std::string, ListedObject> catalogue_;  ///< what `add: NAME` adds
   bool catalogued_ = false;
   Random live_random_;
   std::int64_t live_random_step_ = -1;

@@ -3,83 +3,44 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "sim/bus/bus.hpp"
 #include "sim/config/param_reader.hpp"
-#include "sim/device/fault.hpp"
-#include "sim/random/random.hpp"
-#include "sim/script/actor_config.hpp"
 
 namespace sim {
 
-struct ObjectConfig;
+class ActionCheck;
+struct ActionRun;
 
 /// Turns a map of values into the payload of a message type; what is wrong goes to the diagnostics.  sim/ knows no
 /// message types: the program that loads a world brings this.
 using EncodeMessage = std::function<Bytes(const std::string& type, const ConfigNode& value, Diagnostics&)>;
 
-/// Where something is put: at a pose, at one of several places, or somewhere in an area.
-struct PlaceChoice {
-  std::optional<Vector3d> position_m;
-  std::optional<Vector3d> rpy_rad;
-  std::vector<Vector3d> places_m;      ///< one of them, at random
-  Vector3d area_m = Vector3d::Zero();  ///< size of the box around the position that places are drawn from
-  bool random_yaw = false;
-
-  void read(ParamReader& in);
-  /// `X_W_unless`: what is not said stays as it is there.
-  Pose choose(const Pose& X_W_unless, Random& random) const;
+/// One thing that events do, with its values.  Its type is registered by SHOAL_ACTION (sim/script/action_registry.hpp).
+class Action {
+ public:
+  virtual ~Action() = default;
+  /// Reads its keys, the first of which is its word.  Names are those declared as `vehicle`, `object`,
+  /// `vehicle or object`, `actor`, `event`.  While describing, the row of the word itself is left out.
+  virtual void read(ParamReader& in) = 0;
+  /// Reports what shows only when all vehicles of the world are known, and makes what is made once for all firings.
+  virtual void check(const ActionCheck& /*check*/) {}
+  /// What is wrong is thrown, and the event goes on with its next action.
+  virtual void carry_out(const ActionRun& run) const = 0;
+  /// Adds the channels that it publishes on.
+  virtual void add_channels(std::set<std::string>& /*channels*/) const {}
 };
 
-enum class ActionKind {
-  move,
-  add,
-  remove,
-  one_of,
-  fault,
-  clear_fault,
-  set,
-  publish,
-  actor,
-  trigger,
-  gravity,
-  log,
-  end
-};
-
-/// One thing an event does.  In YAML a map whose first key says what.
-struct Action {
-  ActionKind kind = ActionKind::log;
+/// An action in the list of an event.  In YAML a map whose first key is the action's word.
+struct ActionEntry {
   SourcePlace place;
-  std::string who;                             ///< for messages, such as `event 'night': action 2`
-  std::vector<std::string> targets;            ///< move, remove: one of them, at random; else the one name
-  PlaceChoice where;                           ///< move, add
-  std::shared_ptr<const ObjectConfig> object;  ///< add: when it is written in the action
-  std::vector<std::vector<Action>> choices;    ///< one_of
-  std::vector<double> weights;                 ///< one_of; empty: all alike
-  FaultConfig fault;
-  ConfigNode values;    ///< set: key: value.  publish: of the message
-  std::string channel;  ///< publish
-  std::string message_type;
-  Bytes payload;             ///< publish: encoded by check_actions()
-  bool stamp_utime = false;  ///< publish: its first member is a time stamp that was not given
-  ActorCommand command = ActorCommand::start;
-  double gravity_mps2 = 0;
-  std::string text;  ///< log, end
-  bool passed = true;
+  std::string who;                 ///< for messages, such as `event 'night': action 2`
+  std::shared_ptr<Action> action;  ///< null: its word is unknown, which was reported
 
-  /// Names are those declared as `vehicle`, `object`, `vehicle or object`, `actor`, `event`.
   void read(ParamReader& in);
-
- private:
-  void read_targets(ParamReader& in, const char* key);
-  void read_add(ParamReader& in);
-  void read_one_of(ParamReader& in);
-  void read_publish(ParamReader& in);
-  void read_kind(ParamReader& in);
 };
 
 /// `vehicle or object`: what can be moved and removed.

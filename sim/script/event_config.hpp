@@ -39,7 +39,7 @@ struct EventConfig {
   double delay_s = 0;
   std::int64_t times = 0;  ///< it fires at most so often; 0: no limit
   double probability = 1;
-  std::vector<Action> actions;
+  std::vector<ActionEntry> actions;
   SourcePlace place;
 
   void read(ParamReader& in);

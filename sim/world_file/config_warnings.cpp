@@ -103,13 +103,6 @@ class ConfigCheck {
   Warnings& warnings_;
 };
 
-void add_published(const std::vector<Action>& actions, std::set<std::string>& channels) {
-  for (const Action& action : actions) {
-    if (action.kind == ActionKind::publish) channels.insert(action.channel);
-    for (const std::vector<Action>& choice : action.choices) add_published(choice, channels);
-  }
-}
-
 }  // namespace
 
 std::set<std::string> channels_of(const WorldConfig& world) {
@@ -120,7 +113,9 @@ std::set<std::string> channels_of(const WorldConfig& world) {
       channels.insert(device_channel(world.channels, vehicle.name, device, ChannelKind::report));
       if (device.truth) channels.insert(device_channel(world.channels, vehicle.name, device, ChannelKind::truth));
     }
-  for (const EventConfig& event : world.events) add_published(event.actions, channels);
+  for (const EventConfig& event : world.events)
+    for (const ActionEntry& entry : event.actions)
+      if (entry.action) entry.action->add_channels(channels);
   return channels;
 }
 

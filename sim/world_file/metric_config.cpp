@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "sim/config/merged_keys.hpp"
 #include "sim/world_file/world_config.hpp"
 
 namespace sim {
@@ -12,27 +13,6 @@ namespace sim {
 namespace {
 
 constexpr const char* rule_forms[] = {"above", "above_metric", "below", "below_metric", "equals"};
-
-/// The keys of all types in one table, each once.  A key of one or two types says whose it is.
-std::vector<ParamInfo> keys_of_all_types() {
-  std::vector<ParamInfo> keys;
-  std::map<std::string, std::vector<std::string>> types;
-  for (const MetricKind* kind : MetricRegistry::instance().all())
-    for (ParamInfo& info : kind->keys()) {
-      types[info.key].push_back(kind->word);
-      const auto same = [&](const ParamInfo& other) { return other.key == info.key; };
-      if (std::any_of(keys.begin(), keys.end(), same)) continue;
-      if (info.required) info.initial = "\"\"";  // of types that do not require it
-      info.required = false;
-      keys.push_back(std::move(info));
-    }
-  for (ParamInfo& info : keys) {
-    const std::vector<std::string>& whose = types[info.key];
-    if (whose.size() == 2) info.meaning = whose[0] + ", " + whose[1] + ": " + info.meaning;
-    if (whose.size() == 1) info.meaning = whose[0] + ": " + info.meaning;
-  }
-  return keys;
-}
 
 /// An empty reference names nothing, which is a mistake where the key is written.
 void refuse_empty(ParamReader& in, const char* key, const std::string& value) {
@@ -50,7 +30,9 @@ void MetricConfig::read(ParamReader& in) {
   std::string type = registry.default_word();
   in.read_choice("type", type, registry.words(), "what it looks at");
   if (in.describing()) {
-    for (ParamInfo& info : keys_of_all_types()) in.describe(std::move(info));
+    std::vector<std::pair<std::string, std::vector<ParamInfo>>> types;
+    for (const MetricKind* each : registry.all()) types.emplace_back(each->word, each->keys());
+    for (ParamInfo& info : merged_keys(types)) in.describe(std::move(info));
     return;
   }
   kind = registry.find(type);

@@ -17,6 +17,7 @@
 #include "sim/model/physics_config.hpp"
 #include "sim/model/placement.hpp"
 #include "sim/scene/light.hpp"
+#include "sim/script/actor_config.hpp"
 #include "sim/script/event_config.hpp"
 #include "sim/world_file/metric_config.hpp"
 #include "sim/world_file/vehicle_config.hpp"

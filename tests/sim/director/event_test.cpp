@@ -316,7 +316,8 @@ TEST(RunAction, SaysWhatIsWrongInOneLine) {
             "request:1:1: action 1: there is no device 'r1/drve'; devices are named VEHICLE/DEVICE; vehicle 'r1' has: "
             "drive");
   EXPECT_THAT(failure(test.world, "{dance: r1}"),
-              testing::HasSubstr("unknown action 'dance'; known actions: move, add"));
+              testing::HasSubstr("unknown action 'dance'; known actions: actor, add"));
+  EXPECT_THAT(failure(test.world, "{mve: r1}"), testing::HasSubstr("; did you mean 'move'?"));
   EXPECT_THAT(failure(test.world, "{set: r1/drive, values: {body: x}}"),
               testing::HasSubstr("'body' cannot change while the device runs"));
   EXPECT_THAT(failure(test.world, "{publish: x, type: shoal.twist_command_t, value: {forward: 1}}"),

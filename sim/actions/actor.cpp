@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/director/action_run.hpp"
+#include "sim/director/script.hpp"
+#include "sim/script/action_registry.hpp"
+#include "sim/script/actor_config.hpp"
+
+namespace sim {
+
+namespace {
+
+/// Commands an actor.
+class ActorAction final : public Action {
+ public:
+  static constexpr const char* meaning = "actor that gets a `command`";
+
+  void read(ParamReader& in) override {
+    if (!in.describing()) in.read_reference("actor", actor_, "actor", "");
+    in.require("command");
+    in.read_choice("command", command_, actor_command_words(), "what it does from now on");
+  }
+  void carry_out(const ActionRun& run) const override { run.script.command_actor(actor_, command_); }
+
+ private:
+  std::string actor_;
+  ActorCommand command_ = ActorCommand::start;
+};
+
+SHOAL_ACTION("actor", ActorAction);
+
+}  // namespace
+
+}  // namespace sim

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/device/fault.hpp"
+
+#include "sim/device/device_registry.hpp"
+#include "sim/director/action_run.hpp"
+#include "sim/director/stage.hpp"
+#include "sim/script/action_registry.hpp"
+#include "sim/world_file/check_script.hpp"
+
+namespace sim {
+
+namespace {
+
+class FaultAction final : public Action {
+ public:
+  static constexpr const char* meaning = "VEHICLE/DEVICE, with the keys of a fault";
+
+  void read(ParamReader& in) override {
+    if (!in.describing()) in.read("fault", device_, "");
+    fault_.read(in);
+  }
+
+  void check(const ActionCheck& check) override {
+    const NamedDevice found = check.device(device_);
+    if (found.device == nullptr) return;
+    const std::string misfit = fault_misfit(*found.device->device_type, fault_);
+    if (!misfit.empty()) check.error("device '" + device_ + "': " + misfit);
+  }
+
+  void carry_out(const ActionRun& run) const override { run.stage.set_fault(device_, fault_); }
+
+ private:
+  std::string device_;
+  FaultConfig fault_;
+};
+
+SHOAL_ACTION("fault", FaultAction);
+
+}  // namespace
+
+}  // namespace sim

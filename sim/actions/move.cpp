@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/actions/place_choice.hpp"
+#include "sim/actions/target_choice.hpp"
+#include "sim/director/action_run.hpp"
+#include "sim/director/stage.hpp"
+#include "sim/script/action_registry.hpp"
+#include "sim/vehicle/entities.hpp"
+#include "sim/vehicle/world_error.hpp"
+
+namespace sim {
+
+namespace {
+
+/// Puts a vehicle or an object somewhere, at rest.
+class MoveAction final : public Action {
+ public:
+  static constexpr const char* meaning = "vehicle or object to put somewhere, or {one_of: [names]}";
+
+  void read(ParamReader& in) override {
+    target_.read(in, "move");
+    where_.read(in);
+    if (in.describing()) return;
+    if (!in.has("position_m") && !in.has("places") && !in.has("area_m") && !in.has("rpy_deg") && !where_.random_yaw)
+      in.error("'move' needs a place: position_m, places, area_m, rpy_deg or random_yaw");
+  }
+
+  void carry_out(const ActionRun& run) const override {
+    const std::string& name = target_.choose(run.random);
+    const Entities& entities = run.stage.entities();
+    if (const Vehicle* vehicle = entities.find_vehicle(name))
+      return run.stage.move_vehicle(name, where_.choose(vehicle->X_WV(), run.random));
+    const WorldObject* object = entities.find_object(name);
+    if (object == nullptr) throw WorldError("there is no vehicle or object '" + name + "' to move");
+    run.stage.move_object(name, where_.choose(object->body->X_WB(), run.random));
+  }
+
+ private:
+  TargetChoice target_;
+  PlaceChoice where_;
+};
+
+SHOAL_ACTION("move", MoveAction);
+
+}  // namespace
+
+}  // namespace sim

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <numeric>
+#include <set>
+
+#include "sim/director/action_run.hpp"
+#include "sim/director/script.hpp"
+#include "sim/script/action_registry.hpp"
+#include "sim/world_file/check_script.hpp"
+
+namespace sim {
+
+namespace {
+
+/// Carries out one of several lists of actions.
+class OneOfAction final : public Action {
+ public:
+  static constexpr const char* meaning = "[[actions], [actions]]: one of these lists, at random";
+
+  void read(ParamReader& in) override {
+    if (!in.describing()) in.read_lists("one_of", choices_, "action");
+    in.read("weights", weights_, at_least(0), "how often each is chosen");
+    if (in.describing()) return;
+    if (choices_.empty() && in.child("one_of")->items.empty())
+      in.error("one_of", "'one_of' must have at least one list of actions");
+    if (!in.has("weights")) return;
+    const std::size_t count = in.child("one_of")->items.size();
+    if (in.child("weights")->items.size() != count)
+      in.error("weights", "'weights' must have one number for each of the " + std::to_string(count) + " lists");
+    else if (!weights_.empty() && std::accumulate(weights_.begin(), weights_.end(), 0.0) <= 0)
+      in.error("weights", "'weights' must not all be 0");
+  }
+
+  void check(const ActionCheck& check) override {
+    for (const std::vector<ActionEntry>& choice : choices_) check.check(choice);
+  }
+
+  void carry_out(const ActionRun& run) const override { run.script.carry_out(choose(run.random), run); }
+
+  void add_channels(std::set<std::string>& channels) const override {
+    for (const std::vector<ActionEntry>& choice : choices_)
+      for (const ActionEntry& entry : choice)
+        if (entry.action) entry.action->add_channels(channels);
+  }
+
+ private:
+  const std::vector<ActionEntry>& choose(Random& random) const {
+    if (weights_.empty()) return choices_[random.integer_below(static_cast<std::uint32_t>(choices_.size()))];
+    double left = random.uniform() * std::accumulate(weights_.begin(), weights_.end(), 0.0);
+    std::size_t last = 0;
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
+      if (weights_[i] <= 0) continue;
+      last = i;
+      left -= weights_[i];
+      if (left < 0) break;
+    }
+    return choices_[last];
+  }
+
+  std::vector<std::vector<ActionEntry>> choices_;
+  std::vector<double> weights_;  ///< empty: all alike
+};
+
+SHOAL_ACTION("one_of", OneOfAction);
+
+}  // namespace
+
+}  // namespace sim

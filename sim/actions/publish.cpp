@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <set>
+
+#include "sim/bus/utime_stamp.hpp"
+#include "sim/config/message_text.hpp"
+#include "sim/director/action_run.hpp"
+#include "sim/director/stage.hpp"
+#include "sim/script/action_registry.hpp"
+#include "sim/world_file/check_script.hpp"
+
+namespace sim {
+
+namespace {
+
+class PublishAction final : public Action {
+ public:
+  static constexpr const char* meaning = "channel, with `type` and `value`";
+
+  void read(ParamReader& in) override {
+    if (!in.describing()) read_channel(in);
+    in.require("type");
+    in.read("type", type_, "message type, such as shoal.twist_command_t");
+    in.read_raw(
+        "value", value_,
+        "member: value; members that are missing are 0, or NaN in commands where that means as before; utime is "
+        "the time");
+    if (in.describing() || value_.kind != ConfigNode::Kind::null) return;
+    value_.kind = ConfigNode::Kind::map;
+    value_.place = in.node()->place;
+  }
+
+  /// Encodes the message.
+  void check(const ActionCheck& check) override {
+    const EncodeMessage& encode = check.world().encode_message;
+    if (!encode) return check.error("messages cannot be encoded here");
+    Diagnostics found;
+    payload_ = encode(type_, value_, found);
+    for (const std::string& line : found.lines()) check.diagnostics().error({}, "", line);
+    if (found.ok() && value_.find("utime") == nullptr) stamp_utime_ = begins_with_utime(encode, check.entry().place);
+  }
+
+  void carry_out(const ActionRun& run) const override {
+    Bytes payload = payload_;
+    if (stamp_utime_) set_utime(payload, run.stage.config().epoch_us + run.stage.now().count());
+    run.stage.publish(channel_, payload);
+  }
+
+  void add_channels(std::set<std::string>& channels) const override { channels.insert(channel_); }
+
+ private:
+  void read_channel(ParamReader& in) {
+    in.read("publish", channel_, "");
+    if (channel_.empty() || channel_.size() > Bus::max_channel_length)
+      in.error("publish", "a channel must have 1 to 63 characters, got " + std::to_string(channel_.size()));
+    else if (channel_.starts_with("sim.") || printable(channel_) != channel_)
+      in.error("publish", "channel '" + printable(channel_) +
+                              "' cannot be published on: sim.* belongs to the simulator, and names are printable");
+  }
+
+  /// sim/ knows no message types, but one whose first member is `int64_t utime` shows when it is given another one.
+  bool begins_with_utime(const EncodeMessage& encode, const SourcePlace& place) const {
+    ConfigNode stamped = value_;
+    stamped.entries.push_back({"utime", place, scalar_node("1", place)});
+    Diagnostics ignored;
+    const Bytes with = encode(type_, stamped, ignored);
+    if (!ignored.ok() || !utime_of(payload_)) return false;
+    Bytes expected = payload_;
+    set_utime(expected, 1);
+    return with == expected;
+  }
+
+  std::string channel_;
+  std::string type_;
+  ConfigNode value_;
+  Bytes payload_;
+  bool stamp_utime_ = false;  ///< the first member is a time stamp that was not given
+};
+
+SHOAL_ACTION("publish", PublishAction);
+
+}  // namespace
+
+}  // namespace sim

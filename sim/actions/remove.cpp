@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/actions/target_choice.hpp"
+#include "sim/director/action_run.hpp"
+#include "sim/director/stage.hpp"
+#include "sim/script/action_registry.hpp"
+#include "sim/vehicle/entities.hpp"
+#include "sim/vehicle/world_error.hpp"
+
+namespace sim {
+
+namespace {
+
+class RemoveAction final : public Action {
+ public:
+  static constexpr const char* meaning = "vehicle or object to take away, or {one_of: [names]}";
+
+  void read(ParamReader& in) override { target_.read(in, "remove"); }
+
+  void carry_out(const ActionRun& run) const override {
+    const std::string& name = target_.choose(run.random);
+    const Entities& entities = run.stage.entities();
+    if (entities.find_vehicle(name) != nullptr) return run.stage.remove_vehicle(name);
+    if (entities.find_object(name) == nullptr)
+      throw WorldError("there is no vehicle or object '" + name + "' to remove");
+    run.stage.remove_object(name);
+  }
+
+ private:
+  TargetChoice target_;
+};
+
+SHOAL_ACTION("remove", RemoveAction);
+
+}  // namespace
+
+}  // namespace sim

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/script/action_registry.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace sim {
+
+std::vector<ParamInfo> ActionKind::keys() const {
+  std::vector<ParamInfo> table(1);
+  table[0].key = word;
+  table[0].type = "action";
+  table[0].meaning = meaning;
+  ParamReader in(table);
+  make()->read(in);
+  return table;
+}
+
+ActionRegistry& ActionRegistry::instance() {
+  static ActionRegistry registry;
+  return registry;
+}
+
+void ActionRegistry::add(ActionKind kind) {
+  assert(find(kind.word) == nullptr);
+  const auto at = std::lower_bound(kinds_.begin(), kinds_.end(), kind.word,
+                                   [](const auto& other, const std::string& word) { return other->word < word; });
+  kinds_.insert(at, std::make_unique<ActionKind>(std::move(kind)));
+}
+
+const ActionKind* ActionRegistry::find(const std::string& word) const {
+  for (const auto& kind : kinds_)
+    if (kind->word == word) return kind.get();
+  return nullptr;
+}
+
+std::vector<const ActionKind*> ActionRegistry::all() const {
+  std::vector<const ActionKind*> all;
+  for (const auto& kind : kinds_) all.push_back(kind.get());
+  return all;
+}
+
+std::vector<std::string> ActionRegistry::words() const {
+  std::vector<std::string> words;
+  for (const auto& kind : kinds_) words.push_back(kind->word);
+  return words;
+}
+
+}  // namespace sim

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/script/action.hpp"
+
+namespace sim {
+
+/// A type of action by its word in YAML.
+struct ActionKind {
+  std::string word;     ///< its first key
+  std::string meaning;  ///< one line: what the value of this key is
+  std::function<std::shared_ptr<Action>()> make;
+
+  /// Its keys, the first one its word.
+  std::vector<ParamInfo> keys() const;
+};
+
+/// All types of actions, filled before main by SHOAL_ACTION, and by plugins when they are loaded.
+class ActionRegistry {
+ public:
+  static ActionRegistry& instance();
+  /// Two types of one word are a mistake of the program.
+  void add(ActionKind kind);
+  /// Null when there is none.
+  const ActionKind* find(const std::string& word) const;
+  /// In the order of their words.
+  std::vector<const ActionKind*> all() const;
+  std::vector<std::string> words() const;
+
+ private:
+  std::vector<std::unique_ptr<ActionKind>> kinds_;
+};
+
+namespace detail {
+
+template <typename Model>
+bool add_action(const char* word) {
+  ActionRegistry::instance().add({word, Model::meaning, [] { return std::make_shared<Model>(); }});
+  return true;
+}
+
+}  // namespace detail
+
+/// Makes a type of action known, in its own file.  Model is an Action with `static constexpr const char* meaning`.
+#define SHOAL_ACTION(word, Model) \
+  [[maybe_unused]] static const bool registered_##Model = ::sim::detail::add_action<Model>(word)
+
+}  // namespace sim
