@@ -2,7 +2,6 @@
 #include "sim/world_file/metric_config.hpp"
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "sim/config/merged_keys.hpp"
