@@ -263,7 +263,7 @@ TEST(AcousticModem, DropsTheOldestWhenItsQueueIsFull) {
   ASSERT_EQ(received.size(), 2u);
   EXPECT_EQ(test::text_of(received[0]), "3");
   EXPECT_EQ(test::text_of(received[1]), "4");
-  EXPECT_EQ(test.world.shared<devices::MessageModems>().dropped_from_queues(), 2);
+  EXPECT_EQ(test.world.shared().of(devices::message_modems).dropped_from_queues(), 2);
 }
 
 TEST(AcousticModem, RefusesWhatItCannotSend) {

@@ -181,9 +181,9 @@ TEST(Modem, DropsTheOldestWhenItsQueueIsFull) {
   ASSERT_EQ(received.size(), 2u);
   EXPECT_EQ(text_of(received[0]), "3");
   EXPECT_EQ(text_of(received[1]), "4");
-  EXPECT_EQ(test.world.shared<devices::MessageModems>().dropped_from_queues(), 2);
+  EXPECT_EQ(test.world.shared().of(devices::message_modems).dropped_from_queues(), 2);
   test.world.editor().remove_vehicle("a");
-  EXPECT_EQ(test.world.shared<devices::MessageModems>().dropped_from_queues(), 2) << "of those gone, too";
+  EXPECT_EQ(test.world.shared().of(devices::message_modems).dropped_from_queues(), 2) << "of those gone, too";
 }
 
 TEST(Modem, RefusesWhatItCannotSend) {

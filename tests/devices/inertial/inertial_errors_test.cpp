@@ -2,7 +2,10 @@
 #include "devices/inertial/inertial_errors.hpp"
 
 #include "devices/inertial/imu_presets.hpp"
+#include "sim/acoustics/channel.hpp"
+#include "sim/event/event_queue.hpp"
 #include "sim/random/allan.hpp"
+#include "sim/vehicle/device_host.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -20,7 +23,9 @@ class Bench {
   InertialErrors errors(const InertialParams& params, const std::string& name = "imu") {
     config_.name = name;
     sim::Vehicle& vehicle = *test_.world.vehicles()[0];
-    return {params, {}, {test_.world, vehicle, config_, vehicle.body("hull"), 0, faults}, "gyro_noise"};
+    sim::NoiseParams noise;
+    noise.key = "gyro_noise";
+    return {params, noise, {test_.world, vehicle, config_, vehicle.body("hull"), 0, faults, host_}};
   }
   /// The three axes at rest for some hours.
   std::vector<std::vector<double>> record(const InertialParams& params, double hours) {
@@ -41,6 +46,17 @@ class Bench {
  private:
   test::TestWorld test_;
   sim::DeviceConfig config_;
+  // A host for devices that use nothing of it.
+  sim::ChannelConfig channels_;
+  sim::StepClock clock_;
+  std::unique_ptr<sim::AcousticChannel> acoustics_;
+  sim::EventQueue events_;
+  sim::PortOpener open_port_;
+  sim::SharedByDevices shared_;
+  sim::DeviceHost host_{test_.world, channels_, clock_,     0,
+                        1,           test_.world.physics(), acoustics_,
+                        events_,     open_port_,            test_.world.warnings(),
+                        shared_};
 };
 
 /// The root of the mean square over the axes, and its error: three independent estimates.

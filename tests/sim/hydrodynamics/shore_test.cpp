@@ -60,14 +60,16 @@ vehicles:
       devices: [{name: altimeter, type: altimeter}]
 )";
   const auto warnings_at = [&](const std::string& x) {
-    std::string yaml = std::string(beach) + auv;
+    std::string yaml = beach;
+    yaml += auv;
     yaml.replace(yaml.find("X, 0"), 1, x);
     TestWorld test(yaml);
     return sim::bottom_warnings(test.world);
   };
   EXPECT_TRUE(warnings_at("20").empty());
-  TestWorld open(std::string("shoal: 1\nmedium: {water: {}}\n") +
-                 std::string(auv).replace(std::string(auv).find("X, 0"), 1, "0"));
+  std::string without_beach = "shoal: 1\nmedium: {water: {}}\n";
+  without_beach += auv;
+  TestWorld open(without_beach.replace(without_beach.find("X, 0"), 1, "0"));
   const auto warnings = sim::bottom_warnings(open.world);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0], "there is no bottom below vehicle 'auv1': what looks down from there sees nothing");
@@ -75,7 +77,7 @@ vehicles:
 
 TEST(Shore, SaysThatThereIsNoBottomBelowANewcomerToo) {
   TestWorld test(
-      std::string("shoal: 1\nmedium: {water: {}}\n") +
+      "shoal: 1\nmedium: {water: {}}\n"
       "vehicles:\n  - name: auv1\n    position_m: [0, 0, -1]\n    model:\n      shoal: 1\n      vehicle: auv\n"
       "      bodies: [{name: hull, parts: [{shape: sphere, radius_m: 0.1, density_kgpm3: 1025}]}]\n"
       "      devices: [{name: altimeter, type: altimeter}]\n");

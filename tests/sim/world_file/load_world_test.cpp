@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/project_paths.hpp"
 
@@ -209,7 +210,7 @@ TEST(LoadWorld, TheResolvedWorldIsAWorldFileOfItsOwn) {
     first.step();
     second.step();
   }
-  EXPECT_EQ(first.state_hash(), second.state_hash());
+  EXPECT_EQ(first.state().hash(), second.state().hash());
 }
 
 TEST(LoadWorld, EveryFileInBadWorldsSaysWhatItsFirstLineExpects) {
