@@ -30,7 +30,7 @@ def prepare():
     """The message types of this tree and a bus of the test's own; once, before the examples are imported."""
     types = tempfile.TemporaryDirectory()
     subprocess.run([LCM_GEN, "--python", "--ppath", types.name,
-                    *glob.glob(os.path.join(ROOT, "bridges", "lcm", "types", "*.lcm"))], check=True)
+                    *glob.glob(os.path.join(ROOT, "messages", "*", "*.lcm"))], check=True)
     sys.path[:0] = [types.name, os.path.join(ROOT, "examples", "python")]
     sys.path.append(os.path.join(HERE, "python"))  # after a real lcm, where there is one
     os.environ["LCM_DEFAULT_URL"] = f"udpm://239.255.76.67:{10000 + os.getpid() * 4 % 20000}?ttl=0"
@@ -91,7 +91,7 @@ class Example(unittest.TestCase):
     def test_java_client_compiles(self):
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run([LCM_GEN, "--java", "--jpath", folder,
-                            *glob.glob(os.path.join(ROOT, "bridges", "lcm", "types", "*.lcm"))], check=True)
+                            *glob.glob(os.path.join(ROOT, "messages", "*", "*.lcm"))], check=True)
             done = subprocess.run(["javac", "-d", os.path.join(folder, "classes"), "-sourcepath",
                                    os.path.join(HERE, "java") + os.pathsep + folder,
                                    os.path.join(ROOT, "examples", "java", "LockstepClient.java")],

@@ -53,9 +53,11 @@ class Bench {
   sim::EventQueue events_;
   sim::PortOpener open_port_;
   sim::SharedByDevices shared_;
-  sim::DeviceHost host_{test_.world, channels_, clock_,     0,
-                        1,           test_.world.physics(), acoustics_,
-                        events_,     open_port_,            test_.world.warnings(),
+  sim::DeviceHost host_{test_.world, channels_,
+                        clock_,      0,
+                        1,           test_.world.physics(),
+                        acoustics_,  events_,
+                        open_port_,  test_.world.warnings(),
                         shared_};
 };
 
