@@ -145,36 +145,28 @@ TEST(LockstepMission, GoesOnAtOnceWithoutAClientThatLeavesOverANetworkThatLosesA
 /// A run of two rovers that starts `pilot` by itself.
 class Policy : public testing::Test {
  protected:
+  Policy() {
+    listener_.listen("sim.control.reply");
+    listener_.listen("sim.tick");
+  }
   /// `options`: of lockstep_pilot, in YAML.
   void start(const std::string& options, const std::string& world = "") {
     write_file(folder_.file("world.yaml"),
                two_rovers(duration_s_, "processes: [{name: pilot, client: pilot, command: [" + built("lockstep_pilot") +
                                            ", --name, pilot, --vehicle, rover1, --lcm-url, '{lcm_url}', " + options +
                                            "]" + on_exit_ + "}]\n" + world));
-    listener_.listen("sim.control.reply");
-    listener_.listen("sim.tick");
     shoal_ = std::make_unique<Program>(Arguments{built("shoal"), "run", folder_.file("world.yaml"), "--launch",
                                                  "--lcm-url", own_url(), "--results", folder_.file("results")});
   }
   void await_error(const std::string& text) {
     EXPECT_TRUE(await([&] { return shoal_->errors().find(text) != std::string::npos; }, patience)) << shoal_->errors();
   }
+  /// Sends a request once, as sent again it might be obeyed twice, and returns its reply.
   shoal::sim_control_reply_t request(const std::string& command, const std::string& text = "",
                                      const std::string& client = "test", double value = 0) {
-    shoal::sim_control_request_t request{};
-    request.id = ++id_;
-    request.client = client;
-    request.command = command;
-    request.text = text;
-    request.value = value;
-    const auto deadline = std::chrono::steady_clock::now() + patience;
-    while (std::chrono::steady_clock::now() < deadline) {
-      listener_.publish("sim.control", shoal::encode(request));
-      const auto message = listener_.next(200ms);
-      if (!message || message->channel != "sim.control.reply") continue;
-      const auto reply = shoal::decode<shoal::sim_control_reply_t>(message->payload, shoal::Finite::any);
-      if (reply.id == request.id && reply.client == client) return reply;
-    }
+    if (answering_ != shoal_.get()) await_answers();
+    const std::int32_t id = send(command, text, client, value);
+    if (const auto reply = reply_to(id, client, patience)) return *reply;
     ADD_FAILURE() << "no reply to " << command << ": " << shoal_->errors();
     return {};
   }
@@ -185,6 +177,41 @@ class Policy : public testing::Test {
   std::unique_ptr<Program> shoal_;
   std::string duration_s_ = "2";
   std::string on_exit_;  ///< of the process, in YAML
+
+ private:
+  /// A program that starts hears nothing yet; "where" may be asked many times.
+  void await_answers() {
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    while (std::chrono::steady_clock::now() < deadline) {
+      const std::int32_t question = send("where", "", "test", 0);
+      if (!reply_to(question, "test", 200ms)) continue;
+      answering_ = shoal_.get();
+      return;
+    }
+  }
+  std::int32_t send(const std::string& command, const std::string& text, const std::string& client, double value) {
+    shoal::sim_control_request_t request{};
+    request.id = ++id_;
+    request.client = client;
+    request.command = command;
+    request.text = text;
+    request.value = value;
+    listener_.publish("sim.control", shoal::encode(request));
+    return id_;
+  }
+  std::optional<shoal::sim_control_reply_t> reply_to(std::int32_t id, const std::string& client,
+                                                     std::chrono::milliseconds limit) {
+    const auto deadline = std::chrono::steady_clock::now() + limit;
+    while (std::chrono::steady_clock::now() < deadline) {
+      const auto message = listener_.next(50ms);
+      if (!message || message->channel != "sim.control.reply") continue;
+      const auto reply = shoal::decode<shoal::sim_control_reply_t>(message->payload, shoal::Finite::any);
+      if (reply.id == id && reply.client == client) return reply;
+    }
+    return std::nullopt;
+  }
+
+  const Program* answering_ = nullptr;  ///< the program that has answered
   std::int32_t id_ = 0;
 };
 
@@ -366,7 +393,6 @@ class Rewound : public Policy {
   /// handled since.
   std::string from_step(int step) {
     write_file(folder_.file("world.yaml"), two_rovers("2"));
-    listener_.listen("sim.control.reply");
     Program a({built("lockstep_pilot"), "--name", "a", "--vehicle", "rover1", "--period", "0.05", "--go-back",
                "--lcm-url", own_url(), "--receive", "rover1.odometry", "b.note"});
     Program b({built("lockstep_pilot"), "--name", "b", "--vehicle", "rover2", "--period", "0.1", "--go-back",
@@ -376,7 +402,8 @@ class Rewound : public Policy {
     EXPECT_TRUE(request("until", "", "test", step * 0.01).ok);
     const std::string there = "step " + std::to_string(step) + ", ";
     EXPECT_TRUE(await([&] { return request("where").text.find(there) == 0; }, patience));
-    EXPECT_THAT(request("rewind", "", "test", step * 0.01 - 0.5).text, HasSubstr("step 50, 0.5 s, branch 1, paused"));
+    EXPECT_THAT(request("rewind", "", "test", step * 0.01 - 0.5).text, HasSubstr("step 50, 0.5 s, branch 1, paused"))
+        << shoal_->errors();
     EXPECT_TRUE(request("resume").ok);
     EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
     std::string result = run_hash_in({0, shoal_->output(), shoal_->errors()});
