@@ -36,6 +36,40 @@ function(shoal_room folder)
   set_property(GLOBAL PROPERTY SHOAL_ROOM_${room}_PATH ${path})
   set_property(GLOBAL PROPERTY SHOAL_ROOM_${room}_USES ${ARG_USES})
   set_property(GLOBAL PROPERTY SHOAL_ROOM_${room}_LIBRARIES ${ARG_PUBLIC} ${ARG_PRIVATE})
+  shoal_room_closure(${room} closure)
+  if(SHOAL_UNITY AND sources AND sim_base IN_LIST closure)
+    shoal_use_headers(${room} ${path})
+  endif()
+endfunction()
+
+# shoal_headers(<name> LIBRARIES <library>... HEADERS <header>... [OPTIONS <option>...]): headers that are parsed once.
+function(shoal_headers name)
+  cmake_parse_arguments(ARG "" "" "LIBRARIES;HEADERS;OPTIONS" ${ARGN})
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp CONTENT "")
+  add_library(${name} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES})
+  target_compile_options(${name} PRIVATE ${ARG_OPTIONS})
+  target_precompile_headers(${name} PRIVATE ${ARG_HEADERS})
+endfunction()
+
+# A third of a unit's time are headers.  Those of libraries are parsed once for sim/, and those of a world once for all
+# above.  Without unity builds each source stands alone, so that a missing #include is found.
+function(shoal_use_headers target path)
+  set(libraries spdlog::spdlog Eigen3::Eigen)
+  set(headers <algorithm> <array> <chrono> <cmath> <filesystem> <fstream> <functional> <map> <memory> <optional> <set>
+              <span> <sstream> <string> <thread> <unordered_map> <variant> <vector> <Eigen/Geometry> <spdlog/spdlog.h>)
+  if(path MATCHES "^sim/")
+    set(name library_headers)
+  else()
+    set(name world_headers)
+    list(APPEND libraries sim_world)
+    list(APPEND headers "${PROJECT_SOURCE_DIR}/sim/config/param_reader.hpp" "${PROJECT_SOURCE_DIR}/sim/world/world.hpp")
+  endif()
+  if(NOT TARGET ${name})
+    shoal_headers(${name} LIBRARIES ${libraries} HEADERS ${headers})
+  endif()
+  target_precompile_headers(${target} REUSE_FROM ${name})
 endfunction()
 
 # All rooms below a top-level folder, such as sim, in the order in which they were made.

@@ -64,7 +64,7 @@ void set_config_path(ConfigNode& root, std::string_view path, const ConfigNode& 
 void substitute_parameters(ConfigNode& node, const std::vector<std::pair<std::string, ConfigNode>>& parameters,
                            const std::string& who, Diagnostics& diagnostics);
 
-/// The text of `name` in an item of a list; null when it is no map or has none.
+/// The text of `name` in an item of a list; null when the item is not a map or lacks the key.
 const std::string* name_of(const ConfigNode& item);
 
 /// YAML text of the tree, which parses to the same tree.

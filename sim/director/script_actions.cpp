@@ -62,10 +62,10 @@ const Script::ListedObject* Script::find_listed(const std::string& name) {
 }
 
 void Script::log(const std::string& who, const std::string& text) {
-  constexpr int most_lines = 1000;
-  if (++log_lines_ > most_lines + 1) return;
-  if (log_lines_ > most_lines)
-    spdlog::warn("events have said {} lines; what they say from now on is left out", most_lines);
+  constexpr int max_lines = 1000;
+  if (++log_lines_ > max_lines + 1) return;
+  if (log_lines_ > max_lines)
+    spdlog::warn("events have said {} lines; what they say from now on is left out", max_lines);
   else
     spdlog::info("{}{}{} (at {:.3f} s)", who, who.empty() ? "" : ": ", printable(text), to_seconds(stage_.now()));
 }

@@ -118,9 +118,9 @@ void Joint::create_ball_motor(dWorldID world, const Pose& X_WV, dBodyID first, d
   ball_motor_.reset(motor);
   dJointAttach(motor, first, second);
   dJointSetAMotorMode(motor, dAMotorUser);
-  dJointSetAMotorNumAxes(motor, most_axes);
+  dJointSetAMotorNumAxes(motor, max_axes);
   const int of_first_body = second != nullptr ? 1 : 0;
-  for (int axis = 0; axis < most_axes; ++axis) {
+  for (int axis = 0; axis < max_axes; ++axis) {
     const Vector3d along = X_WV.linear().col(axis);
     dJointSetAMotorAxis(motor, axis, of_first_body, along.x(), along.y(), along.z());
   }
@@ -338,8 +338,8 @@ void Joint::make_again(const Pose& X_WV, const Pose& X_WC) {
   WorldSide& side = *world_side_;
   side.X_WV = X_WV;
   side.X_WC = X_WC;
-  OdeStops stops[most_axes];
-  double velocity[most_axes], max_force[most_axes];
+  OdeStops stops[max_axes];
+  double velocity[max_axes], max_force[max_axes];
   for (int axis = 0; axis < axes_; ++axis) {
     stops[axis] = stops_of(axis);
     velocity[axis] = motor_velocity_[axis];

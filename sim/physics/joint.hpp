@@ -69,7 +69,7 @@ class Joint {
 
  private:
   friend class PhysicsWorld;
-  static constexpr int most_axes = 3;
+  static constexpr int max_axes = 3;
   struct Load;  // sim/physics/joint_load.hpp
   /// Of a joint to the world: how it was made, so that it can be made again elsewhere.
   struct WorldSide {
@@ -116,11 +116,11 @@ class Joint {
   int kind_ = 0;                              // ODE's dJointType
   int axes_ = 0;
   double sign_ = 1;  // ODE counts the first body relative to the second
-  double position_[most_axes] = {};
-  double wrapped_[most_axes] = {};
-  double motor_velocity_[most_axes] = {};
-  double motor_max_force_[most_axes] = {};
-  std::array<OdeStops, most_axes> configured_stops_;
+  double position_[max_axes] = {};
+  double wrapped_[max_axes] = {};
+  double motor_velocity_[max_axes] = {};
+  double motor_max_force_[max_axes] = {};
+  std::array<OdeStops, max_axes> configured_stops_;
   bool stops_were_set_ = false;                     ///< at run time
   dxBody* loaded_ = nullptr;                        // whose load is measured
   Vector3d p_CA_C_ = Vector3d::Zero();              // the anchor in ODE's frame of the loaded body

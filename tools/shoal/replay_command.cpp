@@ -27,7 +27,7 @@ struct ReplayArguments {
   PlayOptions player;
 };
 
-constexpr std::size_t most_lines = 60;
+constexpr std::size_t max_lines = 60;
 
 int run(ReplayArguments& arguments) {
   if (!arguments.replay.world.empty()) arguments.replay.world = world_file(arguments.replay.world);
@@ -36,7 +36,7 @@ int run(ReplayArguments& arguments) {
   const ReplayOutcome outcome = replay(arguments.replay);
   std::cout << outcome.to_text();
   for (std::size_t i = 0; i < outcome.report.size() && arguments.report.empty(); ++i) {
-    if (i == most_lines) {
+    if (i == max_lines) {
       std::cout << outcome.report.size() - i << " more lines; --report FILE writes all of them\n";
       break;
     }

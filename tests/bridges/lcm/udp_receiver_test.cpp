@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sched.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "bridges/base/file_descriptor.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
 #include "bridges/lcm/udp_inbox.hpp"
 #include "tests/bridges/lcm/datagrams.hpp"
@@ -51,14 +54,16 @@ int listener_after(const std::vector<sim::Bytes>& datagrams) {
     _exit(1);
   }
   const DatagramSocket out = socket_to(url);
-  int status = 0;
+  const FileDescriptor ended(static_cast<int>(syscall(SYS_pidfd_open, child, 0)));
+  pollfd end{ended.number(), POLLIN, 0};
   // Until it is up the datagrams are lost; it hears them when it hears the last.
-  for (int i = 0; i < 1000 && waitpid(child, &status, WNOHANG) == 0; ++i) {
+  for (int i = 0; i < 1000 && poll(&end, 1, 10) == 0; ++i) {
     for (const sim::Bytes& datagram : datagrams) EXPECT_TRUE(out.send(datagram));
     EXPECT_TRUE(out.send(short_datagram("a", "after them")));
-    std::this_thread::sleep_for(10ms);
   }
-  if (!WIFEXITED(status) && !WIFSIGNALED(status)) kill(child, SIGKILL);
+  if (end.revents == 0) kill(child, SIGKILL);
+  int status = 0;
+  waitpid(child, &status, 0);
   return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
 }
 

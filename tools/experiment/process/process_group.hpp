@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/world_file/world_config.hpp"
@@ -23,7 +24,8 @@ class ProcessGroup {
     bool ignored = false;  ///< the world says that this does not matter
   };
 
-  ProcessGroup() = default;
+  /// `run_key`: what programs get as SHOAL_RUN_KEY; empty: they get none, also not ours.
+  explicit ProcessGroup(std::string run_key = {}) : run_key_(std::move(run_key)) {}
   /// Ends what still runs: SIGTERM, and SIGKILL after 2 s.
   ~ProcessGroup();
   ProcessGroup(const ProcessGroup&) = delete;
@@ -33,8 +35,6 @@ class ProcessGroup {
   /// `{lcm_url}` in the arguments is replaced, and LCM_DEFAULT_URL is set.  A program without a slash is looked up
   /// beside the running program, then in PATH.  Throws std::runtime_error when it cannot be started.
   void start(const sim::ProcessConfig& config, const std::string& lcm_url, const std::string& log_directory);
-  /// What programs that start from now on get as SHOAL_RUN_KEY; empty: they get none, also not ours.
-  void set_run_key(const std::string& text) { run_key_ = text; }
   /// Programs that ended since the last call.
   std::vector<Exit> reap();
   /// Lets those that take part in the lockstep end by themselves, for up to 2 s: they were told that the run is over.
@@ -51,7 +51,7 @@ class ProcessGroup {
   };
   void signal_all(int signal) const;
 
-  std::string run_key_;
+  const std::string run_key_;
   std::vector<Running> running_;
   std::vector<pid_t> left_behind_;  ///< process groups that outlive their programs
 };

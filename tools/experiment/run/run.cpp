@@ -35,13 +35,15 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       lockstep_(world_, control_, lockstep_buses()),
       service_(buses_.outer(), buses_.network(), world_, control_, lockstep_,
                {sim::to_yaml(loaded.resolved), version_text(), build_text(), files_}, service_links()),
-      scoring_(world_),
+      scoring_(
+          world_, options.quiet ? FirstContacts::Say() : [this](const std::string& line) { progress_.say(line); }),
       mail_(buses_, journal_, service_, lockstep_),
       branch_log_(buses_, journal_, options.record, options.overwrite),
       time_(world_, control_, scoring_, service_, mail_, time_options(), *this),
       duration_s_(options.duration_s.value_or(loaded.config.run.duration_s)),
       progress_(duration_s_, options.quiet || !spdlog::should_log(spdlog::level::info)),
-      programs_(loaded.config, options, buses_) {
+      key_file_(make_key()),
+      programs_(loaded.config, options, buses_, key_file_ ? key_file_->key().text() : "") {
   world_.use_threads(options.threads);
   control_.speed = options.speed.value_or(loaded.config.run.speed);
   control_.paused = options.paused;
@@ -58,8 +60,6 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
     results_ = std::make_unique<Results>(options.results, world_, options.pictures);
     write_results_world(options.results, loaded.resolved);
   }
-  make_key();
-  if (!options.quiet) scoring_.contacts().set_say([this](const std::string& line) { progress_.say(line); });
   progress_.restart(world_.now());
   plan_snapshots();
   if (options.keys && !options.quiet && TerminalKeys::possible()) {
@@ -83,15 +83,15 @@ bridges::ServiceLinks Run::service_links() {
   return links;
 }
 
-void Run::make_key() {
+std::unique_ptr<RunKeyFile> Run::make_key() {
   const bool from_elsewhere = buses_.over_lcm() && buses_.leave_machine();
   if (from_elsewhere && options_.open_control)
     spdlog::warn("--open-control: whoever reaches the network of this run may control it");
-  if (!buses_.over_lcm() || options_.open_control || (!from_elsewhere && !options_.control_key)) return;
-  key_file_ = std::make_unique<RunKeyFile>(options_.results);
-  lockstep_.guard().require(key_file_->key());
-  programs_.set_run_key(key_file_->key().text());
-  spdlog::info("control of this run needs its key: shoal control --run {}, or SHOAL_RUN_KEY", key_file_->folder());
+  if (!buses_.over_lcm() || options_.open_control || (!from_elsewhere && !options_.control_key)) return nullptr;
+  auto file = std::make_unique<RunKeyFile>(options_.results);
+  lockstep_.guard().require(file->key());
+  spdlog::info("control of this run needs its key: shoal control --run {}, or SHOAL_RUN_KEY", file->folder());
+  return file;
 }
 
 TimeControl::Options Run::time_options() const {

@@ -35,8 +35,8 @@ class Run final : private Timeline {
   Summary go();
 
  private:
-  /// Makes the key of the run when control of it needs one.
-  void make_key();
+  /// The key of the run, when control of it needs one: else null.
+  std::unique_ptr<RunKeyFile> make_key();
   void start_clients();
   void await(const std::vector<std::string>& clients);
   void loop();
@@ -93,11 +93,11 @@ class Run final : private Timeline {
   double duration_s_;
   Progress progress_;
   Pacer pacer_;
+  std::unique_ptr<RunKeyFile> key_file_;  ///< null: control needs no key
   RunPrograms programs_;
   StepWatch watch_{world_};
-  bool synchronized_ = true;              ///< the clients have answered the present step
-  bool alone_ = true;                     ///< no other simulator was found at the start
-  std::unique_ptr<RunKeyFile> key_file_;  ///< null: control needs no key
+  bool synchronized_ = true;  ///< the clients have answered the present step
+  bool alone_ = true;         ///< no other simulator was found at the start
   std::unique_ptr<Results> results_;
   std::unique_ptr<RunKeys> keys_;          ///< null: no terminal
   std::int64_t steps_taken_ = 0;           ///< in this process

@@ -8,8 +8,9 @@
 
 namespace tools {
 
-RunPrograms::RunPrograms(const sim::WorldConfig& config, const RunOptions& options, RunBuses& buses)
-    : config_(config), options_(options), buses_(buses) {}
+RunPrograms::RunPrograms(const sim::WorldConfig& config, const RunOptions& options, RunBuses& buses,
+                         std::string run_key)
+    : config_(config), options_(options), buses_(buses), processes_(std::move(run_key)) {}
 
 std::vector<std::string> RunPrograms::start() {
   std::vector<std::string> awaited = options_.await;

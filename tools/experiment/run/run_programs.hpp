@@ -16,11 +16,9 @@ namespace tools {
 /// The programs that a world names: started, awaited, watched.
 class RunPrograms {
  public:
-  /// All must outlive this.
-  RunPrograms(const sim::WorldConfig& config, const RunOptions& options, RunBuses& buses);
+  /// All but the key must outlive this.  `run_key`: what the programs get as SHOAL_RUN_KEY; empty: none.
+  RunPrograms(const sim::WorldConfig& config, const RunOptions& options, RunBuses& buses, std::string run_key);
 
-  /// What the programs get as SHOAL_RUN_KEY; empty: none.
-  void set_run_key(const std::string& text) { processes_.set_run_key(text); }
   /// Starts the programs when the options say so.  Returns the lockstep clients to wait for.  Throws RunError.
   std::vector<std::string> start();
   /// What the lockstep knows of its clients, by name.

@@ -33,7 +33,7 @@ bool has_wheels(const sim::VehicleConfig& vehicle) {
 
 }  // namespace
 
-FirstContacts::FirstContacts(sim::World& world) : world_(world) {
+FirstContacts::FirstContacts(sim::World& world, Say say) : world_(world), say_(std::move(say)) {
   choose_groups();
 }
 

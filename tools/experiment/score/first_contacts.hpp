@@ -31,11 +31,12 @@ class FirstContacts {
     void visit_state(sim::StateArchive& archive) { archive(first, second, first_s, count, last_s); }
   };
 
-  /// `world` must outlive this.
-  explicit FirstContacts(sim::World& world);
   /// Gets a line such as `105.7 s: auv4 hits rock` at the first contact of a pair; at most 20 lines, and one that says
   /// that more are counted only.
-  void set_say(std::function<void(const std::string&)> say) { say_ = std::move(say); }
+  using Say = std::function<void(const std::string&)>;
+
+  /// `world` must outlive this.  `say` may be empty.
+  explicit FirstContacts(sim::World& world, Say say = {});
   /// Call after every step.
   void after_step();
   /// In the order of the first contacts.
@@ -67,7 +68,7 @@ class FirstContacts {
   std::set<Pair> standing_;                 ///< a vehicle on what it stood on when it came
   std::map<Pair, Contact> contacts_;
   // Of the terminal, which does not go back.
-  std::function<void(const std::string&)> say_;
+  Say say_;
   std::set<std::pair<Pair, double>> said_;
 };
 

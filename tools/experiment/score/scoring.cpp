@@ -9,13 +9,10 @@
 
 namespace tools {
 
-Scoring::Scoring(sim::World& world) : world_(world), contacts_(world) {
+Scoring::Scoring(sim::World& world, FirstContacts::Say say) : world_(world), contacts_(world, std::move(say)) {
+  const auto truth = [this](const std::string& vehicle) -> const TruthHistory& { return truth_of(vehicle); };
   for (const sim::MetricConfig& config : world.config().metrics)
-    metrics_.push_back(
-        make_metric({config, world, [this](const auto& vehicle) -> const auto& { return truth_of(vehicle);
-}
-}  // namespace tools
-));
+    metrics_.push_back(make_metric({config, world, truth}));
 }
 
 Scoring::~Scoring() = default;

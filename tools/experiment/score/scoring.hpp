@@ -31,8 +31,8 @@ class Scoring {
     bool passed;
   };
 
-  /// `world` must outlive this.
-  explicit Scoring(sim::World& world);
+  /// `world` must outlive this.  `say`: see FirstContacts.
+  explicit Scoring(sim::World& world, FirstContacts::Say say = {});
   ~Scoring();
   /// Call after every step.
   void after_step();
@@ -45,7 +45,7 @@ class Scoring {
   std::vector<Track> tracks() const;
   std::int64_t bad_messages() const;
   /// Who hit whom.
-  FirstContacts& contacts() { return contacts_; }
+  const FirstContacts& contacts() const { return contacts_; }
   /// Warns of metrics that had nothing to make figures of.  At the end of a run.
   void warn_of_silence(sim::Warnings& warnings) const;
   /// In sections of their own.

@@ -17,9 +17,8 @@ using testing::IsEmpty;
 
 /// A world whose contacts are watched as in a run.
 struct WatchedWorld {
-  explicit WatchedWorld(const std::string& yaml) : test(yaml), contacts(test.world) {
-    contacts.set_say([this](const std::string& line) { lines.push_back(line); });
-  }
+  explicit WatchedWorld(const std::string& yaml)
+      : test(yaml), contacts(test.world, [this](const std::string& line) { lines.push_back(line); }) {}
   void run_for(double time_s) {
     const sim::Time end = test.world.now() + sim::from_seconds(time_s);
     while (test.world.now() < end) {
