@@ -23,7 +23,7 @@ using sim::Ray;
 using sim::RayHit;
 using sim::Vector3d;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr int lidars = 200, beams = 180;
 constexpr double range_m = 20;
 constexpr int columns = 320, rows = 240, tile = 8;

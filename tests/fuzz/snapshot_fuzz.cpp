@@ -4,10 +4,10 @@
 
 #include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "sim/state/state_archive.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_state.hpp"
-#include "sim/world_file/load_world.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 // A crafted snapshot: that of a world, changed at a few places.  The input is the list of changes, so that it means
@@ -15,7 +15,7 @@
 
 namespace {
 
-const sim::LoadedWorld& world_file() {
+const sim::LoadedWorld& snapshot_world() {
   static const sim::LoadedWorld loaded = [] {
     sim::LoadOptions options;
     options.encode_message = shoal::encode_own_message;
@@ -45,7 +45,7 @@ events:
 
 struct Restored {
   sim::InProcessBus bus;
-  sim::World world{world_file().config, bus};
+  sim::World world{snapshot_world().config, bus};
   sim::Bytes base;
   Restored() {
     for (int step = 0; step < 40; ++step) world.step();

@@ -18,12 +18,6 @@ namespace {
 using namespace system_test;
 using testing::HasSubstr;
 
-Ended control(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "control");
-  arguments.insert(arguments.end(), {"--lcm-url", own_url()});
-  return run_shoal(arguments);
-}
-
 /// Waits for a message on a channel and decodes it.
 template <typename Message, typename Condition>
 bool hears(bridges::LcmListener& listener, const std::string& channel, const Condition& condition,

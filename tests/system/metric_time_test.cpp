@@ -14,14 +14,14 @@ namespace {
 using namespace system_test;
 
 /// A metric of each type.  `figure` changes between 2 and 4 s, and again or not until 6 s.
-struct Case {
+struct TimeCase {
   std::string keys;
   std::string figure;
 };
 
 /// By the word of the type.  A type without an entry fails the test.
-const std::map<std::string, std::vector<Case>>& cases() {
-  static const std::map<std::string, std::vector<Case>> all{
+const std::map<std::string, std::vector<TimeCase>>& cases() {
+  static const std::map<std::string, std::vector<TimeCase>> all{
       {"position_error", {{"vehicle: r1, channel: r1.estimate", "rms_m"}}},
       {"consistency", {{"vehicle: r1, channel: r1.estimate", "nees_mean"}}},
       {"distance", {{"vehicle: r1", "travelled_m"}, {"vehicle: r1, from_s: 1", "travelled_m"}}},
@@ -70,12 +70,6 @@ std::string world_text() {
 nlohmann::json metrics_in(const std::string& directory) {
   const std::string text = text_of_file(directory + "/summary.json");
   return text.empty() ? nlohmann::json() : nlohmann::json::parse(text)["metrics"];
-}
-
-Ended control(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "control");
-  arguments.insert(arguments.end(), {"--lcm-url", own_url()});
-  return run_shoal(arguments);
 }
 
 class MetricsInTime : public testing::Test {

@@ -13,12 +13,6 @@ using namespace system_test;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-Ended control(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "control");
-  arguments.insert(arguments.end(), {"--lcm-url", own_url()});
-  return run_shoal(arguments);
-}
-
 std::vector<std::string> mission(const std::string& world, const std::string& duration_s,
                                  const std::vector<std::string>& more = {}) {
   std::vector<std::string> run{"run",        source(world), "--launch",  "--speed", "max",
@@ -48,16 +42,16 @@ Ended run_with_two_rewinds(const std::string& world, const std::string& duration
   return ended;
 }
 
-struct Mission {
+struct RewoundMission {
   const char* world;
   const char* duration_s;
   std::vector<std::string> times_s;  ///< some are ticks of the programs, some lie between them
 };
 
-class ProgramsGoBack : public testing::TestWithParam<Mission> {};
+class ProgramsGoBack : public testing::TestWithParam<RewoundMission> {};
 
 TEST_P(ProgramsGoBack, AndTheRunEndsAsOneThatNeverWentBack) {
-  const Mission& of = GetParam();
+  const RewoundMission& of = GetParam();
   const Ended straight = run_shoal(mission(of.world, of.duration_s), std::chrono::minutes(3));
   const ScratchFolder folder;
   const Ended ended = run_with_two_rewinds(of.world, of.duration_s, of.times_s, folder.file("results"));
@@ -72,7 +66,7 @@ TEST_P(ProgramsGoBack, AndTheRunEndsAsOneThatNeverWentBack) {
 
 /// To a file that was written on the way: at a tick of the programs and between two.
 TEST_P(ProgramsGoBack, ToAFileOfTheirRunAsWell) {
-  const Mission& of = GetParam();
+  const RewoundMission& of = GetParam();
   const Ended straight = run_shoal(mission(of.world, of.duration_s), std::chrono::minutes(3));
   const ScratchFolder folder;
   std::vector<std::string> arguments = mission(
@@ -99,10 +93,11 @@ TEST_P(ProgramsGoBack, ToAFileOfTheirRunAsWell) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Worlds, ProgramsGoBack,
-                         testing::Values(Mission{"worlds/segway.yaml", "30", {"9.005", "4.5", "14", "6.035"}},
-                                         Mission{"worlds/coop_land.yaml", "30", {"12.34", "5", "20", "11.27"}},
-                                         Mission{"worlds/coop_underwater.yaml", "150", {"90", "33.3", "120", "40.14"}},
-                                         Mission{"worlds/coop_relay.yaml", "200", {"150", "20", "160", "50.3"}}),
+                         testing::Values(RewoundMission{"worlds/segway.yaml", "30", {"9.005", "4.5", "14", "6.035"}},
+                                         RewoundMission{"worlds/coop_land.yaml", "30", {"12.34", "5", "20", "11.27"}},
+                                         RewoundMission{
+                                             "worlds/coop_underwater.yaml", "150", {"90", "33.3", "120", "40.14"}},
+                                         RewoundMission{"worlds/coop_relay.yaml", "200", {"150", "20", "160", "50.3"}}),
                          [](const auto& test) {
                            const std::string path = test.param.world;
                            return path.substr(7, path.find('.') - 7);

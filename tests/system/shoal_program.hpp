@@ -61,6 +61,8 @@ struct Ended {
 
 /// Runs `shoal` with these arguments to its end.
 Ended run_shoal(std::vector<std::string> arguments, std::chrono::milliseconds limit = patience);
+/// `shoal control` on own_url().
+Ended control(std::vector<std::string> arguments);
 /// The 16 digits after `state hash`, or what was said instead.
 std::string state_hash_in(const Ended& ended);
 /// The same after `run hash`: equal for equal runs, not only for equal ends.

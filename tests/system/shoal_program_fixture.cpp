@@ -89,6 +89,12 @@ Ended run_shoal(std::vector<std::string> arguments, std::chrono::milliseconds li
   return {exit_code, program.output(), program.errors()};
 }
 
+Ended control(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "control");
+  arguments.insert(arguments.end(), {"--lcm-url", own_url()});
+  return run_shoal(arguments);
+}
+
 namespace {
 
 std::string hash_in(const Ended& ended, const std::string& kind) {

@@ -23,15 +23,15 @@ std::string section(const std::string& heading) {
   return page.substr(begin, page.find("\n## ", begin + 4) - begin);
 }
 
-struct Command {
+struct PageCommand {
   std::string text;
   std::string answer;  ///< what the comment behind it says
 };
 
 /// The lines of a section that begin with `shoal`.
-std::vector<Command> commands_in(const std::string& text) {
+std::vector<PageCommand> commands_in(const std::string& text) {
   static const std::regex line("\n(shoal [^\n#]*[^\n# ])(?: +# ([^\n]*))?");
-  std::vector<Command> commands;
+  std::vector<PageCommand> commands;
   for (auto found = std::sregex_iterator(text.begin(), text.end(), line); found != std::sregex_iterator(); ++found)
     commands.push_back({(*found)[1], (*found)[2]});
   return commands;
@@ -70,7 +70,7 @@ class Page : public testing::Test {
 
 TEST_F(Page, AWorkedSessionEndsAsItSays) {
   const std::string text = section("A worked session");
-  const std::vector<Command> commands = commands_in(text);
+  const std::vector<PageCommand> commands = commands_in(text);
   ASSERT_THAT(commands, SizeIs(5));
   Program run_itself(shell(commands.front().text + " --paused"));  // else the test would race with its 40 s
   EXPECT_TRUE(await([&] { return run("shoal control where --timeout 0.5").exit_code == 0; }, patience));
@@ -95,10 +95,10 @@ TEST_F(Page, AWorkedSessionEndsAsItSays) {
 }
 
 TEST_F(Page, SnapshotFilesGoOnAsItSays) {
-  const std::vector<Command> commands = commands_in(section("Snapshot files"));
+  const std::vector<PageCommand> commands = commands_in(section("Snapshot files"));
   ASSERT_THAT(commands, SizeIs(4));
   std::vector<Ended> ended;
-  for (const Command& command : commands) {
+  for (const PageCommand& command : commands) {
     ended.push_back(run(command.text));
     EXPECT_EQ(ended.back().exit_code, 0) << command.text << ended.back().errors;
   }

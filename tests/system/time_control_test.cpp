@@ -24,12 +24,6 @@ using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
 
-Ended control(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "control");
-  arguments.insert(arguments.end(), {"--lcm-url", own_url()});
-  return run_shoal(arguments);
-}
-
 /// A rover with a lidar and a modem, which an event pushes about, and noise everywhere.
 std::string lively_world() {
   return "shoal: 1\nname: lively\nrun: {duration_s: 20, speed: 0}\n"

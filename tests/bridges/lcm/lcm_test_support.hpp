@@ -15,6 +15,7 @@
 
 #include "shoal/message_schema.hpp"
 #include "sim/bus/bus.hpp"
+#include "tests/bytes_of.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace lcm_test {
@@ -34,10 +35,7 @@ inline bool has_large_receive_buffers() {
   return bytes >= 4194304;
 }
 
-inline sim::Bytes bytes_of(std::string_view text) {
-  const auto* data = reinterpret_cast<const std::byte*>(text.data());
-  return {data, data + text.size()};
-}
+using test_support::bytes_of;
 
 inline std::string text_of(const sim::Bytes& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};

@@ -6,6 +6,7 @@
 
 #include "shoal/sim_hash_t.hpp"
 #include "sim/world/world_state.hpp"
+#include "tests/bytes_of.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 
 namespace {
@@ -14,10 +15,7 @@ using bridges::RunJournal;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-sim::Bytes bytes(const std::string& text) {
-  const auto* begin = reinterpret_cast<const std::byte*>(text.data());
-  return {begin, begin + text.size()};
-}
+using test_support::bytes_of;
 
 /// A world with a ball, and a journal that publishes on its bus.
 struct Journalled {
@@ -52,19 +50,19 @@ struct Journalled {
 
 TEST(RunJournal, LettersKnowTheStepThatBeginsWhenTheyAreHandedOver) {
   Journalled run;
-  run.journal.letter("", "a", bytes("early"));
+  run.journal.letter("", "a", bytes_of("early"));
   run.journal.start();
   run.journal.after_step();
   EXPECT_THAT(run.letters(), ElementsAre("-1::a:early"));
-  run.journal.letter("", "a", bytes("one"));
-  const std::vector<sim::MailGate::Mail> mail{{"b", bytes("two")}, {"c", bytes("")}};
+  run.journal.letter("", "a", bytes_of("one"));
+  const std::vector<sim::MailGate::Mail> mail{{"b", bytes_of("two")}, {"c", bytes_of("")}};
   run.journal.admitted("reef", mail);
   EXPECT_THAT(run.letters(), IsEmpty());
   run.step();
   EXPECT_THAT(run.letters(), ElementsAre("0::a:one", "0:reef:b:two", "0:reef:c:"));
   run.step();
   EXPECT_THAT(run.letters(), IsEmpty());
-  run.journal.letter("", "a", bytes("last"));
+  run.journal.letter("", "a", bytes_of("last"));
   run.journal.finish();
   EXPECT_THAT(run.letters(), ElementsAre("2::a:last"));
   EXPECT_THAT(run.sequences, ElementsAre(0, 1, 2));
@@ -130,7 +128,7 @@ TEST(RunJournal, AListenerHearsOfEveryLetter) {
   });
   run.journal.start();
   run.step();
-  run.journal.letter("reef", "a", bytes("x"));
+  run.journal.letter("reef", "a", bytes_of("x"));
   shoal::sim_control_request_t request{};
   request.command = "remove";
   run.journal.request(request);
@@ -145,24 +143,24 @@ TEST(RunJournal, MutedItWritesNothingAndItsPortsReadWhatTheyReadBefore) {
   const auto port = open("pty", "/nowhere/a");
   run.journal.start();
   end->to_world = "hello";
-  EXPECT_EQ(port->read(), bytes("hello"));
+  EXPECT_EQ(port->read(), bytes_of("hello"));
   run.step();
   EXPECT_THAT(run.letters(), ElementsAre("0:serial:/nowhere/a:hello"));
   run.hashes.take_all();
 
   run.journal.mute(true);
-  run.journal.serial_mail().add(1, "/nowhere/a", bytes("again"));
+  run.journal.serial_mail().add(1, "/nowhere/a", bytes_of("again"));
   end->to_world = "later";
-  EXPECT_EQ(port->read(), bytes("again"));
-  port->write(bytes("unheard"));
-  run.journal.letter("", "a", bytes("x"));
+  EXPECT_EQ(port->read(), bytes_of("again"));
+  port->write(bytes_of("unheard"));
+  run.journal.letter("", "a", bytes_of("x"));
   run.step();
   EXPECT_THAT(run.letters(), IsEmpty());
   EXPECT_THAT(run.hashes.take_all(), IsEmpty());
   EXPECT_EQ(end->from_world, "");
 
   run.journal.mute(false);
-  EXPECT_EQ(port->read(), bytes("later"));
+  EXPECT_EQ(port->read(), bytes_of("later"));
   run.step();
   EXPECT_THAT(run.letters(), ElementsAre("2:serial:/nowhere/a:later"));
 }
@@ -171,12 +169,12 @@ TEST(RunJournal, ABranchCountsOnFromWhereItBegan) {
   Journalled run;
   run.journal.start();
   for (int i = 0; i < 3; ++i) {
-    run.journal.letter("", "a", bytes("x"));
+    run.journal.letter("", "a", bytes_of("x"));
     run.step();
   }
   run.letters();
   run.journal.begin_branch(1, 2);
-  run.journal.letter("", "a", bytes("x"));
+  run.journal.letter("", "a", bytes_of("x"));
   run.step();
   const auto messages = run.mail.take_all();
   ASSERT_EQ(messages.size(), 1u);
@@ -186,17 +184,17 @@ TEST(RunJournal, ABranchCountsOnFromWhereItBegan) {
 
 TEST(SerialMail, IsReadAtItsStepOnly) {
   bridges::SerialMail mail;
-  mail.add(3, "a", bytes("three"));
-  mail.add(5, "a", bytes("five"));
-  mail.add(5, "a", bytes("more"));
-  mail.add(7, "a", bytes("seven"));
-  EXPECT_EQ(mail.read("b", 3), bytes(""));
-  EXPECT_EQ(mail.read("a", 2), bytes(""));
-  EXPECT_EQ(mail.read("a", 3), bytes("three"));
-  EXPECT_EQ(mail.read("a", 3), bytes(""));
-  EXPECT_EQ(mail.read("a", 5), bytes("five"));
-  EXPECT_EQ(mail.read("a", 5), bytes("more"));
-  EXPECT_EQ(mail.read("a", 8), bytes(""));
+  mail.add(3, "a", bytes_of("three"));
+  mail.add(5, "a", bytes_of("five"));
+  mail.add(5, "a", bytes_of("more"));
+  mail.add(7, "a", bytes_of("seven"));
+  EXPECT_EQ(mail.read("b", 3), bytes_of(""));
+  EXPECT_EQ(mail.read("a", 2), bytes_of(""));
+  EXPECT_EQ(mail.read("a", 3), bytes_of("three"));
+  EXPECT_EQ(mail.read("a", 3), bytes_of(""));
+  EXPECT_EQ(mail.read("a", 5), bytes_of("five"));
+  EXPECT_EQ(mail.read("a", 5), bytes_of("more"));
+  EXPECT_EQ(mail.read("a", 8), bytes_of(""));
 }
 
 }  // namespace

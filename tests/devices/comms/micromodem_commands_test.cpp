@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/devices/comms/micromodem_host.hpp"
+#include "tests/devices/comms/sentence_field.hpp"
 
 namespace {
 
@@ -19,12 +20,7 @@ Modem modem_of(const std::string& revision) {
   return Modem(config);
 }
 
-/// Field `i` of a sentence, counted from the one after its name as 1.
-std::string field(const std::string& sentence, std::size_t i) {
-  devices::NmeaSentence parsed;
-  devices::parse_nmea("$" + sentence, parsed);
-  return parsed.at(i);
-}
+using test::field;
 
 /// Clock mode in $CACST of a packet that comes now.
 std::string clock_mode(Modem& modem) {

@@ -7,6 +7,7 @@
 #include "sim/world/world_editor.hpp"
 #include "sim/world/world_state.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
+#include "tests/devices/comms/sentence_field.hpp"
 #include "tests/fidelity/closed_forms.hpp"
 #include "tests/sim/medium/log_capture.hpp"
 
@@ -22,7 +23,7 @@ std::string modem_at(int address, const std::string& keys = "") {
 }
 
 /// Modem 1 of vehicle a, 2 of b at 750 m, 3 of c at 300 m to the other side.
-std::string three(const std::string& keys = "", const std::string& more = "") {
+std::string three_micromodems(const std::string& keys = "", const std::string& more = "") {
   return test::modem_sea({{"a", "[0, 0, -20]", modem_at(1, keys)},
                           {"b", "[750, 0, -20]", modem_at(2, keys)},
                           {"c", "[-300, 0, -20]", modem_at(3, keys)}},
@@ -61,14 +62,10 @@ std::vector<std::string> only(const std::vector<std::string>& said, const std::s
   return some;
 }
 
-std::string field(const std::string& sentence, std::size_t i) {
-  devices::NmeaSentence parsed;
-  devices::parse_nmea("$" + sentence, parsed);
-  return parsed.at(i);
-}
+using test::field;
 
 TEST(Micromodem, CarriesDataOfRateZeroAsTheRealOneSays) {
-  Hosts hosts(three());
+  Hosts hosts(three_micromodems());
   hosts.run_for(0.05);
   hosts.take("a"), hosts.take("b");
   hosts.say("a", "$CCCYC,0,1,2,0,1,1");
@@ -112,7 +109,7 @@ TEST(Micromodem, PacketsLastAsTheTableSays) {
 
 TEST(Micromodem, EveryRateCarriesItsFrames) {
   for (const auto& rate : devices::micromodem_rates()) {
-    Hosts hosts(three());
+    Hosts hosts(three_micromodems());
     hosts.run_for(0.05);
     hosts.say("a", "$CCCYC,0,1,2," + std::to_string(rate.number) + ",0," + std::to_string(rate.frames));
     const std::string hex(static_cast<std::size_t>(2 * rate.frame_bytes), 'a');
@@ -128,7 +125,7 @@ TEST(Micromodem, EveryRateCarriesItsFrames) {
 }
 
 TEST(Micromodem, APingMeasuresTheTravelTime) {
-  Hosts hosts(three());
+  Hosts hosts(three_micromodems());
   hosts.run_for(0.05);
   hosts.take("a");
   hosts.say("a", "$CCMPC,1,2");
@@ -142,7 +139,7 @@ TEST(Micromodem, APingMeasuresTheTravelTime) {
 }
 
 TEST(Micromodem, APingOfAMovingOneMeasuresTheMeanOfBothWays) {
-  Hosts hosts(three());
+  Hosts hosts(three_micromodems());
   // b goes away at 1.5 m/s.
   const sim::Vector3d v_W(1.5, 0, 0);
   for (const auto& [name, body] : hosts.world.find_vehicle("b")->bodies())
@@ -159,7 +156,7 @@ TEST(Micromodem, APingOfAMovingOneMeasuresTheMeanOfBothWays) {
 }
 
 TEST(Micromodem, ASynchronousPacketTellsItsOneWayTravelTime) {
-  Hosts hosts(three(", synchronous: true"));
+  Hosts hosts(three_micromodems(", synchronous: true"));
   hosts.run_for(0.35);
   hosts.take("b");
   hosts.say("a", "$CCMUC,1,2,1fab");
@@ -178,7 +175,7 @@ TEST(Micromodem, ASynchronousPacketTellsItsOneWayTravelTime) {
 }
 
 TEST(Micromodem, SynchronousPingsBeginAtAWholeSecondAndMeasureTheSame) {
-  Hosts hosts(three(", synchronous: true"));
+  Hosts hosts(three_micromodems(", synchronous: true"));
   hosts.run_for(0.35);
   hosts.take("a");
   hosts.say("a", "$CCMPC,1,2");
@@ -242,7 +239,7 @@ TEST(Micromodem, AsksTransponders) {
 }
 
 TEST(Micromodem, AThirdModemMayAskForTheCycle) {
-  Hosts hosts(three());
+  Hosts hosts(three_micromodems());
   hosts.run_for(0.05);
   hosts.take("a"), hosts.take("b");
   hosts.say("c", "$CCCYC,0,1,2,2,0,1");  // 3 asks 1 to send to 2
@@ -269,7 +266,7 @@ TEST(Micromodem, WithoutTheCoprocessorItHearsRateZeroOnly) {
 }
 
 TEST(Micromodem, RefusesBadSentencesAndGoesOn) {
-  Hosts hosts(three());
+  Hosts hosts(three_micromodems());
   for (const char* bad : {"", "$", "noise", "$CCCYC", "$CCTXD,,,,", "$CCMPC,1,2*00", "$CCCYC,0,1,2,9,0,1"})
     hosts.say("a", bad);
   hosts.run_for(0.1);
@@ -311,7 +308,7 @@ TEST(Micromodem, SaysNothingOfAPacketThatItDidNotNotice) {
 }
 
 TEST(Micromodem, StartsAnewWhenItsPowerComesBack) {
-  Hosts hosts(three());
+  Hosts hosts(three_micromodems());
   hosts.run_for(0.05);
   hosts.say("a", "$CCMUC,1,2,1fab");
   hosts.say("b", "$CCCYC,0,2,1,0,0,1");
@@ -327,7 +324,7 @@ TEST(Micromodem, StartsAnewWhenItsPowerComesBack) {
 }
 
 TEST(Micromodem, AFreshStartTakesBackWhatItHasNotBegun) {
-  Hosts hosts(three());
+  Hosts hosts(three_micromodems());
   hosts.run_for(0.05);
   for (const char* line : {"$CCCYC,0,1,2,0,0,1", "$CCTXD,1,2,0,abcd", "$CCMSC,1,1,0"}) {
     hosts.say("a", line);
@@ -359,7 +356,7 @@ TEST(Micromodem, APingKnowsNothingOfAClockThatIsSet) {
 }
 
 TEST(Micromodem, CountsPacketsForItsAddressAndForEverybody) {
-  Hosts hosts(three());
+  Hosts hosts(three_micromodems());
   hosts.run_for(0.05);
   const auto understood = [&](const std::string& vehicle) {
     return test::device_of<devices::Micromodem>(hosts, vehicle + "/modem").transducer().counts().understood;
@@ -385,7 +382,7 @@ TEST(Micromodem, NeedsWater) {
 
 TEST(Micromodem, TheSameWorldGivesTheSameHashes) {
   const auto hashes = [] {
-    Hosts hosts(three(", synchronous: true"));
+    Hosts hosts(three_micromodems(", synchronous: true"));
     std::vector<std::uint64_t> all;
     for (int i = 0; i < 10; ++i) {
       hosts.say("a", "$CCMPC,1,2");
@@ -399,7 +396,7 @@ TEST(Micromodem, TheSameWorldGivesTheSameHashes) {
 }
 
 TEST(Micromodem, WarnsOfTwoWithOneAddressAndNotOfOneThatComesBack) {
-  Hosts hosts(three());
+  Hosts hosts(three_micromodems());
   const test_support::LogCapture log;
   const sim::VehicleInstance a = hosts.loaded.config.vehicles[0];
   for (int i = 0; i < 3; ++i) {

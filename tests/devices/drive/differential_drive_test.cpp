@@ -2,6 +2,7 @@
 #include "shoal/thrust_rudder_command_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "shoal/wheel_speeds_command_t.hpp"
+#include "tests/devices/drive/drive_support.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -10,12 +11,7 @@ constexpr const char* drive =
     "        - {name: drive, type: differential_drive, left_joint: left, right_joint: right, wheel_radius_m: 0.1,\n"
     "           track_m: 0.5, max_speed_mps: 2, max_turn_radps: 3, max_acceleration_mps2: 1000, max_torque_Nm: 100}\n";
 
-shoal::twist_command_t twist(double forward_mps, double turn_radps) {
-  shoal::twist_command_t command{};
-  command.forward_mps = forward_mps;
-  command.turn_radps = turn_radps;
-  return command;
-}
+using test::twist;
 
 sim::Pose pose_of(const test::TestWorld& test) {
   return test.world.find_vehicle("r1")->X_WV();

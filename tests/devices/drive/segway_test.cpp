@@ -21,7 +21,7 @@ using test::closed_form;
 using test::ClosedForm;
 
 constexpr double degrees = 180 / std::numbers::pi;
-constexpr double radius_m = 0.236, platform_over_axle_m = -0.074;
+constexpr double wheel_m = 0.236, platform_over_axle_m = -0.074;
 
 /// A Segway on a plane, leaning forward by an angle about the ground under its axle.
 struct Setting {
@@ -50,7 +50,7 @@ struct Segway : test::TestWorld {
     text << "shoal: 1\nphysics: " << setting.physics
          << "\nobjects: [{name: ground, fixed: true, parts: [{shape: plane}]}]\n"
          << "vehicles:\n  - name: s\n    file: " << scratch.file("segway.yaml") << "\n    position_m: [0, 0, "
-         << radius_m * (1 - std::cos(setting.lean_rad)) + 1e-4 << "]\n    rpy_deg: [0, " << setting.lean_rad * degrees
+         << wheel_m * (1 - std::cos(setting.lean_rad)) + 1e-4 << "]\n    rpy_deg: [0, " << setting.lean_rad * degrees
          << ", 0]\n    overrides: {actuator_latency_s: 0, devices.camera.rate_hz: 0.1" << setting.overrides << "}\n";
     return sim::to_yaml(sim::load_world_text(text.str(), "worlds/test.yaml").resolved);
   }
@@ -121,8 +121,8 @@ struct Wobble {
 };
 
 /// Balanced by the truth, it speeds up, is pushed from the side, and slows down.
-Wobble drive(const std::string& overrides, const std::string& solver = "auto", const std::string& joints = "",
-             double step_s = 0.005) {
+Wobble wobble_of(const std::string& overrides, const std::string& solver = "auto", const std::string& joints = "",
+                 double step_s = 0.005) {
   Segway test({.lean_rad = balanced_rad(),
                .overrides = overrides,
                .joints = joints,
@@ -134,8 +134,7 @@ Wobble drive(const std::string& overrides, const std::string& solver = "auto", c
     const auto& wheels = {std::pair{"left", 0.285}, std::pair{"right", -0.285}};
     const double rate = (test.base().X_WB().linear().transpose() * test.base().w_WB_W()).y();
     const double speed =
-        radius_m * (test.vehicle().joint("left").velocity(1) + test.vehicle().joint("right").velocity(1) + 2 * rate) /
-        2;
+        wheel_m * (test.vehicle().joint("left").velocity(1) + test.vehicle().joint("right").velocity(1) + 2 * rate) / 2;
     const double slow = (t < 1 ? 0 : t < 12 ? 1.5 : 0) - speed;
     way += std::clamp(slow, -0.5, 0.5) * step_s;
     const double wanted = balanced_rad() + std::clamp(0.12 * slow + 0.02 * way, -0.15, 0.15);
@@ -173,33 +172,33 @@ const std::string slack = both("low_stop", "-0.01") + both("high_stop", "0.01");
 const std::string free_steering = both("low_stop", "-3.1") + both("high_stop", "3.1");
 
 TEST(Segway, ItsWheelsStayOnTheirAxles) {
-  const Wobble wobble = drive("");
+  const Wobble wobble = wobble_of("");
   EXPECT_LT(wobble.axis_deg, 1e-3);  // the softness of the constraints, cfm 1e-9, and their errors of second order
   EXPECT_LT(wobble.centre_mm, 0.02);
   EXPECT_LT(wobble.lean_deg, 15);
 }
 
 TEST(Segway, WheelsWithAnchorsBesideThemAndSteeringThatGivesWayWobble) {
-  const Wobble with_slack = drive(anchors_of_the_paper + slack);
+  const Wobble with_slack = wobble_of(anchors_of_the_paper + slack);
   EXPECT_GT(with_slack.axis_deg, 0.5);  // from stop to stop: 0.01 rad
-  const Wobble without_stops = drive(anchors_of_the_paper + free_steering);
+  const Wobble without_stops = wobble_of(anchors_of_the_paper + free_steering);
   EXPECT_GT(without_stops.axis_deg, 90) << "the drive turns the wheels around";
   EXPECT_GT(without_stops.lean_deg, 45) << "and it falls";
 }
 
 TEST(Segway, EachOfTheTwoCausesIsEnoughToTakeAway) {
-  EXPECT_LT(drive(anchors_of_the_paper).axis_deg, 1e-3) << "no slack";
-  EXPECT_LT(drive(slack).axis_deg, 1e-2) << "no lever arm";
+  EXPECT_LT(wobble_of(anchors_of_the_paper).axis_deg, 1e-3) << "no slack";
+  EXPECT_LT(wobble_of(slack).axis_deg, 1e-2) << "no lever arm";
 }
 
 TEST(Segway, ASoftSuspensionSinksAndDoesNotWobble) {
-  const Wobble soft = drive(anchors_of_the_paper + both("suspension_erp", "0.2") + both("suspension_cfm", "0.002"));
+  const Wobble soft = wobble_of(anchors_of_the_paper + both("suspension_erp", "0.2") + both("suspension_cfm", "0.002"));
   EXPECT_LT(soft.axis_deg, 1e-2);
   EXPECT_GT(soft.centre_mm, 20);
 }
 
 TEST(Segway, TheBallJointsOfThePaperHoldTheWheelsAsWell) {
-  const Wobble patched = drive(anchors_of_the_paper + free_steering, "auto", R"(
+  const Wobble patched = wobble_of(anchors_of_the_paper + free_steering, "auto", R"(
   - {name: left_ball, type: ball, bodies: [base, left_wheel], anchor_m: [0, 0, 0.236]}
   - {name: right_ball, type: ball, bodies: [base, right_wheel], anchor_m: [0, 0, 0.236]}
 )");

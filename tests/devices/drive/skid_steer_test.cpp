@@ -7,6 +7,7 @@
 #include "shoal/twist_command_t.hpp"
 #include "shoal/wheel_speeds_command_t.hpp"
 #include "sim/world/world_editor.hpp"
+#include "tests/devices/drive/drive_support.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -45,12 +46,7 @@ vehicles:
 // v / w = b + a^2 / b.  The effective track is twice that: 2 (0.2 + 0.15^2 / 0.2) = 0.625 m.
 const std::string track = ", track_m: 0.625, max_speed_mps: 2, max_acceleration_mps2: 5, max_torque_Nm: 20";
 
-shoal::twist_command_t twist(double forward_mps, double turn_radps) {
-  shoal::twist_command_t command{};
-  command.forward_mps = forward_mps;
-  command.turn_radps = turn_radps;
-  return command;
-}
+using test::twist;
 
 const sim::Vehicle& rover(const test::TestWorld& test) {
   return *test.world.find_vehicle("r1");

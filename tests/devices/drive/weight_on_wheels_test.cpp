@@ -5,6 +5,7 @@
 
 #include "shoal/twist_command_t.hpp"
 #include "sim/vehicle/vehicle.hpp"
+#include "tests/devices/drive/drive_support.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/sim/medium/log_capture.hpp"
 
@@ -48,11 +49,7 @@ vehicles:
 )";
 }
 
-std::string warnings_of(const std::string& yaml) {
-  const test_support::LogCapture log;
-  test::TestWorld built(yaml);
-  return log.text();
-}
+using test::warnings_of;
 
 /// Of the turn rate that was asked for, on the spot.
 double share_of_turn(const std::string& yaml) {

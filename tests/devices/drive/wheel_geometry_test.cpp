@@ -8,6 +8,7 @@
 #include "shoal/twist_command_t.hpp"
 #include "sim/vehicle/mounted_device.hpp"
 #include "sim/vehicle/vehicle.hpp"
+#include "tests/devices/drive/drive_support.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/sim/medium/log_capture.hpp"
 
@@ -24,11 +25,7 @@ std::string rover(const std::string& keys) {
   return yaml.erase(caster, yaml.find('\n', caster) + 1 - caster);
 }
 
-std::string warnings_of(const std::string& yaml) {
-  const test_support::LogCapture log;
-  test::TestWorld built(yaml);
-  return log.text();
-}
+using test::warnings_of;
 
 const devices::TwoSidedDrive& drive_of(const test::TestWorld& test) {
   return dynamic_cast<const devices::TwoSidedDrive&>(*test.world.find_device("r1/drive")->actuator());

@@ -14,7 +14,7 @@ using sim::Vector3d;
 std::string ahrs(const std::string& more = "") {
   return "        - {name: ahrs, type: ahrs, rate_hz: 50, phase_s: 0, truth: true" + more + "}\n";
 }
-const char* weightless = "{step_s: 0.01, gravity_mps2: 0}";
+const char* weightless_at_100_Hz = "{step_s: 0.01, gravity_mps2: 0}";
 
 Quaterniond orientation(const shoal::ins_t& report) {
   return {report.quat[0], report.quat[1], report.quat[2], report.quat[3]};
@@ -25,7 +25,7 @@ TEST(Ahrs, ItsMessageIsTheOneOfBotCore) {
 }
 
 TEST(Ahrs, GivesTheAttitudeOfItsMounting) {
-  test::TestWorld test(test::box_world(ahrs(", rpy_deg: [10, 20, 30]"), weightless));
+  test::TestWorld test(test::box_world(ahrs(", rpy_deg: [10, 20, 30]"), weightless_at_100_Hz));
   test.world.vehicles()[0]->body("hull").set_velocity_W({0, 0, 0}, {0, 0, 0.5});
   test::Listener<shoal::ins_t> reports(test, "r1.ahrs");
   test.run_for(1);
@@ -44,7 +44,7 @@ TEST(Ahrs, GivesTheAttitudeOfItsMounting) {
 
 TEST(Ahrs, ErrorsTurnTheAttitudeInTheWorld) {
   test::TestWorld test(test::box_world(
-      ahrs(", rpy_deg: [0, 0, 90], tilt_noise: {bias: 0.01}, heading_noise: {bias: 0.02}"), weightless));
+      ahrs(", rpy_deg: [0, 0, 90], tilt_noise: {bias: 0.01}, heading_noise: {bias: 0.02}"), weightless_at_100_Hz));
   test::Listener<shoal::ins_t> reports(test, "r1.ahrs");
   test::Listener<shoal::ins_t> truths(test, "r1.ahrs.truth");
   test.run_for(0.1);
@@ -53,7 +53,7 @@ TEST(Ahrs, ErrorsTurnTheAttitudeInTheWorld) {
 }
 
 TEST(Ahrs, TheHeadingDriftsSteadily) {
-  test::TestWorld test(test::box_world(ahrs(", heading_drift_deg_per_h: 36"), weightless));
+  test::TestWorld test(test::box_world(ahrs(", heading_drift_deg_per_h: 36"), weightless_at_100_Hz));
   test::Listener<shoal::ins_t> reports(test, "r1.ahrs");
   test.run_for(100.01);
   // 36 deg/h are 0.01 deg/s; the first sample is at 0.02 s, the last at 100.
@@ -64,7 +64,7 @@ TEST(Ahrs, TheHeadingDriftsSteadily) {
 TEST(Ahrs, SlowErrorsHaveTheSpreadAskedFor) {
   test::TestWorld test(test::box_world(
       ahrs(", tilt_noise: {gauss_markov_std: 0.005, gauss_markov_time_s: 0.1}, heading_noise: {gaussian_std: 0.02}"),
-      weightless));
+      weightless_at_100_Hz));
   test::Listener<shoal::ins_t> reports(test, "r1.ahrs");
   test.run_for(200);
   double tilt = 0, heading = 0;

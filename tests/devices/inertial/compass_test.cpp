@@ -3,6 +3,7 @@
 
 #include "shoal/compass_t.hpp"
 #include "sim/world/world_editor.hpp"
+#include "tests/devices/inertial/weightless.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -15,7 +16,7 @@ std::string compass(const std::string& more = "") {
          "inclination_deg: 60, declination_deg: 10" +
          more + "}\n";
 }
-const char* weightless = "{step_s: 0.001, gravity_mps2: 0}";
+using test::weightless;
 
 /// What the compass says when the box has this attitude.
 shoal::compass_t at(const std::string& more, double yaw_deg, double pitch_deg = 0, double roll_deg = 0,

@@ -5,6 +5,7 @@
 
 #include "devices/inertial/imu_presets.hpp"
 #include "shoal/imu_t.hpp"
+#include "tests/devices/inertial/weightless.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -14,7 +15,7 @@ using sim::Vector3d;
 std::string imu(const std::string& more = "") {
   return "        - {name: imu, type: imu, rate_hz: 100, phase_s: 0, truth: true" + more + "}\n";
 }
-const char* weightless = "{step_s: 0.001, gravity_mps2: 0}";
+using test::weightless;
 
 Vector3d gyro_of(const shoal::imu_t& report) {
   return Vector3d(report.angular_velocity_radps);

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "shoal/inclination_t.hpp"
+#include "tests/devices/inertial/weightless.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
@@ -11,7 +12,7 @@ using sim::Vector3d;
 std::string inclinometer(const std::string& more = "") {
   return "        - {name: tilt, type: inclinometer, rate_hz: 100, phase_s: 0, truth: true" + more + "}\n";
 }
-const char* weightless = "{step_s: 0.001, gravity_mps2: 0}";
+using test::weightless;
 
 TEST(Inclinometer, ReadsItsMountingOnALevelRover) {
   test::TestWorld test(test::rover_world(inclinometer(", rpy_deg: [20, -10, 45]")));

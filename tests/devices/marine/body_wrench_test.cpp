@@ -15,7 +15,7 @@ using test::wet_device;
 using test::WetBox;
 using testing::HasSubstr;
 
-constexpr double rounding_N = 1e-9;
+using test::rounding_N;
 
 void push(WetBox& box, const sim::Vector3d& force, const sim::Vector3d& torque = sim::Vector3d::Zero()) {
   shoal::wrench_t message{};

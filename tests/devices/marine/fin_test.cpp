@@ -16,8 +16,8 @@ using test::wet_device;
 using test::WetBox;
 using testing::HasSubstr;
 
-constexpr double rounding_N = 1e-9;
-const double degree = std::numbers::pi / 180;
+using test::degree;
+using test::rounding_N;
 
 /// Force on a fin that is at its angle, at this velocity.
 sim::Vector3d force(const std::string& keys, double angle_rad, const sim::Vector3d& v_W) {

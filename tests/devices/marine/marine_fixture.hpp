@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <numbers>
+
 #include "shoal/actuator_command_t.hpp"
 #include "sim/vehicle/mounted_device.hpp"
 #include "sim/vehicle/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace test {
+
+inline constexpr double rounding_N = 1e-9;
+inline constexpr double degree = std::numbers::pi / 180;
 
 /// A box of 10 kg without weight or drag, 50 m under water of 1000 kg/m^3, one step of 1 ms at a time: what its devices
 /// do to it can be read off its velocity.  `devices`: lines indented by eight spaces.

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 // A box that moves in still air stands for the wind: 5 m above the water.
 const char* above_water = "{water: {surface_m: -5}}";
-const double degree = std::numbers::pi / 180;
+using test::degree;
 
 const char* keys = "type: sail, area_m2: 2, lift_slope: 4, drag_coefficient: 0.05, stall_deg: 18, rate_degps: 1e6";
 

@@ -17,7 +17,7 @@ using test::WetBox;
 using testing::HasSubstr;
 
 // Velocities of up to 3 m/s have an error of 1e-16 times that; over 1e-3 s and 10 kg that is 1e-11 N, added up by ODE.
-constexpr double rounding_N = 1e-9;
+using test::rounding_N;
 
 const char* remus =
     "type: thruster, command: rpm, max: 1525, curve: kt_kq, diameter_m: 0.14, density_kgpm3: 1026, "

@@ -9,7 +9,7 @@ namespace {
 using shoal::water_speed_t;
 using test::marine_world;
 
-water_speed_t truth_at_speed(const std::string& keys, const sim::Vector3d& v_W,
+water_speed_t truth_in_water(const std::string& keys, const sim::Vector3d& v_W,
                              const std::string& medium = "{water: {surface_m: 0}}",
                              const std::string& position_m = "[0, 0, -10]") {
   test::TestWorld test(
@@ -22,29 +22,29 @@ water_speed_t truth_at_speed(const std::string& keys, const sim::Vector3d& v_W,
 
 TEST(WaterSpeed, IsTheSpeedThroughTheWaterAlongItsAxis) {
   const char* current = "{water: {surface_m: 0}, current: {velocity_mps: [0.3, -0.5, 0]}}";
-  EXPECT_NEAR(truth_at_speed("", {0.2, 1, 0}, current).speed_mps, 1.5, 1e-9);
-  EXPECT_NEAR(truth_at_speed("", {0.2, -1, 0}, current).speed_mps, -0.5, 1e-9);
+  EXPECT_NEAR(truth_in_water("", {0.2, 1, 0}, current).speed_mps, 1.5, 1e-9);
+  EXPECT_NEAR(truth_in_water("", {0.2, -1, 0}, current).speed_mps, -0.5, 1e-9);
 }
 
 TEST(WaterSpeed, SensesTheSignOrNot) {
-  EXPECT_NEAR(truth_at_speed(", senses: both", {0, -1, 0}).speed_mps, -1, 1e-9);
-  EXPECT_EQ(truth_at_speed(", senses: forward", {0, -1, 0}).speed_mps, 0);
-  EXPECT_NEAR(truth_at_speed(", senses: magnitude", {0, -1, 0}).speed_mps, 1, 1e-9);
+  EXPECT_NEAR(truth_in_water(", senses: both", {0, -1, 0}).speed_mps, -1, 1e-9);
+  EXPECT_EQ(truth_in_water(", senses: forward", {0, -1, 0}).speed_mps, 0);
+  EXPECT_NEAR(truth_in_water(", senses: magnitude", {0, -1, 0}).speed_mps, 1, 1e-9);
 }
 
 TEST(WaterSpeed, SticksBelowItsThresholdAndStopsAtItsMost) {
-  EXPECT_EQ(truth_at_speed(", threshold_mps: 0.3", {0, 0.29, 0}).speed_mps, 0);
-  EXPECT_NEAR(truth_at_speed(", threshold_mps: 0.3", {0, 0.31, 0}).speed_mps, 0.31, 1e-9);
-  EXPECT_EQ(truth_at_speed(", speed_max_mps: 2", {0, 3, 0}).speed_mps, 2);
+  EXPECT_EQ(truth_in_water(", threshold_mps: 0.3", {0, 0.29, 0}).speed_mps, 0);
+  EXPECT_NEAR(truth_in_water(", threshold_mps: 0.3", {0, 0.31, 0}).speed_mps, 0.31, 1e-9);
+  EXPECT_EQ(truth_in_water(", speed_max_mps: 2", {0, 3, 0}).speed_mps, 2);
 }
 
 TEST(WaterSpeed, IsInvalidInAirAndInADryWorld) {
   for (const char* medium : {"{water: {surface_m: -20}}", "{}"}) {
-    const auto report = truth_at_speed("", {0, 1, 0}, medium);
+    const auto report = truth_in_water("", {0, 1, 0}, medium);
     EXPECT_EQ(report.valid, 0) << medium;
     EXPECT_EQ(report.speed_mps, 0) << medium;
   }
-  EXPECT_EQ(truth_at_speed("", {0, 1, 0}).valid, 1);
+  EXPECT_EQ(truth_in_water("", {0, 1, 0}).valid, 1);
 }
 
 TEST(WaterSpeed, NoiseHasTheSpreadAskedFor) {

@@ -14,7 +14,7 @@ using test::first_truth;
 using test::ranging_world;
 using test::wall_at;
 
-std::string lidar(const std::string& more) {
+std::string lidar_of(const std::string& more) {
   return "type: lidar, range_max_m: 100, " + more;
 }
 
@@ -26,7 +26,7 @@ constexpr const char* surfaces =
 TEST(LaserReturn, ADarkWallVanishesWhereTheEquationSays) {
   const auto range_at = [](double wall_m) {
     return first_truth<planar_lidar_t>(
-               ranging_world(lidar("beams: 1, range_at_10_percent_m: 10"), wall_at(wall_m, "dark"), surfaces))
+               ranging_world(lidar_of("beams: 1, range_at_10_percent_m: 10"), wall_at(wall_m, "dark"), surfaces))
         .ranges[0];
   };
   // 10 m sqrt(0.05 / 0.1) = 7.0711 m.
@@ -36,7 +36,7 @@ TEST(LaserReturn, ADarkWallVanishesWhereTheEquationSays) {
 
 TEST(LaserReturn, AGrazingWallVanishesWhereTheEquationSays) {
   const auto scan = first_truth<planar_lidar_t>(
-      ranging_world(lidar("beams: 181, range_at_10_percent_m: 10"), wall_at(5, "white"), surfaces));
+      ranging_world(lidar_of("beams: 181, range_at_10_percent_m: 10"), wall_at(5, "white"), surfaces));
   // 0.8 cos(i) = 0.1 (5 / (10 cos(i)))^2 at i = 71.6 deg.
   EXPECT_NEAR(scan.ranges[90 + 71], 5 / std::cos(sim::degrees_to_radians(71)), 1e-5);
   EXPECT_EQ(scan.ranges[90 + 72], 100.0f);
@@ -46,7 +46,7 @@ TEST(LaserReturn, AGrazingWallVanishesWhereTheEquationSays) {
 TEST(LaserReturn, IntensityIsTheReflectivityTimesTheCosine) {
   const auto intensity = [](const std::string& material, std::size_t beam) {
     const auto scan = first_truth<planar_lidar_t>(
-        ranging_world(lidar("beams: 181, intensities: true"), wall_at(5, material), surfaces));
+        ranging_world(lidar_of("beams: 181, intensities: true"), wall_at(5, material), surfaces));
     EXPECT_EQ(scan.nintensities, 181);
     return static_cast<double>(scan.intensities[beam]);
   };
@@ -58,20 +58,21 @@ TEST(LaserReturn, IntensityIsTheReflectivityTimesTheCosine) {
 }
 
 TEST(LaserReturn, ThereAreNoIntensitiesUnlessAskedFor) {
-  EXPECT_EQ(first_truth<planar_lidar_t>(ranging_world(lidar("beams: 3"), wall_at(5))).nintensities, 0);
+  EXPECT_EQ(first_truth<planar_lidar_t>(ranging_world(lidar_of("beams: 3"), wall_at(5))).nintensities, 0);
 }
 
 TEST(LaserReturn, GoesThroughWhatLetsItThrough) {
   const std::string pane =
       "  - {name: pane, fixed: true, position_m: [2, 0, 0], parts: [{shape: box, size_m: [0.1, 4, 4], material: "
       "glass}]}\n";
-  const auto scan = first_truth<planar_lidar_t>(ranging_world(lidar("beams: 1"), pane + wall_at(5), surfaces));
+  const auto scan = first_truth<planar_lidar_t>(ranging_world(lidar_of("beams: 1"), pane + wall_at(5), surfaces));
   EXPECT_NEAR(scan.ranges[0], 5, 1e-6);
 }
 
 TEST(LaserReturn, NoiseGrowsWithDistance) {
   for (const double wall_m : {5.0, 50.0}) {
-    test::TestWorld test(ranging_world(lidar("beams: 1, range_std_m: 0.01, range_std_per_m: 0.002"), wall_at(wall_m)));
+    test::TestWorld test(
+        ranging_world(lidar_of("beams: 1, range_std_m: 0.01, range_std_per_m: 0.002"), wall_at(wall_m)));
     test::Listener<planar_lidar_t> scans(test, "r1.s");
     test.run_for(20);
     std::vector<double> errors;
@@ -96,7 +97,7 @@ TEST(LaserReturn, AMixedPixelLiesBetweenTheEdgeAndWhatIsBehindIt) {
   const auto range = [](double wall_m, const std::string& plate, const std::string& more) {
     return static_cast<double>(
         first_truth<planar_lidar_t>(
-            ranging_world(lidar("beams: 1, beam_divergence_deg: 0.5, beam_samples: 100, merge_m: 0.5" + more),
+            ranging_world(lidar_of("beams: 1, beam_divergence_deg: 0.5, beam_samples: 100, merge_m: 0.5" + more),
                           half_covered(wall_m, plate), surfaces))
             .ranges[0]);
   };
@@ -111,7 +112,7 @@ TEST(LaserReturn, AMixedPixelLiesBetweenTheEdgeAndWhatIsBehindIt) {
 
 TEST(LaserReturn, DropsAreAMeanFreePathAway) {
   test::TestWorld test(
-      ranging_world(lidar("beams: 100, range_min_m: 0.0001, weather: {false_returns_per_m: 0.1}"), wall_at(200)));
+      ranging_world(lidar_of("beams: 100, range_min_m: 0.0001, weather: {false_returns_per_m: 0.1}"), wall_at(200)));
   test::Listener<planar_lidar_t> scans(test, "r1.s"), truths(test, "r1.s.truth");
   test.run_for(1);
   std::vector<double> ranges_m;
@@ -125,7 +126,7 @@ TEST(LaserReturn, DropsAreAMeanFreePathAway) {
 }
 
 TEST(LaserReturn, DropsHideAWallByTheExponentialLaw) {
-  test::TestWorld test(ranging_world(lidar("beams: 1, weather: {false_returns_per_m: 0.1}"), wall_at(5)));
+  test::TestWorld test(ranging_world(lidar_of("beams: 1, weather: {false_returns_per_m: 0.1}"), wall_at(5)));
   test::Listener<planar_lidar_t> scans(test, "r1.s");
   test.run_for(20);
   double seen = 0;
@@ -137,15 +138,15 @@ TEST(LaserReturn, DropsHideAWallByTheExponentialLaw) {
 TEST(LaserReturn, FogTakesPowerBothWays) {
   const auto intensity = [](const char* weather) {
     return static_cast<double>(
-        first_truth<planar_lidar_t>(
-            ranging_world(lidar(std::string("beams: 1, intensities: true") + weather), wall_at(10, "white"), surfaces))
+        first_truth<planar_lidar_t>(ranging_world(lidar_of(std::string("beams: 1, intensities: true") + weather),
+                                                  wall_at(10, "white"), surfaces))
             .intensities[0]);
   };
   EXPECT_NEAR(intensity(", weather: {extinction_per_m: 0.05}") / intensity(""), std::exp(-1.0), 1e-6);
 }
 
 TEST(LaserReturn, FaultsReachTheNoiseThatGrows) {
-  test::TestWorld test(ranging_world(lidar("beams: 100, range_std_m: 0.01"), wall_at(5)) +
+  test::TestWorld test(ranging_world(lidar_of("beams: 100, range_std_m: 0.01"), wall_at(5)) +
                        "events: [{name: e, at: 0, do: [{fault: r1/s, kind: degraded, noise_factor: 10}]}]\n");
   test::Listener<planar_lidar_t> scans(test, "r1.s"), truths(test, "r1.s.truth");
   test.run_for(1);
@@ -169,7 +170,7 @@ TEST(LaserReturn, PresetsHaveTheBeamsOfTheirDataSheets) {
 }
 
 TEST(LaserReturn, ItsParametersCanChangeWhileItRuns) {
-  test::TestWorld test(ranging_world(lidar("beams: 1"), wall_at(5, "dark"), surfaces));
+  test::TestWorld test(ranging_world(lidar_of("beams: 1"), wall_at(5, "dark"), surfaces));
   test::Listener<planar_lidar_t> scans(test, "r1.s");
   test.run_for(0.1);
   EXPECT_NEAR(scans.last().ranges[0], 5, 1e-6);
@@ -180,7 +181,7 @@ TEST(LaserReturn, ItsParametersCanChangeWhileItRuns) {
 
 TEST(LaserReturn, SaysWhatIsWrongWithItsParameters) {
   const std::string error = test::error_of_world(ranging_world(
-      lidar("beam_samples: 4, range_min_m: 200, preset: lms100, returns: last, weather: {extinction_per_m: -1}"),
+      lidar_of("beam_samples: 4, range_min_m: 200, preset: lms100, returns: last, weather: {extinction_per_m: -1}"),
       wall_at(5)));
   EXPECT_THAT(error, testing::HasSubstr("'beam_samples' > 1 needs the key 'beam_divergence_deg'"));
   EXPECT_THAT(error, testing::HasSubstr("'range_min_m' must be < range_max_m"));

@@ -16,7 +16,7 @@ namespace {
 using sim::SignalLoss;
 using sim::Vector3d;
 using test::AcousticProbe;
-using Heard = AcousticProbe::Heard;
+using Probed = AcousticProbe::Heard;
 
 double number_between(double low, double high) {
   return low + (high - low) * *rc::gen::inRange(0, 100001) / 100000.0;
@@ -62,9 +62,9 @@ sim::Signal frame(double source_level_dB, int bytes) {
 }
 
 /// The bits of all that a probe heard.
-std::uint64_t fingerprint(const std::vector<Heard>& all) {
+std::uint64_t fingerprint(const std::vector<Probed>& all) {
   sim::StateHash hash;
-  for (const Heard& heard : all) {
+  for (const Probed& heard : all) {
     hash.add(std::string_view(heard.source));
     hash.add(static_cast<std::int64_t>(heard.begun.count()));
     hash.add(static_cast<std::int64_t>(heard.ended.count()));
@@ -100,7 +100,7 @@ RC_GTEST_PROP(AcousticChannel, NeitherOutrunsTheSpeedsOfSoundOnTheWayNorLagsThem
   a.send(AcousticProbe::tone());
   test.run_for(4);
   RC_ASSERT(b.all.size() == 1u);
-  const Heard& heard = b.all[0];
+  const Probed& heard = b.all[0];
   double slowest_mps = 1e9, fastest_mps = 0;
   for (int i = 0; i <= 100; ++i) {
     const double share = i / 100.0;
@@ -315,7 +315,7 @@ RC_GTEST_PROP(AcousticChannel, SomebodyWhoIsPutElsewhereHearsNoSoonerThanSoundGe
   test.world.editor().move_vehicle("b", X_WV);
   test.run_for(5);
   RC_ASSERT(b.all.size() <= 1u);
-  for (const Heard& heard : b.all)
+  for (const Probed& heard : b.all)
     RC_ASSERT(sim::to_seconds(heard.begun - heard.sent) > (heard.p_begun_W - heard.p_sent_W).norm() / 1500 - 1e-6);
   // And the next one is heard as if nothing had happened.
   b.all.clear();

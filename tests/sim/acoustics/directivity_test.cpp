@@ -15,7 +15,7 @@ using sim::DirectivityConfig;
 using sim::Vector3d;
 using Pattern = DirectivityConfig::Pattern;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double c_mps = 1500;
 constexpr double frequency_Hz = 25000;
 constexpr double k_pm = 2 * pi * frequency_Hz / c_mps;

@@ -21,7 +21,7 @@ using sim::MultipathMedium;
 using sim::MultipathSum;
 using sim::PathGain;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 std::vector<ImagePath> paths(double zs, double zr, double r, double depth, int bounces) {
   std::vector<ImagePath> all;

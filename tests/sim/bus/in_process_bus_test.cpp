@@ -6,17 +6,15 @@
 #include <stdexcept>
 #include <string>
 
+#include "tests/bytes_of.hpp"
+
 namespace {
 
 using sim::Bytes;
 using sim::InProcessBus;
 using sim::Time;
 
-Bytes bytes(const std::string& text) {
-  Bytes result;
-  for (const char c : text) result.push_back(static_cast<std::byte>(c));
-  return result;
-}
+using test_support::bytes_of;
 
 std::string text_of(const std::optional<sim::Message>& message) {
   if (!message) return "nothing";
@@ -27,7 +25,7 @@ std::string text_of(const std::optional<sim::Message>& message) {
 
 class InProcessBusTest : public testing::Test {
  protected:
-  void publish(const std::string& channel, const std::string& text) { bus.publish(channel, bytes(text), Time{0}); }
+  void publish(const std::string& channel, const std::string& text) { bus.publish(channel, bytes_of(text), Time{0}); }
 
   InProcessBus bus;
 };

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "sim/bus/in_process_bus.hpp"
+#include "tests/bytes_of.hpp"
 
 namespace {
 
@@ -17,10 +18,7 @@ using sim::Time;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-Bytes bytes(const std::string& text) {
-  const auto* begin = reinterpret_cast<const std::byte*>(text.data());
-  return {begin, begin + text.size()};
-}
+using test_support::bytes_of;
 
 std::string text_of(std::span<const std::byte> payload) {
   return {reinterpret_cast<const char*>(payload.data()), payload.size()};
@@ -30,9 +28,11 @@ std::string text_of(std::span<const std::byte> payload) {
 class MailGateTest : public testing::Test {
  protected:
   void from_afar(const std::string& channel, const std::string& text) {
-    network.publish(channel, bytes(text), Time{0});
+    network.publish(channel, bytes_of(text), Time{0});
   }
-  void from_here(const std::string& channel, const std::string& text) { gate.publish(channel, bytes(text), Time{0}); }
+  void from_here(const std::string& channel, const std::string& text) {
+    gate.publish(channel, bytes_of(text), Time{0});
+  }
 
   static std::vector<std::string> all_of(sim::Mailbox& mailbox) {
     std::vector<std::string> texts;
@@ -135,7 +135,7 @@ TEST_F(MailGateTest, WhatWaitsCanBeOrderedAndAddedTo) {
   const auto mailbox = gate.open_mailbox("a");
   from_afar("a", "two");
   EXPECT_TRUE(gate.collect());
-  gate.waiting().insert(gate.waiting().begin(), {"a", bytes("one")});
+  gate.waiting().insert(gate.waiting().begin(), {"a", bytes_of("one")});
   EXPECT_THAT(admit(), ElementsAre("a:one", "a:two"));
   EXPECT_THAT(all_of(*mailbox), ElementsAre("one", "two"));
   EXPECT_FALSE(gate.collect());
@@ -255,7 +255,7 @@ class FloodedBus final : public sim::Bus {
     explicit Flood(FloodedBus& bus) : bus_(bus) {}
     std::optional<sim::Message> take() override {
       if (bus_.taken >= 10'000) return std::nullopt;  // so that the test ends
-      return sim::Message{"a", bytes(std::to_string(++bus_.taken)), true};
+      return sim::Message{"a", bytes_of(std::to_string(++bus_.taken)), true};
     }
     std::uint64_t dropped() const override { return 0; }
     void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) override { *flag = true; }

@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "tests/sim/config/parse.hpp"
+
 namespace {
 
 using sim::ConfigNode;
@@ -13,12 +15,7 @@ using sim::SourcePlace;
 using Kind = ConfigNode::Kind;
 using Lines = std::vector<std::string>;
 
-ConfigNode parse(const std::string& text) {
-  Diagnostics diagnostics;
-  ConfigNode node = sim::parse_config_text(text, "w.yaml", diagnostics);
-  EXPECT_EQ(diagnostics.lines(), Lines{}) << text;
-  return node;
-}
+using test::parse;
 
 const char* const world =
     "run: {speed: 1}\n"

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sim/config/config_node.hpp"
+#include "tests/sim/config/parse.hpp"
 
 namespace {
 
@@ -13,12 +14,7 @@ using sim::ConfigNode;
 using sim::Diagnostics;
 using Kind = ConfigNode::Kind;
 
-ConfigNode parse(const std::string& text) {
-  Diagnostics diagnostics;
-  ConfigNode node = sim::parse_config_text(text, "w.yaml", diagnostics);
-  EXPECT_EQ(diagnostics.lines(), std::vector<std::string>{}) << text;
-  return node;
-}
+using test::parse;
 
 /// All errors, one a line.
 std::string errors_of(const std::string& text) {
@@ -203,13 +199,13 @@ TEST(YamlParser, TenMegabytesOfGarbageEndInAnErrorSoon) {
   EXPECT_LT(took.count(), 5.0);  // 0.1 s alone
 }
 
-const char* const sample =
+const char* const document =
     "# a world\nshoal: 1\nname: \"har\\u00e9bor\"\nlist: [1, {a: b}, 'it''s', *x]\nwheel: &w\n  - r: 0.1\n   "
     " w: ~\n  - *w\n"
     "text: |\n  two\n  lines\nfolded: >-\n  one\n  line\n? key\n: \xe2\x82\xac\n!!str tagged: !!map {x: y}\n";
 
 TEST(YamlParser, ATextCutAnywhereDoesNotCrash) {
-  const std::string text = sample;
+  const std::string text = document;
   for (std::size_t length = 0; length <= text.size(); ++length) {
     Diagnostics diagnostics;
     sim::parse_config_text(text.substr(0, length), "w.yaml", diagnostics);
@@ -234,7 +230,7 @@ TEST(YamlParser, RandomTextOfYamlSignsDoesNotCrash) {
 TEST(YamlParser, ASampleWithAChangedByteDoesNotCrash) {
   std::mt19937 random(3);
   for (int round = 0; round < 3000; ++round) {
-    std::string text = sample;
+    std::string text = document;
     for (int i = 0; i < 3; ++i) text[random() % text.size()] = static_cast<char>(random() % 128);
     Diagnostics diagnostics;
     sim::parse_config_text(text, "w.yaml", diagnostics);

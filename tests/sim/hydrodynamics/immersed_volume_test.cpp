@@ -13,7 +13,7 @@
 namespace sim {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 using test::expect_closed_form;
 
 Mesh box_mesh(const Vector3d& size) {

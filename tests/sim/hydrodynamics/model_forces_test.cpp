@@ -11,7 +11,7 @@ namespace {
 
 using sim::Vector6d;
 
-constexpr double density_kgpm3 = 1000, gravity_mps2 = 10;
+constexpr double density_kgpm3 = 1000, ten_mps2 = 10;
 
 sim::CraftState level(double depth_m) {
   sim::CraftState state;
@@ -25,7 +25,7 @@ sim::CraftState level(double depth_m) {
 }
 
 sim::CoefficientModel model_of(const std::string& more) {
-  return {test::config_of("{frame: frd, mass_kg: 10, inertia_kgm2: [1, 1, 1]" + more + "}"), gravity_mps2};
+  return {test::config_of("{frame: frd, mass_kg: 10, inertia_kgm2: [1, 1, 1]" + more + "}"), ten_mps2};
 }
 
 /// The forces of the water on a craft deep in it.

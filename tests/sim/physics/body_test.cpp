@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/sim/physics/gravity.hpp"
 #include "tests/sim/physics/small_worlds.hpp"
 
 namespace {
@@ -13,8 +14,8 @@ namespace {
 using namespace small_worlds;
 using sim::Matrix3d;
 
-constexpr double g = 9.80665;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
+using test::g;
 
 PhysicsConfig with_step(double step_s, double gravity_mps2 = g) {
   PhysicsConfig config;

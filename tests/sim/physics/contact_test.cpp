@@ -5,13 +5,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/sim/physics/gravity.hpp"
 #include "tests/sim/physics/small_worlds.hpp"
 
 namespace {
 
 using namespace small_worlds;
 
-constexpr double g = 9.80665;
+using test::g;
 
 ContactConfig with_friction(double friction) {
   ContactConfig contact;

@@ -9,14 +9,15 @@
 
 #include "sim/bus/bus.hpp"
 #include "sim/state/state_archive.hpp"
+#include "tests/sim/physics/gravity.hpp"
 #include "tests/sim/physics/small_worlds.hpp"
 
 namespace {
 
 using namespace small_worlds;
 
-constexpr double g = 9.80665;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
+using test::g;
 
 PhysicsConfig weightless(double step_s = 0.01) {
   PhysicsConfig config;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "tests/sim/physics/gravity.hpp"
 #include "tests/sim/physics/small_worlds.hpp"
 #include "tests/state_hash_of.hpp"
 
@@ -12,7 +13,7 @@ namespace {
 
 using namespace small_worlds;
 
-constexpr double g = 9.80665;
+using test::g;
 
 void run(PhysicsWorld& world, int steps) {
   for (int i = 0; i < steps; ++i) world.step(i);

@@ -26,7 +26,7 @@ using sim::Ray;
 using sim::RayFilter;
 using sim::RayHit;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 class Uniform {

@@ -5,13 +5,11 @@
 
 #include "sim/base/crc32.hpp"
 #include "sim/bus/in_process_bus.hpp"
+#include "tests/bytes_of.hpp"
 
 namespace {
 
-sim::Bytes bytes_of(const std::string& text) {
-  const auto* data = reinterpret_cast<const std::byte*>(text.data());
-  return {data, data + text.size()};
-}
+using test_support::bytes_of;
 
 sim::NamedMessage named(const std::string& channel, const std::string& text) {
   return {channel, sim::crc32(bytes_of(text))};

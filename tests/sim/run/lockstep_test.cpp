@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "sim/config/diagnostics.hpp"
+#include "tests/bytes_of.hpp"
 
 namespace {
 
@@ -18,10 +19,7 @@ sim::LockstepTerms session(std::int64_t number, const Names& receives = {}) {
   return terms;
 }
 
-sim::Bytes bytes_of(const std::string& text) {
-  const auto* data = reinterpret_cast<const std::byte*>(text.data());
-  return {data, data + text.size()};
-}
+using test_support::bytes_of;
 
 Names missing(Lockstep& lockstep, std::int64_t step) {
   Names names;

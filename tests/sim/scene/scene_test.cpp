@@ -20,7 +20,7 @@ using namespace small_worlds;
 using sim::RayFilter;
 using sim::RayHit;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 struct Hit {
   double range_m;

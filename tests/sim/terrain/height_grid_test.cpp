@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "sim/terrain/terrain.hpp"
+#include "tests/sim/terrain/terrain_error.hpp"
 
 namespace {
 
@@ -26,15 +27,7 @@ HeightGrid grid_of(int columns, int rows, double cell_m, Height&& height) {
   return grid;
 }
 
-template <typename Action>
-std::string error_of(Action&& action) {
-  try {
-    action();
-  } catch (const sim::TerrainError& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using test::error_of;
 
 TEST(HeightGrid, APlaneStaysAPlaneToItsBorder) {
   const HeightGrid grid = grid_of(9, 7, 0.5, [](double x, double y) { return 3 + 0.25 * x - 0.5 * y; });

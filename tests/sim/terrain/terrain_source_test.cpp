@@ -10,6 +10,7 @@
 #include "sim/base/crc32.hpp"
 #include "sim/terrain/terrain.hpp"
 #include "tests/scratch_folder.hpp"
+#include "tests/sim/terrain/terrain_error.hpp"
 
 namespace {
 
@@ -17,15 +18,7 @@ using sim::HeightGrid;
 using sim::Holes;
 using testing::HasSubstr;
 
-template <typename Action>
-std::string error_of(Action&& action) {
-  try {
-    action();
-  } catch (const sim::TerrainError& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using test::error_of;
 
 const std::string header = "ncols 3\nnrows 2\nxllcorner 100\nyllcorner 200\ncellsize 10\n";
 

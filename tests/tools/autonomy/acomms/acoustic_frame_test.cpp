@@ -12,6 +12,7 @@
 
 #include "sim/base/math.hpp"
 #include "sim/random/random.hpp"
+#include "tests/tools/autonomy/second.hpp"
 
 namespace {
 
@@ -19,7 +20,7 @@ namespace frame = autonomy::acoustic_frame;
 using autonomy::AcousticOrder;
 using autonomy::AcousticState;
 
-constexpr std::int64_t second = 1'000'000;
+using test::second;
 constexpr std::int64_t week = 7 * 24 * 3600 * second;
 
 AcousticState some_state(sim::Random& random) {

@@ -4,12 +4,13 @@
 #include <gtest/gtest.h>
 
 #include "shoal/message_codec.hpp"
+#include "tests/tools/autonomy/second.hpp"
 
 namespace {
 
 using autonomy::PositionReports;
 
-constexpr std::int64_t second = 1'000'000;
+using test::second;
 
 shoal::position_report_t report_at(std::int64_t utime) {
   shoal::position_report_t report;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/tools/autonomy/second.hpp"
 #include "tools/autonomy/acomms/random_access.hpp"
 
 namespace {
@@ -14,7 +15,7 @@ using autonomy::parse_slot;
 using autonomy::RandomAccess;
 using autonomy::Tdma;
 
-constexpr std::int64_t second = 1'000'000;
+using test::second;
 constexpr std::int64_t epoch = 1'767'225'600 * second;  // a multiple of 20 s
 
 Tdma slot(int i, int n, double slot_s = 10, double guard_s = 5) {

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "sim/base/math.hpp"
+#include "tests/tools/autonomy/second.hpp"
 #include "tools/autonomy/behaviours/behaviour_text.hpp"
 
 namespace {
@@ -23,8 +24,8 @@ using autonomy::RouteBehaviour;
 using autonomy::turned;
 using autonomy::Vector2d;
 
-constexpr std::int64_t second = 1'000'000;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
+using test::second;
 
 /// A craft that turns at 0.3 rad/s at most, and takes the speed it is told.
 class Craft {

@@ -19,7 +19,7 @@ using autonomy::Pose2;
 using autonomy::turned;
 using autonomy::Vector2d;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A move along an arc, from its beginning.
 Increment arc(double length_m, double turn_rad) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/tools/autonomy/second.hpp"
 #include "tools/autonomy/filters/marine_ekf.hpp"
 
 // What the filter makes of measurements that do not fit, for long.
@@ -13,9 +14,9 @@ using autonomy::MarineEkf;
 using autonomy::Vector2d;
 using Outcome = MarineEkf::Outcome;
 
-constexpr std::int64_t second = 1'000'000;
+using test::second;
 
-MarineEkf::Range range_to(const Vector2d& p_W, double range_m, std::int64_t utime) {
+MarineEkf::Range range_between(const Vector2d& p_W, double range_m, std::int64_t utime) {
   MarineEkf::Range range;
   range.utime = utime;
   range.range_m = range_m;
@@ -36,7 +37,7 @@ TEST(MarineEkfContradiction, FixesThatContradictAreRefusedUntilThereAreTooMany) 
 
 MarineEkf::Range range_of(int beacon, double range_m) {
   // East and north of an AUV at (100, 50).
-  MarineEkf::Range range = range_to(beacon == 1 ? Vector2d(0, 50) : Vector2d(100, 0), range_m, 0);
+  MarineEkf::Range range = range_between(beacon == 1 ? Vector2d(0, 50) : Vector2d(100, 0), range_m, 0);
   range.beacon = beacon;
   return range;
 }
@@ -105,7 +106,7 @@ TEST(MarineEkfContradiction, BeaconInDoubtIsBelievedAfterFiveThatFit) {
 
 TEST(MarineEkfContradiction, BeaconInDoubtIsNotBelievedBecauseTheFilterGrewUnsure) {
   MarineEkf ekf(0, {100, 0}, 1, {});
-  const auto wrong = [&](std::int64_t t) { return range_to({0, 0}, ekf.position_at(t).norm() + 40, t); };
+  const auto wrong = [&](std::int64_t t) { return range_between({0, 0}, ekf.position_at(t).norm() + 40, t); };
   for (int i = 0; i < 5; ++i) ekf.update_range(wrong(0));
   for (int i = 1; i <= 2000; ++i) ekf.predict(i * second, {1, 1});
   EXPECT_GT(std::sqrt(ekf.position_covariance().trace()), 40);  // the gate alone would let it through

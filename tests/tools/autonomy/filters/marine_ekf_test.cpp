@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "sim/random/random.hpp"
+#include "tests/tools/autonomy/second.hpp"
 
 namespace {
 
@@ -19,7 +20,7 @@ using autonomy::turned;
 using autonomy::Vector2d;
 using Outcome = MarineEkf::Outcome;
 
-constexpr std::int64_t second = 1'000'000;
+using test::second;
 
 MarineEkf::Range range_to(const Vector2d& p_W, double range_m, std::int64_t utime, double std_m = 1) {
   MarineEkf::Range range;

@@ -11,6 +11,7 @@
 #include "shoal/planar_lidar_t.hpp"
 #include "shoal/pose_t.hpp"
 #include "shoal/twist_command_t.hpp"
+#include "tests/tools/autonomy/second.hpp"
 
 namespace {
 
@@ -18,7 +19,7 @@ using autonomy::CoopRover;
 using autonomy::Vector2d;
 using Outgoing = std::vector<CoopRover::Outgoing>;
 
-constexpr std::int64_t second = 1'000'000;
+using test::second;
 
 CoopRover::Params params_of(const std::string& name) {
   CoopRover::Params params;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/tools/autonomy/second.hpp"
 #include "tools/autonomy/acomms/state_packet.hpp"
 
 namespace {
@@ -18,7 +19,7 @@ using autonomy::Vector2d;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-constexpr std::int64_t second = 1'000'000;
+using test::second;
 constexpr std::int64_t epoch = 1'767'225'600 * second;  // a multiple of 15 s
 
 /// A station that has the second of three turns of 5 s, with orders after 20 and 100 s.

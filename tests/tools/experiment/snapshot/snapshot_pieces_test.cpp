@@ -12,7 +12,7 @@ using tools::Snapshot;
 using tools::SnapshotPieces;
 
 /// Of some 200 kB: four pieces.
-Snapshot example() {
+Snapshot small_example() {
   Snapshot s;
   s.step = 1'000;
   s.step_us = 10'000;
@@ -23,7 +23,7 @@ Snapshot example() {
 }
 
 TEST(SnapshotPieces, MakeTheSnapshotAgainWithoutItsScores) {
-  const auto pieces = in_pieces(example(), 2, 7);
+  const auto pieces = in_pieces(small_example(), 2, 7);
   ASSERT_EQ(pieces.size(), 4u);
   SnapshotPieces together;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -35,14 +35,14 @@ TEST(SnapshotPieces, MakeTheSnapshotAgainWithoutItsScores) {
     ASSERT_EQ(bytes.has_value(), i == 3) << i;
     if (!bytes) continue;
     const Snapshot again = tools::snapshot_from_bytes(*bytes, "again");
-    EXPECT_EQ(again.state, example().state);
+    EXPECT_EQ(again.state, small_example().state);
     EXPECT_TRUE(again.scores.empty());
   }
   EXPECT_EQ(together.missing(), "");
 }
 
 TEST(SnapshotPieces, SaysWhichAreMissing) {
-  const auto pieces = in_pieces(example(), 0, 0);
+  const auto pieces = in_pieces(small_example(), 0, 0);
   SnapshotPieces middle;
   for (const int i : {0, 3}) EXPECT_FALSE(middle.add(pieces[static_cast<std::size_t>(i)]));
   EXPECT_EQ(middle.missing(), "pieces 2 to 3 of 4 of the snapshot of step 1000 are missing");
@@ -53,7 +53,7 @@ TEST(SnapshotPieces, SaysWhichAreMissing) {
 }
 
 TEST(SnapshotPieces, AnotherSnapshotBeginsAnew) {
-  const auto first = in_pieces(example(), 0, 0), second = in_pieces(example(), 1, 5);
+  const auto first = in_pieces(small_example(), 0, 0), second = in_pieces(small_example(), 1, 5);
   SnapshotPieces together;
   EXPECT_FALSE(together.add(first[0]));
   EXPECT_FALSE(together.add(first[2]));
@@ -65,13 +65,13 @@ TEST(SnapshotPieces, RefusesWhatCannotBe) {
   SnapshotPieces together;
   for (const auto& [piece, pieces, bytes] :
        {std::tuple<int, int, std::int64_t>{-1, 4, 100}, {4, 4, 100}, {0, 0, 100}, {0, 1, -1}}) {
-    shoal::sim_snapshot_t bad = in_pieces(example(), 0, 0)[0];
+    shoal::sim_snapshot_t bad = in_pieces(small_example(), 0, 0)[0];
     bad.piece = piece;
     bad.pieces = pieces;
     bad.bytes = bytes;
     EXPECT_THROW(together.add(bad), shoal::MessageError) << piece << " of " << pieces << ", " << bytes;
   }
-  shoal::sim_snapshot_t more = in_pieces(example(), 0, 0)[0];
+  shoal::sim_snapshot_t more = in_pieces(small_example(), 0, 0)[0];
   more.bytes = 10;  // it has 60 000
   EXPECT_THROW(together.add(more), shoal::MessageError);
 }
