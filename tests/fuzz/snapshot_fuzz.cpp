@@ -4,10 +4,10 @@
 
 #include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/world_file/load_world.hpp"
 #include "sim/state/state_archive.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_state.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 // A crafted snapshot: that of a world, changed at a few places.  The input is the list of changes, so that it means
