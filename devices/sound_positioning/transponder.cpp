@@ -65,7 +65,7 @@ void Transponder::heard(const sim::Reception& heard) {
 
 void Transponder::visit_state(sim::StateArchive& archive) {
   archive(answers_, answer_Hz_, asked_by_);
-  if (archive.restoring() && !(answer_Hz_ > 0)) archive.fail("a transponder's frequency must be above 0");
+  archive.require(answer_Hz_, 1, sim::Signal::max_Hz, "a frequency of a transponder's answer");
 }
 
 void fill(const Transponder& transponder, shoal::transponder_t& message) {

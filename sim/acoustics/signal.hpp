@@ -48,10 +48,12 @@ struct Signal {
   Bytes payload;              ///< the listener's own
   Audience to;                ///< of a message: who it is for
 
+  /// Above what any device sends.
+  static constexpr double max_Hz = 1e9;
+
   /// Its numbers are within what any sound in water can have: levels and rates worked out of them are finite.
   bool possible() const {
-    constexpr double most_Hz = 1e9;
-    const auto within = [](double value) { return value > 0 && value <= most_Hz; };
+    const auto within = [](double value) { return value > 0 && value <= max_Hz; };
     return within(centre_Hz) && within(bandwidth_Hz) && within(bit_rate_bps) && bits >= 0 &&
            std::abs(coding_gain_dB) <= 1000 && std::abs(source_level.dB()) <= 1000;
   }
