@@ -20,6 +20,7 @@ install(FILES ${lcm_files} DESTINATION share/shoal/types)
 # The first lines of worlds and vehicles name ../docs/schema.
 install(DIRECTORY worlds vehicles DESTINATION share/shoal)
 install(DIRECTORY docs/schema DESTINATION share/shoal/docs)
+install(FILES LICENSE DESTINATION share/doc/shoal)
 
 configure_package_config_file(cmake/ShoalConfig.cmake.in ${PROJECT_BINARY_DIR}/ShoalConfig.cmake
                               INSTALL_DESTINATION ${package_dir})

@@ -144,6 +144,50 @@ TEST_F(Plugin, IsBuiltWithoutTheHeadersOfOde) {
   EXPECT_THAT(system_test::text_of_file(path("prefix/lib/cmake/Shoal/ShoalConfig.cmake")), Not(HasSubstr("ODE")));
 }
 
+TEST_F(Plugin, BringsAnActionOfEvents) {
+  build_plugin("leaving", R"(#include "sim/director/action_run.hpp"
+#include "sim/director/stage.hpp"
+#include "sim/script/action_registry.hpp"
+#include "sim/device/plugin.hpp"
+#include "sim/vehicle/end_of_run.hpp"
+
+namespace {
+
+class AbandonAction final : public sim::Action {
+ public:
+  static constexpr const char* meaning = "the crew leaves";
+  void read(sim::ParamReader& in) override {
+    if (!in.describing()) in.read("abandon", crew_, sim::at_least(1), "");
+  }
+  void carry_out(const sim::ActionRun& run) const override {
+    run.stage.end({std::to_string(crew_) + " left", false});
+  }
+
+ private:
+  int crew_ = 0;
+};
+
+SHOAL_ACTION("abandon", AbandonAction);
+
+}  // namespace
+
+SHOAL_PLUGIN("leaving", "1.0");
+)");
+  const std::string plugin = path("leaving/build/leaving.so"), world = path("leaving.yaml");
+  const auto world_with = [&](const std::string& crew) {
+    write_file(world,
+               "shoal: 1\nrun: {duration_s: 2, speed: 0}\nevents: [{name: e, at: 1, do: [{abandon: " + crew + "}]}]\n");
+  };
+  world_with("3");
+  EXPECT_THAT(shoal({"check", world}).errors, HasSubstr("'abandon'"));
+  const Ended ended = shoal({"run", world, "--plugin", plugin, "--bus", "none"});
+  EXPECT_EQ(ended.exit_code, 1) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr("3 left"));
+  EXPECT_THAT(shoal({"describe", "--schema", "world", "--plugin", plugin}).output, HasSubstr("the crew leaves"));
+  world_with("0");
+  EXPECT_THAT(shoal({"check", world, "--plugin", plugin}).errors, HasSubstr(world + ":3:"));
+}
+
 TEST_F(Plugin, MayBeNamedTwice) {
   EXPECT_EQ(shoal({"list", "devices", "--plugin", example(), "--plugin", example()}).exit_code, 0);
 }
