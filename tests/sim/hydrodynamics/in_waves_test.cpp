@@ -105,7 +105,7 @@ TEST(InWaves, ASubmergedBodyGoesWithTheWater) {
 
 TEST(InWaves, TheStepsAreSmall) {
   // Halving the step moves the boat by an error of first order.
-  const auto place_after = [](double step_s) {
+  const auto place_after = [](double step_s) -> Vector3d {
     TestWorld test(in_waves("height_m: 0.5, period_s: 4",
                             "position_m: [0, 0, 0.3], parts: [{shape: capsule, radius_m: 0.3, length_m: 2, rpy_deg: "
                             "[0, 90, 0], density_kgpm3: 500}]",
