@@ -2,11 +2,12 @@
 #include "sim/hydrodynamics/coefficient_model.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "sim/hydrodynamics/spectral_radius.hpp"
 
 namespace sim {
 
@@ -139,7 +140,7 @@ void CoefficientModel::find_turning() {
 }
 
 CoefficientModel::StepLimit CoefficientModel::longest_step() const {
-  const double damping = (mass_inverse_ * config_.linear_damping).eval().eigenvalues().cwiseAbs().maxCoeff();
+  const double damping = spectral_radius(mass_inverse_ * config_.linear_damping);
   Matrix6d stiffness = Matrix6d::Zero();
   if (config_.waterline) {
     const WaterlineConfig& plane = *config_.waterline;
@@ -151,7 +152,7 @@ CoefficientModel::StepLimit CoefficientModel::longest_step() const {
     stiffness(3, 3) = stiffness(4, 4) = std::abs(upright);
   }
   // A spring is followed by a semi-implicit step while h omega < 2.
-  const double restoring = std::sqrt((mass_inverse_ * stiffness).eval().eigenvalues().cwiseAbs().maxCoeff());
+  const double restoring = std::sqrt(spectral_radius(mass_inverse_ * stiffness));
   const double fastest = std::max(damping, restoring);
   return {fastest > 0 ? 2 / fastest : 1e9, damping >= restoring ? "forces of linear damping" : "restoring forces"};
 }
