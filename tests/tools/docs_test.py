@@ -56,6 +56,12 @@ class Docs(unittest.TestCase):
     def test_every_page_is_in_an_index(self):
         self.assertEqual(DOCS.navigation()[1], [])
 
+    def test_the_glossary_is_in_alphabetical_order(self):
+        rows = (ROOT / "docs/reference/glossary.md").read_text().splitlines()[6:]
+        terms = [row.split("|")[1].strip(" `").lower() for row in rows]
+        self.assertEqual(terms, sorted(terms))
+        self.assertGreater(len(terms), 80)
+
     @unittest.skipUnless(shutil.which("mkdocs") and shutil.which("doxygen"), "mkdocs and doxygen are not installed")
     def test_the_site_has_no_faults(self):
         done = subprocess.run([str(ROOT / "tools/docs"), "--check"], capture_output=True, text=True,
