@@ -26,8 +26,10 @@ namespace sim {
 template <typename Model, typename Message>
 class MessageReporter final : public Reporter {
  public:
+  /// `model` must outlive the reporter.
   explicit MessageReporter(const Model& model) : model_(model) {}
 
+  /// Fills the message and publishes it.
   void report(Time sampled_at, Publisher& out) const override {
     if constexpr (requires { requires Model::reuses_message; }) {
       static thread_local Message message{};

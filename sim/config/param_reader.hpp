@@ -38,15 +38,23 @@ class ParamReader {
   ParamReader(const ParamReader&) = delete;
   ParamReader& operator=(const ParamReader&) = delete;
 
+  /// Reads true or false.
   void read(const char* key, bool& value, const char* meaning);
+  /// Reads a whole number inside `rule`.
   void read(const char* key, int& value, const Rule& rule, const char* meaning);
+  /// Reads a whole number inside `rule`.
   void read(const char* key, std::int64_t& value, const Rule& rule, const char* meaning);
+  /// Reads a finite number inside `rule`.
   void read(const char* key, double& value, const Rule& rule, const char* meaning);
+  /// Reads a number that may be absent; without the key `value` stays unset.
   void read(const char* key, std::optional<double>& value, const Rule& rule, const char* meaning);
+  /// Reads text.
   void read(const char* key, std::string& value, const char* meaning);
+  /// Reads a list of three numbers, each inside `rule`.
   void read(const char* key, Vector3d& value, const Rule& rule, const char* meaning);
   /// Any number of numbers, each inside `rule`.
   void read(const char* key, std::vector<double>& value, const Rule& rule, const char* meaning);
+  /// Reads a list of texts.
   void read(const char* key, std::vector<std::string>& value, const char* meaning);
   /// A name, which may become part of a channel or a file name: letters, digits, '_' and '-'.
   void read_name(const char* key, std::string& value, const char* meaning);
@@ -62,12 +70,14 @@ class ParamReader {
   void read_deg(const char* key, Vector3d& value_rad, const char* meaning);
   /// One word out of `choices`.
   void read_choice(const char* key, std::string& value, const std::vector<std::string>& choices, const char* meaning);
+  /// Reads one word out of `choices` as the enumerator that stands beside it.
   template <typename Enum>
   requires std::is_enum_v<Enum>
   void read_choice(const char* key, Enum& value, const std::vector<std::pair<std::string, Enum>>& choices,
                    const char* meaning);
   /// A name that must have been announced by `declare(kind, name)`.  Empty (the default) means none.
   void read_reference(const char* key, std::string& value, const char* kind, const char* meaning);
+  /// Reads a list of names, each as by read_reference().
   void read_references(const char* key, std::vector<std::string>& value, const char* kind, const char* meaning);
   /// The next read of `key` must find it: `missing key 'file'`.
   void require(const char* key);
@@ -79,6 +89,7 @@ class ParamReader {
   /// A nested map.  A T that has set_key() is given `key`, whether the key is present or not.
   template <ReadsParams T>
   void read(const char* key, T& value, const char* meaning);
+  /// Reads a nested map that may be absent; without the key `value` stays unset.
   template <ReadsParams T>
   void read(const char* key, std::optional<T>& value, const char* meaning);
   /// A list of maps.  Who of an item: `kind 'name'` when the item has a `name`, else `kind 3` (from 1).
@@ -99,13 +110,17 @@ class ParamReader {
   /// An error at the map itself.
   void error(const std::string& text);
 
+  /// Whether this reader collects descriptions instead of values.
   bool describing() const { return table_ != nullptr; }
   /// The map has this key; false when describing.
   bool has(const char* key) const;
+  /// The map that is read; null when describing.
   const ConfigNode* node() const { return node_; }
   /// The node of a key that is present.  Marks the key as known.
   const ConfigNode* child(const char* key);
+  /// Start of each error message, such as `vehicle 'auv1': device 'lidar'`.
   const std::string& who() const { return who_; }
+  /// Collects the errors and warnings.
   Diagnostics& diagnostics() { return *diagnostics_; }
   /// Adds a row to the table when describing (for keys that are read by hand through child()).
   void describe(ParamInfo info);

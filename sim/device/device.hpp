@@ -22,21 +22,23 @@ class World;
 
 /// Where and when a sensor samples.
 struct SenseContext {
-  const World& world;
-  const Vehicle& vehicle;
-  Time now;         ///< the time sampled
-  double dt_s;      ///< since this sensor's last sample; 0 at the first
-  Pose X_WS;        ///< the sensor frame, as mounted
-  Vector3d v_WS_W;  ///< velocity of its origin
+  const World& world;      ///< as it stands at `now`
+  const Vehicle& vehicle;  ///< the vehicle that carries the sensor
+  Time now;                ///< the time sampled
+  double dt_s;             ///< since this sensor's last sample; 0 at the first
+  Pose X_WS;               ///< the sensor frame, as mounted
+  Vector3d v_WS_W;         ///< velocity of its origin
 };
 
 /// A step that a sensor looks into all the while, as a laser that turns does.
 struct SweepContext {
-  const World& world;
-  const Vehicle& vehicle;
-  Time from, now;        ///< the step that just ended
-  Pose X_WS_from, X_WS;  ///< the sensor frame at both ends
-  Time next_sample;      ///< when measure() is called next; now or later
+  const World& world;      ///< as it stands at the end of the step
+  const Vehicle& vehicle;  ///< the vehicle that carries the sensor
+  Time from;               ///< start of the step that just ended
+  Time now;                ///< its end
+  Pose X_WS_from;          ///< the sensor frame at `from`
+  Pose X_WS;               ///< the sensor frame at `now`
+  Time next_sample;        ///< when measure() is called next; now or later
 
   /// Between the ends of the step.
   Pose X_WS_at(Time at) const;
@@ -70,6 +72,7 @@ class Sensor {
 class Publisher {
  public:
   virtual ~Publisher() = default;
+  /// Publishes an encoded message.
   virtual void publish(std::span<const std::byte> payload) = 0;
   /// The time stamp of messages: the run's epoch plus the time by the clock of the vehicle, in microseconds; true time
   /// on a truth channel.
@@ -100,6 +103,7 @@ class Publisher {
 class Reporter {
  public:
   virtual ~Reporter() = default;
+  /// Publishes the reading that was sampled at `sampled_at`.
   virtual void report(Time sampled_at, Publisher& out) const = 0;
 };
 

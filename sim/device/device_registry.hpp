@@ -25,19 +25,19 @@ std::string quantity_of(const std::string& noise_key);
 
 /// A device as built.  A sensor has a reporter, an actuator a controller; some devices have all four.
 struct BuiltDevice {
-  std::unique_ptr<Sensor> sensor;
-  std::unique_ptr<Reporter> reporter;
-  std::unique_ptr<Actuator> actuator;
-  std::unique_ptr<Controller> controller;
+  std::unique_ptr<Sensor> sensor;          ///< measures
+  std::unique_ptr<Reporter> reporter;      ///< publishes what the sensor measured
+  std::unique_ptr<Actuator> actuator;      ///< acts on the physics
+  std::unique_ptr<Controller> controller;  ///< takes the commands of the actuator
   /// Takes other parameters while it runs; empty: it cannot.
   std::function<void(const DeviceParams&)> change;
 };
 
 /// A device type by its YAML name.
 struct DeviceType {
-  std::string name;
-  std::string meaning;  ///< one sentence
-  double default_rate_hz = 0;
+  std::string name;                     ///< in YAML: `type: NAME`
+  std::string meaning;                  ///< one sentence
+  double default_rate_hz = 0;           ///< unless the file says otherwise; 0: every step
   std::string example;                  ///< keys in YAML on the vehicle of every_device_test; empty: joints are enough
   std::string report_message;           ///< such as `shoal.pose_t`; empty: does not report
   std::string command_messages;         ///< comma separated; empty: takes no commands
@@ -47,11 +47,14 @@ struct DeviceType {
   bool always_on = false;               ///< works without power and at an emergency stop
   bool casts_rays = false;              ///< see Sensor
   bool sweeps = false;                  ///< see Sensor
-  std::function<std::shared_ptr<DeviceParams>()> make_params;
-  std::function<BuiltDevice(const DeviceParams&, const DeviceContext&)> build;
+  std::function<std::shared_ptr<DeviceParams>()> make_params;                   ///< parameters with their defaults
+  std::function<BuiltDevice(const DeviceParams&, const DeviceContext&)> build;  ///< makes one device
 
+  /// Whether it publishes messages.
   bool reports() const { return !report_message.empty(); }
+  /// Whether it receives messages.
   bool takes_commands() const { return !command_messages.empty(); }
+  /// Whether it acts on the physics.
   bool is_actuator() const { return !safe_states.empty(); }
   /// The quantities whose error YAML describes, for faults.
   std::vector<std::string> quantities() const;
@@ -66,12 +69,14 @@ const std::vector<std::pair<std::string, SafeState>>& safe_state_words();
 /// All device types, filled before main by the SHOAL_ macros.
 class DeviceRegistry {
  public:
+  /// The registry of this process.
   static DeviceRegistry& instance();
   /// A name that is taken is a problem; the first type keeps it.  Nothing is thrown: a static initialiser calls this,
   /// and what it throws ends the program.
   void add(DeviceType type);
   /// What went wrong while types were added, since the last call.
   std::vector<std::string> take_problems();
+  /// The type of this name; null when there is none.
   const DeviceType* find(const std::string& name) const;
   /// In the order of their names.
   std::vector<const DeviceType*> all() const;

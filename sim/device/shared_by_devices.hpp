@@ -22,6 +22,7 @@ class SharedKind {
   SharedKind() : number_(detail::register_shared_kind([] { return std::make_shared<T>(); })) {}
   SharedKind(const SharedKind&) = delete;
   SharedKind& operator=(const SharedKind&) = delete;
+  /// Index of this kind among all kinds.
   std::size_t number() const { return number_; }
 
  private:
@@ -34,10 +35,12 @@ class SharedByDevices {
   /// Of every kind that is known now: those of plugins too, which are loaded before a world is built.
   SharedByDevices();
 
+  /// The one thing of this kind.
   template <typename T>
   T& of(const SharedKind<T>& kind) {
     return *static_cast<T*>(things_.at(kind.number()).get());
   }
+  /// The one thing of this kind.
   template <typename T>
   const T& of(const SharedKind<T>& kind) const {
     return *static_cast<const T*>(things_.at(kind.number()).get());

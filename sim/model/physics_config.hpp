@@ -68,7 +68,7 @@ struct PartConfig {
   std::string material = "default";
   std::string category = "solid";
   std::vector<std::string> collides_with;  ///< categories; empty: all.  A plane with normal +z of its frame.
-  std::string color;                       ///< in pictures and viewers: #rrggbb; empty: the material's
+  std::string color;                       ///< in pictures and viewers: `#rrggbb`; empty: the material's
   // In water, for a free body without coefficients of its own.
   bool displaces = true;                 ///< a solid that water lifts and brakes
   bool displaces_was_given = false;      ///< `displaces` is written

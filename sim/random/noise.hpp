@@ -25,14 +25,17 @@ struct NoiseParams {
   double gauss_markov_time_s = 100;  ///< its correlation time
   double gaussian_std = 0;           ///< white
   double uniform_half_width = 0;     ///< white, uniform in +- this
-  double outlier_probability = 0;
-  double outlier_std = 0;
+  double outlier_probability = 0;    ///< that a value gets an outlier
+  double outlier_std = 0;            ///< standard deviation of an outlier
   double quantization = 0;           ///< step of the output; 0: none
   std::optional<double> saturation;  ///< the output is cut to +- this
   const char* key = "";              ///< that it was read by, such as `gyro_noise`: its quantity is named after it
 
+  /// Reads the keys.
   void read(ParamReader& in);
+  /// Called by ParamReader with the key that holds these parameters.
   void set_key(const char* read_by) { key = read_by; }
+  /// Whether any error is on.
   bool any() const;
 };
 
@@ -45,7 +48,7 @@ struct NoiseFault {
 
 /// Where the errors of one quantity of a device come from: the random stream and the faults.
 struct NoiseOrigin {
-  std::uint64_t seed;
+  std::uint64_t seed;       ///< of the world
   std::string stream;       ///< its name, such as `rover1/imu#gyro`
   const NoiseFault* fault;  ///< outlives the device
 };
@@ -61,10 +64,12 @@ class Noise {
   /// Disturbs `values` in place.  values.size() may be larger than the number of slow states: value i then uses
   /// state i % states.  `dt_s`: time since the last call (exact discretisation of the slow parts); 0 at the first.
   void apply(std::span<double> values, double dt_s, Random& random);
+  /// Disturbs one value in place.
   void apply(double& value, double dt_s, Random& random);
   /// Other parameters from now on; biases drawn and drifts so far stay.
   void change(const NoiseParams& params);
 
+  /// The slow errors.
   void visit_state(StateArchive& archive) {
     archive(started_);
     archive.expect_count(slow_.size(), "slow errors of a quantity");
@@ -109,6 +114,7 @@ class NoiseOf : public Noise {
   NoiseOf(const Context& context, const Params& params, int values = 1)
       : Noise(context.noise(params.*member, values)) {}
 
+  /// Takes other parameters; see Noise::change().
   template <typename Params>
   void change(const Params& params) {
     Noise::change(params.*member);
@@ -119,6 +125,7 @@ class NoiseOf : public Noise {
 template <auto member>
 class NoisesOf {
  public:
+  /// `context`: a DeviceContext.
   template <typename Context, typename Params>
   NoisesOf(const Context& context, const Params& params) : origin_(context.noise_origin(params.*member)) {}
 

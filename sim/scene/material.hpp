@@ -14,7 +14,7 @@ namespace sim {
 /// A pattern on a surface, laid on along the axes of the part that the surface looks along least.
 struct TextureConfig {
   std::string pattern = "none";     ///< none, checker, stripes, image
-  std::vector<std::string> colors;  ///< checker, stripes: two of them, #rrggbb
+  std::vector<std::string> colors;  ///< checker, stripes: two of them, `#rrggbb`
   double size_m = 1;                ///< one field or stripe; the width of an image
   std::string file;                 ///< image: PNG or JPEG, relative to the YAML file
   std::string directory;            ///< of the YAML file
@@ -40,7 +40,7 @@ struct SoundSurface {
 /// What a part is made of, to light, lasers, sound and touch (see ContactConfig).
 struct MaterialConfig {
   std::string name;
-  std::string color;  ///< #rrggbb; empty: grey.  A part's own color wins.
+  std::string color;  ///< `#rrggbb`; empty: grey.  A part's own color wins.
   double gloss = 0;   ///< strength of the sun's highlight, 0 to 1
   TextureConfig texture;
   LaserSurface laser;

@@ -17,13 +17,13 @@ class World;
 
 /// What a device may hold on to while it is built.
 struct DeviceContext {
-  const World& world;
-  Vehicle& vehicle;
-  const DeviceConfig& config;
-  Body& body;  ///< that the device is mounted on
-  int number;  ///< of the device in the world, for DeviceHost::schedule_arrival
-  DeviceFaults& faults;
-  DeviceHost& host;  ///< outlives the device
+  const World& world;          ///< the world that is being built
+  Vehicle& vehicle;            ///< the vehicle that carries the device
+  const DeviceConfig& config;  ///< the keys of the device
+  Body& body;                  ///< that the device is mounted on
+  int number;                  ///< of the device in the world, for DeviceHost::schedule_arrival
+  DeviceFaults& faults;        ///< the faults of the device, for its Noise
+  DeviceHost& host;            ///< outlives the device
 
   /// Throws std::out_of_range: names were checked when the file was read.
   Joint& joint(const std::string& name) const;
@@ -36,6 +36,7 @@ struct DeviceContext {
   /// The error of a quantity, with a random stream of its own, which faults can reach; both are named after the key
   /// that `params` was read by.  `values`: how many have slow parts of their own (axes of a vector).
   Noise noise(const NoiseParams& params, int values) const;
+  /// Random stream and faults of a quantity, named after the key that `params` was read by.
   NoiseOrigin noise_origin(const NoiseParams& params) const;
   /// For a Transducer or a ContinuousSound.  Throws ConfigError at the device's place when the world has no water.
   SoundSite sound_site() const;

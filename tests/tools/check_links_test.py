@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Checks the links of the project's pages, and that tools/check_links finds what is broken."""
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -28,6 +29,19 @@ class CheckLinks(unittest.TestCase):
     def test_the_pages_of_the_project_have_no_broken_link(self):
         done = check()
         self.assertEqual(done.returncode, 0, done.stdout)
+
+    def test_mentions_of_pages_that_are_not_there_are_found(self):
+        with tempfile.TemporaryDirectory() as folder:
+            os.makedirs(os.path.join(folder, "tools"))
+            shutil.copy(TOOL, os.path.join(folder, "tools"))
+            with open(os.path.join(folder, "water.cpp"), "w", encoding="utf-8") as file:
+                file.write("// see docs/gone.md and https://x.org/docs/other.md\n")
+            subprocess.run(["git", "init", "-q"], cwd=folder, check=True)
+            subprocess.run(["git", "add", "-A"], cwd=folder, check=True)
+            done = subprocess.run([sys.executable, os.path.join(folder, "tools/check_links")], capture_output=True,
+                                  text=True)
+            self.assertIn("water.cpp:1:docs/gone.md: no such file", done.stdout.splitlines())
+            self.assertEqual(done.stdout.count("other.md"), 0)
 
     def test_links_to_files_and_headings_are_found(self):
         text = "# Here\n[a](other.md) [b](other.md#speed-of-sound-ms) [c](other.md#twice-1) [d](#here) [e](https://x.org)\n"

@@ -38,6 +38,7 @@ class ClientError : public std::runtime_error {
 /// Handlers may publish and subscribe.
 class Client {
  public:
+  /// Reason why next_tick() returned nothing.
   enum class End {
     none,       ///< the run goes on
     last_tick,  ///< the simulator ended the run
@@ -52,13 +53,15 @@ class Client {
     double timeout_s = 0;    ///< of wall time; 0: the world's
     std::chrono::milliseconds timeout = std::chrono::seconds(30);  ///< to wait for a simulator
   };
+  /// Numbers of messages since the client was made.
   struct Counts {
-    std::uint64_t received = 0;  ///< messages on channels that were subscribed to
-    std::uint64_t bad = 0;       ///< of those, refused
-    std::uint64_t published = 0;
+    std::uint64_t received = 0;   ///< messages on channels that were subscribed to
+    std::uint64_t bad = 0;        ///< of those, refused
+    std::uint64_t published = 0;  ///< messages published
     std::uint64_t asked_for = 0;  ///< in lockstep: messages that were lost, and came when they were asked for
     std::uint64_t repeated = 0;   ///< in lockstep: messages that came twice
   };
+  /// Handler of an undecoded payload.
   using BytesHandler = std::function<void(std::span<const std::byte>)>;
 
   /// `name`: of the program, by which the simulator waits for it.  `lcm_url` "": LCM_DEFAULT_URL, then LCM's default.
@@ -87,12 +90,14 @@ class Client {
     encode_into(message, buffer_);
     publish_bytes(channel, buffer_);
   }
+  /// Publishes an encoded payload; see publish().
   void publish_bytes(std::string_view channel, std::span<const std::byte> payload);
 
   /// Lockstep: the world waits at a tick every `period_s` of simulated time, a multiple of its step.  Throws
   /// ClientError with the simulator's words when it refuses, when none answers within `timeout` of wall time, and when
   /// stop() is called meanwhile.
   void join(double period_s, std::chrono::milliseconds timeout = std::chrono::seconds(30));
+  /// Joins with a policy for the case that this client does not answer in time; see JoinOptions.
   void join(double period_s, const JoinOptions& options);
   /// Free running: the world does not wait.  next_tick() then returns when sim.clock passes a multiple of `period_s`;
   /// sim.clock comes at `state_rate_hz` of the world, 10 Hz unless it says otherwise.
@@ -108,6 +113,7 @@ class Client {
 
   /// Makes next_tick() return, for good.  From a signal handler or another thread.
   void stop() noexcept;
+  /// Reason why the run is over for this client; End::none while it goes on.
   End end() const;
   /// What the simulator said when it dropped this client.
   const std::string& reason() const;
@@ -123,6 +129,7 @@ class Client {
   /// time, one line on standard error says what is waited for, on which channel and LCM URL.  3 s unless set; zero:
   /// nothing is said.
   void set_wait_notice(std::chrono::milliseconds after);
+  /// Numbers of messages so far.
   Counts counts() const;
 
  private:

@@ -100,8 +100,8 @@ class SchemaWriter {
     Json schema = Json::object();
     for (const ParamInfo& info : table) {
       if (info.required) schema["required"].push_back(info.key);
-      const auto special = specials_.find(info.key);
-      Json inner = special != specials_.end() ? special->second.required : required(info.children);
+      const Special* special = special_of(info);
+      Json inner = special ? special->required : required(info.children);
       if (inner.empty()) continue;
       schema["properties"][info.key] = info.kind == ParamKind::maps ? Json{{"items", inner}} : inner;
     }
@@ -125,10 +125,16 @@ class SchemaWriter {
   }
 
  private:
+  /// Null for a key of the same name whose value is a word, such as the `model` of absorption.
+  const Special* special_of(const ParamInfo& info) const {
+    if (info.kind != ParamKind::raw && info.kind != ParamKind::maps) return nullptr;
+    const auto found = specials_.find(info.key);
+    return found == specials_.end() ? nullptr : &found->second;
+  }
+
   Json value(const ParamInfo& info) const {
-    if (const auto special = specials_.find(info.key); special != specials_.end())
-      return info.kind == ParamKind::maps ? with_exceptions(list_of(special->second.value), info)
-                                          : special->second.value;
+    if (const Special* special = special_of(info))
+      return info.kind == ParamKind::maps ? with_exceptions(list_of(special->value), info) : special->value;
     if (!info.choices.empty()) return words(info.choices);
     if (info.kind == ParamKind::any) return Json::object();
     return with_exceptions(plain_value(info), info);

@@ -115,6 +115,15 @@ TEST(JsonSchema, RefusesTheBadWorldsWhoseMistakeItCanSay) {
   EXPECT_TRUE(verdict.good) << verdict.output;
 }
 
+// `model` of a vehicle is a vehicle; `model` elsewhere is a word.
+TEST(JsonSchema, TakesAKeyForAVehicleWhereItIsOneOnly) {
+  const auto schema = nlohmann::json::parse(tools::json_schema("world"));
+  EXPECT_EQ(schema["properties"]["acoustics"]["properties"]["absorption"]["properties"]["model"]["enum"],
+            (nlohmann::json{"thorp", "francois_garrison", "constant"}));
+  EXPECT_EQ(schema["properties"]["vehicles"]["items"]["properties"]["model"]["allOf"][0]["$ref"],
+            "#/definitions/vehicle");
+}
+
 TEST(JsonSchema, AcceptsWhatTheLoaderAcceptsInOddSpelling) {
   const ScratchTree tree;
   const std::string world =
