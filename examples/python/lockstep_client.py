@@ -15,8 +15,12 @@ import struct
 import sys
 import time
 
-import lcm
 import shoal
+
+try:
+    import lcm
+except ImportError:  # Debian 12 has no package of it
+    import small_lcm as lcm
 
 SILENCE_S = 600
 

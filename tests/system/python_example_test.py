@@ -32,7 +32,6 @@ def prepare():
     subprocess.run([LCM_GEN, "--python", "--ppath", types.name,
                     *glob.glob(os.path.join(ROOT, "messages", "*", "*.lcm"))], check=True)
     sys.path[:0] = [types.name, os.path.join(ROOT, "examples", "python")]
-    sys.path.append(os.path.join(HERE, "python"))  # after a real lcm, where there is one
     os.environ["LCM_DEFAULT_URL"] = f"udpm://239.255.76.67:{10000 + os.getpid() * 4 % 20000}?ttl=0"
     return types
 
