@@ -23,9 +23,9 @@ install(DIRECTORY ${types_dir}/reporter DESTINATION include/shoal/messages COMPO
 file(GLOB lcm_files CONFIGURE_DEPENDS ${types_dir}/*/*.lcm)
 install(FILES ${lcm_files} DESTINATION share/shoal/types COMPONENT client)
 
-# The first lines of worlds and vehicles name ../docs/schema.
+# The first lines of worlds and vehicles name ../docs/reference/schema.
 install(DIRECTORY worlds vehicles DESTINATION share/shoal COMPONENT programs)
-install(DIRECTORY docs/schema DESTINATION share/shoal/docs COMPONENT programs)
+install(DIRECTORY docs/reference/schema DESTINATION share/shoal/docs/reference COMPONENT programs)
 install(FILES LICENSE DESTINATION share/doc/shoal COMPONENT programs)
 
 # What `shoal new program` starts from; in Python with the message types.
