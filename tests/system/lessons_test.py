@@ -18,7 +18,7 @@ import unittest
 
 from checkout_copy import in_own_network, own_bus
 from page_run import PageRun, Terminal
-from page_steps import Change, File, inline_commands, steps_of
+from page_steps import Change, File, commands_outside_blocks, steps_of
 
 SOURCE, BINARY_DIR, LESSON = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), sys.argv[3]
 START = os.path.join(SOURCE, "docs", "start")
@@ -51,10 +51,11 @@ class Lesson(unittest.TestCase):
         text = text_of(LESSON + ".md")
         for step in files_before(text):
             page.take(step, goes_on=False)
-        self.assertEqual(page.run(text, LESSON), [])
+        failures = page.run(text, LESSON)
+        self.assertFalse(failures, "\n".join(failures))
 
     def test_commands_stand_in_blocks_where_they_are_run(self):
-        self.assertEqual(inline_commands(text_of(LESSON + ".md"), ("shoal ", "tools/", "cmake ")), [])
+        self.assertEqual(commands_outside_blocks(text_of(LESSON + ".md"), ("shoal ", "tools/", "cmake ")), [])
 
 
 if __name__ == "__main__":

@@ -74,6 +74,7 @@ class PageRun:
             if self.beside:
                 kill(self.beside[1])
                 self.beside[1].wait()
+                self.beside[2].close()
         print(f"{name}: {count} commands in {time.monotonic() - begin:.1f} s", flush=True)
         return self.failures
 
@@ -145,6 +146,7 @@ class PageRun:
         if exit_code != step.exit_code:
             raise PageError(f"line {step.line}: `{step.commands[-1]}` ends with exit code {exit_code}:\n{text_of(output)}")
         self.compare(step, step.printed + second.printed_beside, text_of(output))
+        output.close()
 
 
 def second_terminal_follows(step):

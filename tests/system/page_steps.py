@@ -106,11 +106,13 @@ def commands_of(block):
     return [row for row in joined.splitlines() if row.strip() and not row.lstrip().startswith("#")]
 
 
-def inline_commands(text, programs):
-    """Code in sentences that is a whole command: it begins with a program's name and has more than one argument."""
+def commands_outside_blocks(text, programs):
+    """Code in sentences that is a whole command, of a program's name and two words at least, and in no block."""
     prose = re.sub(r"^```.*?^```$", "", text, flags=re.S | re.M)
     codes = [" ".join(code.split()) for code in re.findall(r"`([^`]+)`", prose)]
-    return [code for code in codes if code.startswith(programs) and len(code.split()) > 2]
+    run = [command for _, _, language, block in blocks_of(text) if language == "sh" for command in commands_of(block)]
+    return [code for code in codes if code.startswith(programs) and len(code.split()) > 2
+            and not any(command.startswith(code) for command in run)]
 
 
 def missing_lines(expected, printed):

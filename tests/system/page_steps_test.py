@@ -2,7 +2,7 @@
 """page_steps.py, on small pages."""
 import unittest
 
-from page_steps import Change, Commands, File, PageError, inline_commands, missing_lines, steps_of
+from page_steps import Change, Commands, File, PageError, commands_outside_blocks, missing_lines, steps_of
 
 
 class Steps(unittest.TestCase):
@@ -41,9 +41,9 @@ class Steps(unittest.TestCase):
         with self.assertRaisesRegex(PageError, "which file"):
             steps_of("Change it:\n\n```diff\n-a\n```\n")
 
-    def test_commands_in_sentences_are_found(self):
-        page = "Use `shoal spy`, or `shoal run a --speed\nmax`.\n\n```sh\nshoal run b --seed 1\n```\n"
-        self.assertEqual(inline_commands(page, ("shoal ",)), ["shoal run a --speed max"])
+    def test_commands_in_sentences_that_are_in_no_block_are_found(self):
+        page = "Use `shoal spy`, `shoal run b`, or `shoal run a --speed\nmax`.\n\n```sh\nshoal run b --seed 1\n```\n"
+        self.assertEqual(commands_outside_blocks(page, ("shoal ",)), ["shoal run a --speed max"])
 
 
 class Output(unittest.TestCase):
