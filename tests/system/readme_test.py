@@ -74,7 +74,7 @@ def read_json(path):
 
 
 class Readme(unittest.TestCase):
-    def setUp(self):
+    def make_clone(self):
         self.copy = CheckoutCopy(SOURCE, BINARY_DIR)
         self.addCleanup(self.copy.remove)
         self.terminal = Terminal(self.copy.checkout, self.copy.environment)
@@ -88,6 +88,7 @@ class Readme(unittest.TestCase):
         self.assertFalse(failures, "\n".join(failures))
 
     def test_every_command_works_in_a_clone(self):
+        self.make_clone()
         self.run_page("README.md")
         with open(self.copy.ctest_calls, encoding="utf-8") as file:
             self.assertEqual(len(file.readlines()), 1, "tools/test")
