@@ -51,8 +51,8 @@ class Lesson(unittest.TestCase):
         text = text_of(LESSON + ".md")
         for step in files_before(text):
             page.take(step, goes_on=False)
-        failures = page.run(text, LESSON)
-        self.assertFalse(failures, "\n".join(failures))
+        for failure in page.run(text, LESSON):
+            self.fail(failure)
 
     def test_commands_stand_in_blocks_where_they_are_run(self):
         self.assertEqual(commands_outside_blocks(text_of(LESSON + ".md"), ("shoal ", "tools/", "cmake ")), [])

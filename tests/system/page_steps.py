@@ -8,8 +8,8 @@ What a fenced block is follows from its language and from the paragraph before i
               itself soon after them.
     text      lines that the commands before it print, on either output; `...` stands for any text.  With "first
               terminal" in the paragraph they are printed by the command that goes on beside the second terminal.
-    diff      a change to the file whose name in backticks comes last in the paragraph: lines without `+` are there
-              exactly once, one after the other, and become the lines without `-`.
+    diff      a change to the file whose name in backticks comes last in the paragraph, else to the one that was changed
+              before: lines without `+` are there exactly once, one after the other, and become the lines without `-`.
     any other a file, when the paragraph ends with its name in backticks and a colon; the block is all of it.
 """
 import dataclasses
@@ -84,7 +84,8 @@ def add_step(steps, line, paragraph, language, block):
         lines = [row for row in block.splitlines() if row.strip()]
         (commands[-1].printed_beside if "first terminal" in paragraph else commands[-1].printed).extend(lines)
     elif language == "diff":
-        names = re.findall(r"`([\w./-]+\.\w+)`", paragraph)
+        names = [step.name for step in steps if isinstance(step, Change)][-1:]
+        names += re.findall(r"`([\w./-]+\.\w+)`", paragraph)
         if not names:
             raise PageError(f"line {line}: which file is to be changed?")
         rows = block.splitlines()

@@ -84,8 +84,8 @@ class Readme(unittest.TestCase):
         with open(os.path.join(SOURCE, name), encoding="utf-8") as file:
             text = file.read()
         self.assertEqual(commands_outside_blocks(text, PROGRAMS), [], "stand in sentences, where they are not run")
-        failures = ShortRun(self.terminal).run(text, name)
-        self.assertFalse(failures, "\n".join(failures))
+        for failure in ShortRun(self.terminal).run(text, name):
+            self.fail(failure)
 
     def test_every_command_works_in_a_clone(self):
         self.make_clone()
