@@ -136,6 +136,16 @@ class Example(unittest.TestCase):
         tick(1, [12345])  # late
         self.assertIsNone(client.tick)
 
+    def test_says_after_three_seconds_what_it_waits_for(self):
+        waiting = subprocess.Popen([sys.executable, os.path.join(ROOT, "examples", "python", "pilot.py")], text=True,
+                                   env=dict(os.environ, PYTHONPATH=sys.path[0]), stderr=subprocess.PIPE)
+        try:
+            self.assertIn("'pilot' waits for a simulator to answer its join on 'sim.control.reply', at udpm://",
+                          waiting.stderr.readline())
+        finally:
+            waiting.kill()
+            waiting.communicate()
+
     def test_python_client_ignores_what_is_no_message(self):
         import lockstep_client
         client = lockstep_client.Pilot("rover1").client
