@@ -1,29 +1,41 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # cmake --install build/release --prefix P: the programs, what plugins and clients are built against, worlds and vehicles.
+# --component NAME installs a part of it:
+#   programs  the programs, worlds, vehicles, schemas, examples and the Python modules; of the target programs
+#   client    what a client in C++ is built against; of the target shoal_client
+#   device    what a plugin is built against, besides `client`
 include(CMakePackageConfigHelpers)
 set(package_dir lib/cmake/Shoal)
 set(types_dir ${PROJECT_SOURCE_DIR}/messages)
 
-install(TARGETS shoal shoal-coop-rover shoal-coop-craft shoal-coop-auv shoal-coop-station shoal-balance RUNTIME DESTINATION bin)
-install(TARGETS generate_type_tables RUNTIME DESTINATION lib/shoal)
-install(TARGETS shoal_client ARCHIVE DESTINATION lib)
-install(FILES bridges/client/shoal/client.hpp DESTINATION include/shoal/shoal)
+install(TARGETS shoal shoal-coop-rover shoal-coop-craft shoal-coop-auv shoal-coop-station shoal-balance RUNTIME DESTINATION bin
+        COMPONENT programs)
+install(TARGETS generate_type_tables RUNTIME DESTINATION lib/shoal COMPONENT device)
+install(TARGETS shoal_client ARCHIVE DESTINATION lib COMPONENT client)
+install(FILES bridges/client/shoal/client.hpp DESTINATION include/shoal/shoal COMPONENT client)
 
-install(DIRECTORY sim DESTINATION include/shoal FILES_MATCHING PATTERN "*.hpp")
-install(DIRECTORY ${PROJECT_BINARY_DIR}/sim/generated/sim DESTINATION include/shoal)
+install(DIRECTORY sim DESTINATION include/shoal COMPONENT device FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY ${PROJECT_BINARY_DIR}/sim/generated/sim DESTINATION include/shoal COMPONENT device)
 install(DIRECTORY ${types_dir}/shoal ${PROJECT_BINARY_DIR}/messages/generated/shoal DESTINATION include/shoal
+        COMPONENT client FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY ${types_dir}/reporter DESTINATION include/shoal/messages COMPONENT device
         FILES_MATCHING PATTERN "*.hpp")
-install(DIRECTORY ${types_dir}/reporter DESTINATION include/shoal/messages FILES_MATCHING PATTERN "*.hpp")
 file(GLOB lcm_files CONFIGURE_DEPENDS ${types_dir}/*/*.lcm)
-install(FILES ${lcm_files} DESTINATION share/shoal/types)
+install(FILES ${lcm_files} DESTINATION share/shoal/types COMPONENT client)
 
 # The first lines of worlds and vehicles name ../docs/reference/schema.
-install(DIRECTORY worlds vehicles DESTINATION share/shoal)
-install(DIRECTORY docs/reference/schema DESTINATION share/shoal/docs/reference)
-install(FILES LICENSE DESTINATION share/doc/shoal)
+install(DIRECTORY worlds vehicles DESTINATION share/shoal COMPONENT programs)
+install(DIRECTORY docs/reference/schema DESTINATION share/shoal/docs/reference COMPONENT programs)
+install(FILES LICENSE DESTINATION share/doc/shoal COMPONENT programs)
+
+# What `shoal new program` starts from; in Python with the message types.
+install(DIRECTORY examples/client DESTINATION share/shoal/examples COMPONENT programs
+        FILES_MATCHING PATTERN "*.cpp" PATTERN CMakeLists.txt PATTERN build EXCLUDE)
+install(DIRECTORY examples/python/ ${PROJECT_BINARY_DIR}/python/ DESTINATION share/shoal/python COMPONENT programs
+        FILES_MATCHING PATTERN "*.py" PATTERN __pycache__ EXCLUDE)
 
 configure_package_config_file(cmake/ShoalConfig.cmake.in ${PROJECT_BINARY_DIR}/ShoalConfig.cmake
                               INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/ShoalConfigVersion.cmake COMPATIBILITY ExactVersion)
 install(FILES ${PROJECT_BINARY_DIR}/ShoalConfig.cmake ${PROJECT_BINARY_DIR}/ShoalConfigVersion.cmake
-              cmake/LcmGenerate.cmake DESTINATION ${package_dir})
+              cmake/LcmGenerate.cmake DESTINATION ${package_dir} COMPONENT client)

@@ -50,13 +50,16 @@ function(lcm_generate_plugin_tables sources)
 endfunction()
 
 # lcm_generate_python(<target> FILES <lcm file>... DIR <dir>)
-# A target, not built by default, that writes the Python package into <dir>.
+# A target that writes the Python packages into <dir>.
 function(lcm_generate_python target)
   cmake_parse_arguments(ARG "" "DIR" "FILES" ${ARGN})
   # lcm-gen appends to __init__.py, so it starts from an empty folder.
-  add_custom_target(${target}
+  set(done ${CMAKE_CURRENT_BINARY_DIR}/${target}.done)
+  add_custom_command(OUTPUT ${done}
     COMMAND ${CMAKE_COMMAND} -E rm -rf ${ARG_DIR}
     COMMAND ${CMAKE_COMMAND} -E make_directory ${ARG_DIR}
     COMMAND ${LCM_GEN} --python --ppath ${ARG_DIR} ${ARG_FILES}
-    COMMENT "lcm-gen: Python into ${ARG_DIR}" VERBATIM)
+    COMMAND ${CMAKE_COMMAND} -E touch ${done}
+    DEPENDS ${ARG_FILES} COMMENT "lcm-gen: Python into ${ARG_DIR}" VERBATIM)
+  add_custom_target(${target} ALL DEPENDS ${done})
 endfunction()

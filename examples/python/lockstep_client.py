@@ -15,10 +15,15 @@ import struct
 import sys
 import time
 
-import lcm
 import shoal
 
+try:
+    import lcm
+except ImportError:  # Debian 12 has no package of it
+    import small_lcm as lcm
+
 SILENCE_S = 600
+NOTICE_S = 3
 
 
 class Signer:
@@ -93,7 +98,12 @@ class LockstepClient:
         self.lc.publish(channel, self.sign(channel, message.encode()))
 
     def run(self):
+        notice = time.monotonic() + NOTICE_S
         while not self.joined:  # the simulator may start later than we
+            if notice and time.monotonic() > notice:
+                print(f"'{self.name}' waits for a simulator to answer its join on 'sim.control.reply', at "
+                      f"{os.environ.get('LCM_DEFAULT_URL', 'the default LCM URL')}", file=sys.stderr)
+                notice = None
             request = shoal.sim_control_request_t()
             request.id, request.client, request.command = self.id, self.name, "join"
             request.value = self.period_s

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
 
 namespace sim {
@@ -46,9 +47,11 @@ void DeviceConfig::read(ParamReader& in) {
   if (const ConfigNode* node = in.child("type"); node != nullptr) {
     device_type = DeviceRegistry::instance().find(node->scalar);
     if (device_type == nullptr) {
-      std::string known;
-      for (const DeviceType* each : DeviceRegistry::instance().all()) known += (known.empty() ? "" : ", ") + each->name;
-      in.error("type", "unknown device type '" + node->scalar + "'; known types: " + known);
+      std::vector<std::string> known;
+      for (const DeviceType* each : DeviceRegistry::instance().all()) known.push_back(each->name);
+      const std::string meant = closest_name(node->scalar, known);
+      in.error("type", "unknown device type '" + node->scalar + "'; known types: " + list_text(known, known.size()) +
+                           (meant.empty() ? "" : "; did you mean '" + meant + "'?"));
       in.read("name", name, "");
       // The other keys belong to a type nobody knows; calling them unknown too would bury the mistake.
       for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());

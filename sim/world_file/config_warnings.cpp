@@ -16,8 +16,8 @@ constexpr double close_to_one = 1 + 1e-9;
 
 class ConfigCheck {
  public:
-  ConfigCheck(const WorldConfig& world, const ConfigNode& root, Warnings& warnings)
-      : world_(world), root_(root), warnings_(warnings) {}
+  ConfigCheck(const WorldConfig& world, const ConfigNode& root, Warnings& warnings, double end_s)
+      : world_(world), root_(root), warnings_(warnings), end_s_(end_s) {}
 
   void check_rates() const {
     std::set<const VehicleConfig*> seen;  // asked, never iterated
@@ -38,11 +38,10 @@ class ConfigCheck {
       if (!metric.params) continue;
       const std::string who = "metric '" + metric.name + "'";
       const MetricParams& params = *metric.params;
-      const double end_s = world_.run.duration_s;
-      if (end_s > 0 && params.from_s >= end_s)
+      if (end_s_ > 0 && params.from_s >= end_s_)
         warnings_.warn(metric.place, who,
                        "'from_s' " + number_text(params.from_s) + " is not before the end of the run at " +
-                           number_text(end_s) + " s: nothing counts");
+                           number_text(end_s_) + " s: nothing counts");
       // What programs publish is not known here.
       if (params.channel.empty() || !world_.processes.empty()) continue;
       if (spoken.contains(params.channel) || params.channel.starts_with("sim.")) continue;
@@ -53,14 +52,13 @@ class ConfigCheck {
   }
 
   void check_events() const {
-    const double end_s = world_.run.duration_s;
     for (const EventConfig& event : world_.events) {
       const bool late = !event.at_s.empty() &&
-                        std::all_of(event.at_s.begin(), event.at_s.end(), [&](double at_s) { return at_s > end_s; });
-      if (end_s > 0 && late)
+                        std::all_of(event.at_s.begin(), event.at_s.end(), [&](double at_s) { return at_s > end_s_; });
+      if (end_s_ > 0 && late)
         warnings_.warn(event.place, "event '" + event.name + "'",
                        "it is for " + number_text(*std::min_element(event.at_s.begin(), event.at_s.end())) +
-                           " s, and the run ends at " + number_text(end_s) + " s");
+                           " s, and the run ends at " + number_text(end_s_) + " s");
     }
   }
 
@@ -101,6 +99,7 @@ class ConfigCheck {
   const WorldConfig& world_;
   const ConfigNode& root_;
   Warnings& warnings_;
+  double end_s_;  ///< 0: the run has none
 };
 
 }  // namespace
@@ -119,8 +118,11 @@ std::set<std::string> channels_of(const WorldConfig& world) {
   return channels;
 }
 
-void warn_of_config(const WorldConfig& world, const ConfigNode& root, Warnings& warnings) {
-  const ConfigCheck check(world, root, warnings);
+void warn_of_config(const WorldConfig& world, const ConfigNode& root, Warnings& warnings,
+                    std::optional<double> duration_s) {
+  const double given_s = duration_s.value_or(world.run.duration_s);
+  const bool endless = given_s == 0 || world.run.duration_s == 0;
+  const ConfigCheck check(world, root, warnings, endless ? 0 : std::max(given_s, world.run.duration_s));
   check.check_rates();
   check.check_metrics();
   check.check_events();

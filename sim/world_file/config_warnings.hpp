@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <set>
 #include <string>
 
@@ -11,8 +12,10 @@ namespace sim {
 
 /// Warns of what a world file says that will not be as it says: rates above that of the steps, keys without effect,
 /// metrics of channels on which nobody speaks or that begin after the end, events after the end.  `root`: what `world`
-/// was read from.  Call when the vehicles are known and there were no errors.
-void warn_of_config(const WorldConfig& world, const ConfigNode& root, Warnings& warnings);
+/// was read from; `duration_s`: of the run, where it is not that of the file, 0: without end.  A shorter run is no
+/// reason for a warning.  Call when the vehicles are known and there were no errors.
+void warn_of_config(const WorldConfig& world, const ConfigNode& root, Warnings& warnings,
+                    std::optional<double> duration_s = {});
 
 /// The channels on which the world itself speaks: reports and truths of its devices, and what its events publish.
 std::set<std::string> channels_of(const WorldConfig& world);

@@ -301,7 +301,7 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   diagnostics.throw_if_any();
   Warnings warnings;
   warn_of_missing_water(loaded.config, warnings);
-  warn_of_config(loaded.config, root, warnings);
+  warn_of_config(loaded.config, root, warnings, options.duration_s);
   if (options.resolve) vehicles.resolve(root);
   make_paths_absolute(root);
   if (options.seed) {

@@ -22,6 +22,8 @@ struct LoadOptions {
   bool special_files = false;  ///< the world may come from a pipe or a device; it cannot include others then
   /// Put the vehicle files into LoadedWorld::resolved; without them it has no vehicles, nor has `vehicle_entries`.
   bool resolve = true;
+  /// Duration of the run instead of the file's, 0: without end.  Warnings are of what comes after both.
+  std::optional<double> duration_s = {};
 };
 
 /// Which files a world (or vehicle) in `world_file` may name; null: any.

@@ -290,6 +290,26 @@ TEST_F(Plugin, InstallationHasTheClientLibrary) {
   EXPECT_THAT(pilot.output(), testing::ContainsRegex("the run is over, 0\\.[89][0-9]* m before the wall"));
 }
 
+TEST_F(Plugin, AClientNeedsTheComponentClientAlone) {
+  const Ended installed = run(
+      {"cmake", "--install", test_support::built_path(""), "--prefix", path("client_prefix"), "--component", "client"});
+  ASSERT_EQ(installed.exit_code, 0) << installed.errors;
+  EXPECT_FALSE(fs::exists(path("client_prefix/bin")));
+  EXPECT_FALSE(fs::exists(path("client_prefix/include/shoal/sim")));
+  const std::vector<std::string> configure = {"cmake", "-DCMAKE_PREFIX_PATH=" + path("client_prefix"), "-S"};
+  const auto configured = [&](const std::string& sources, const std::string& build_folder) {
+    std::vector<std::string> command = configure;
+    command.insert(command.end(), {sources, "-B", path(build_folder)});
+    return run(command);
+  };
+  const Ended client = configured(source("examples/client"), "small_client");
+  ASSERT_EQ(client.exit_code, 0) << client.errors;
+  EXPECT_EQ(run({"cmake", "--build", path("small_client")}).exit_code, 0);
+  const Ended device = configured(source("examples/plugin"), "small_device");
+  EXPECT_NE(device.exit_code, 0);
+  EXPECT_THAT(device.errors, HasSubstr("Shoal_device_FOUND"));
+}
+
 TEST_F(Plugin, ClientExampleIsThatOfThePage) {
   const std::string page = system_test::text_of_file(source("docs/guides/client_library.md"));
   for (const char* file : {"examples/client/pilot.cpp", "examples/client/CMakeLists.txt"}) {

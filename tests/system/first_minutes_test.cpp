@@ -116,6 +116,44 @@ TEST(New, TouchesNoFileThatIsThere) {
   EXPECT_EQ(shoal_in(folder.file(""), "new").exit_code, 2);
 }
 
+TEST(New, NamesTheVehicleOfAWorldAfterItsFile) {
+  const ScratchFolder folder;
+  for (const auto& [vehicle, name] : {std::pair<std::string, std::string>{"digger.yaml", "digger1"},
+                                      {"digger", "digger1"},
+                                      {"remus100", "remus100_1"}}) {
+    fs::remove(folder.file("pit.yaml"));
+    ASSERT_EQ(shoal_in(folder.file(""), "new world pit --vehicle " + vehicle).exit_code, 0);
+    const std::string text = text_of_file(folder.file("pit.yaml"));
+    EXPECT_THAT(text, HasSubstr("- name: " + name + "\n    file: " + fs::path(vehicle).stem().string() + ".yaml\n"));
+    EXPECT_THAT(text, Not(HasSubstr("rover1")));
+  }
+}
+
+TEST(New, WritesProgramsOfTheNameAndForTheVehicle) {
+  const ScratchFolder folder;
+  EXPECT_EQ(shoal_in(folder.file(""), "new program helm --vehicle digger1").output,
+            "helm/: written; `cmake -S helm -B helm/build` and `cmake --build helm/build` build it\n");
+  const std::string text = text_of_file(folder.file("helm/helm.cpp"));
+  EXPECT_THAT(text, testing::StartsWith("// Drives digger1 towards the wall"));
+  EXPECT_THAT(text, HasSubstr("shoal::Client client(\"helm\")"));
+  EXPECT_THAT(text, HasSubstr("\"digger1.drive.cmd\""));
+  EXPECT_THAT(text_of_file(folder.file("helm/CMakeLists.txt")), HasSubstr("add_executable(helm helm.cpp)"));
+  EXPECT_EQ(shoal_in(folder.file(""), "new program helm").exit_code, 4) << "it is there already";
+}
+
+TEST(New, WritesAPythonProgramThatFindsItsModules) {
+  const ScratchFolder folder;
+  const Ended ended = shoal_in(folder.file(""), "new program pilot --python");
+  ASSERT_EQ(ended.exit_code, 0) << ended.errors;
+  const std::string url = own_url();
+  Program pilot({"env", "LCM_DEFAULT_URL=" + url, "python3", folder.file("pilot.py")});
+  const Ended run =
+      run_shoal({"run", "minimal", "--duration", "15", "--speed", "max", "--await", "pilot", "--lcm-url", url});
+  EXPECT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_EQ(pilot.wait(), 0) << pilot.errors();
+  EXPECT_THAT(pilot.errors(), ContainsRegex("the run is over, 0\\.[89][0-9]* m before the wall"));
+}
+
 TEST(Waiting, ProgramsAndCommandsSayAfterThreeSecondsForWhat) {
   const std::string url = own_url();
   Program rover(

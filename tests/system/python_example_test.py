@@ -32,7 +32,6 @@ def prepare():
     subprocess.run([LCM_GEN, "--python", "--ppath", types.name,
                     *glob.glob(os.path.join(ROOT, "messages", "*", "*.lcm"))], check=True)
     sys.path[:0] = [types.name, os.path.join(ROOT, "examples", "python")]
-    sys.path.append(os.path.join(HERE, "python"))  # after a real lcm, where there is one
     os.environ["LCM_DEFAULT_URL"] = f"udpm://239.255.76.67:{10000 + os.getpid() * 4 % 20000}?ttl=0"
     return types
 
@@ -136,6 +135,16 @@ class Example(unittest.TestCase):
         self.assertEqual(client.ack.sequence, 2)
         tick(1, [12345])  # late
         self.assertIsNone(client.tick)
+
+    def test_says_after_three_seconds_what_it_waits_for(self):
+        waiting = subprocess.Popen([sys.executable, os.path.join(ROOT, "examples", "python", "pilot.py")], text=True,
+                                   env=dict(os.environ, PYTHONPATH=sys.path[0]), stderr=subprocess.PIPE)
+        try:
+            self.assertIn("'pilot' waits for a simulator to answer its join on 'sim.control.reply', at udpm://",
+                          waiting.stderr.readline())
+        finally:
+            waiting.kill()
+            waiting.communicate()
 
     def test_python_client_ignores_what_is_no_message(self):
         import lockstep_client

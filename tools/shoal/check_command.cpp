@@ -5,6 +5,7 @@
 #include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/camera/texture.hpp"
+#include "sim/config/message_text.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
@@ -33,6 +34,11 @@ void check_textures(const sim::WorldConfig& world) {
   for (const sim::VehicleInstance& vehicle : world.vehicles) check_all(vehicle.config->materials);
 }
 
+/// `1 body`, `3 bodies`.
+std::string counted(std::size_t count, const std::string& word) {
+  return std::to_string(count) + ' ' + (count == 1 ? word : sim::plural_of(word));
+}
+
 std::size_t device_count(const sim::WorldConfig& world) {
   std::size_t count = 0;
   for (const sim::VehicleInstance& vehicle : world.vehicles) count += vehicle.config->devices.size();
@@ -42,8 +48,8 @@ std::size_t device_count(const sim::WorldConfig& world) {
 void check(const std::string& path, const sim::LoadOptions& options) {
   if (is_vehicle_file(path, options)) {
     const sim::VehicleConfig vehicle = sim::load_vehicle(path, options);
-    std::cout << path << ": vehicle '" << vehicle.vehicle << "': " << vehicle.bodies.size() << " bodies, "
-              << vehicle.joints.size() << " joints, " << vehicle.devices.size() << " devices\n";
+    std::cout << path << ": vehicle '" << vehicle.vehicle << "': " << counted(vehicle.bodies.size(), "body") << ", "
+              << counted(vehicle.joints.size(), "joint") << ", " << counted(vehicle.devices.size(), "device") << '\n';
     return;
   }
   sim::LoadOptions with_messages = options;
@@ -58,9 +64,9 @@ void check(const std::string& path, const sim::LoadOptions& options) {
   sim::Warnings warnings;
   warn_of_processes(loaded, warnings);
   warn_of_missing_programs(loaded, warnings);
-  std::cout << path << ": world '" << loaded.config.name << "': " << world.vehicles().size() << " vehicles, "
-            << loaded.config.objects.size() << " objects, " << device_count(loaded.config) << " devices, "
-            << world.physics().bodies().size() << " bodies\n";
+  std::cout << path << ": world '" << loaded.config.name << "': " << counted(world.vehicles().size(), "vehicle") << ", "
+            << counted(loaded.config.objects.size(), "object") << ", " << counted(device_count(loaded.config), "device")
+            << ", " << counted(world.physics().bodies().size(), "body") << '\n';
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
 #include "tools/shoal/start_files.hpp"
+#include "tools/shoal/start_program.hpp"
 
 namespace tools {
 
@@ -25,6 +26,7 @@ struct NewArguments {
   std::string folder = ".";
   std::string vehicle;
   bool under_water = false;
+  bool python = false;
 };
 
 std::string check_name(const std::string& name) {
@@ -42,30 +44,67 @@ std::string schema_file(const std::string& kind) {
   return fs::is_regular_file(file, error) ? file.string() : "";
 }
 
-int write_start(const NewArguments& arguments, const std::string& text) {
-  const std::string path = (fs::path(arguments.folder) / (arguments.name + ".yaml")).lexically_normal().string();
+/// Returns the path of the new file.
+std::string write_start(const NewArguments& arguments, const std::string& file, const std::string& text) {
+  const std::string path = (fs::path(arguments.folder) / file).lexically_normal().string();
   std::error_code error;
   if (fs::exists(path, error)) throw std::runtime_error(path + ": is there already; take another name or folder");
   check_writable(path);
   std::ofstream out(path, std::ios::binary);
   if (!(out << text << std::flush)) throw std::runtime_error(path + ": cannot be written");
+  return path;
+}
+
+int write_yaml(const NewArguments& arguments, const std::string& text) {
+  const std::string path = write_start(arguments, arguments.name + ".yaml", text);
   std::cout << path << ": written; `shoal check " << path << "` checks it\n";
   return exit_ok;
 }
 
+/// `digger` is digger.yaml, as for other commands.
+std::string vehicle_file(const NewArguments& arguments) {
+  if (arguments.vehicle.empty()) return arguments.under_water ? "remus100_survey.yaml" : "rover.yaml";
+  return fs::path(arguments.vehicle).has_extension() ? arguments.vehicle : arguments.vehicle + ".yaml";
+}
+
+/// A vehicle of digger.yaml is digger1, one of remus100.yaml is remus100_1.
+std::string vehicle_name(const NewArguments& arguments) {
+  if (arguments.vehicle.empty()) return arguments.under_water ? "auv1" : "rover1";
+  const std::string stem = fs::path(arguments.vehicle).stem().string();
+  if (!check_name(stem).empty()) return "vehicle1";
+  return stem + (std::isdigit(static_cast<unsigned char>(stem.back())) != 0 ? "_1" : "1");
+}
+
 int new_world(const NewArguments& arguments) {
-  const std::string vehicle = !arguments.vehicle.empty() ? arguments.vehicle
-                              : arguments.under_water    ? "remus100_survey.yaml"
-                                                         : "rover.yaml";
+  const std::string vehicle = vehicle_file(arguments);
   const std::string schema = schema_file("world");
-  return write_start(arguments, arguments.under_water ? start_sea(arguments.name, vehicle, schema)
-                                                      : start_world(arguments.name, vehicle, schema));
+  const std::string text =
+      arguments.under_water ? start_sea(arguments.name, vehicle, schema) : start_world(arguments.name, vehicle, schema);
+  return write_yaml(arguments, replaced(text, arguments.under_water ? "auv1" : "rover1", vehicle_name(arguments)));
+}
+
+int new_program(const NewArguments& arguments) {
+  const StartFiles files = arguments.python ? start_python_program(arguments.name, arguments.vehicle)
+                                            : start_cpp_program(arguments.name, arguments.vehicle);
+  if (!arguments.python) {
+    std::error_code error;
+    fs::create_directory(fs::path(arguments.folder) / arguments.name, error);  // write_start() says why it cannot
+  }
+  std::vector<std::string> paths;
+  for (const auto& [file, text] : files) paths.push_back(write_start(arguments, file, text));
+  const std::string folder = fs::path(paths.front()).parent_path().string();
+  if (arguments.python)
+    std::cout << paths.front() << ": written; `python3 " << paths.front() << "` starts it\n";
+  else
+    std::cout << folder << "/: written; `cmake -S " << folder << " -B " << folder << "/build` and `cmake --build "
+              << folder << "/build` build it\n";
+  return exit_ok;
 }
 
 CLI::App* add_kind(CLI::App& command, const char* kind, const char* meaning, NewArguments& arguments) {
   CLI::App* of_kind = command.add_subcommand(kind, meaning);
   add_log_level_option(*of_kind);
-  of_kind->add_option("NAME", arguments.name, "name, and name of the file: NAME.yaml")
+  of_kind->add_option("NAME", arguments.name, "name, and name of what is written")
       ->required()
       ->check(CLI::Validator(check_name, ""));
   of_kind->add_option("--folder", arguments.folder, "where the file is written")
@@ -77,7 +116,7 @@ CLI::App* add_kind(CLI::App& command, const char* kind, const char* meaning, New
 }  // namespace
 
 void add_new_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("new", "Write a commented world or vehicle file to begin with");
+  CLI::App* command = app.add_subcommand("new", "Write a world, a vehicle or a program to start with");
   command->require_subcommand(1);
   const auto arguments = std::make_shared<NewArguments>();
   CLI::App* world = add_kind(*command, "world", "A world of one vehicle", *arguments);
@@ -96,11 +135,22 @@ void add_new_command(CLI::App& app, int& exit_code) {
   CLI::App* vehicle = add_kind(*command, "vehicle", "A rover of two driven wheels with a lidar", *arguments);
   command_line::set_help_end(*vehicle, {{"shoal new vehicle digger"}, exit_codes, {}});
   vehicle->callback([arguments, &exit_code] {
-    exit_code = write_start(*arguments, start_vehicle(arguments->name, schema_file("vehicle")));
+    exit_code = write_yaml(*arguments, start_vehicle(arguments->name, schema_file("vehicle")));
   });
-  command_line::set_help_end(*command, {{"shoal new world yard", "shoal new vehicle digger"},
-                                        exit_codes,
-                                        {"A file that is there already is not touched."}});
+  CLI::App* program = add_kind(*command, "program", "A program that drives a vehicle in lockstep", *arguments);
+  program->add_flag("--python", arguments->python, "in Python, instead of C++");
+  program->add_option("--vehicle", arguments->vehicle, "name of the vehicle in its world; unset: rover1")
+      ->type_name("NAME");
+  command_line::set_help_end(
+      *program, {{"shoal new program pilot", "shoal new program pilot --python --vehicle digger1"}, exit_codes, {}});
+  program->callback([arguments, &exit_code] {
+    if (arguments->vehicle.empty()) arguments->vehicle = "rover1";
+    exit_code = new_program(*arguments);
+  });
+  command_line::set_help_end(*command,
+                             {{"shoal new world yard", "shoal new vehicle digger", "shoal new program pilot --python"},
+                              exit_codes,
+                              {"A file that is there already is not touched."}});
 }
 
 }  // namespace tools

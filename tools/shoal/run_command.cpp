@@ -58,7 +58,7 @@ int run(RunArguments& arguments) {
   arguments.load.allow_plugins = arguments.run.launch;
   arguments.load.serial_ports = arguments.run.serial_ports;
   arguments.run.speed = parse_speed(arguments.speed);
-  arguments.run.duration_s = arguments.duration_s;
+  arguments.run.duration_s = arguments.load.duration_s = arguments.duration_s;
   arguments.load.encode_message = shoal::encode_own_message;
   arguments.load.special_files = arguments.run.special_files;
   if (arguments.world.empty() == arguments.from.empty())

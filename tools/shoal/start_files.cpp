@@ -53,7 +53,7 @@ metrics:
 
 # Programs that --launch starts; one with a `client` name takes part in lockstep (docs/guides/attach_autonomy.md).
 # processes:
-#   - {name: pilot, command: [./pilot], client: pilot}
+#   - {name: pilot, client: pilot, command: [pilot/build/pilot]}  # as of `shoal new program pilot`
 )";
 
 constexpr const char* sea_text = R"(# NAME: a world under water to begin with.
@@ -102,7 +102,7 @@ metrics:
 
 # Programs that --launch starts; one with a `client` name takes part in lockstep (docs/guides/attach_autonomy.md).
 # processes:
-#   - {name: pilot, command: [./pilot], client: pilot}
+#   - {name: pilot, client: pilot, command: [pilot/build/pilot]}  # as of `shoal new program pilot`
 )";
 
 constexpr const char* vehicle_text = R"(# NAME: a vehicle to begin with, a rover of two driven wheels with a lidar.

@@ -88,4 +88,21 @@ TEST(ConfigWarnings, TellOfMetricsAndEventsAfterTheEnd) {
   EXPECT_EQ(warnings_of_file(world(gps, "events: [{name: some, at: [10, 320], do: [{log: late}]}]\n")), "");
 }
 
+TEST(ConfigWarnings, AreOfWhatComesAfterTheEndOfTheFileAndOfTheCommandLine) {
+  const std::string text =
+      world("        - {name: gps, type: gps}\n", "events: [{name: late, at: [310], do: [{log: late}]}]\n");
+  const auto warnings_of = [&](std::optional<double> duration_s) {
+    sim::LoadOptions options = test::LoadedTestWorld::with_messages({});
+    options.duration_s = duration_s;
+    const test_support::LogCapture log;
+    sim::load_world_text(text, "worlds/test.yaml", options);
+    return log.text();
+  };
+  EXPECT_THAT(warnings_of({}), HasSubstr("ends at 300 s"));
+  EXPECT_THAT(warnings_of(10), HasSubstr("ends at 300 s")) << "as in the whole run";
+  EXPECT_THAT(warnings_of(305), HasSubstr("ends at 305 s"));
+  EXPECT_EQ(warnings_of(311), "");
+  EXPECT_EQ(warnings_of(0), "") << "without end";
+}
+
 }  // namespace

@@ -12,6 +12,7 @@
 
 namespace {
 
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 std::string errors_of(const std::string& yaml, const sim::LoadOptions& options = {}) {
@@ -176,7 +177,7 @@ TEST(LoadWorld, RefusesNamesThatDoNotFitAChannel) {
 
 TEST(LoadWorld, ListsTheKnownTypesForAnUnknownDevice) {
   EXPECT_THAT(errors_of(test::rover_world("        - {name: l, type: lider, beams: 3}\n")),
-              HasSubstr("device 'l': unknown device type 'lider'; known types: "));
+              ContainsRegex("device 'l': unknown device type 'lider'; known types: .*; did you mean 'lidar'"));
 }
 
 TEST(LoadWorld, ReportsEveryErrorNotOnlyTheFirst) {

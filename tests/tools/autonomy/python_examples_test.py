@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Python examples: the filter against the truth and closed forms, the frame against the bytes of the C++ codec."""
+"""The Python examples: the filter against the truth and closed forms, the frame against the bytes of the C++ codec, the
+datagrams of LCM."""
 import math
 import os
 import random
+import struct
 import sys
 import types
 import unittest
@@ -15,6 +17,7 @@ for name in ("lcm", "shoal"):
     sys.modules.setdefault(name, types.ModuleType(name))
 
 import coop_auv  # noqa: E402
+import small_lcm  # noqa: E402
 from marine_ekf import MarineEkf, turned  # noqa: E402
 
 
@@ -186,6 +189,39 @@ class Navigator(unittest.TestCase):
         data = Frame.BYTES + coop_auv.checksum(Frame.BYTES).to_bytes(2, "big")
         auv.on_modem(report(utime=near, sent_utime=near, source="boat", travel_time_s=nan, data=data))
         self.assertEqual((list(auv.ekf.x), auv.yaw_rad, auv.depth_m), before)
+
+
+class SmallLcm(unittest.TestCase):
+    """Datagrams as LCM 1.3.1 writes them: lcm/udpm_util.h."""
+
+    def setUp(self):
+        self.lcm = small_lcm.LCM("udpm://239.255.76.67:27667?ttl=0")
+        self.addCleanup(self.lcm.socket.close)
+
+    def test_a_short_message_is_one_datagram(self):
+        datagram = struct.pack(">II", 0x4C433032, 7) + b"a.b\0data\0more"
+        self.assertEqual(self.lcm.message_of(datagram, "one"), ("a.b", b"data\0more"))
+
+    def test_a_long_message_is_whole_when_all_parts_came_in_any_order(self):
+        first, second = (struct.pack(">IIIIHH", 0x4C433033, 9, 5, offset, part, 2) for part, offset in ((0, 0), (1, 3)))
+        self.assertEqual(self.lcm.message_of(second + b"lo", "one"), (None, None))
+        self.assertEqual(self.lcm.message_of(first + b"c\0hel", "two"), (None, None), "of another sender")
+        self.assertEqual(self.lcm.message_of(first + b"c\0hel", "one"), ("c", b"hello"))
+
+    def test_a_newer_message_of_a_sender_takes_the_place_of_one_that_lacks_parts(self):
+        for number in 1, 2:
+            part = struct.pack(">IIIIHH", 0x4C433033, number, 5, 3, 1, 2)
+            self.assertEqual(self.lcm.message_of(part + b"lo", "one"), (None, None))
+        first = struct.pack(">IIIIHH", 0x4C433033, 2, 5, 0, 0, 2)
+        self.assertEqual(self.lcm.message_of(first + b"c\0hel", "one"), ("c", b"hello"))
+
+    def test_what_is_no_datagram_of_lcm_is_no_message(self):
+        for datagram in b"", b"short", bytes(30), struct.pack(">II", 0x4C433033, 1):
+            self.assertEqual(self.lcm.message_of(datagram, "one"), (None, None))
+
+    def test_a_message_that_is_too_long_to_be_sent_is_an_error(self):
+        with self.assertRaisesRegex(ValueError, "a.b: a message of 70000 bytes"):
+            self.lcm.publish("a.b", bytes(70000))
 
 
 class Page(unittest.TestCase):

@@ -174,9 +174,10 @@ void Run::await(const std::vector<std::string>& clients) {
       check_bus();
       if (programs_.is_gone(client)) break;
       if (Clock::now() > deadline)
-        throw RunError(5, "timeout",
-                       "lockstep: client '" + client + "' has not joined within " +
-                           fmt::format("{:g} s", loaded_.config.lockstep.join_timeout_s));
+        throw RunError(
+            5, "timeout",
+            fmt::format("lockstep: client '{}' has not joined within {:g} s; clients that have: {}", client,
+                        loaded_.config.lockstep.join_timeout_s, lockstep_.empty() ? "none" : lockstep_.names()));
       if (!said && Clock::now() - begin > std::chrono::seconds(1)) {
         spdlog::info("waiting for '{}' to join the lockstep", client);
         said = true;
