@@ -2,6 +2,7 @@
 // The describing half of ParamReader: rows of tables instead of values.
 #include <algorithm>
 
+#include "sim/config/message_text.hpp"
 #include "sim/config/param_reader.hpp"
 
 namespace sim {

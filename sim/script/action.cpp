@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/script/action.hpp"
 
-#include "sim/config/merged_keys.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/script/action_registry.hpp"
+#include "sim/script/old_action.hpp"
 
 namespace sim {
 
@@ -18,22 +18,51 @@ void describe_actions(ParamReader& in) {
 }  // namespace
 
 void ActionEntry::read(ParamReader& in) {
-  if (in.describing()) return describe_actions(in);
+  if (in.describing()) return;  // see read_actions
   place = in.node()->place;
   who = in.who();
   if (in.node()->kind != ConfigNode::Kind::map) return;  // was reported
-  const std::string first = in.node()->entries.empty() ? "" : in.node()->entries.front().key;
-  const ActionKind* kind = ActionRegistry::instance().find(first);
-  if (kind == nullptr) {
-    const std::vector<std::string> words = ActionRegistry::instance().words();
-    const std::string meant = closest_name(first, words);
-    in.error("unknown action '" + shortened(printable(first)) + "'; known actions: " + list_text(words) +
-             (meant.empty() ? "" : "; did you mean '" + meant + "'?"));
-    for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
-    return;
-  }
+  for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
+  const ActionKind* kind = find_kind(in);
+  if (kind == nullptr) return;
+  const ConfigNode& value = in.node()->entries.front().value;
+  const char* word = kind->word.c_str();
+  if (value.kind != ConfigNode::Kind::map && !kind->main_alone)
+    return in.error(word,
+                    "'" + kind->word + "' must be a map with the keys " + keys_text(*kind) + ", got " + shown(value));
   action = kind->make();
-  action->read(in);
+  if (value.kind != ConfigNode::Kind::map) return action->read(in, word);
+  ActionKeys keys{*action, kind->main_key};
+  in.read(word, keys, "");
+}
+
+void read_actions(ParamReader& in, const char* key, std::vector<ActionEntry>& actions, const char* meaning) {
+  if (!in.describing()) return in.read_list(key, actions, "action", meaning);
+  ParamInfo info;
+  info.key = key;
+  info.type = type_text(ParamKind::maps);
+  info.initial = "[]";
+  info.meaning = meaning;
+  info.kind = ParamKind::maps;
+  info.may_be_null = true;
+  info.one_key = true;
+  info.definition = definition;
+  for (const ActionKind* kind : ActionRegistry::instance().all()) info.children.push_back(kind->info());
+  in.describe(std::move(info));
+}
+
+void read_action_lists(ParamReader& in, const char* key, std::vector<std::vector<ActionEntry>>& lists,
+                       const char* meaning) {
+  if (!in.describing()) return in.read_lists(key, lists, "action");
+  ParamInfo info;
+  info.key = key;
+  info.type = type_text(ParamKind::lists);
+  info.initial = "[]";
+  info.meaning = meaning;
+  info.kind = ParamKind::lists;
+  info.one_key = true;
+  info.definition = definition;
+  in.describe(std::move(info));
 }
 
 std::vector<std::string> names_added_by(const ConfigNode& actions) {
@@ -43,8 +72,9 @@ std::vector<std::string> names_added_by(const ConfigNode& actions) {
   };
   for (const ConfigNode& item : actions.items) append(item);
   for (const ConfigNode::Entry& entry : actions.entries) {
-    const ConfigNode* name = entry.value.find("name");
-    if (entry.key == "add" && name != nullptr && name->kind == ConfigNode::Kind::scalar) names.push_back(name->scalar);
+    const ConfigNode* object = entry.key == "add" ? entry.value.find("object") : nullptr;
+    const ConfigNode* name = object != nullptr ? object->find("name") : nullptr;
+    if (name != nullptr && name->kind == ConfigNode::Kind::scalar) names.push_back(name->scalar);
     append(entry.value);
   }
   return names;

@@ -12,7 +12,7 @@ std::vector<ParamInfo> ActionKind::keys() const {
   table[0].type = "action";
   table[0].meaning = meaning;
   ParamReader in(table);
-  make()->read(in);
+  make()->read(in, main_key);
   return table;
 }
 

@@ -16,10 +16,12 @@ struct ActionKind {
   std::string meaning;  ///< one line: what the value of this key is
   std::function<std::shared_ptr<Action>()> make;
 
-  /// Its keys, the first one its word.
+  /// The keys of its map, the main one first.
   std::vector<ParamInfo> keys() const;
 };
 
+  /// Its word with its keys.
+  ParamInfo info() const;
 /// All types of actions, filled before main by SHOAL_ACTION, and by plugins when they are loaded.
 class ActionRegistry {
  public:
@@ -40,13 +42,15 @@ namespace detail {
 
 template <typename Model>
 bool add_action(const char* word) {
-  ActionRegistry::instance().add({word, Model::meaning, [] { return std::make_shared<Model>(); }});
+  ActionRegistry::instance().add(
+      {word, Model::meaning, Model::main_key, Model::main_alone, [] { return std::make_shared<Model>(); }});
   return true;
 }
 
 }  // namespace detail
 
-/// Makes a type of action known, in its own file.  Model is an Action with `static constexpr const char* meaning`.
+/// Makes a type of action known, in its own file.  Model is an Action with `static constexpr const char* meaning` and
+/// `main_key`, and `static constexpr bool main_alone`; see ActionKind.
 #define SHOAL_ACTION(word, Model) \
   [[maybe_unused]] static const bool registered_##Model = ::sim::detail::add_action<Model>(word)
 

@@ -106,7 +106,7 @@ void EventConfig::read(ParamReader& in) {
   if (times == 0) times = static_cast<std::int64_t>(at_s.size());
   in.read("probability", probability, between(0, 1), "that it fires when it could");
   in.require("do");
-  in.read_list("do", actions, "action", "what happens, in this order");
+  read_actions(in, "do", actions, "what happens, in this order: actions, each a map of one key, its word");
 }
 
 void EventConfig::read_times(ParamReader& in) {

@@ -156,9 +156,9 @@ namespace {
 class AbandonAction final : public sim::Action {
  public:
   static constexpr const char* meaning = "the crew leaves";
-  void read(sim::ParamReader& in) override {
-    if (!in.describing()) in.read("abandon", crew_, sim::at_least(1), "");
-  }
+  static constexpr const char* main_key = "crew";
+  static constexpr bool main_alone = true;
+  void read(sim::ParamReader& in, const char* main) override { in.read(main, crew_, sim::at_least(1), "how many"); }
   void carry_out(const sim::ActionRun& run) const override {
     run.stage.end({std::to_string(crew_) + " left", false});
   }

@@ -33,7 +33,7 @@ std::string lively_world() {
          source("vehicles/rover.yaml") +
          "}\n"
          "events:\n"
-         "  - {name: move, every: 1.5, jitter_s: 0.4, do: [{move: ball, position_m: [1, 1, 1]}]}\n"
+         "  - {name: move, every: 1.5, jitter_s: 0.4, do: [{move: {name: ball, position_m: [1, 1, 1]}}]}\n"
          "  - {name: late, at: 7.25, do: [{log: here}]}\n";
 }
 
@@ -166,7 +166,7 @@ TEST(Snapshot, IsTakenAtTheStepNearestToTheTimeThatWasAskedFor) {
   EXPECT_EQ(early.exit_code, 2);
   EXPECT_THAT(early.errors, HasSubstr("--snapshot-at: 0.01 s is before the begin of the run at 0.02 s"));
   // A run that ends before its time.
-  write_file(folder.world(), lively_world() + "  - {name: stop, at: 2, do: [{end: enough, passed: true}]}\n");
+  write_file(folder.world(), lively_world() + "  - {name: stop, at: 2, do: [{end: {reason: enough, passed: true}}]}\n");
   const Ended short_run = run("1,5");
   EXPECT_EQ(short_run.exit_code, 0);
   EXPECT_THAT(short_run.errors, HasSubstr("--snapshot-at: no snapshot of 5 s was written: the run did not come there"));
@@ -258,7 +258,7 @@ TEST(Rewind, MailAndRequestsComeInAgainAtTheSameSteps) {
   forward.forward_mps = 1;
   for (const char* channel : {"r1.drive.cmd", "guest.drive.cmd"}) listener.publish(channel, shoal::encode(forward));
   live.run_until("4.5");
-  EXPECT_EQ(control({"do", "{move: ball, position_m: [3, 3, 3]}"}).exit_code, 0);
+  EXPECT_EQ(control({"do", "{move: {name: ball, position_m: [3, 3, 3]}}"}).exit_code, 0);
   live.run_until("4.9");
   EXPECT_EQ(control({"snapshot", "first"}).exit_code, 0);
   live.run_until("8");
@@ -526,7 +526,7 @@ TEST(Restore, OfALaterTimeBeginsTheTracksAnew) {
   live.run_until("6");
   EXPECT_EQ(control({"snapshot", "six"}).exit_code, 0);
   EXPECT_EQ(control({"rewind", "--value", "4"}).exit_code, 0);
-  EXPECT_EQ(control({"do", "{move: r1, position_m: [5, 5, 0.2]}"}).exit_code, 0);
+  EXPECT_EQ(control({"do", "{move: {name: r1, position_m: [5, 5, 0.2]}}"}).exit_code, 0);
   live.run_until("3");
   EXPECT_EQ(control({"restore", "six"}).exit_code, 0);
   EXPECT_THAT(control({"rewind", "--value", "1"}).errors, HasSubstr("what is kept begins at 6 s"));
@@ -596,7 +596,7 @@ TEST(Branch, KeepsTheResultsOfTheOneThatIsLeft) {
   Live live(folder, {"--results", results, "--no-pictures"});
   live.run_until("6");
   EXPECT_EQ(control({"rewind", "--value", "4"}).exit_code, 0);
-  EXPECT_EQ(control({"do", "{move: r1, position_m: [5, 5, 0.2]}"}).exit_code, 0);
+  EXPECT_EQ(control({"do", "{move: {name: r1, position_m: [5, 5, 0.2]}}"}).exit_code, 0);
   live.run_until("6");
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
   EXPECT_EQ(summary_value(results, "steps"), "600");

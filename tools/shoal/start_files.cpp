@@ -41,8 +41,10 @@ vehicles:
 
 # A first command without a program of your own: it drives off at 2 s, for 5 s.
 events:
-  - {name: go, at: 2, do: [{publish: rover1.drive.cmd, type: shoal.twist_command_t, value: {forward_mps: 0.5}}]}
-  - {name: halt, at: 7, do: [{publish: rover1.drive.cmd, type: shoal.twist_command_t, value: {forward_mps: 0}}]}
+  - {name: go, at: 2, do: [{publish: {channel: rover1.drive.cmd, type: shoal.twist_command_t,
+     value: {forward_mps: 0.5}}}]}
+  - {name: halt, at: 7, do: [{publish: {channel: rover1.drive.cmd, type: shoal.twist_command_t,
+     value: {forward_mps: 0}}}]}
 
 # What is measured, and what is good enough (docs/scores.md).
 metrics:

@@ -74,9 +74,10 @@ TEST(ConfigWarnings, TellOfAMetricOfAChannelOnWhichNobodySpeaks) {
   EXPECT_THAT(metric("r1.gps.truth"), HasSubstr("(device 'gps' needs 'truth: true')"));
   EXPECT_EQ(metric("r1.gps"), "");
   EXPECT_EQ(metric("r1.estimate", "processes: [{name: p, command: [some_program]}]\n"), "");
-  EXPECT_EQ(metric("r1.estimate",
-                   "events: [{name: e, at: 1, do: [{publish: r1.estimate, type: shoal.utime_t, value: {}}]}]\n"),
-            "");
+  EXPECT_EQ(
+      metric("r1.estimate",
+             "events: [{name: e, at: 1, do: [{publish: {channel: r1.estimate, type: shoal.utime_t, value: {}}}]}]\n"),
+      "");
 }
 
 TEST(ConfigWarnings, TellOfMetricsAndEventsAfterTheEnd) {
