@@ -32,6 +32,20 @@ void ParamReader::describe_value(const char* key, ParamKind kind, const Rule& ra
   describe(std::move(info));
 }
 
+void ParamReader::describe_or_word(const char* key, ParamKind kind, const Rule& range, const NumberWord& word,
+                                   double initial, const char* meaning) {
+  ParamInfo info;
+  info.key = key;
+  info.type = type_text(kind) + " or " + word.word;
+  info.rule = range.text();
+  info.initial = initial == word.value ? word.word : number_text(initial);
+  info.meaning = meaning;
+  info.kind = kind;
+  info.range = range;
+  info.word = word.word;
+  describe(std::move(info));
+}
+
 void ParamReader::describe_words(const char* key, ParamKind kind, std::string rule, std::string initial,
                                  const char* meaning, std::vector<std::string> choices) {
   ParamInfo info;

@@ -9,10 +9,54 @@ namespace sim {
 
 namespace {
 
-void describe_actions(ParamReader& in) {
-  std::vector<std::pair<std::string, std::vector<ParamInfo>>> types;
-  for (const ActionKind* kind : ActionRegistry::instance().all()) types.emplace_back(kind->word, kind->keys());
-  for (ParamInfo& info : merged_keys(types)) in.describe(std::move(info));
+/// A definition of the schema.
+constexpr const char* definition = "action";
+
+/// The keys of an action, which stand in a map.
+struct ActionKeys {
+  Action& action;
+  const char* main;
+  void read(ParamReader& in) { action.read(in, main); }
+};
+
+std::string unknown_action(const std::string& word) {
+  const std::vector<std::string> words = ActionRegistry::instance().words();
+  const std::string meant = closest_name(word, words);
+  return "unknown action '" + shortened(printable(word)) + "'; known actions: " + list_text(words) +
+         (meant.empty() ? "" : "; did you mean '" + meant + "'?");
+}
+
+/// The one action whose word is a key; null when there is none or more than one, which is reported.
+const ActionKind* find_kind(ParamReader& in) {
+  const std::vector<ConfigNode::Entry>& entries = in.node()->entries;
+  const ActionKind* kind = nullptr;
+  std::string other;
+  for (const ConfigNode::Entry& entry : entries) {
+    const ActionKind* named = ActionRegistry::instance().find(entry.key);
+    if (kind != nullptr && named != nullptr) other = entry.key;
+    if (kind == nullptr) kind = named;
+  }
+  if (entries.empty())
+    in.error("an action has one key, its word, got {}; known actions: " +
+             list_text(ActionRegistry::instance().words()));
+  else if (kind == nullptr)
+    in.error(unknown_action(entries.front().key));
+  else if (!other.empty())
+    in.error("an action has one key, its word, got '" + kind->word + "' and '" + other +
+             "'; each action is an item of the list");
+  else if (entries.size() > 1)
+    in.error("an action has one key, its word; write '" + brief_text(new_form_of(*in.node(), *kind)) +
+             "' ('shoal upgrade' rewrites it)");
+  else
+    return kind;
+  return nullptr;
+}
+
+std::string keys_text(const ActionKind& kind) {
+  std::vector<std::string> keys;
+  for (const ParamInfo& info : kind.keys())
+    if (info.required || keys.empty()) keys.push_back(info.key);
+  return list_text(keys);
 }
 
 }  // namespace

@@ -12,16 +12,18 @@ namespace sim {
 
 /// A type of action by its word in YAML.
 struct ActionKind {
-  std::string word;     ///< its first key
-  std::string meaning;  ///< one line: what the value of this key is
+  std::string word;      ///< its key in the list
+  std::string meaning;   ///< one line: what it does
+  const char* main_key;  ///< of its map, such as `channel` of publish
+  bool main_alone;       ///< the value of the main key may stand for the map: `log: text`
   std::function<std::shared_ptr<Action>()> make;
 
   /// The keys of its map, the main one first.
   std::vector<ParamInfo> keys() const;
-};
-
   /// Its word with its keys.
   ParamInfo info() const;
+};
+
 /// All types of actions, filled before main by SHOAL_ACTION, and by plugins when they are loaded.
 class ActionRegistry {
  public:

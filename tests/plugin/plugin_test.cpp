@@ -175,8 +175,8 @@ SHOAL_PLUGIN("leaving", "1.0");
 )");
   const std::string plugin = path("leaving/build/leaving.so"), world = path("leaving.yaml");
   const auto world_with = [&](const std::string& crew) {
-    write_file(world,
-               "shoal: 1\nrun: {duration_s: 2, speed: 0}\nevents: [{name: e, at: 1, do: [{abandon: " + crew + "}]}]\n");
+    write_file(world, "shoal: 1\nrun: {duration_s: 2, speed: max}\nevents: [{name: e, at: 1, do: [{abandon: " + crew +
+                          "}]}]\n");
   };
   world_with("3");
   EXPECT_THAT(shoal({"check", world}).errors, HasSubstr("'abandon'"));

@@ -41,7 +41,7 @@ const std::map<std::string, std::vector<TimeCase>>& cases() {
 /// r1 drives, and says where it is; r2 is thrown over and hit by a ball after 3 s.
 std::string world_text() {
   std::string text =
-      "shoal: 1\nname: timed\nrun: {duration_s: 6, speed: 0}\nphysics: {step_s: 0.01}\n"
+      "shoal: 1\nname: timed\nrun: {duration_s: 6, speed: max}\nphysics: {step_s: 0.01}\n"
       "objects:\n  - {name: ground, fixed: true, parts: [{shape: plane}]}\n"
       "  - {name: ball, position_m: [9, 9, 0.5], parts: [{shape: sphere, radius_m: 0.2, mass_kg: 1}]}\n"
       "vehicles:\n  - {name: r1, file: " +

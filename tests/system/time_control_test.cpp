@@ -26,7 +26,7 @@ using testing::Not;
 
 /// A rover with a lidar and a modem, which an event pushes about, and noise everywhere.
 std::string lively_world() {
-  return "shoal: 1\nname: lively\nrun: {duration_s: 20, speed: 0}\n"
+  return "shoal: 1\nname: lively\nrun: {duration_s: 20, speed: max}\n"
          "objects:\n  - {name: ground, fixed: true, parts: [{shape: plane}]}\n"
          "  - {name: ball, position_m: [2, 0, 1], parts: [{shape: sphere, radius_m: 0.2, mass_kg: 1}]}\n"
          "vehicles:\n  - {name: r1, file: " +
@@ -57,7 +57,7 @@ struct Live {
                                  own_url(),      "--snapshots", folder.file("snaps"), "--speed",  "max"};
     all.insert(all.end(), more.begin(), more.end());
     if (std::find(all.begin(), all.end(), "--from") != all.end()) all.erase(all.begin() + 2);  // it has its world
-    if (std::find(all.begin(), all.end(), "--duration") == all.end()) all.insert(all.end(), {"--duration", "0"});
+    if (std::find(all.begin(), all.end(), "--duration") == all.end()) all.insert(all.end(), {"--duration", "forever"});
     return all;
   }
   /// Runs to a time and waits until it is there.
@@ -347,7 +347,7 @@ TEST(Time, EveryRequestIsAnsweredWithThePlace) {
   EXPECT_EQ(control({"resume"}).output, "step 100, 1 s, branch 0\n");
   EXPECT_THAT(control({"pause"}).output, EndsWith(" s, branch 0, paused\n"));
   EXPECT_THAT(control({"step", "--value", "2"}).output, EndsWith(" s, branch 0, paused, takes 2 steps\n"));
-  EXPECT_THAT(control({"speed", "--value", "0"}).output, HasSubstr("as fast as possible"));
+  EXPECT_THAT(control({"speed", "--value", "max"}).output, HasSubstr("as fast as possible"));
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
 }
 
@@ -378,7 +378,7 @@ TEST(Time, TheReplyToARewindHasTheTimeThereIs) {
 
 TEST(Time, ZeroIsAsFastAsPossibleOnTheCommandLineToo) {
   const Folder folder;
-  EXPECT_EQ(run_shoal({"run", folder.world(), "--bus", "none", "--duration", "1", "--speed", "0"}).exit_code, 0);
+  EXPECT_EQ(run_shoal({"run", folder.world(), "--bus", "none", "--duration", "1", "--speed", "max"}).exit_code, 0);
   EXPECT_EQ(run_shoal({"run", folder.world(), "--bus", "none", "--duration", "1", "--speed", "0.0001"}).exit_code, 2);
   EXPECT_EQ(
       run_shoal({"run", folder.world(), "--bus", "none", "--duration", "1", "--set", "run.speed=0.0001"}).exit_code, 2);

@@ -153,7 +153,7 @@ void add_control_command(CLI::App& app, int& exit_code) {
   command->add_option("TEXT", arguments->text, "text of the request; @FILE: what is in the file; -: standard input");
   command->add_option("--value", arguments->value, "number of the request: steps, speed (or max), seconds")
       ->type_name("NUMBER")
-      ->check(number_from(-1e12, 1e12).description(""));
+      ->transform(command_line::number_or_word(-1e12, 1e12, "max").description(""));
   command->add_option("--client", arguments->client, "name of who requests; without it shoal-control-PID")
       ->type_name("NAME");
   command

@@ -234,8 +234,8 @@ TEST(Events, SetTheRangeOfALidarAgainAndAgain) {
   test::TestWorld test(
       test::rover_world("        - {name: lidar, type: lidar, beams: 3, fov_deg: 1, range_max_m: 10, rate_hz: 10, "
                         "position_m: [0, 0, 0.4]}\n") +
-      "events:\n  - {name: a, at: 1, do: [{set: r1/lidar, values: {range_max_m: 4}}]}\n"
-      "  - {name: b, at: 2, do: [{set: r1/lidar, values: {rate_hz: 20}}]}\n");
+      "events:\n  - {name: a, at: 1, do: [{set: {device: r1/lidar, values: {range_max_m: 4}}}]}\n"
+      "  - {name: b, at: 2, do: [{set: {device: r1/lidar, values: {rate_hz: 20}}}]}\n");
   test::Listener<shoal::planar_lidar_t> scans(test, "r1.lidar");
   test.run_for(1);
   EXPECT_EQ(scans.last().ranges[1], 10);

@@ -33,7 +33,7 @@ TEST(ConfigWarnings, TellOfARateAboveThatOfTheSteps) {
 
 TEST(ConfigWarnings, AreSilentAboutTheRateOfTheSteps) {
   EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: 100}\n")), "");
-  EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: 0}\n")), "");
+  EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: every_step}\n")), "");
 }
 
 TEST(ConfigWarnings, TellOfAUsualRateAboveThatOfTheSteps) {

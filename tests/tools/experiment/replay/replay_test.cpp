@@ -300,7 +300,7 @@ TEST_F(ReplayTest, AMeshThatIsAnotherOneIsTold) {
 /// letters came is left out.
 TEST_F(ReplayTest, ARecordIsUsedAsFarAsItGoesWhereverItIsCut) {
   int cuts = 0, used = 0;
-  for (const char* more : {"", "state_rate_hz: 2\n", "run: {seed: 3, hash_every_steps: 0}\n"}) {
+  for (const char* more : {"", "state_rate_hz: 2\n", "run: {seed: 3, hash_every_steps: never}\n"}) {
     log = folder.file("whole" + std::to_string(cuts) + ".lcm");
     std::string world = driven_world(more);
     if (std::string(more).starts_with("run:"))
