@@ -33,7 +33,7 @@ double rate_hz_of(const sim::ParamReader& in, double default_rate_hz) {
   if (in.node() == nullptr) return rate_hz;
   sim::Diagnostics said_elsewhere;
   sim::ParamReader again(*in.node(), in.who(), said_elsewhere);
-  again.read("rate_hz", rate_hz, sim::between(0, 1e6), "");
+  again.read_or_word("rate_hz", rate_hz, sim::between(1e-6, 1e6), {"every_step"}, "");
   return rate_hz;
 }
 

@@ -96,21 +96,19 @@ void AcousticModem::Params::read(sim::ParamReader& in) {
   in.read("frame_bytes", frame_bytes, sim::between(1, 1 << 16), "bytes of a frame");
   in.read("frames", frames, sim::between(1, 256), "of a packet, at most");
   in.read("whole_frames", whole_frames, "a packet takes the time of whole frames, however few bytes are in them");
-  in.read("max_message_bytes", max_message_bytes, sim::between(0, 1 << 20),
-          "longer messages are refused; 0: frames x frame_bytes");
+  in.read_or_word("max_message_bytes", max_message_bytes, sim::between(1, 1 << 20), {"all_frames"},
+                  "longer messages are refused; all_frames: frames x frame_bytes");
   in.read("preamble_s", preamble_s, sim::between(0, 100), "of each packet, before its bits");
   in.read("header_bits", header_bits, sim::between(0, 1 << 16), "of each packet, beside those of the message");
   in.read("queue_messages", queue_messages, sim::at_least(1), "messages waiting to be sent; the oldest is dropped");
-  in.read("synchronous_s", synchronous_s, sim::between(0, 3600),
-          "sending begins at a whole multiple of this (in UTC) by the vehicle's clock; 0: at once");
+  in.read_or_word("synchronous_s", synchronous_s, sim::between(1e-3, 3600), {"at_once"},
+                  "sending begins at a whole multiple of this (in UTC) by the vehicle's clock");
   in.read("listen_before_sending", listen_before_sending, "it waits while it is taking a signal");
   in.read("promiscuous", promiscuous, "reports messages for others, too");
   in.read("transmit_power_W", transmit_power_W, sim::at_least(0), "taken from the battery while it sends");
   in.read("receiver", receiver, "how it hears");
   in.read("serial", serial, "a pseudo-terminal or FIFO that any program can open");
   if (in.describing()) return;
-  if (synchronous_s > 0 && synchronous_s < 1e-3)
-    in.error("synchronous_s", "'synchronous_s' must be 0 or >= 0.001, got " + sim::number_text(synchronous_s));
   if (bandwidth_Hz >= 2 * frequency_Hz)
     in.error("bandwidth_Hz", "'bandwidth_Hz' must be < 2 x frequency_Hz, got " + sim::number_text(bandwidth_Hz));
   if (max_message_bytes > frames * frame_bytes)

@@ -18,6 +18,13 @@ void read_in(sim::ParamReader& in, const char* key, double& value, double unit_s
   if (in.has(key)) value = number * unit_si;
 }
 
+/// Beyond it the output is cut; 0 in the struct: nowhere.
+void read_range(sim::ParamReader& in, const char* key, double& value, double unit_si, const char* meaning) {
+  double number = value / unit_si;
+  in.read_or_word(key, number, sim::above(0), {"unlimited"}, meaning);
+  if (in.has(key)) value = number * unit_si;
+}
+
 void read_gyro(sim::ParamReader& in, InertialParams& gyro) {
   read_in(in, "gyro_arw_deg_per_sqrt_h", gyro.random_walk, unit::deg_per_sqrt_h, "angle random walk (white noise)");
   read_in(in, "gyro_bias_instability_deg_per_h", gyro.bias_instability, unit::deg_per_h,
@@ -30,7 +37,7 @@ void read_gyro(sim::ParamReader& in, InertialParams& gyro) {
   read_in(in, "gyro_scale_ppm", gyro.scale, unit::ppm, "scale error: standard deviation, drawn once for each axis");
   read_in(in, "gyro_misalignment_mrad", gyro.misalignment_rad, unit::mrad,
           "misalignment: standard deviation, drawn once for each pair of axes");
-  read_in(in, "gyro_range_dps", gyro.range, unit::degps, "deg/s, the output is cut to -this and this; 0: not cut");
+  read_range(in, "gyro_range_dps", gyro.range, unit::degps, "deg/s, the output is cut to -this and this");
   read_in(in, "gyro_resolution_dps", gyro.resolution, unit::degps, "deg/s, step of the output; 0: none");
 }
 
@@ -47,7 +54,7 @@ void read_accel(sim::ParamReader& in, InertialParams& accel) {
   read_in(in, "accel_scale_ppm", accel.scale, unit::ppm, "scale error: standard deviation, drawn once for each axis");
   read_in(in, "accel_misalignment_mrad", accel.misalignment_rad, unit::mrad,
           "misalignment: standard deviation, drawn once for each pair of axes");
-  read_in(in, "accel_range_g", accel.range, unit::mps2_per_g, "the output is cut to -this and this; 0: not cut");
+  read_range(in, "accel_range_g", accel.range, unit::mps2_per_g, "the output is cut to -this and this");
   read_in(in, "accel_resolution_mg", accel.resolution, unit::mg, "step of the output; 0: none");
 }
 
@@ -67,7 +74,8 @@ void Imu::Params::read(sim::ParamReader& in) {
     gyro = unit.gyro;
     accel = unit.accel;
   }
-  in.read("bandwidth_hz", bandwidth_hz, sim::at_least(0), "of a first-order low pass on the true values; 0: none");
+  in.read_or_word("bandwidth_hz", bandwidth_hz, sim::above(0), {"unlimited"},
+                  "of a first-order low pass on the true values");
   in.read("gyro_noise", gyro_noise, "further error of each axis, rad/s");
   read_gyro(in, gyro);
   in.read("accel_noise", accel_noise, "further error of each axis, m/s^2");

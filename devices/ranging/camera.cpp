@@ -80,8 +80,8 @@ void Camera::Params::read(sim::ParamReader& in) {
   in.read("noise", noise, "rgb, grey: error of each level from 0 to 255; depth: of each depth, m");
   in.read("depth_noise_per_m", depth_noise_per_m, sim::at_least(0),
           "depth: a standard deviation of this times depth squared, 1/m, as stereo has it");
-  in.read("full_well_electrons", full_well_electrons, sim::at_least(0),
-          "rgb, grey: electrons of a white pixel, for shot noise; 0: none");
+  in.read_or_word("full_well_electrons", full_well_electrons, sim::above(0), {"unlimited"},
+                  "rgb, grey: electrons of a white pixel, for shot noise; unlimited: no shot noise");
   in.read("read_noise_electrons", read_noise_electrons, sim::at_least(0), "rgb, grey: with full_well_electrons");
   in.read("readout_s", readout_s, sim::between(0, 10),
           "rolling shutter: the first row is exposed this long before the last, which is at the sample time");
@@ -112,8 +112,7 @@ void Camera::Params::check_time(sim::ParamReader& in) const {
   const char* key = readout_s > 0 ? "readout_s" : "exposure_time_s";
   const double span_s = std::max(readout_s, exposure_time_s);
   const double rate_hz = rate_hz_of(in, default_rate_hz);
-  if (span_s > 0 && rate_hz == 0)
-    in.error(key, fmt::format("'{}' needs a 'rate_hz' > 0: at 0 there is an image in every step", key));
+  if (span_s > 0 && rate_hz == 0) in.error(key, fmt::format("'{}' needs a 'rate_hz', not every_step", key));
   if (span_s * rate_hz > 1 + 1e-9)
     in.error(key, fmt::format("'{}' must be at most 1 / rate_hz, got {:g} s at {:g} Hz", key, span_s, rate_hz));
 }

@@ -32,8 +32,8 @@ void LaserParams::read(sim::ParamReader& in) {
   in.read("range_std_m", range_std_m, sim::at_least(0), "white noise of each range at no distance ...");
   in.read("range_std_per_m", range_std_per_m, sim::between(0, 1),
           "... and what its standard deviation grows by per metre");
-  in.read("range_at_10_percent_m", dark_range_m, sim::at_least(0),
-          "largest range at which a surface of reflectivity 0.1 is seen head-on; 0: every surface is seen");
+  in.read_or_word("range_at_10_percent_m", dark_range_m, sim::above(0), {"unlimited"},
+                  "largest range at which a surface of reflectivity 0.1 is seen head-on; unlimited: every surface is");
   in.read_deg("beam_divergence_deg", beam_divergence_rad, sim::between(0, 30), "full angle of a beam");
   in.read("beam_samples", beam_samples, sim::between(1, 100), "rays that sample a beam; 1: its axis only");
   in.read(

@@ -50,8 +50,9 @@ void Lidar3d::Params::read(sim::ParamReader& in) {
   const RayFactor factors[] = {rows, {"columns", double(columns)}, {"beam_samples", double(laser.beam_samples)}};
   check_rays(in, factors);
   const double rate_hz = rate_hz_of(in, default_rate_hz);
-  if (rate_hz >= 1e-6 && rate_hz < 0.001)  // below: an error of every device
-    in.error("rate_hz", fmt::format("'rate_hz' of a head that turns must be 0 or >= 0.001, got {:g}", rate_hz));
+  if (rate_hz > 0 && rate_hz < 0.001)
+    in.error("rate_hz",
+             fmt::format("'rate_hz' of a head that turns must be >= 0.001, or 'every_step', got {:g}", rate_hz));
 }
 
 Lidar3d::Lidar3d(const Params& params, const sim::DeviceContext& context)

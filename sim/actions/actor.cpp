@@ -8,13 +8,15 @@ namespace sim {
 
 namespace {
 
-/// Commands an actor.
 class ActorAction final : public Action {
  public:
-  static constexpr const char* meaning = "actor that gets a `command`";
+  static constexpr const char* meaning = "commands an actor";
+  static constexpr const char* main_key = "name";
+  static constexpr bool main_alone = false;
 
-  void read(ParamReader& in) override {
-    if (!in.describing()) in.read_reference("actor", actor_, "actor", "");
+  void read(ParamReader& in, const char* main) override {
+    in.require(main);
+    in.read_reference(main, actor_, "actor", "the actor");
     in.require("command");
     in.read_choice("command", command_, actor_command_words(), "what it does from now on");
   }

@@ -7,30 +7,27 @@
 #include "sim/director/stage.hpp"
 #include "sim/model/object_config.hpp"
 #include "sim/script/action_registry.hpp"
+#include "sim/script/old_action.hpp"
 #include "sim/vehicle/world_error.hpp"
 
 namespace sim {
 
 namespace {
 
-/// Adds an object of the world file that is not there, or one that is written in the action.
 class AddAction final : public Action {
  public:
-  static constexpr const char* meaning =
-      "an object of the world that is not there, or a new one with the keys of an object";
+  static constexpr const char* meaning = "adds an object";
+  static constexpr const char* main_key = "object";
+  static constexpr bool main_alone = true;
 
-  void read(ParamReader& in) override {
+  void read(ParamReader& in, const char* main) override {
+    if (in.describing())
+      describe_object(in, main);
+    else if (in.has("name") && !in.has(main))
+      return refuse_old_form(in);
+    else
+      read_object(in, main);
     where_.read(in);
-    if (in.describing()) return;
-    if (in.child("add")->kind != ConfigNode::Kind::map) {
-      in.read_reference("add", name_, "object", "");
-      return;
-    }
-    auto added = std::make_shared<ObjectConfig>();
-    in.read("add", *added, "");
-    if (added->count != 1) in.error("add", "'count' does not belong to an object that an action adds");
-    name_ = added->name;
-    object_ = std::move(added);
   }
 
   void carry_out(const ActionRun& run) const override {
@@ -45,6 +42,34 @@ class AddAction final : public Action {
   }
 
  private:
+  static void describe_object(ParamReader& in, const char* key) {
+    ParamInfo info;
+    info.key = key;
+    info.type = "text or map";
+    info.meaning = "name of an object of the world that is not there, or a map with the keys of a new object";
+    info.required = true;
+    in.describe(std::move(info));
+  }
+
+  /// `add: {name: b, parts: [...]}`
+  static void refuse_old_form(ParamReader& in) {
+    for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
+    const ConfigNode keys = map_node(main_key, *in.node());
+    in.error("a new object stands in the key 'object'; write '" + brief_text(map_node("add", keys)) +
+             "' ('shoal upgrade' rewrites it)");
+  }
+
+  void read_object(ParamReader& in, const char* key) {
+    in.require(key);
+    if (const ConfigNode* node = in.child(key); node == nullptr || node->kind != ConfigNode::Kind::map)
+      return in.read_reference(key, name_, "object", "");
+    auto added = std::make_shared<ObjectConfig>();
+    in.read(key, *added, "");
+    if (added->count != 1) in.error(key, "'count' does not belong to an object that an action adds");
+    name_ = added->name;
+    object_ = std::move(added);
+  }
+
   PlaceChoice where_;
   std::string name_;
   std::shared_ptr<const ObjectConfig> object_;  ///< null: it is in the world file

@@ -10,10 +10,13 @@ namespace {
 
 class ClearFaultAction final : public Action {
  public:
-  static constexpr const char* meaning = "VEHICLE/DEVICE";
+  static constexpr const char* meaning = "ends all faults of a device";
+  static constexpr const char* main_key = "device";
+  static constexpr bool main_alone = true;
 
-  void read(ParamReader& in) override {
-    if (!in.describing()) in.read("clear_fault", device_, "");
+  void read(ParamReader& in, const char* main) override {
+    in.require(main);
+    in.read(main, device_, "VEHICLE/DEVICE");
   }
   void check(const ActionCheck& check) override { check.device(device_); }
   void carry_out(const ActionRun& run) const override { run.stage.clear_faults(device_); }

@@ -9,13 +9,15 @@ namespace sim {
 
 namespace {
 
-/// Ends the run after this step.
 class EndAction final : public Action {
  public:
-  static constexpr const char* meaning = "the run ends after this step; text for the summary";
+  static constexpr const char* meaning = "ends the run after this step";
+  static constexpr const char* main_key = "reason";
+  static constexpr bool main_alone = true;
 
-  void read(ParamReader& in) override {
-    if (!in.describing()) in.read("end", text_, "");
+  void read(ParamReader& in, const char* main) override {
+    in.require(main);
+    in.read(main, text_, "text for the summary");
     in.read("passed", passed_, "whether the run passed");
   }
   void carry_out(const ActionRun& run) const override { run.stage.end({printable(text_), passed_}); }

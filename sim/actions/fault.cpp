@@ -13,10 +13,13 @@ namespace {
 
 class FaultAction final : public Action {
  public:
-  static constexpr const char* meaning = "VEHICLE/DEVICE, with the keys of a fault";
+  static constexpr const char* meaning = "begins a fault of a device";
+  static constexpr const char* main_key = "device";
+  static constexpr bool main_alone = false;
 
-  void read(ParamReader& in) override {
-    if (!in.describing()) in.read("fault", device_, "");
+  void read(ParamReader& in, const char* main) override {
+    in.require(main);
+    in.read(main, device_, "VEHICLE/DEVICE");
     fault_.read(in);
   }
 

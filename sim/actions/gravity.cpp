@@ -11,10 +11,13 @@ namespace {
 
 class GravityAction final : public Action {
  public:
-  static constexpr const char* meaning = "from now on, downwards";
+  static constexpr const char* meaning = "sets the gravity of the world";
+  static constexpr const char* main_key = "value";
+  static constexpr bool main_alone = true;
 
-  void read(ParamReader& in) override {
-    if (!in.describing()) in.read("gravity_mps2", gravity_mps2_, between(-1000, 1000), "");
+  void read(ParamReader& in, const char* main) override {
+    in.require(main);
+    in.read(main, gravity_mps2_, between(-1000, 1000), "m/s^2 downwards, from now on");
   }
 
   void check(const ActionCheck& check) override {

@@ -9,10 +9,13 @@ namespace {
 
 class LogAction final : public Action {
  public:
-  static constexpr const char* meaning = "text for the log";
+  static constexpr const char* meaning = "writes a line to the log";
+  static constexpr const char* main_key = "text";
+  static constexpr bool main_alone = true;
 
-  void read(ParamReader& in) override {
-    if (!in.describing()) in.read("log", text_, "");
+  void read(ParamReader& in, const char* main) override {
+    in.require(main);
+    in.read(main, text_, "the line");
   }
   void carry_out(const ActionRun& run) const override { run.script.log(run.who, text_); }
 

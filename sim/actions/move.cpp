@@ -11,13 +11,14 @@ namespace sim {
 
 namespace {
 
-/// Puts a vehicle or an object somewhere, at rest.
 class MoveAction final : public Action {
  public:
-  static constexpr const char* meaning = "vehicle or object to put somewhere, or {one_of: [names]}";
+  static constexpr const char* meaning = "puts a vehicle or an object somewhere, at rest";
+  static constexpr const char* main_key = "name";
+  static constexpr bool main_alone = false;
 
-  void read(ParamReader& in) override {
-    target_.read(in, "move");
+  void read(ParamReader& in, const char* main) override {
+    target_.read(in, main);
     where_.read(in);
     if (in.describing()) return;
     if (!in.has("position_m") && !in.has("places") && !in.has("area_m") && !in.has("rpy_deg") && !where_.random_yaw)

@@ -11,19 +11,21 @@ namespace sim {
 
 namespace {
 
-/// Carries out one of several lists of actions.
 class OneOfAction final : public Action {
  public:
-  static constexpr const char* meaning = "[[actions], [actions]]: one of these lists, at random";
+  static constexpr const char* meaning = "carries out one of several lists of actions, chosen at random";
+  static constexpr const char* main_key = "choices";
+  static constexpr bool main_alone = true;
 
-  void read(ParamReader& in) override {
-    if (!in.describing()) in.read_lists("one_of", choices_, "action");
-    in.read("weights", weights_, at_least(0), "how often each is chosen");
-    if (in.describing()) return;
-    if (choices_.empty() && in.child("one_of")->items.empty())
-      in.error("one_of", "'one_of' must have at least one list of actions");
+  void read(ParamReader& in, const char* main) override {
+    in.require(main);
+    read_action_lists(in, main, choices_, "[[actions], [actions]]");
+    in.read("weights", weights_, at_least(0), "how often each is chosen; unset: all alike");
+    if (!in.has(main)) return;
+    const std::size_t count = in.child(main)->items.size();
+    if (choices_.empty() && count == 0)
+      in.error(main, "'" + std::string(main) + "' must have at least one list of actions");
     if (!in.has("weights")) return;
-    const std::size_t count = in.child("one_of")->items.size();
     if (in.child("weights")->items.size() != count)
       in.error("weights", "'weights' must have one number for each of the " + std::to_string(count) + " lists");
     else if (!weights_.empty() && std::accumulate(weights_.begin(), weights_.end(), 0.0) <= 0)

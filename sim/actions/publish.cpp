@@ -14,10 +14,13 @@ namespace {
 
 class PublishAction final : public Action {
  public:
-  static constexpr const char* meaning = "channel, with `type` and `value`";
+  static constexpr const char* meaning = "publishes a message";
+  static constexpr const char* main_key = "channel";
+  static constexpr bool main_alone = false;
 
-  void read(ParamReader& in) override {
-    if (!in.describing()) read_channel(in);
+  void read(ParamReader& in, const char* main) override {
+    in.require(main);
+    read_channel(in, main);
     in.require("type");
     in.read("type", type_, "message type, such as shoal.twist_command_t");
     in.read_raw(
@@ -48,13 +51,14 @@ class PublishAction final : public Action {
   void add_channels(std::set<std::string>& channels) const override { channels.insert(channel_); }
 
  private:
-  void read_channel(ParamReader& in) {
-    in.read("publish", channel_, "");
+  void read_channel(ParamReader& in, const char* key) {
+    in.read(key, channel_, "the message's channel, 1 to 63 characters");
+    if (!in.has(key)) return;
     if (channel_.empty() || channel_.size() > Bus::max_channel_length)
-      in.error("publish", "a channel must have 1 to 63 characters, got " + std::to_string(channel_.size()));
+      in.error(key, "a channel must have 1 to 63 characters, got " + std::to_string(channel_.size()));
     else if (channel_.starts_with("sim.") || printable(channel_) != channel_)
-      in.error("publish", "channel '" + printable(channel_) +
-                              "' cannot be published on: sim.* belongs to the simulator, and names are printable");
+      in.error(key, "channel '" + printable(channel_) +
+                        "' cannot be published on: sim.* belongs to the simulator, and names are printable");
   }
 
   /// sim/ knows no message types, but one whose first member is `int64_t utime` shows when it is given another one.

@@ -12,9 +12,11 @@ namespace {
 
 class RemoveAction final : public Action {
  public:
-  static constexpr const char* meaning = "vehicle or object to take away, or {one_of: [names]}";
+  static constexpr const char* meaning = "removes a vehicle or an object";
+  static constexpr const char* main_key = "name";
+  static constexpr bool main_alone = true;
 
-  void read(ParamReader& in) override { target_.read(in, "remove"); }
+  void read(ParamReader& in, const char* main) override { target_.read(in, main); }
 
   void carry_out(const ActionRun& run) const override {
     const std::string& name = target_.choose(run.random);

@@ -8,15 +8,17 @@ namespace sim {
 
 namespace {
 
-/// Gives a device other values while it runs.
 class SetAction final : public Action {
  public:
-  static constexpr const char* meaning = "VEHICLE/DEVICE, with `values: {key: value}` for keys of the device";
+  static constexpr const char* meaning = "changes keys of a device while it runs";
+  static constexpr const char* main_key = "device";
+  static constexpr bool main_alone = false;
 
-  void read(ParamReader& in) override {
-    if (!in.describing()) in.read("set", device_, "");
+  void read(ParamReader& in, const char* main) override {
+    in.require(main);
+    in.read(main, device_, "VEHICLE/DEVICE");
     in.require("values");
-    in.read_raw("values", values_, "dotted key: value");
+    in.read_raw("values", values_, "dotted key of the device: value");
   }
 
   void check(const ActionCheck& check) override {

@@ -5,33 +5,21 @@
 
 namespace sim {
 
-namespace {
-
-/// `move: {one_of: [a, b]}`
-struct OneOfNames {
-  std::vector<std::string> one_of;
-  void read(ParamReader& in) {
-    in.require("one_of");
-    in.read_references("one_of", one_of, movable_kind, "one of them, at random");
-    if (in.has("one_of") && one_of.empty() && in.child("one_of")->items.empty())
-      in.error("one_of", "'one_of' must name at least one");
-  }
-};
-
-}  // namespace
-
 void TargetChoice::read(ParamReader& in, const char* key) {
+  std::string name;
+  in.read_reference(key, name, movable_kind, "the vehicle or object");
+  in.read_references("one_of", names, movable_kind, "one of these, at random, instead of `name`");
   if (in.describing()) return;
-  if (in.child(key)->kind == ConfigNode::Kind::map) {
-    OneOfNames choice;
-    in.read(key, choice, "");
-    names = choice.one_of;
-    return;
-  }
-  names.resize(1);
-  in.read_reference(key, names[0], movable_kind, "");
-  if (names[0].empty() && in.child(key)->kind == ConfigNode::Kind::scalar)
-    in.error(key, "'" + std::string(key) + "' must name a vehicle or an object");
+  const std::string main = "'" + std::string(key) + "'";
+  if (in.has(key) && in.has("one_of"))
+    in.error("one_of", "needs either " + main + " or 'one_of', not both");
+  else if (!in.has(key) && !in.has("one_of"))
+    in.error("needs either " + main + " or 'one_of'");
+  else if (in.has("one_of") && names.empty() && in.child("one_of")->items.empty())
+    in.error("one_of", "'one_of' must name at least one");
+  else if (in.has(key) && name.empty() && in.child(key)->kind == ConfigNode::Kind::scalar)
+    in.error(key, main + " must name a vehicle or an object");
+  if (in.has(key)) names = {name};
 }
 
 const std::string& TargetChoice::choose(Random& random) const {

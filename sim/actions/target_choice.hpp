@@ -9,11 +9,11 @@
 
 namespace sim {
 
-/// The vehicle or object that something is done to: a name, or `{one_of: [names]}`.
+/// The vehicle or object that something is done to: by name, or `one_of` several.
 struct TargetChoice {
   std::vector<std::string> names;
 
-  /// Describes nothing.
+  /// `key`: of the name.
   void read(ParamReader& in, const char* key);
   /// Draws from `random` when there are several.
   const std::string& choose(Random& random) const;

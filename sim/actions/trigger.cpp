@@ -7,13 +7,15 @@ namespace sim {
 
 namespace {
 
-/// Lets another event fire.
 class TriggerAction final : public Action {
  public:
-  static constexpr const char* meaning = "event that fires now";
+  static constexpr const char* meaning = "lets another event fire now";
+  static constexpr const char* main_key = "event";
+  static constexpr bool main_alone = true;
 
-  void read(ParamReader& in) override {
-    if (!in.describing()) in.read_reference("trigger", event_, "event", "");
+  void read(ParamReader& in, const char* main) override {
+    in.require(main);
+    in.read_reference(main, event_, "event", "the event");
   }
   void carry_out(const ActionRun& run) const override { run.script.trigger(event_, run.depth + 1); }
 

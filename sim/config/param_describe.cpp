@@ -2,6 +2,7 @@
 // The describing half of ParamReader: rows of tables instead of values.
 #include <algorithm>
 
+#include "sim/config/message_text.hpp"
 #include "sim/config/param_reader.hpp"
 
 namespace sim {
@@ -28,6 +29,20 @@ void ParamReader::describe_value(const char* key, ParamKind kind, const Rule& ra
   info.range = range;
   info.may_be_null = info.initial == "~" || kind == ParamKind::numbers || kind == ParamKind::texts ||
                      kind == ParamKind::paths || kind == ParamKind::raw;
+  describe(std::move(info));
+}
+
+void ParamReader::describe_or_word(const char* key, ParamKind kind, const Rule& range, const NumberWord& word,
+                                   double initial, const char* meaning) {
+  ParamInfo info;
+  info.key = key;
+  info.type = type_text(kind) + " or " + word.word;
+  info.rule = range.text();
+  info.initial = initial == word.value ? word.word : number_text(initial);
+  info.meaning = meaning;
+  info.kind = kind;
+  info.range = range;
+  info.word = word.word;
   describe(std::move(info));
 }
 

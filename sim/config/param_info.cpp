@@ -71,6 +71,8 @@ std::string type_text(ParamKind kind) {
       return "map";
     case ParamKind::maps:
       return "list of maps";
+    case ParamKind::lists:
+      return "list of lists";
   }
   return "";
 }

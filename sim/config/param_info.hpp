@@ -28,6 +28,12 @@ Rule at_most(double high);
 Rule between(double low, double high);   ///< both ends allowed
 Rule above_to(double low, double high);  ///< low excluded, high allowed
 
+/// A word that a key takes instead of a number, for what no number says: `duration_s: forever`.
+struct NumberWord {
+  const char* word;
+  double value = 0;  ///< what the program computes with; the rule of the key does not allow it
+};
+
 /// What the value of a key is.
 enum class ParamKind {
   any,  ///< described by hand, nothing is known
@@ -43,7 +49,8 @@ enum class ParamKind {
   paths,  ///< a list of such
   map,
   maps,
-  raw  ///< a map that is read elsewhere
+  lists,  ///< a list of lists of maps
+  raw     ///< a map that is read elsewhere
 };
 
 /// What happens to a file that a key names.
@@ -72,6 +79,10 @@ struct ParamInfo {
   std::vector<std::string> choices = {};  ///< the only words allowed; empty: any
   PathUse path_use = PathUse::read;       ///< of a path
   bool may_be_null = false;               ///< `key:` without a value is allowed
+  std::string word = {};                  ///< instead of the number; see NumberWord
+  bool one_key = false;                   ///< each map has one of the children and nothing else
+  bool main_alone = false;                ///< a value of the first child may stand for the map
+  std::string definition = {};            ///< a name of the maps' keys; without children they are those of this name
 };
 
 }  // namespace sim

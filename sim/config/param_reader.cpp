@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 
 #include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
@@ -331,6 +332,60 @@ void ParamReader::read(const char* key, std::optional<double>& value, const Rule
     value = number;
 }
 
+const ConfigNode* ParamReader::take_unless_word(const char* key, double& value, const Rule& rule,
+                                                const NumberWord& word) {
+  const ConfigNode* node = take(key);
+  if (node == nullptr) return nullptr;
+  if (node->kind == Kind::scalar && node->scalar == word.word) {
+    value = word.value;
+    return nullptr;
+  }
+  double number = 0;
+  const NumberText found =
+      node->kind == Kind::scalar && !node->quoted ? parse_number(node->scalar, number) : NumberText::no_number;
+  const std::string word_text = "'" + std::string(word.word) + "'";
+  if (found == NumberText::no_number) {
+    error_at(node->place,
+             quoted_name(key) + " must be a number or " + word_text + ", got " + shown_as_no_number(*node));
+    return nullptr;
+  }
+  if (found != NumberText::number || rule.allows(number)) return node;
+  std::string text =
+      quoted_name(key) + " must be " + rule.text() + ", or " + word_text + ", got " + shortened(node->scalar);
+  if (number == word.value)
+    text += "; write '" + std::string(key) + ": " + word.word + "' ('shoal upgrade' rewrites it)";
+  error_at(node->place, text);
+  return nullptr;
+}
+
+void ParamReader::read_or_word(const char* key, double& value, const Rule& rule, const NumberWord& word,
+                               const char* meaning) {
+  if (describing()) return describe_or_word(key, ParamKind::number, rule, word, value, meaning);
+  if (const ConfigNode* node = take_unless_word(key, value, rule, word))
+    take_number(quoted_name(key), *node, rule, value);
+}
+
+void ParamReader::read_or_word(const char* key, std::int64_t& value, const Rule& rule, const NumberWord& word,
+                               const char* meaning) {
+  auto number = static_cast<double>(value);
+  if (describing()) return describe_or_word(key, ParamKind::integer, rule, word, number, meaning);
+  const double before = number;
+  if (const ConfigNode* node = take_unless_word(key, number, rule, word))
+    take_integer(quoted_name(key), *node, rule, value);
+  else if (number != before)
+    value = static_cast<std::int64_t>(number);
+}
+
+void ParamReader::read_or_word(const char* key, int& value, const Rule& rule, const NumberWord& word,
+                               const char* meaning) {
+  std::int64_t whole = value;
+  read_or_word(key, whole, rule, word, meaning);
+  constexpr std::int64_t high = std::numeric_limits<int>::max();
+  if (whole > high)
+    return error(key, quoted_name(key) + " must be <= " + std::to_string(high) + ", got " + std::to_string(whole));
+  value = static_cast<int>(whole);
+}
+
 void ParamReader::read(const char* key, std::string& value, const char* meaning) {
   if (describing()) return describe_value(key, ParamKind::text, {}, yaml_of(value), meaning);
   if (const ConfigNode* node = take(key)) take_text(quoted_name(key), *node, value);
@@ -375,6 +430,18 @@ void ParamReader::read_paths(const char* key, std::vector<std::string>& value, c
 void ParamReader::read(const char* key, Vector3d& value, const Rule& rule, const char* meaning) {
   if (describing()) return describe_value(key, ParamKind::vector, rule, yaml_list(value, number_text), meaning);
   if (const ConfigNode* node = take(key)) take_vector(key, *node, rule, value);
+}
+
+void ParamReader::read(const char* key, std::optional<Vector3d>& value, const Rule& rule, const char* meaning) {
+  if (describing())
+    return describe_value(key, ParamKind::vector, rule, value ? yaml_list(*value, number_text) : "~", meaning);
+  const ConfigNode* node = take(key);
+  if (node == nullptr) return;
+  Vector3d vector = Vector3d::Zero();
+  if (node->kind == Kind::null)
+    value.reset();
+  else if (take_vector(key, *node, rule, vector))
+    value = vector;
 }
 
 void ParamReader::read(const char* key, std::vector<double>& value, const Rule& rule, const char* meaning) {

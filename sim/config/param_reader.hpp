@@ -48,10 +48,17 @@ class ParamReader {
   void read(const char* key, double& value, const Rule& rule, const char* meaning);
   /// Reads a number that may be absent; without the key `value` stays unset.
   void read(const char* key, std::optional<double>& value, const Rule& rule, const char* meaning);
+  /// Reads a number inside `rule`, or a word: `duration_s: forever`.  The value is then `word.value`; who writes that number
+  /// itself is given the word.
+  void read_or_word(const char* key, double& value, const Rule& rule, const NumberWord& word, const char* meaning);
+  void read_or_word(const char* key, int& value, const Rule& rule, const NumberWord& word, const char* meaning);
+  void read_or_word(const char* key, std::int64_t& value, const Rule& rule, const NumberWord& word,
+                    const char* meaning);
   /// Reads text.
   void read(const char* key, std::string& value, const char* meaning);
   /// Reads a list of three numbers, each inside `rule`.
   void read(const char* key, Vector3d& value, const Rule& rule, const char* meaning);
+  void read(const char* key, std::optional<Vector3d>& value, const Rule& rule, const char* meaning);
   /// Any number of numbers, each inside `rule`.
   void read(const char* key, std::vector<double>& value, const Rule& rule, const char* meaning);
   /// Reads a list of texts.
@@ -143,11 +150,15 @@ class ParamReader {
   /// The value of `key`, which becomes known; null when absent.  Reports it when it is required and absent.
   const ConfigNode* take(const char* key);
   void describe_value(const char* key, ParamKind kind, const Rule& range, std::string initial, const char* meaning);
+  void describe_or_word(const char* key, ParamKind kind, const Rule& range, const NumberWord& word, double initial,
+                        const char* meaning);
   /// Text whose rule is more than a range: `choices`, or names.
   void describe_words(const char* key, ParamKind kind, std::string rule, std::string initial, const char* meaning,
                       std::vector<std::string> choices = {});
   void error_at(const SourcePlace& place, const std::string& text);
   bool take_number(const std::string& what, const ConfigNode& node, const Rule& rule, double& value);
+  /// The node of a key that has a number; null when it has the word, which `value` becomes, or an error.
+  const ConfigNode* take_unless_word(const char* key, double& value, const Rule& rule, const NumberWord& word);
   bool take_integer(const std::string& what, const ConfigNode& node, const Rule& rule, std::int64_t& value);
   bool take_text(const std::string& what, const ConfigNode& node, std::string& value);
   bool take_vector(const char* key, const ConfigNode& node, const Rule& rule, Vector3d& value);

@@ -19,7 +19,7 @@ std::string default_text(const ParamInfo& param) {
 void append_rows(const std::vector<ParamInfo>& params, const std::string& prefix, std::vector<Row>& rows) {
   for (const ParamInfo& param : params) {
     rows.push_back({prefix + param.key, param.type, param.rule, default_text(param), param.meaning});
-    const bool is_list = param.type.starts_with("list");
+    const bool is_list = param.type.starts_with("list") && !param.main_alone;
     append_rows(param.children, prefix + param.key + (is_list ? "[]." : "."), rows);
   }
 }

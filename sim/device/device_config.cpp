@@ -17,9 +17,8 @@ void DeviceConfig::read_common(ParamReader& in) {
   if (body == "world") in.error("body", "'body' must be a body of the vehicle, got 'world'");
   in.read("position_m", position_m, any_number(), "place of the sensor frame in the body frame");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw of the sensor frame in the body frame");
-  in.read("rate_hz", rate_hz, between(0, 1e6), "samples per simulated second; 0: every step");
-  if (rate_hz > 0 && rate_hz < 1e-6)
-    in.error("rate_hz", "'rate_hz' must be 0 or >= 1e-6: one sample in twelve days is rare enough");
+  // One sample in twelve days is rare enough.
+  in.read_or_word("rate_hz", rate_hz, between(1e-6, 1e6), {"every_step"}, "samples per simulated second");
   in.read("phase_s", phase_s, between(0, 1e6), "time of the first sample; unset: spread over the period by name");
   in.read("latency_s", latency_s, between(0, 1e6), "from sample to report, or from command to effect");
   in.read("jitter_s", jitter_s, between(0, 1e6), "added to the latency, uniform between 0 and this");
@@ -30,7 +29,7 @@ void DeviceConfig::read_common(ParamReader& in) {
 }
 
 void DeviceConfig::read_actuator(ParamReader& in, const DeviceType& of) {
-  in.read("watchdog_s", watchdog_s, between(0, 1e6), "a last command older than this is stale; 0: it never is");
+  in.read_or_word("watchdog_s", watchdog_s, above_to(0, 1e6), {"never"}, "a last command older than this is stale");
   std::vector<std::pair<std::string, SafeState>> known;
   for (const auto& word : safe_state_words())
     if (std::find(of.safe_states.begin(), of.safe_states.end(), word.second) != of.safe_states.end())

@@ -180,7 +180,7 @@ std::vector<ActionEntry> Script::parse_now(const ConfigNode& action, Diagnostics
   for (const EventConfig& event : config.events) in.declare("event", event.name);
   declare_surfaces(in, config);
   std::vector<ActionEntry> actions;
-  in.read_list("do", actions, "action", "");
+  read_actions(in, "do", actions, "");
   return actions;
 }
 

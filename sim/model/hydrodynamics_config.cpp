@@ -105,9 +105,8 @@ void CrossFlowConfig::read(ParamReader& in) {
                                        number_text(drag_coefficient[i]));
   in.read("reynolds_length_m", reynolds_length_m, above(0), "length in the Reynolds number");
   in.read("kinematic_viscosity_m2ps", kinematic_viscosity_m2ps, above(0), "of the water, for the Reynolds number");
-  in.read("strips", strips, between(0, 1000),
-          "0: the exact integral; n: a sum over n points, both ends with full weight, as some references do");
-  if (strips == 1) in.error("strips", "'strips' must be 0 or at least 2, got 1");
+  in.read_or_word("strips", strips, between(2, 1000), {"exact"},
+                  "a sum over so many points, both ends with full weight, as some references do; exact: the integral");
 }
 
 void HullLiftConfig::read(ParamReader& in) {

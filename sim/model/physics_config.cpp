@@ -198,13 +198,25 @@ void JointConfig::read(ParamReader& in) {
     in.error("bodies", "a joint needs two different bodies");
   else if (bodies.size() == 2 && (bodies[0] == "world" || (type == "hinge2" && bodies[1] == "world")))
     in.error("bodies", bodies[0] == "world" ? "'world' can only be the second body" : "a hinge2 cannot join the world");
-  in.read("anchor_m", anchor_m, any_number(), "point of the joint in the frame of the vehicle");
+  std::optional<Vector3d> anchor;
+  in.read("anchor_m", anchor, any_number(),
+          "point of the joint in the frame of the vehicle; unset: the origin of the second body, or of the first when "
+          "the second is world");
+  anchored = anchor.has_value();
+  if (anchor) anchor_m = *anchor;
   axis1.read(in);
   in.read("axis2", axis2, "second axis of hinge2 (the wheel's) and universal: the same keys");
   in.read("motor", motor, "ball: it has motor and stops about x, y and z of the vehicle's frame; others have theirs");
   if (!in.describing() && motor && type != "ball")
     in.error("motor", "'motor' is for a ball; the axes of a " + type + " have theirs without it");
   if (!in.describing()) check_axes(in, *this);
+}
+
+void JointConfig::anchor_at_body(const std::vector<BodyConfig>& of_vehicle) {
+  if (bodies.size() != 2) return;  // was reported
+  const std::string& at = bodies[1] == "world" ? bodies[0] : bodies[1];
+  for (const BodyConfig& body : of_vehicle)
+    if (body.name == at) anchor_m = body.position_m;
 }
 
 }  // namespace sim

@@ -115,11 +115,14 @@ struct JointConfig {
   std::string type = "hinge";            ///< fixed, ball, hinge, hinge2, universal, slider
   std::vector<std::string> bodies;       ///< two names; the second may be `world`
   Vector3d anchor_m = Vector3d::Zero();  ///< in the vehicle frame
+  bool anchored = false;                 ///< `anchor_m` is in the file; else it is the origin of the second body
   JointAxisConfig axis1;                 ///< of a ball with a motor: of all its axes
   JointAxisConfig axis2;                 ///< hinge2 and universal
   bool motor = false;                    ///< ball: it has one, about x, y and z of the vehicle frame
 
   void read(ParamReader& in);
+  /// Puts the anchor at the origin of the second body, or of the first when the second is the world.
+  void anchor_at_body(const std::vector<BodyConfig>& of_vehicle);
 };
 
 }  // namespace sim

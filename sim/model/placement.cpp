@@ -8,7 +8,7 @@ namespace sim {
 void PlacementConfig::read(ParamReader& in) {
   in.read_choice("pattern", pattern, {"grid", "line", "circle", "random"}, "how the instances are laid out");
   in.read("spacing_m", spacing_m, above(0), "grid and line: distance between neighbours");
-  in.read("columns", columns, at_least(0), "grid: instances along x; 0: as square as possible");
+  in.read_or_word("columns", columns, at_least(1), {"auto"}, "grid: instances along x; auto: as square as possible");
   in.read("radius_m", radius_m, above(0), "circle: its radius; instances face outwards");
   in.read("area_m", area_m, at_least(0), "random: size of the box that places are drawn from");
   in.read("jitter_m", jitter_m, at_least(0), "places are moved by up to this in x and in y");

@@ -1,39 +1,112 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/script/action.hpp"
 
-#include "sim/config/merged_keys.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/script/action_registry.hpp"
+#include "sim/script/old_action.hpp"
 
 namespace sim {
 
 namespace {
 
-void describe_actions(ParamReader& in) {
-  std::vector<std::pair<std::string, std::vector<ParamInfo>>> types;
-  for (const ActionKind* kind : ActionRegistry::instance().all()) types.emplace_back(kind->word, kind->keys());
-  for (ParamInfo& info : merged_keys(types)) in.describe(std::move(info));
+/// A definition of the schema.
+constexpr const char* definition = "action";
+
+/// The keys of an action, which stand in a map.
+struct ActionKeys {
+  Action& action;
+  const char* main;
+  void read(ParamReader& in) { action.read(in, main); }
+};
+
+std::string unknown_action(const std::string& word) {
+  const std::vector<std::string> words = ActionRegistry::instance().words();
+  const std::string meant = closest_name(word, words);
+  return "unknown action '" + shortened(printable(word)) + "'; known actions: " + list_text(words) +
+         (meant.empty() ? "" : "; did you mean '" + meant + "'?");
+}
+
+/// The one action whose word is a key; null when there is none or more than one, which is reported.
+const ActionKind* find_kind(ParamReader& in) {
+  const std::vector<ConfigNode::Entry>& entries = in.node()->entries;
+  const ActionKind* kind = nullptr;
+  std::string other;
+  for (const ConfigNode::Entry& entry : entries) {
+    const ActionKind* named = ActionRegistry::instance().find(entry.key);
+    if (kind != nullptr && named != nullptr) other = entry.key;
+    if (kind == nullptr) kind = named;
+  }
+  if (entries.empty())
+    in.error("an action has one key, its word, got {}; known actions: " +
+             list_text(ActionRegistry::instance().words()));
+  else if (kind == nullptr)
+    in.error(unknown_action(entries.front().key));
+  else if (!other.empty())
+    in.error("an action has one key, its word, got '" + kind->word + "' and '" + other +
+             "'; each action is an item of the list");
+  else if (entries.size() > 1)
+    in.error("an action has one key, its word; write '" + brief_text(new_form_of(*in.node(), *kind)) +
+             "' ('shoal upgrade' rewrites it)");
+  else
+    return kind;
+  return nullptr;
+}
+
+std::string keys_text(const ActionKind& kind) {
+  std::vector<std::string> keys;
+  for (const ParamInfo& info : kind.keys())
+    if (info.required || keys.empty()) keys.push_back(info.key);
+  return list_text(keys);
 }
 
 }  // namespace
 
 void ActionEntry::read(ParamReader& in) {
-  if (in.describing()) return describe_actions(in);
+  if (in.describing()) return;  // see read_actions
   place = in.node()->place;
   who = in.who();
   if (in.node()->kind != ConfigNode::Kind::map) return;  // was reported
-  const std::string first = in.node()->entries.empty() ? "" : in.node()->entries.front().key;
-  const ActionKind* kind = ActionRegistry::instance().find(first);
-  if (kind == nullptr) {
-    const std::vector<std::string> words = ActionRegistry::instance().words();
-    const std::string meant = closest_name(first, words);
-    in.error("unknown action '" + shortened(printable(first)) + "'; known actions: " + list_text(words) +
-             (meant.empty() ? "" : "; did you mean '" + meant + "'?"));
-    for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
-    return;
-  }
+  for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
+  const ActionKind* kind = find_kind(in);
+  if (kind == nullptr) return;
+  const ConfigNode& value = in.node()->entries.front().value;
+  const char* word = kind->word.c_str();
+  if (value.kind != ConfigNode::Kind::map && !kind->main_alone)
+    return in.error(word,
+                    "'" + kind->word + "' must be a map with the keys " + keys_text(*kind) + ", got " + shown(value));
   action = kind->make();
-  action->read(in);
+  if (value.kind != ConfigNode::Kind::map) return action->read(in, word);
+  ActionKeys keys{*action, kind->main_key};
+  in.read(word, keys, "");
+}
+
+void read_actions(ParamReader& in, const char* key, std::vector<ActionEntry>& actions, const char* meaning) {
+  if (!in.describing()) return in.read_list(key, actions, "action", meaning);
+  ParamInfo info;
+  info.key = key;
+  info.type = type_text(ParamKind::maps);
+  info.initial = "[]";
+  info.meaning = meaning;
+  info.kind = ParamKind::maps;
+  info.may_be_null = true;
+  info.one_key = true;
+  info.definition = definition;
+  for (const ActionKind* kind : ActionRegistry::instance().all()) info.children.push_back(kind->info());
+  in.describe(std::move(info));
+}
+
+void read_action_lists(ParamReader& in, const char* key, std::vector<std::vector<ActionEntry>>& lists,
+                       const char* meaning) {
+  if (!in.describing()) return in.read_lists(key, lists, "action");
+  ParamInfo info;
+  info.key = key;
+  info.type = type_text(ParamKind::lists);
+  info.initial = "[]";
+  info.meaning = meaning;
+  info.kind = ParamKind::lists;
+  info.one_key = true;
+  info.definition = definition;
+  in.describe(std::move(info));
 }
 
 std::vector<std::string> names_added_by(const ConfigNode& actions) {
@@ -43,8 +116,9 @@ std::vector<std::string> names_added_by(const ConfigNode& actions) {
   };
   for (const ConfigNode& item : actions.items) append(item);
   for (const ConfigNode::Entry& entry : actions.entries) {
-    const ConfigNode* name = entry.value.find("name");
-    if (entry.key == "add" && name != nullptr && name->kind == ConfigNode::Kind::scalar) names.push_back(name->scalar);
+    const ConfigNode* object = entry.key == "add" ? entry.value.find("object") : nullptr;
+    const ConfigNode* name = object != nullptr ? object->find("name") : nullptr;
+    if (name != nullptr && name->kind == ConfigNode::Kind::scalar) names.push_back(name->scalar);
     append(entry.value);
   }
   return names;

@@ -23,9 +23,10 @@ using EncodeMessage = std::function<Bytes(const std::string& type, const ConfigN
 class Action {
  public:
   virtual ~Action() = default;
-  /// Reads its keys, the first of which is its word.  Names are those declared as `vehicle`, `object`,
-  /// `vehicle or object`, `actor`, `event`.  While describing, the row of the word itself is left out.
-  virtual void read(ParamReader& in) = 0;
+  /// Reads its keys, the main one first.  `main`: the name of that key, such as `channel` in
+  /// `publish: {channel: c, type: t}`; the action's word where a value stands for the map, as in `log: text`.  Names
+  /// are those declared as `vehicle`, `object`, `vehicle or object`, `actor`, `event`.
+  virtual void read(ParamReader& in, const char* main) = 0;
   /// Reports what shows only when all vehicles of the world are known, and makes what is made once for all firings.
   virtual void check(const ActionCheck& /*check*/) {}
   /// What is wrong is thrown, and the event goes on with its next action.
@@ -34,14 +35,21 @@ class Action {
   virtual void add_channels(std::set<std::string>& /*channels*/) const {}
 };
 
-/// An action in the list of an event.  In YAML a map whose first key is the action's word.
+/// An action in the list of an event.  In YAML a map of one key, the action's word, whose value is a map with the keys
+/// of the action, or the value of its main key alone.
 struct ActionEntry {
   SourcePlace place;
   std::string who;                 ///< for messages, such as `event 'night': action 2`
-  std::shared_ptr<Action> action;  ///< null: its word is unknown, which was reported
+  std::shared_ptr<Action> action;  ///< null: it could not be read, which was reported
 
   void read(ParamReader& in);
 };
+
+/// A list of actions.
+void read_actions(ParamReader& in, const char* key, std::vector<ActionEntry>& actions, const char* meaning);
+/// A list of such lists.
+void read_action_lists(ParamReader& in, const char* key, std::vector<std::vector<ActionEntry>>& lists,
+                       const char* meaning);
 
 /// `vehicle or object`: what can be moved and removed.
 inline constexpr const char* movable_kind = "vehicle or object";

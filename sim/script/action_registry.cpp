@@ -7,13 +7,21 @@
 namespace sim {
 
 std::vector<ParamInfo> ActionKind::keys() const {
-  std::vector<ParamInfo> table(1);
-  table[0].key = word;
-  table[0].type = "action";
-  table[0].meaning = meaning;
+  std::vector<ParamInfo> table;
   ParamReader in(table);
-  make()->read(in);
+  make()->read(in, main_key);
   return table;
+}
+
+ParamInfo ActionKind::info() const {
+  ParamInfo info;
+  info.key = word;
+  info.meaning = meaning;
+  info.children = keys();
+  info.kind = ParamKind::map;
+  info.main_alone = main_alone;
+  info.type = (main_alone ? info.children.front().type + " or " : "") + type_text(info.kind);
+  return info;
 }
 
 ActionRegistry& ActionRegistry::instance() {

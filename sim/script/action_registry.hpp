@@ -12,12 +12,16 @@ namespace sim {
 
 /// A type of action by its word in YAML.
 struct ActionKind {
-  std::string word;     ///< its first key
-  std::string meaning;  ///< one line: what the value of this key is
+  std::string word;      ///< its key in the list
+  std::string meaning;   ///< one line: what it does
+  const char* main_key;  ///< of its map, such as `channel` of publish
+  bool main_alone;       ///< the value of the main key may stand for the map: `log: text`
   std::function<std::shared_ptr<Action>()> make;
 
-  /// Its keys, the first one its word.
+  /// The keys of its map, the main one first.
   std::vector<ParamInfo> keys() const;
+  /// Its word with its keys.
+  ParamInfo info() const;
 };
 
 /// All types of actions, filled before main by SHOAL_ACTION, and by plugins when they are loaded.
@@ -40,13 +44,15 @@ namespace detail {
 
 template <typename Model>
 bool add_action(const char* word) {
-  ActionRegistry::instance().add({word, Model::meaning, [] { return std::make_shared<Model>(); }});
+  ActionRegistry::instance().add(
+      {word, Model::meaning, Model::main_key, Model::main_alone, [] { return std::make_shared<Model>(); }});
   return true;
 }
 
 }  // namespace detail
 
-/// Makes a type of action known, in its own file.  Model is an Action with `static constexpr const char* meaning`.
+/// Makes a type of action known, in its own file.  Model is an Action with `static constexpr const char* meaning` and
+/// `main_key`, and `static constexpr bool main_alone`; see ActionKind.
 #define SHOAL_ACTION(word, Model) \
   [[maybe_unused]] static const bool registered_##Model = ::sim::detail::add_action<Model>(word)
 

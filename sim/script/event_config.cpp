@@ -102,11 +102,12 @@ void EventConfig::read(ParamReader& in) {
   for (const char* key : {"from_s", "until_s", "jitter_s"})
     if (in.has(key) && !in.has("every")) in.error(key, "'" + std::string(key) + "' belongs to 'every'");
   in.read("delay_s", delay_s, between(0, 1e9), "what it does comes so much later");
-  in.read("times", times, at_least(0), "it fires at most so often; 0: no limit, or as often as 'at' says");
+  in.read_or_word("times", times, at_least(1), {"unlimited"},
+                  "it fires at most so often; with 'at' not more often than it says");
   if (times == 0) times = static_cast<std::int64_t>(at_s.size());
   in.read("probability", probability, between(0, 1), "that it fires when it could");
   in.require("do");
-  in.read_list("do", actions, "action", "what happens, in this order");
+  read_actions(in, "do", actions, "what happens, in this order: actions, each a map of one key, its word");
 }
 
 void EventConfig::read_times(ParamReader& in) {

@@ -19,12 +19,13 @@ void OriginConfig::read(ParamReader& in) {
 }
 
 void RunConfig::read(ParamReader& in) {
-  in.read("duration_s", duration_s, between(0, 1e9), "simulated time of the run; 0: until told to quit");
-  in.read("speed", speed, between(0, 1e6), "times real time, at least 0.001; 0: as fast as possible");
-  if (speed > 0 && speed < 1e-3) in.error("speed", "'speed' must be 0 (as fast as possible) or from 0.001 to 1e6");
+  in.read_or_word("duration_s", duration_s, above_to(0, 1e9), {"forever"},
+                  "simulated time of the run; forever: until a request to quit");
+  in.read_or_word("speed", speed, between(1e-3, 1e6), {"max"}, "times real time; max: as fast as possible");
   in.read("seed", seed, at_least(0), "of every random stream");
   in.read("track_rate_hz", track_rate_hz, between(1e-3, 1e6), "samples per second of the tracks in the results");
-  in.read("hash_every_steps", hash_every_steps, between(0, 1e9), "steps from hash to hash on sim.hash; 0: none");
+  in.read_or_word("hash_every_steps", hash_every_steps, between(1, 1e9), {"never"},
+                  "steps from hash to hash on sim.hash");
 }
 
 void ChannelConfig::read(ParamReader& in) {
@@ -98,8 +99,8 @@ void LimitsConfig::read(ParamReader& in) {
           "spawn requests of one client in a run; of all clients together ten times as many");
   in.read("rewinds_per_client", rewinds_per_client, between(0, 100000000),
           "rewind and restore requests of one client in a run; of all clients together ten times as many");
-  in.read("step_cpu_s", step_cpu_s, between(0, 1e6),
-          "CPU time of a step, of the thread that simulates: the run ends after a step that took longer; 0: no limit");
+  in.read_or_word("step_cpu_s", step_cpu_s, above_to(0, 1e6), {"unlimited"},
+                  "CPU time of a step, of the thread that simulates: the run ends after a step that took longer");
 }
 
 namespace {
@@ -176,7 +177,7 @@ void WorldConfig::read(ParamReader& in) {
   in.read("light", light, "sun and sky, for pictures; see docs/models/cameras.md");
   in.read("channels", channels, "names of the channels");
   in.read("run", run, "how a run goes when the command line says nothing else");
-  in.read("state_rate_hz", state_rate_hz, between(0, 1e6), "of sim.state and sim.clock; 0: never");
+  in.read_or_word("state_rate_hz", state_rate_hz, above_to(0, 1e6), {"never"}, "of sim.state and sim.clock");
   in.read_paths("plugins", plugins,
                 "libraries with devices, beside this file or installed; only with --launch or --plugin");
   in.read_list("objects", objects, "object", "things without devices");

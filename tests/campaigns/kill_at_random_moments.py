@@ -90,7 +90,7 @@ def kill_one(shoal, library, folder, number, seed, keep):
     # Mostly short: writing begins at once.  Slow runs are also watched over some seconds.
     after_s = rng.uniform(0, 0.9) if rng.random() < 0.7 else rng.uniform(0.9, 4)
     record = os.path.join(folder, f"{number}.lcm")
-    command = [shoal, "run", world, "--bus", "none", "--no-serial-ports", "--duration", "0", "--speed", SPEEDS[kind],
+    command = [shoal, "run", world, "--bus", "none", "--no-serial-ports", "--duration", "forever", "--speed", SPEEDS[kind],
                "--record", record, "--no-keys", "--quiet", "--log-level", "off"]
     process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
     while not os.path.exists(record) and process.poll() is None:

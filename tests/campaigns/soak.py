@@ -75,7 +75,7 @@ def run(shoal, world, hours, folder, interval_s, alone, extra):
     results = os.path.join(folder, "results")
     os.makedirs(folder, exist_ok=True)
     url = f"udpm://239.255.76.67:{free_port()}?ttl=0"
-    command = [shoal, "run", world, "--duration", str(hours * 3600), "--speed", "0", "--no-keys", "--quiet",
+    command = [shoal, "run", world, "--duration", str(hours * 3600), "--speed", "max", "--no-keys", "--quiet",
                "--no-serial-ports", "--no-pictures", "--results", results, *extra]
     command += ["--bus", "none"] if alone else ["--launch", "--lcm-url", url]
     samples = {}

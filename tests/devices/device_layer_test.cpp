@@ -183,7 +183,7 @@ TEST(Jitter, LiesBetweenTheLatencyAndTheLatencyWithIt) {
 }
 
 TEST(Dropout, LosesItsShareOfReportsAndCommands) {
-  test::TestWorld test(test::arm_world(motor(", dropout: 0.3") + joints(", rate_hz: 0, dropout: 0.2")));
+  test::TestWorld test(test::arm_world(motor(", dropout: 0.3") + joints(", rate_hz: every_step, dropout: 0.2")));
   test::Listener<shoal::joint_state_t> reports(test, "a1.joints");
   int taken = 0;
   for (int i = 0; i < 5000; ++i) {

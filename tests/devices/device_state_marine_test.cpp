@@ -92,7 +92,7 @@ TEST(DeviceState, ASonarThatIsChangedBetweenPingsHasAnEmptyPicture) {
       "{shoal: 1, vehicle: box, bodies: [{name: hull, hydrodynamics: {model: none}, parts: [{shape: box, size_m: [0.1, "
       "0.1, 0.1], mass_kg: 1}]}], devices: [{name: side, type: side_scan, rate_hz: 5, phase_s: 0, rays: 20, bins: 16, "
       "floor_dB: 40, frequency_kHz: 200, range_max_m: 20}, {name: lean, type: inclinometer, rate_hz: 50}]}}\n"
-      "events: [{name: change, at: 0.55, do: [{set: v/side, values: {floor_dB: 30}}]}]\n";
+      "events: [{name: change, at: 0.55, do: [{set: {device: v/side, values: {floor_dB: 30}}}]}]\n";
   // Restored between a ping and the change, it goes on to after the change and before the next ping at 0.6 s.
   test::SavedRun run(yaml);
   run.expect_restored_worlds_go_on_alike({52}, 6);

@@ -36,7 +36,7 @@ vehicles:
   - {name: boat, file: otter_beacon.yaml, position_m: [0, 60, 0]}
   - {name: rover, file: rover_swarm.yaml, position_m: [40, 0, -40]}
 events:
-  - {name: late, at: 0.9, do: [{move: ball, position_m: [5, 5, 3]}]}
+  - {name: late, at: 0.9, do: [{move: {name: ball, position_m: [5, 5, 3]}}]}
 )",
                                 "worlds/fuzz.yaml", options);
   }();

@@ -156,9 +156,9 @@ namespace {
 class AbandonAction final : public sim::Action {
  public:
   static constexpr const char* meaning = "the crew leaves";
-  void read(sim::ParamReader& in) override {
-    if (!in.describing()) in.read("abandon", crew_, sim::at_least(1), "");
-  }
+  static constexpr const char* main_key = "crew";
+  static constexpr bool main_alone = true;
+  void read(sim::ParamReader& in, const char* main) override { in.read(main, crew_, sim::at_least(1), "how many"); }
   void carry_out(const sim::ActionRun& run) const override {
     run.stage.end({std::to_string(crew_) + " left", false});
   }
@@ -175,8 +175,8 @@ SHOAL_PLUGIN("leaving", "1.0");
 )");
   const std::string plugin = path("leaving/build/leaving.so"), world = path("leaving.yaml");
   const auto world_with = [&](const std::string& crew) {
-    write_file(world,
-               "shoal: 1\nrun: {duration_s: 2, speed: 0}\nevents: [{name: e, at: 1, do: [{abandon: " + crew + "}]}]\n");
+    write_file(world, "shoal: 1\nrun: {duration_s: 2, speed: max}\nevents: [{name: e, at: 1, do: [{abandon: " + crew +
+                          "}]}]\n");
   };
   world_with("3");
   EXPECT_THAT(shoal({"check", world}).errors, HasSubstr("'abandon'"));

@@ -183,7 +183,11 @@ TEST(CommandLine, UnknownWordsAreNamedWithWhatWasMeantAndTheRightHelp) {
       {{"run"}, "shoal run: needs either a WORLD or --from FILE\nSee `shoal run --help`.\n"},
       {{"run", world, "--bus", "can"}, "shoal run: --bus: must be lcm or none, got 'can'\nSee `shoal run --help`.\n"},
       {{"run", world, "--duration", "abc"},
-       "shoal run: --duration: must be from 0 to 1e9, got 'abc'\nSee `shoal run --help`.\n"},
+       "shoal run: --duration: must be from 1e-6 to 1e9, or forever, got 'abc'\nSee `shoal run --help`.\n"},
+      {{"run", world, "--duration", "0"},
+       "shoal run: --duration: must be from 1e-6 to 1e9, or forever, got '0'\nSee `shoal run --help`.\n"},
+      {{"run", world, "--speed", "0"},
+       "shoal run: --speed: must be from 0.001 to 1e6, or max, got '0'\nSee `shoal run --help`.\n"},
       {{"run", world, "--set", "nonsense"},
        "shoal run: --set: must be PATH=VALUE, such as run.seed=3, got 'nonsense'\n"},
       {{"describe"}, "shoal describe: needs a NAME"},
@@ -364,8 +368,8 @@ TEST(CommandLine, LogLevelDecidesWhatGoesToStderr) {
   const ScratchFolder folder;
   // An event that speaks, and a script that warns of nothing: what is said is `info`.
   write_file(folder.file("w.yaml"),
-             "shoal: 1\nrun: {duration_s: 1, speed: 0}\nevents:\n  - {name: e, at: 0.5, do: [{log: here it is}]}\n"
-             "  - {name: f, at: 0.6, do: [{publish: a.cmd, type: shoal.utime_t, value: {utime: 1}}]}\n");
+             "shoal: 1\nrun: {duration_s: 1, speed: max}\nevents:\n  - {name: e, at: 0.5, do: [{log: here it is}]}\n"
+             "  - {name: f, at: 0.6, do: [{publish: {channel: a.cmd, type: shoal.utime_t, value: {utime: 1}}}]}\n");
   for (const auto& [level, says] :
        {std::pair{"debug", true}, {"info", true}, {"warn", false}, {"error", false}, {"off", false}}) {
     const Ended ended = run_shoal({"run", folder.file("w.yaml"), "--bus", "none", "--log-level", level});

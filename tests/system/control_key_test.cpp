@@ -51,7 +51,7 @@ struct ControlKey : testing::Test {
 };
 
 TEST_F(ControlKey, IsNeededToQuitARunWhoseBusLeavesTheMachine) {
-  const auto shoal = run(source("worlds/minimal.yaml"), {"--duration", "0", "--lcm-url", far_url()});
+  const auto shoal = run(source("worlds/minimal.yaml"), {"--duration", "forever", "--lcm-url", far_url()});
   const std::string key = key_in(results());
   struct stat status {};
   ASSERT_EQ(stat((results() + "/run.key").c_str(), &status), 0);
@@ -88,7 +88,7 @@ TEST_F(ControlKey, IsRefusedToWhoSendsACapturedRequestAgainAlsoInALaterRun) {
   request.id = 7;
   request.client = "operator";
   request.command = "pause";
-  const std::vector<std::string> options{"--duration", "0", "--lcm-url", own_url(), "--control-key"};
+  const std::vector<std::string> options{"--duration", "forever", "--lcm-url", own_url(), "--control-key"};
   auto shoal = run(source("worlds/minimal.yaml"), options);
   bridges::MessageSigner signer(bridges::RunKey::from_text(key_in(results()), "test"), "operator");
   const sim::Bytes captured = signer.sign("sim.control", shoal::encode(request));
@@ -141,14 +141,16 @@ TEST_F(ControlKey, IsHandedToLaunchedProgramsAndLeavesTheRunAsItIs) {
 }
 
 TEST_F(ControlKey, IsNotNeededWithOpenControlWhichSaysSo) {
-  const auto shoal = run(source("worlds/minimal.yaml"), {"--duration", "0", "--lcm-url", far_url(), "--open-control"});
+  const auto shoal =
+      run(source("worlds/minimal.yaml"), {"--duration", "forever", "--lcm-url", far_url(), "--open-control"});
   EXPECT_TRUE(await([&] { return control({"quit", "--timeout", "0.3"}).exit_code == 0; }, patience));
   EXPECT_EQ(shoal->wait(), 0) << shoal->errors();
   EXPECT_THAT(shoal->errors(), HasSubstr("--open-control: whoever reaches the network of this run may control it"));
 }
 
 TEST_F(ControlKey, IsInAFolderOfItsOwnWithoutResults) {
-  Program shoal({built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "0", "--lcm-url", far_url()});
+  Program shoal(
+      {built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "forever", "--lcm-url", far_url()});
   const std::string before = "shoal control --run ";
   EXPECT_TRUE(await([&] { return shoal.errors().find(before) != std::string::npos; }, patience));
   const std::string errors = shoal.errors();
@@ -164,7 +166,7 @@ TEST_F(ControlKey, IsInAFolderOfItsOwnWithoutResults) {
 }
 
 TEST_F(ControlKey, IsReadFromTheEnvironment) {
-  const auto shoal = run(source("worlds/minimal.yaml"), {"--duration", "0", "--lcm-url", far_url()});
+  const auto shoal = run(source("worlds/minimal.yaml"), {"--duration", "forever", "--lcm-url", far_url()});
   const Program control({"/usr/bin/env", "SHOAL_RUN_KEY=" + key_in(results()), built("shoal"), "control", "quit",
                          "--lcm-url", far_url()});
   EXPECT_EQ(shoal->wait(), 0) << shoal->errors();

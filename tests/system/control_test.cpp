@@ -34,7 +34,8 @@ bool hears(bridges::LcmListener& listener, const std::string& channel, const Con
 TEST(Control, SpawnsDrivesAndRemovesAVehicleOverLcm) {
   bridges::LcmListener listener(own_url());
   listener.listen("sim.state");
-  Program shoal({built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "0", "--lcm-url", own_url()});
+  Program shoal(
+      {built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "forever", "--lcm-url", own_url()});
   ASSERT_TRUE(hears<shoal::sim_state_t>(listener, "sim.state", [](const auto& state) { return state.count == 1; }));
   const Ended spawned = control({"spawn", "{name: guest, file: rover.yaml, position_m: [0, 3, 0]}"});
   EXPECT_EQ(spawned.exit_code, 0) << spawned.errors;
@@ -57,7 +58,8 @@ TEST(Control, SpawnsDrivesAndRemovesAVehicleOverLcm) {
 TEST(Control, AVehicleGoesWithTheProgramThatBroughtIt) {
   bridges::LcmListener listener(own_url());
   listener.listen("sim.state");
-  Program shoal({built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "0", "--lcm-url", own_url()});
+  Program shoal(
+      {built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "forever", "--lcm-url", own_url()});
   ASSERT_TRUE(hears<shoal::sim_state_t>(listener, "sim.state", [](const auto& state) { return state.count == 1; }));
   Program client({built("shoal"), "control", "spawn", "--stay", "--lcm-url", own_url(),
                   "{name: guest, file: rover.yaml, position_m: [0, 3, 0], with_client: true, alive_timeout_s: 2}"});
@@ -80,7 +82,7 @@ std::string two_buses() {
     return "  - {name: " + name + ", bus: " + name + "_bus, position_m: [0, " + y_m +
            ", 0], file: " + source("vehicles/rover.yaml") + "}\n";
   };
-  return "shoal: 1\nrun: {duration_s: 0, speed: 1}\nbuses:\n  - {name: r1_bus, lcm_url: \"" + own_url(1) +
+  return "shoal: 1\nrun: {duration_s: forever, speed: 1}\nbuses:\n  - {name: r1_bus, lcm_url: \"" + own_url(1) +
          "\"}\n  - {name: r2_bus, lcm_url: \"" + own_url(2) +
          "\"}\nobjects: [{name: ground, fixed: true, parts: [{shape: plane}]}]\nvehicles:\n" + rover("r1", "0") +
          rover("r2", "5");

@@ -115,7 +115,8 @@ TEST(LcmTools, InfoAndCsvReadARecord) {
 
 TEST(LcmTools, SpyShowsWhatIsOnTheBus) {
   Program spy({built("shoal"), "spy", "rover1.odometry", "--lcm-url", own_url()});
-  Program shoal({built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "0", "--lcm-url", own_url()});
+  Program shoal(
+      {built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "forever", "--lcm-url", own_url()});
   EXPECT_TRUE(await([&] { return spy.output().find("shoal.odometry_t\n  utime=") != std::string::npos; }, patience));
   spy.send_signal(SIGINT);
   EXPECT_EQ(spy.wait(), 0);

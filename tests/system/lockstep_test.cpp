@@ -26,7 +26,7 @@ using testing::HasSubstr;
 /// Two rovers for some seconds.
 std::string two_rovers(const std::string& duration_s, const std::string& more = "") {
   std::string text = "shoal: 1\nname: two_rovers\nrun: {duration_s: " + duration_s +
-                     ", speed: 0}\nstate_rate_hz: 20\nobjects:\n  - {name: ground, fixed: true, parts: [{shape: "
+                     ", speed: max}\nstate_rate_hz: 20\nobjects:\n  - {name: ground, fixed: true, parts: [{shape: "
                      "plane}]}\nvehicles:\n";
   for (const char* name : {"rover1", "rover2"})
     text += "  - {name: " + std::string(name) + ", file: " + source("vehicles/rover.yaml") + ", position_m: [0, " +

@@ -41,7 +41,7 @@ const std::map<std::string, std::vector<TimeCase>>& cases() {
 /// r1 drives, and says where it is; r2 is thrown over and hit by a ball after 3 s.
 std::string world_text() {
   std::string text =
-      "shoal: 1\nname: timed\nrun: {duration_s: 6, speed: 0}\nphysics: {step_s: 0.01}\n"
+      "shoal: 1\nname: timed\nrun: {duration_s: 6, speed: max}\nphysics: {step_s: 0.01}\n"
       "objects:\n  - {name: ground, fixed: true, parts: [{shape: plane}]}\n"
       "  - {name: ball, position_m: [9, 9, 0.5], parts: [{shape: sphere, radius_m: 0.2, mass_kg: 1}]}\n"
       "vehicles:\n  - {name: r1, file: " +
@@ -50,15 +50,18 @@ std::string world_text() {
       "}\n"
       "zones: [{name: goal, shape: box, position_m: [2, 0, 0], size_m: [2, 2, 2]}]\n"
       "events:\n"
-      "  - {name: go, every: 0.2, do: [{publish: r1.drive.cmd, type: shoal.twist_command_t, value: {forward_mps: "
-      "0.4}}]}\n"
-      "  - {name: think, every: 0.3, do: [{publish: r1.estimate, type: shoal.estimate_t, value: "
-      "{covariance_m2: [1, 0, 0, 0, 1, 0, 0, 0, 1]}}]}\n"
-      "  - {name: think_far, every: 0.3, do: [{publish: r1.far, type: shoal.pose_t, value: {pos: [99, 0, 0]}}]}\n"
-      "  - {name: talk, every: 0.7, do: [{publish: r1.modem.cmd, type: shoal.modem_send_t, value: {data: [1, 2]}}]}\n"
-      "  - {name: hello, at: 3, do: [{publish: r1.hello, type: shoal.pose_t, value: {}}]}\n"
-      "  - {name: throw, at: 3, do: [{move: r2, position_m: [0, 5, 0.5], rpy_deg: [90, 0, 0]}, "
-      "{move: ball, position_m: [0, 5, 1.5]}]}\n"
+      "  - {name: go, every: 0.2, do: [{publish: {channel: r1.drive.cmd, type: shoal.twist_command_t, value: "
+      "{forward_mps: "
+      "0.4}}}]}\n"
+      "  - {name: think, every: 0.3, do: [{publish: {channel: r1.estimate, type: shoal.estimate_t, value: "
+      "{covariance_m2: [1, 0, 0, 0, 1, 0, 0, 0, 1]}}}]}\n"
+      "  - {name: think_far, every: 0.3, do: [{publish: {channel: r1.far, type: shoal.pose_t, value: {pos: [99, 0, "
+      "0]}}}]}\n"
+      "  - {name: talk, every: 0.7, do: [{publish: {channel: r1.modem.cmd, type: shoal.modem_send_t, value: {data: [1, "
+      "2]}}}]}\n"
+      "  - {name: hello, at: 3, do: [{publish: {channel: r1.hello, type: shoal.pose_t, value: {}}}]}\n"
+      "  - {name: throw, at: 3, do: [{move: {name: r2, position_m: [0, 5, 0.5], rpy_deg: [90, 0, 0]}}, "
+      "{move: {name: ball, position_m: [0, 5, 1.5]}}]}\n"
       "metrics:\n  - {name: far, vehicle: r1, channel: r1.far}\n";
   for (const auto& [type, metrics] : cases())
     for (std::size_t i = 0; i < metrics.size(); ++i)

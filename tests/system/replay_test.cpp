@@ -147,7 +147,7 @@ TEST(Replay, WhatClientsDidToTheWorldIsDoneAgain) {
   };
   bridges::LcmListener listener(own_url());
   listener.listen("sim.state");
-  Program shoal({built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "0", "--lcm-url", own_url(),
+  Program shoal({built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "forever", "--lcm-url", own_url(),
                  "--record", log});
   ASSERT_TRUE(vehicles(listener, 1));
   control({"spawn", "{name: guest, file: rover.yaml, position_m: [0, 3, 0]}"});

@@ -18,11 +18,11 @@ using namespace system_test;
 using testing::HasSubstr;
 
 const char* const endless =
-    "shoal: 1\nrun: {duration_s: 0, speed: 1}\nobjects: [{name: ground, fixed: true, parts: [{shape: plane}]}]\n";
+    "shoal: 1\nrun: {duration_s: forever, speed: 1}\nobjects: [{name: ground, fixed: true, parts: [{shape: plane}]}]\n";
 
 /// Cubes of 0.5 m, all within the same cubic metre: nearly all of them overlap.
 std::string heap_of(int boxes) {
-  std::string world = "shoal: 1\nrun: {duration_s: 1, speed: 0}\nobjects:\n";
+  std::string world = "shoal: 1\nrun: {duration_s: 1, speed: max}\nobjects:\n";
   for (int i = 0; i < boxes; ++i) {
     const auto at = [&](int step) { return std::to_string(0.001 * (i * step % 1000)); };
     world += "  - {name: box" + std::to_string(i) + ", position_m: [" + at(37) + ", " + at(101) + ", " + at(211) +
@@ -85,7 +85,7 @@ TEST(FullDisk, PrintsTheSummaryThatCannotBeSaved) {
 /// A stranger's folder may come with results in it.
 TEST(Results, AreNotWrittenThroughLinks) {
   const ScratchFolder folder;
-  write_file(folder.file("world.yaml"), "shoal: 1\nrun: {duration_s: 0.1, speed: 0}\n");
+  write_file(folder.file("world.yaml"), "shoal: 1\nrun: {duration_s: 0.1, speed: max}\n");
   write_file(folder.file("profile"), "mine");
   std::filesystem::create_directory(folder.file("results"));
   const std::vector<std::string> names = {"world.yaml",   "tracks.csv",        "errors.csv",        "metrics.csv",

@@ -19,7 +19,7 @@ Ended whole_run(const std::string& world, const std::vector<std::string>& sets) 
 }
 
 std::string silent(const std::string& device) {
-  return "events=[{name: broken, at: 1, do: [{fault: " + device + ", kind: silent}]}]";
+  return "events=[{name: broken, at: 1, do: [{fault: {device: " + device + ", kind: silent}}]}]";
 }
 
 /// As it is where `boat` is empty.

@@ -133,7 +133,7 @@ std::string summary_value(const std::string& directory, const std::string& key) 
 std::string endless_world(const std::string& more) {
   return "shoal: 1\n"
          "name: endless\n"
-         "run: {duration_s: 0, speed: 1}\n"
+         "run: {duration_s: forever, speed: 1}\n"
          "state_rate_hz: 100\n"
          "objects:\n"
          "  - {name: ground, fixed: true, parts: [{shape: plane}]}\n"

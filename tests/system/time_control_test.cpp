@@ -26,14 +26,14 @@ using testing::Not;
 
 /// A rover with a lidar and a modem, which an event pushes about, and noise everywhere.
 std::string lively_world() {
-  return "shoal: 1\nname: lively\nrun: {duration_s: 20, speed: 0}\n"
+  return "shoal: 1\nname: lively\nrun: {duration_s: 20, speed: max}\n"
          "objects:\n  - {name: ground, fixed: true, parts: [{shape: plane}]}\n"
          "  - {name: ball, position_m: [2, 0, 1], parts: [{shape: sphere, radius_m: 0.2, mass_kg: 1}]}\n"
          "vehicles:\n  - {name: r1, file: " +
          source("vehicles/rover.yaml") +
          "}\n"
          "events:\n"
-         "  - {name: move, every: 1.5, jitter_s: 0.4, do: [{move: ball, position_m: [1, 1, 1]}]}\n"
+         "  - {name: move, every: 1.5, jitter_s: 0.4, do: [{move: {name: ball, position_m: [1, 1, 1]}}]}\n"
          "  - {name: late, at: 7.25, do: [{log: here}]}\n";
 }
 
@@ -57,7 +57,7 @@ struct Live {
                                  own_url(),      "--snapshots", folder.file("snaps"), "--speed",  "max"};
     all.insert(all.end(), more.begin(), more.end());
     if (std::find(all.begin(), all.end(), "--from") != all.end()) all.erase(all.begin() + 2);  // it has its world
-    if (std::find(all.begin(), all.end(), "--duration") == all.end()) all.insert(all.end(), {"--duration", "0"});
+    if (std::find(all.begin(), all.end(), "--duration") == all.end()) all.insert(all.end(), {"--duration", "forever"});
     return all;
   }
   /// Runs to a time and waits until it is there.
@@ -166,7 +166,7 @@ TEST(Snapshot, IsTakenAtTheStepNearestToTheTimeThatWasAskedFor) {
   EXPECT_EQ(early.exit_code, 2);
   EXPECT_THAT(early.errors, HasSubstr("--snapshot-at: 0.01 s is before the begin of the run at 0.02 s"));
   // A run that ends before its time.
-  write_file(folder.world(), lively_world() + "  - {name: stop, at: 2, do: [{end: enough, passed: true}]}\n");
+  write_file(folder.world(), lively_world() + "  - {name: stop, at: 2, do: [{end: {reason: enough, passed: true}}]}\n");
   const Ended short_run = run("1,5");
   EXPECT_EQ(short_run.exit_code, 0);
   EXPECT_THAT(short_run.errors, HasSubstr("--snapshot-at: no snapshot of 5 s was written: the run did not come there"));
@@ -258,7 +258,7 @@ TEST(Rewind, MailAndRequestsComeInAgainAtTheSameSteps) {
   forward.forward_mps = 1;
   for (const char* channel : {"r1.drive.cmd", "guest.drive.cmd"}) listener.publish(channel, shoal::encode(forward));
   live.run_until("4.5");
-  EXPECT_EQ(control({"do", "{move: ball, position_m: [3, 3, 3]}"}).exit_code, 0);
+  EXPECT_EQ(control({"do", "{move: {name: ball, position_m: [3, 3, 3]}}"}).exit_code, 0);
   live.run_until("4.9");
   EXPECT_EQ(control({"snapshot", "first"}).exit_code, 0);
   live.run_until("8");
@@ -347,7 +347,7 @@ TEST(Time, EveryRequestIsAnsweredWithThePlace) {
   EXPECT_EQ(control({"resume"}).output, "step 100, 1 s, branch 0\n");
   EXPECT_THAT(control({"pause"}).output, EndsWith(" s, branch 0, paused\n"));
   EXPECT_THAT(control({"step", "--value", "2"}).output, EndsWith(" s, branch 0, paused, takes 2 steps\n"));
-  EXPECT_THAT(control({"speed", "--value", "0"}).output, HasSubstr("as fast as possible"));
+  EXPECT_THAT(control({"speed", "--value", "max"}).output, HasSubstr("as fast as possible"));
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
 }
 
@@ -378,7 +378,7 @@ TEST(Time, TheReplyToARewindHasTheTimeThereIs) {
 
 TEST(Time, ZeroIsAsFastAsPossibleOnTheCommandLineToo) {
   const Folder folder;
-  EXPECT_EQ(run_shoal({"run", folder.world(), "--bus", "none", "--duration", "1", "--speed", "0"}).exit_code, 0);
+  EXPECT_EQ(run_shoal({"run", folder.world(), "--bus", "none", "--duration", "1", "--speed", "max"}).exit_code, 0);
   EXPECT_EQ(run_shoal({"run", folder.world(), "--bus", "none", "--duration", "1", "--speed", "0.0001"}).exit_code, 2);
   EXPECT_EQ(
       run_shoal({"run", folder.world(), "--bus", "none", "--duration", "1", "--set", "run.speed=0.0001"}).exit_code, 2);
@@ -526,7 +526,7 @@ TEST(Restore, OfALaterTimeBeginsTheTracksAnew) {
   live.run_until("6");
   EXPECT_EQ(control({"snapshot", "six"}).exit_code, 0);
   EXPECT_EQ(control({"rewind", "--value", "4"}).exit_code, 0);
-  EXPECT_EQ(control({"do", "{move: r1, position_m: [5, 5, 0.2]}"}).exit_code, 0);
+  EXPECT_EQ(control({"do", "{move: {name: r1, position_m: [5, 5, 0.2]}}"}).exit_code, 0);
   live.run_until("3");
   EXPECT_EQ(control({"restore", "six"}).exit_code, 0);
   EXPECT_THAT(control({"rewind", "--value", "1"}).errors, HasSubstr("what is kept begins at 6 s"));
@@ -596,7 +596,7 @@ TEST(Branch, KeepsTheResultsOfTheOneThatIsLeft) {
   Live live(folder, {"--results", results, "--no-pictures"});
   live.run_until("6");
   EXPECT_EQ(control({"rewind", "--value", "4"}).exit_code, 0);
-  EXPECT_EQ(control({"do", "{move: r1, position_m: [5, 5, 0.2]}"}).exit_code, 0);
+  EXPECT_EQ(control({"do", "{move: {name: r1, position_m: [5, 5, 0.2]}}"}).exit_code, 0);
   live.run_until("6");
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
   EXPECT_EQ(summary_value(results, "steps"), "600");

@@ -56,6 +56,19 @@ CLI::Validator number_from(double low, double high) {
   return make_check(range, good, "must be " + range);
 }
 
+CLI::Validator number_or_word(double low, double high, const std::string& word) {
+  const std::string range = fmt::format("from {} to {}, or {}", bound_text(low), bound_text(high), word);
+  const auto take = [low, high, range, word](std::string& text) -> std::string {
+    if (text == word) {
+      text = "0";
+      return "";
+    }
+    const auto number = parse_number<double>(text);
+    return number && *number >= low && *number <= high ? "" : "must be " + range + ", got " + quoted(text);
+  };
+  return {take, range};
+}
+
 CLI::Validator whole_from(std::int64_t low, std::int64_t high) {
   const std::string range = fmt::format("from {} to {}", low, high);
   const auto good = [low, high](const std::string& text) {

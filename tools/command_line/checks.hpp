@@ -22,6 +22,8 @@ std::string quoted(const std::string& text);
 
 /// A number of a closed range; not nan, which CLI::Range lets pass.
 CLI::Validator number_from(double low, double high);
+/// The same, or a word, which becomes 0; for CLI::Option::transform.
+CLI::Validator number_or_word(double low, double high, const std::string& word);
 
 /// A whole number of a closed range.
 CLI::Validator whole_from(std::int64_t low, std::int64_t high);

@@ -153,9 +153,9 @@ void add_control_command(CLI::App& app, int& exit_code) {
                    command_line::alternatives(known_requests) + " (docs/reference/messages.md)")
       ->required();
   command->add_option("TEXT", arguments->text, "text of the request; @FILE: what is in the file; -: standard input");
-  command->add_option("--value", arguments->value, "number of the request: steps, speed, seconds")
+  command->add_option("--value", arguments->value, "number of the request: steps, speed (or max), seconds")
       ->type_name("NUMBER")
-      ->check(number_from(-1e12, 1e12).description(""));
+      ->transform(command_line::number_or_word(-1e12, 1e12, "max").description(""));
   command->add_option("--client", arguments->client, "name of who requests; without it shoal-control-PID")
       ->type_name("NAME");
   command
@@ -176,7 +176,7 @@ void add_control_command(CLI::App& app, int& exit_code) {
                   "shoal control restore before_dive",
                   "shoal control spawn '{name: rover7, file: rover.yaml, position_m: [2, 0, 0]}'",
                   "shoal control spawn @my_robot.yaml", "shoal control quit --run results/dive1",
-                  "shoal control remove rover7", "shoal control do '{fault: rover1/lidar, kind: stuck}'"},
+                  "shoal control remove rover7", "shoal control do '{fault: {device: rover1/lidar, kind: stuck}}'"},
                  {{0, "obeyed"},
                   {1, "refused; the reason is on stderr"},
                   {2, "wrong usage"},

@@ -160,11 +160,10 @@ std::optional<double> parse_speed(const std::string& text) {
   try {
     std::size_t used = 0;
     const double speed = std::stod(text, &used);
-    if (used == text.size() && (speed == 0 || (speed >= 0.001 && speed <= 1e6))) return speed;
+    if (used == text.size() && speed >= 0.001 && speed <= 1e6) return speed;
   } catch (const std::exception&) {
   }
-  throw CLI::ValidationError("--speed",
-                             "must be 0 or 'max' (as fast as possible), or from 0.001 to 1e6, got '" + text + "'");
+  throw CLI::ValidationError("--speed", "must be from 0.001 to 1e6, or max, got '" + text + "'");
 }
 
 void add_run_command(CLI::App& app, int& exit_code) {
@@ -172,11 +171,10 @@ void add_run_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<RunArguments>();
   add_log_level_option(*command);
   command->add_option("WORLD", arguments->world, "world file, or the name of a shipped world (shoal list)");
-  command->add_option("--duration", arguments->duration_s, "simulated seconds; 0: until a request to quit")
+  command->add_option("--duration", arguments->duration_s, "simulated seconds; forever: until a request to quit")
       ->type_name("S")
-      ->check(number_from(0, 1e9));
-  command->add_option("--speed", arguments->speed, "times real time, from 0.001 to 1e6; 0 or max: as fast as possible")
-      ->type_name("FACTOR");
+      ->transform(command_line::number_or_word(1e-6, 1e9, "forever"));
+  command->add_option("--speed", arguments->speed, "times real time, from 0.001 to 1e6, or max")->type_name("FACTOR");
   command->add_option("--seed", arguments->load.seed, "of every random stream")
       ->type_name("N")
       ->check(command_line::seed());

@@ -14,8 +14,8 @@ shoal: 1
 name: NAME
 description: One vehicle on flat ground with a wall and a box.
 run:
-  duration_s: 60  # simulated time; 0: until `shoal control quit`
-  speed: 1        # times real time; 0: as fast as possible
+  duration_s: 60  # simulated time; forever: until `shoal control quit`
+  speed: 1        # times real time; max: as fast as possible
   seed: 1         # of all noise: the same seed gives the same run
 # physics: {step_s: 0.005}
 
@@ -41,8 +41,10 @@ vehicles:
 
 # A first command without a program of your own: it drives off at 2 s, for 5 s.
 events:
-  - {name: go, at: 2, do: [{publish: rover1.drive.cmd, type: shoal.twist_command_t, value: {forward_mps: 0.5}}]}
-  - {name: halt, at: 7, do: [{publish: rover1.drive.cmd, type: shoal.twist_command_t, value: {forward_mps: 0}}]}
+  - {name: go, at: 2, do: [{publish: {channel: rover1.drive.cmd, type: shoal.twist_command_t,
+     value: {forward_mps: 0.5}}}]}
+  - {name: halt, at: 7, do: [{publish: {channel: rover1.drive.cmd, type: shoal.twist_command_t,
+     value: {forward_mps: 0}}}]}
 
 # What is measured, and what is good enough (docs/guides/scoring.md).
 metrics:
@@ -65,8 +67,8 @@ shoal: 1
 name: NAME
 description: One AUV over a flat bottom in a current.
 run:
-  duration_s: 300  # simulated time; 0: until `shoal control quit`
-  speed: 10        # times real time; 0: as fast as possible
+  duration_s: 300  # simulated time; forever: until `shoal control quit`
+  speed: 10        # times real time; max: as fast as possible
   seed: 1          # of all noise: the same seed gives the same run
 physics: {step_s: 0.01}
 
@@ -140,8 +142,8 @@ bodies:
 
 # The axis points left: a wheel that turns positively about it rolls forward.
 joints:
-  - {name: left, type: hinge, bodies: [base, left_wheel], anchor_m: [0, 0.2, 0.1], axis: [0, 1, 0]}
-  - {name: right, type: hinge, bodies: [base, right_wheel], anchor_m: [0, -0.2, 0.1], axis: [0, 1, 0]}
+  - {name: left, type: hinge, bodies: [base, left_wheel], axis: [0, 1, 0]}
+  - {name: right, type: hinge, bodies: [base, right_wheel], axis: [0, 1, 0]}
 
 # Devices report on VEHICLE.DEVICE and take commands on VEHICLE.DEVICE.cmd.
 devices:

@@ -162,12 +162,12 @@ TEST(Spawn, TheSurfacesOfOthersStayAsTheyAre) {
 
 TEST(Spawn, NeitherFilesNorEndlessTextComeByAnAction) {
   Host host;
-  EXPECT_THAT(host.ask("do", "{add: {name: m, fixed: true, parts: [{shape: mesh, mesh: /etc/passwd}]}}").text,
+  EXPECT_THAT(host.ask("do", "{add: {object: {name: m, fixed: true, parts: [{shape: mesh, mesh: /etc/passwd}]}}}").text,
               HasSubstr("'mesh' cannot be used in what comes over the bus"));
   EXPECT_THAT(host.ask("do", std::string(2 << 20, ' ')).text, HasSubstr("at most 1 MiB"));
-  EXPECT_THAT(host.ask("do", "{publish: sim.control, type: shoal.utime_t, value: {}}").text,
+  EXPECT_THAT(host.ask("do", "{publish: {channel: sim.control, type: shoal.utime_t, value: {}}}").text,
               HasSubstr("sim.* belongs to the simulator"));
-  EXPECT_TRUE(host.ask("do", "{move: crate, position_m: [5, 5, 1]}").ok);
+  EXPECT_TRUE(host.ask("do", "{move: {name: crate, position_m: [5, 5, 1]}}").ok);
 }
 
 TEST(Spawn, ADeviceOnTheWorldIsRefused) {

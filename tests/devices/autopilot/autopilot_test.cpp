@@ -274,8 +274,8 @@ TEST(Autopilot, RefusesADepthAndAnAltitudeInOneCommand) {
 TEST(Autopilot, AnEventThatGivesADepthAloneIsAboutTheDepth) {
   AutopilotWorld test(
       world_with("remus100_survey.yaml", "      devices.autopilot.hold: {speed_mps: 1, depth_m: 10}\n") +
-      "events: [{name: deeper, at: 1, do: [{publish: v.autopilot.cmd, type: shoal.helm_command_t, "
-      "value: {depth_m: 12}}]}]\n");
+      "events: [{name: deeper, at: 1, do: [{publish: {channel: v.autopilot.cmd, type: shoal.helm_command_t, "
+      "value: {depth_m: 12}}}]}]\n");
   const auto state = test.state_after(2);
   EXPECT_EQ(state.depth_m, 12);
   EXPECT_EQ(state.speed_mps, 1);

@@ -11,7 +11,7 @@ constexpr double weight_N = test::arm_mass_kg * 9.80665;
 
 std::string load(const std::string& more) {
   return "        - {name: motor, type: joint_motor, joint: shoulder, max_force: 50}\n"
-         "        - {name: load, type: joint_load, joint: shoulder, rate_hz: 0" +
+         "        - {name: load, type: joint_load, joint: shoulder, rate_hz: every_step" +
          more + "}\n";
 }
 
@@ -43,7 +43,7 @@ TEST(JointLoad, MeasuresInTheFrameAskedFor) {
 TEST(JointLoad, AHangingMassPullsAndDoesNotTurn) {
   test::TestWorld test(
       test::arm_world("        - {name: servo, type: joint_servo, joint: shoulder, max_effort: 50, max_velocity: 3}\n"
-                      "        - {name: load, type: joint_load, joint: shoulder, rate_hz: 0, frame: body}\n"));
+                      "        - {name: load, type: joint_load, joint: shoulder, rate_hz: every_step, frame: body}\n"));
   test::Listener<shoal::wrench_t> reports(test, "a1.load");
   shoal::joint_servo_command_t down{};
   down.position = std::numbers::pi / 2;

@@ -10,7 +10,7 @@ TEST(JointState, TellsPositionsVelocitiesAndEfforts) {
   // A motor without a command holds the arm level, against m g l = 9.80665 N m.
   test::TestWorld test(
       test::arm_world("        - {name: servo, type: joint_motor, joint: shoulder, max_force: 50}\n"
-                      "        - {name: joints, type: joint_state, rate_hz: 0}\n"));
+                      "        - {name: joints, type: joint_state, rate_hz: every_step}\n"));
   test::Listener<shoal::joint_state_t> reports(test, "a1.joints");
   test.run_for(0.2);
   const auto report = reports.last();
@@ -42,10 +42,11 @@ TEST(JointState, MeasuringDoesNotChangeTheRun) {
 }
 
 TEST(JointState, NoiseHasTheSpreadAskedForAndTruthHasNone) {
-  test::TestWorld test(test::arm_world(
-      "        - {name: motor, type: joint_motor, joint: shoulder, max_force: 50}\n"
-      "        - {name: joints, type: joint_state, rate_hz: 0, truth: true, position_noise: {gaussian_std: 0.01},\n"
-      "           velocity_noise: {gaussian_std: 0.02}, effort_noise: {gaussian_std: 0.5}}\n"));
+  test::TestWorld test(
+      test::arm_world("        - {name: motor, type: joint_motor, joint: shoulder, max_force: 50}\n"
+                      "        - {name: joints, type: joint_state, rate_hz: every_step, truth: true, position_noise: "
+                      "{gaussian_std: 0.01},\n"
+                      "           velocity_noise: {gaussian_std: 0.02}, effort_noise: {gaussian_std: 0.5}}\n"));
   test::Listener<shoal::joint_state_t> reports(test, "a1.joints"), truths(test, "a1.joints.truth");
   test.run_for(4);
   const auto measured = reports.take_all(), truth = truths.take_all();

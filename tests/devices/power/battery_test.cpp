@@ -12,7 +12,7 @@
 namespace {
 
 std::string battery(const std::string& more) {
-  return "        - {name: battery, type: battery, rate_hz: 0" + more + "}\n";
+  return "        - {name: battery, type: battery, rate_hz: every_step" + more + "}\n";
 }
 
 const std::string wheels = "left_joint: left, right_joint: right";

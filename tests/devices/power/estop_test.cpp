@@ -12,7 +12,7 @@ std::string rover(const std::string& estop, const std::string& objects = "") {
       "        - {name: drive, type: differential_drive, left_joint: left, right_joint: right, wheel_radius_m: 0.1,\n"
       "           track_m: 0.5, max_acceleration_mps2: 5, max_torque_Nm: 20}\n"
       "        - {name: bumper, type: bumper, parts: [chassis/hull]}\n"
-      "        - {name: estop, type: estop, rate_hz: 0" +
+      "        - {name: estop, type: estop, rate_hz: every_step" +
           estop + "}\n",
       objects);
 }

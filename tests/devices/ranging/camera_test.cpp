@@ -249,7 +249,8 @@ TEST(Camera, RollingShutterTakesItsTimeAfterAChangeOfTheRate) {
   test::Listener<shoal::image_t> images(test, "r1.camera");
   test.run_for(0.2);
   EXPECT_THAT(test.change("r1/camera", "{rate_hz: 100}"), HasSubstr("'readout_s' must be at most 1 / rate_hz"));
-  EXPECT_THAT(test.change("r1/camera", "{rate_hz: 0}"), HasSubstr("'readout_s' needs a 'rate_hz' > 0"));
+  EXPECT_THAT(test.change("r1/camera", "{rate_hz: every_step}"),
+              HasSubstr("'readout_s' needs a 'rate_hz', not every_step"));
   // Four periods of 50.25 ms: the next image is in the next step, and begins long before the last one was finished.
   ASSERT_EQ(test.change("r1/camera", "{rate_hz: 19.9}"), "");
   images.take_all();
@@ -325,7 +326,7 @@ TEST(Camera, SaysWhatIsWrongWithItsParameters) {
       {"width: 4000, height: 4000, antialias: 2", "'antialias' makes more than 16000000 rays"},
       {"readout_s: 0.01, exposure_time_s: 0.01", "either 'readout_s' or 'exposure_time_s'"},
       {"readout_s: 0.2", "'readout_s' must be at most 1 / rate_hz, got 0.2 s at 20 Hz"},
-      {"exposure_time_s: 0.1, rate_hz: 0", "'exposure_time_s' needs a 'rate_hz' > 0"},
+      {"exposure_time_s: 0.1, rate_hz: every_step", "'exposure_time_s' needs a 'rate_hz', not every_step"},
       {"fov_deg: 1e-310", "'fov_deg' must make a focal length >= 0.001 and <= 1e+09 pixels, got inf"},
       {"focal_px: [1e-320]", "'focal_px' must make a focal length >= 0.001 and <= 1e+09 pixels, got 9.99989e-321"},
       {"width: 4000, height: 1400", "must have at most 16711680 bytes, got 16800000"},

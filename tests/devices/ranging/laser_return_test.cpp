@@ -147,7 +147,7 @@ TEST(LaserReturn, FogTakesPowerBothWays) {
 
 TEST(LaserReturn, FaultsReachTheNoiseThatGrows) {
   test::TestWorld test(ranging_world(lidar_of("beams: 100, range_std_m: 0.01"), wall_at(5)) +
-                       "events: [{name: e, at: 0, do: [{fault: r1/s, kind: degraded, noise_factor: 10}]}]\n");
+                       "events: [{name: e, at: 0, do: [{fault: {device: r1/s, kind: degraded, noise_factor: 10}}]}]\n");
   test::Listener<planar_lidar_t> scans(test, "r1.s"), truths(test, "r1.s.truth");
   test.run_for(1);
   std::vector<double> errors;

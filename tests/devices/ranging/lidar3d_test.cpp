@@ -135,7 +135,7 @@ TEST(Lidar3d, TurnsAtLeastOnceInAThousandSeconds) {
   test::TestWorld test(lidar_world("", wall_at(5)));
   EXPECT_EQ(test.change("r1/s", "{rate_hz: 0.001}"), "");
   EXPECT_THAT(test.change("r1/s", "{rate_hz: 0.0009}"),
-              testing::HasSubstr("'rate_hz' of a head that turns must be 0 or >= 0.001, got 0.0009"));
+              testing::HasSubstr("'rate_hz' of a head that turns must be >= 0.001, or 'every_step', got 0.0009"));
 }
 
 }  // namespace

@@ -16,10 +16,13 @@ std::vector<std::string>& remembered() {
 /// An action in a file of its own, as a plugin brings one.
 class RememberAction final : public sim::Action {
  public:
-  static constexpr const char* meaning = "text that the test remembers";
+  static constexpr const char* meaning = "keeps a text for the test";
+  static constexpr const char* main_key = "text";
+  static constexpr bool main_alone = true;
 
-  void read(sim::ParamReader& in) override {
-    if (!in.describing()) in.read("remember", text_, "");
+  void read(sim::ParamReader& in, const char* main) override {
+    in.require(main);
+    in.read(main, text_, "the text");
     in.read("times", times_, sim::between(1, 3), "so often");
   }
   void check(const sim::ActionCheck&) override { checked_ = true; }
@@ -41,37 +44,61 @@ void register_remember() {
   EXPECT_TRUE(registered);
 }
 
-std::string world_that_remembers(const std::string& more) {
+std::string world_that_remembers(const std::string& value) {
   register_remember();
-  return "shoal: 1\nphysics: {step_s: 0.01}\nevents: [{name: a, at: 0.02, do: [{remember: hello" + more + "}]}]\n";
+  return "shoal: 1\nphysics: {step_s: 0.01}\nevents: [{name: a, at: 0.02, do: [{remember: " + value + "}]}]\n";
+}
+
+/// The error of the world, without the place.
+std::string error_of(const std::string& value) {
+  try {
+    test::TestWorld test(world_that_remembers(value));
+  } catch (const sim::ConfigError& error) {
+    return error.lines().front().substr(error.lines().front().find("event 'a'"));
+  }
+  return "no error";
 }
 
 TEST(OwnAction, IsReadCheckedAndCarriedOutFromItsOwnFileAlone) {
-  test::TestWorld test(world_that_remembers(", times: 2"));
+  test::TestWorld test(world_that_remembers("{text: hello, times: 2}"));
   remembered().clear();
   for (int i = 0; i < 5; ++i) test.world.step();
   EXPECT_THAT(remembered(), testing::ElementsAre("event 'a': hello at step 2", "event 'a': hello at step 2"));
 }
 
-TEST(OwnAction, HasItsKeysCheckedAsAllKeysAre) {
-  try {
-    test::TestWorld test(world_that_remembers(", times: 4"));
-    FAIL() << "no error";
-  } catch (const sim::ConfigError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("event 'a': action 1: 'times' must be >= 1 and <= 3, got 4"));
+TEST(OwnAction, HasItsKeysInAnyOrderAndItsMainValueAloneAsWell) {
+  for (const char* value : {"{times: 1, text: hello}", "hello"}) {
+    test::TestWorld test(world_that_remembers(value));
+    remembered().clear();
+    for (int i = 0; i < 5; ++i) test.world.step();
+    EXPECT_THAT(remembered(), testing::ElementsAre("event 'a': hello at step 2")) << value;
   }
+}
+
+TEST(OwnAction, HasItsKeysCheckedAsAllKeysAre) {
+  EXPECT_EQ(error_of("{text: hello, times: 4}"), "event 'a': action 1: remember: 'times' must be >= 1 and <= 3, got 4");
+  EXPECT_EQ(error_of("{times: 2}"), "event 'a': action 1: remember: missing key 'text'");
+  EXPECT_EQ(error_of("[hello]"), "event 'a': action 1: 'remember' must be text, got [hello]");
 }
 
 TEST(OwnAction, IsDescribedBesideTheOthers) {
   register_remember();
   std::vector<sim::ParamInfo> table;
   sim::ParamReader in(table);
-  sim::ActionEntry().read(in);
-  std::map<std::string, std::string> meanings;
-  for (const sim::ParamInfo& info : table) meanings[info.key] = info.meaning;
-  EXPECT_EQ(meanings["remember"], "text that the test remembers");
-  EXPECT_EQ(meanings["times"], "remember: so often");
-  EXPECT_EQ(meanings["weights"], "one_of: how often each is chosen");
+  std::vector<sim::ActionEntry> none;
+  sim::read_actions(in, "do", none, "");
+  ASSERT_EQ(table.size(), 1u);
+  EXPECT_TRUE(table[0].one_key);
+  std::map<std::string, sim::ParamInfo> words;
+  for (const sim::ParamInfo& info : table[0].children) words[info.key] = info;
+  EXPECT_EQ(words["remember"].meaning, "keeps a text for the test");
+  EXPECT_EQ(words["remember"].type, "text or map");
+  ASSERT_EQ(words["remember"].children.size(), 2u);
+  EXPECT_EQ(words["remember"].children[0].key, "text");
+  EXPECT_TRUE(words["remember"].children[0].required);
+  EXPECT_EQ(words["remember"].children[1].meaning, "so often");
+  EXPECT_EQ(words["publish"].type, "map");
+  EXPECT_EQ(words["one_of"].type, "list of lists or map");
 }
 
 TEST(Actions, AreAllLinkedThoughNothingCallsThem) {

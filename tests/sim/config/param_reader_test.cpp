@@ -166,6 +166,72 @@ TEST(ParamReader, AnOptionalIsUnsetByNothing) {
   EXPECT_EQ(value, std::nullopt);
 }
 
+/// Reads `x: <yaml>` as a number or a word.
+template <typename T>
+std::string error_of_word(T& value, const std::string& yaml) {
+  const Lines lines = errors_of("x: " + yaml + "\n", [&](ParamReader& in) {
+    in.read_or_word("x", value, sim::between(1, 9), {"none"}, "a test");
+  });
+  EXPECT_LE(lines.size(), 1u);
+  return lines.empty() ? "" : lines[0];
+}
+
+TEST(ParamReader, AWordStandsForWhatNoNumberSays) {
+  double number = 5;
+  EXPECT_EQ(error_of_word(number, "none"), "");
+  EXPECT_EQ(number, 0);
+  EXPECT_EQ(error_of_word(number, "2.5"), "");
+  EXPECT_EQ(number, 2.5);
+  int whole = 5;
+  EXPECT_EQ(error_of_word(whole, "\"none\""), "");
+  EXPECT_EQ(whole, 0);
+  EXPECT_EQ(error_of_word(whole, "3"), "");
+  EXPECT_EQ(whole, 3);
+  std::int64_t large = 5;
+  EXPECT_EQ(error_of_word(large, "none"), "");
+  EXPECT_EQ(large, 0);
+}
+
+TEST(ParamReader, NamesTheWordWhereItsNumberIsWritten) {
+  double number = 5;
+  const std::string zero =
+      "1:4 'x' must be >= 1 and <= 9, or 'none', got 0; write 'x: none' ('shoal upgrade' rewrites it)";
+  EXPECT_EQ(error_of_word(number, "0"), zero);
+  EXPECT_EQ(error_of_word(number, "10"), "1:4 'x' must be >= 1 and <= 9, or 'none', got 10");
+  EXPECT_EQ(error_of_word(number, "nne"), "1:4 'x' must be a number or 'none', got 'nne'");
+  EXPECT_EQ(error_of_word(number, "[1]"), "1:4 'x' must be a number or 'none', got [1]");
+  EXPECT_EQ(error_of_word(number, ".inf"), "1:4 'x' must be finite, got '.inf'");
+  EXPECT_EQ(number, 5);
+  int whole = 5;
+  EXPECT_EQ(error_of_word(whole, "0"), zero);
+  EXPECT_EQ(error_of_word(whole, "1.5"), "1:4 'x' must be a whole number, got '1.5'");
+  EXPECT_EQ(whole, 5);
+}
+
+TEST(ParamReader, DescribesAWordBesideTheNumber) {
+  std::vector<ParamInfo> table;
+  ParamReader in(table);
+  double number = 5;
+  int whole = 0;
+  in.read_or_word("number", number, sim::above(0), {"max"}, "m");
+  in.read_or_word("whole", whole, sim::at_least(1), {"never"}, "m");
+  ASSERT_EQ(table.size(), 2u);
+  EXPECT_EQ(table[0].type, "number or max");
+  EXPECT_EQ(table[0].rule, "> 0");
+  EXPECT_EQ(table[0].initial, "5");
+  EXPECT_EQ(table[1].type, "integer or never");
+  EXPECT_EQ(table[1].initial, "never");
+}
+
+TEST(ParamReader, AnOptionalVectorIsUnsetByNothing) {
+  std::optional<Vector3d> value;
+  EXPECT_EQ(error_of(value, "[1, 2, 3]", sim::any_number()), "");
+  EXPECT_EQ(value, Vector3d(1, 2, 3));
+  EXPECT_EQ(error_of(value, "~", sim::any_number()), "");
+  EXPECT_EQ(value, std::nullopt);
+  EXPECT_EQ(error_of(value, "[1, 2]", sim::any_number()), "1:4 'x' must be a list of 3 numbers, got [1, 2]");
+}
+
 TEST(ParamReader, AVectorIsAListOfThreeNumbers) {
   Vector3d value(7, 7, 7);
   EXPECT_EQ(error_of(value, "[1, 2.5, -3]", sim::any_number()), "");

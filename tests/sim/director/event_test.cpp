@@ -35,7 +35,7 @@ std::vector<std::int64_t> ticks(test::TestWorld& test, double time_s) {
   return steps;
 }
 
-const std::string tick = "do: [{publish: tick, type: shoal.utime_t}]}\n";
+const std::string tick = "do: [{publish: {channel: tick, type: shoal.utime_t}}]}\n";
 
 TEST(Events, FireInTheFirstStepThatStartsAtTheirTimeOrLater) {
   test::TestWorld test(event_world("  - {name: a, at: [0, 0.1, 0.305], " + tick));
@@ -77,7 +77,8 @@ TEST(Events, OfAProbabilityFireAboutSoOften) {
 
 TEST(Events, ChooseAtRandomByTheirOwnNameWhateverElseHappens) {
   const std::string a =
-      "  - {name: a, every: 0.1, do: [{move: ball, places: [[1, 0, 5], [2, 0, 5], [3, 0, 5]], random_yaw: true}]}\n";
+      "  - {name: a, every: 0.1, do: [{move: {name: ball, places: [[1, 0, 5], [2, 0, 5], [3, 0, 5]], random_yaw: "
+      "true}}]}\n";
   const auto places = [&](const std::string& others) {
     test::TestWorld test(event_world(a + others));
     std::vector<double> xs;
@@ -95,9 +96,9 @@ TEST(Events, ChooseAtRandomByTheirOwnNameWhateverElseHappens) {
 }
 
 TEST(Events, OfWeightZeroAreNeverChosen) {
-  test::TestWorld test(
-      event_world("  - name: a\n    every: 0.01\n    do:\n      - one_of: [[{publish: tick, type: "
-                  "shoal.utime_t}], [{end: no}]]\n        weights: [1, 0]\n"));
+  test::TestWorld test(event_world(
+      "  - name: a\n    every: 0.01\n    do:\n      - one_of:\n          choices: [[{publish: {channel: tick, type: "
+      "shoal.utime_t}}], [{end: no}]]\n          weights: [1, 0]\n"));
   EXPECT_EQ(ticks(test, 1.005).size(), 100u);
   EXPECT_FALSE(test.world.ended());
 }
@@ -123,9 +124,9 @@ TEST(Events, ThatTriggerEachOtherForEverAreCutAndTheRunGoesOn) {
 
 TEST(Events, AddMoveAndRemoveObjects) {
   test::TestWorld test(
-      event_world("  - {name: a, at: 0.1, do: [{add: crate}, {add: {name: barrel, position_m: [1, 1, 1], "
-                  "parts: [{shape: sphere, mass_kg: 2}]}}]}\n"
-                  "  - {name: b, at: 0.2, do: [{move: crate, position_m: [4, 4, 4]}, {remove: barrel}, "
+      event_world("  - {name: a, at: 0.1, do: [{add: crate}, {add: {object: {name: barrel, position_m: [1, 1, 1], "
+                  "parts: [{shape: sphere, mass_kg: 2}]}}}]}\n"
+                  "  - {name: b, at: 0.2, do: [{move: {name: crate, position_m: [4, 4, 4]}}, {remove: barrel}, "
                   "{remove: barrel}, {add: crate}]}\n"));
   EXPECT_EQ(test.world.find_object("crate"), nullptr);
   test.run_for(0.15);
@@ -166,7 +167,7 @@ TEST(Events, HearMessagesAndSeeTouches) {
 }
 
 TEST(Events, EndTheRun) {
-  test::TestWorld test(event_world("  - {name: a, at: 0.5, do: [{end: 'too late', passed: false}]}\n"));
+  test::TestWorld test(event_world("  - {name: a, at: 0.5, do: [{end: {reason: 'too late', passed: false}}]}\n"));
   test.run_for(1);
   ASSERT_TRUE(test.world.ended());
   EXPECT_EQ(test.world.ended()->text, "too late");
@@ -180,8 +181,8 @@ const std::string drive =
     "           wheel_radius_m: 0.1, track_m: 0.5, max_torque_Nm: 20}\n";
 
 const std::string go =
-    "  - {name: go, at: 0, do: [{publish: r1.drive.cmd, type: shoal.twist_command_t, "
-    "value: {forward_mps: 1}}]}\n";
+    "  - {name: go, at: 0, do: [{publish: {channel: r1.drive.cmd, type: shoal.twist_command_t, "
+    "value: {forward_mps: 1}}}]}\n";
 
 TEST(Events, DriveARoverThroughAZoneWithARecord) {
   test::TestWorld test(test::rover_world(drive) +
@@ -203,9 +204,9 @@ TEST(Events, DriveARoverThroughAZoneWithARecord) {
 
 TEST(Events, PublishWithTheTimeWhenNoneIsGiven) {
   test::TestWorld test(
-      event_world("  - {name: a, at: 0.25, do: [{publish: cmd, type: shoal.twist_command_t, value: "
-                  "{forward_mps: 1.5, turn_radps: -0.5}}, {publish: cmd, type: shoal.twist_command_t, "
-                  "value: {utime: 7}}]}\n"));
+      event_world("  - {name: a, at: 0.25, do: [{publish: {channel: cmd, type: shoal.twist_command_t, value: "
+                  "{forward_mps: 1.5, turn_radps: -0.5}}}, {publish: {channel: cmd, type: shoal.twist_command_t, "
+                  "value: {utime: 7}}}]}\n"));
   test::Listener<shoal::twist_command_t> commands(test, "cmd");
   test.run_for(1);
   const auto all = commands.take_all();
@@ -218,7 +219,7 @@ TEST(Events, PublishWithTheTimeWhenNoneIsGiven) {
 
 TEST(Events, SetFaultsAndClearThem) {
   test::TestWorld test(test::rover_world("        - {name: gps, type: gps, rate_hz: 10, phase_s: 0.05}\n") +
-                       "events:\n  - {name: a, at: 1, do: [{fault: r1/gps, kind: silent}]}\n"
+                       "events:\n  - {name: a, at: 1, do: [{fault: {device: r1/gps, kind: silent}}]}\n"
                        "  - {name: b, at: 2, do: [{clear_fault: r1/gps}]}\n");
   test::Listener<shoal::gps_data_t> fixes(test, "r1.gps");
   std::vector<std::size_t> counts;
@@ -233,8 +234,8 @@ TEST(Events, SetTheRangeOfALidarAgainAndAgain) {
   test::TestWorld test(
       test::rover_world("        - {name: lidar, type: lidar, beams: 3, fov_deg: 1, range_max_m: 10, rate_hz: 10, "
                         "position_m: [0, 0, 0.4]}\n") +
-      "events:\n  - {name: a, at: 1, do: [{set: r1/lidar, values: {range_max_m: 4}}]}\n"
-      "  - {name: b, at: 2, do: [{set: r1/lidar, values: {rate_hz: 20}}]}\n");
+      "events:\n  - {name: a, at: 1, do: [{set: {device: r1/lidar, values: {range_max_m: 4}}}]}\n"
+      "  - {name: b, at: 2, do: [{set: {device: r1/lidar, values: {rate_hz: 20}}}]}\n");
   test::Listener<shoal::planar_lidar_t> scans(test, "r1.lidar");
   test.run_for(1);
   EXPECT_EQ(scans.last().ranges[1], 10);
@@ -250,7 +251,7 @@ TEST(Zones, DenyGpsUntilItHasBeenAcquiredAgain) {
   test::TestWorld test(test::rover_world("        - {name: gps, type: gps, rate_hz: 10, phase_s: 0.05, "
                                          "reacquisition_s: 0.5}\n") +
                        "zones:\n  - {name: roof, shape: sphere, radius_m: 2, gps_denied: true}\n"
-                       "events:\n  - {name: a, at: 1, do: [{move: r1, position_m: [5, 0, 0]}]}\n");
+                       "events:\n  - {name: a, at: 1, do: [{move: {name: r1, position_m: [5, 0, 0]}}]}\n");
   test::Listener<shoal::gps_data_t> fixes(test, "r1.gps");
   test.run_for(1);
   for (const auto& fix : fixes.take_all()) EXPECT_EQ(fix.gps_lock, 0);
@@ -301,26 +302,26 @@ std::string failure(sim::World& world, const std::string& action) {
 TEST(RunAction, DoesInAWorldWithoutEventsWhatAnEventDoes) {
   test::TestWorld test(test::rover_world(drive));
   test.world.editor().run_action(
-      yaml("{add: {name: post, fixed: true, position_m: [3, 0, 0], parts: [{shape: box}]}}"));
+      yaml("{add: {object: {name: post, fixed: true, position_m: [3, 0, 0], parts: [{shape: box}]}}}"));
   EXPECT_NE(test.world.find_object("post"), nullptr);
-  test.world.editor().run_action(yaml("[{move: r1, position_m: [1, 1, 0.1]}, {remove: post}]"));
+  test.world.editor().run_action(yaml("[{move: {name: r1, position_m: [1, 1, 0.1]}}, {remove: post}]"));
   EXPECT_EQ(test.world.find_object("post"), nullptr);
   EXPECT_NEAR(test.world.vehicles()[0]->X_WV().translation().x(), 1, 1e-12);
 }
 
 TEST(RunAction, SaysWhatIsWrongInOneLine) {
   test::TestWorld test(test::rover_world(drive));
-  EXPECT_EQ(failure(test.world, "{move: r2, position_m: [0, 0, 0]}"),
+  EXPECT_EQ(failure(test.world, "{move: {name: r2, position_m: [0, 0, 0]}}"),
             "request:1:8: action 1: 'move' names no vehicle or object 'r2'; known vehicles or objects: ground, r1");
-  EXPECT_EQ(failure(test.world, "{fault: r1/drve, kind: dead}"),
+  EXPECT_EQ(failure(test.world, "{fault: {device: r1/drve, kind: dead}}"),
             "request:1:1: action 1: there is no device 'r1/drve'; devices are named VEHICLE/DEVICE; vehicle 'r1' has: "
             "drive");
   EXPECT_THAT(failure(test.world, "{dance: r1}"),
               testing::HasSubstr("unknown action 'dance'; known actions: actor, add"));
   EXPECT_THAT(failure(test.world, "{mve: r1}"), testing::HasSubstr("; did you mean 'move'?"));
-  EXPECT_THAT(failure(test.world, "{set: r1/drive, values: {body: x}}"),
+  EXPECT_THAT(failure(test.world, "{set: {device: r1/drive, values: {body: x}}}"),
               testing::HasSubstr("'body' cannot change while the device runs"));
-  EXPECT_THAT(failure(test.world, "{publish: x, type: shoal.twist_command_t, value: {forward: 1}}"),
+  EXPECT_THAT(failure(test.world, "{publish: {channel: x, type: shoal.twist_command_t, value: {forward: 1}}}"),
               testing::HasSubstr("shoal.twist_command_t has no member 'forward'"));
 }
 
@@ -338,10 +339,10 @@ actors:
 events:
 )" + go +
       R"(
-  - {name: come, every: 0.5, jitter_s: 0.2, probability: 0.6, do: [{add: crate, area_m: [1, 1, 0], random_yaw: true}]}
+  - {name: come, every: 0.5, jitter_s: 0.2, probability: 0.6, do: [{add: {object: crate, area_m: [1, 1, 0], random_yaw: true}}]}
   - {name: pass, every: 0.7, delay_s: 0.1, do: [{remove: crate}]}
   - {name: hit, when: cart touches any, do: [{log: hit}]}
-  - {name: fail, when: r1 enters slow, do: [{one_of: [[{fault: r1/gps, kind: silent}], [{fault: r1/gps, kind: stuck}]]}]}
+  - {name: fail, when: r1 enters slow, do: [{one_of: [[{fault: {device: r1/gps, kind: silent}}], [{fault: {device: r1/gps, kind: stuck}}]]}]}
 run: {seed: 5}
 )";
   const auto hashes = [&] {

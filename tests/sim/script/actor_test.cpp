@@ -79,8 +79,8 @@ actors:
   - {name: slide, object: door, points: [[3, 0, 0.6], [3, 2.5, 0.6]], rpy_deg: [0, 0, 0], speed_mps: 2.5,
      ends: stop, starts: waiting}
 events:
-  - {name: open, when: any enters doorstep, do: [{actor: slide, command: forward}]}
-  - {name: shut, when: any leaves doorstep, do: [{actor: slide, command: back}]}
+  - {name: open, when: any enters doorstep, do: [{actor: {name: slide, command: forward}}]}
+  - {name: shut, when: any leaves doorstep, do: [{actor: {name: slide, command: back}}]}
 )");
   const auto door_y = [&] { return test.world.find_object("door")->body->X_WB().translation().y(); };
   test.run_for(1);

@@ -85,9 +85,9 @@ TEST(RunHash, HasWhatEventsPublishAndNotWhatIsPublishedBesideTheWorld) {
     return of(test.world);
   };
   const auto event = [](int mps) {
-    return "events: [{name: hail, at: 0.1, do: [{publish: shore.hail, type: shoal.twist_command_t, value: "
+    return "events: [{name: hail, at: 0.1, do: [{publish: {channel: shore.hail, type: shoal.twist_command_t, value: "
            "{forward_mps: " +
-           std::to_string(mps) + "}}]}]\n";
+           std::to_string(mps) + "}}}]}]\n";
   };
   EXPECT_EQ(run(event(1), false), run(event(1), true));
   const Hashes one = run(event(1), false), two = run(event(2), false);

@@ -59,7 +59,7 @@ TEST(Schedule, ARateAboveTheStepsSamplesEveryStep) {
 }
 
 TEST(Schedule, RateZeroSamplesEveryStep) {
-  EXPECT_EQ(report_times_us(", rate_hz: 0", 0.1).size(), 100u);
+  EXPECT_EQ(report_times_us(", rate_hz: every_step", 0.1).size(), 100u);
 }
 
 TEST(Schedule, PhasesOfManyVehiclesSpreadOverThePeriod) {
@@ -126,7 +126,7 @@ TEST(Schedule, ASensorTakesTheRateOfTheWorldThatASnapshotIsRestoredIn) {
   const sim::Bytes snapshot = before.world.state().snapshot();
   for (const auto& [keys, period_us] : {std::pair{", rate_hz: 5, phase_s: 0", 200000},
                                         {", rate_hz: 50", 20000},
-                                        {", rate_hz: 0", 1000},
+                                        {", rate_hz: every_step", 1000},
                                         {", rate_hz: 20, phase_s: 0", 50000}}) {
     TestWorld after(test::rover_world(lidar(keys)));
     after.world.state().restore(snapshot);

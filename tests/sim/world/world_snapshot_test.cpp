@@ -62,7 +62,7 @@ vehicles:
         - {name: bumper, type: bumper, rate_hz: 20}
 events:
   - {name: rain, every: 0.4, jitter_s: 0.1, probability: 0.7,
-     do: [{add: late, position_m: [0, 0, 2], area_m: [4, 4, 0]}, {move: crate1, position_m: [0, 0, 1], area_m: [2, 2, 1]}]}
+     do: [{add: {object: late, position_m: [0, 0, 2], area_m: [4, 4, 0]}}, {move: {name: crate1, position_m: [0, 0, 1], area_m: [2, 2, 1]}}]}
   - {name: sun, when: event rain fires, delay_s: 0.25, do: [{remove: late}]}
   - {name: knock, when: any touches crate2, do: [{log: knock}]}
 )";
@@ -206,8 +206,8 @@ shoal: 1
 physics: {step_s: 0.01}
 objects: [{name: ball, position_m: [0, 0, 100], parts: [{shape: sphere, radius_m: 0.1, mass_kg: 1}]}]
 events:
-  - {name: ask, every: 0.05, do: [{publish: bell, type: shoal.twist_command_t, value: {}}]}
-  - {name: hear, when: message on bell, do: [{move: ball, position_m: [0, 0, 10], area_m: [4, 4, 4]}]}
+  - {name: ask, every: 0.05, do: [{publish: {channel: bell, type: shoal.twist_command_t, value: {}}}]}
+  - {name: hear, when: message on bell, do: [{move: {name: ball, position_m: [0, 0, 10], area_m: [4, 4, 4]}}]}
 )";
   std::vector<int> each;
   for (int step = 20; step < 30; ++step) each.push_back(step);

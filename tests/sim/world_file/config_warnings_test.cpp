@@ -33,7 +33,7 @@ TEST(ConfigWarnings, TellOfARateAboveThatOfTheSteps) {
 
 TEST(ConfigWarnings, AreSilentAboutTheRateOfTheSteps) {
   EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: 100}\n")), "");
-  EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: 0}\n")), "");
+  EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: every_step}\n")), "");
 }
 
 TEST(ConfigWarnings, TellOfAUsualRateAboveThatOfTheSteps) {
@@ -74,9 +74,10 @@ TEST(ConfigWarnings, TellOfAMetricOfAChannelOnWhichNobodySpeaks) {
   EXPECT_THAT(metric("r1.gps.truth"), HasSubstr("(device 'gps' needs 'truth: true')"));
   EXPECT_EQ(metric("r1.gps"), "");
   EXPECT_EQ(metric("r1.estimate", "processes: [{name: p, command: [some_program]}]\n"), "");
-  EXPECT_EQ(metric("r1.estimate",
-                   "events: [{name: e, at: 1, do: [{publish: r1.estimate, type: shoal.utime_t, value: {}}]}]\n"),
-            "");
+  EXPECT_EQ(
+      metric("r1.estimate",
+             "events: [{name: e, at: 1, do: [{publish: {channel: r1.estimate, type: shoal.utime_t, value: {}}}]}]\n"),
+      "");
 }
 
 TEST(ConfigWarnings, TellOfMetricsAndEventsAfterTheEnd) {

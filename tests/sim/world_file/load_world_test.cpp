@@ -43,6 +43,37 @@ TEST(LoadWorld, SetChangesTheWorldFromTheCommandLine) {
   EXPECT_EQ(loaded.config.vehicles[0].X_WV.translation(), sim::Vector3d(1, 2, 3));
 }
 
+TEST(LoadWorld, SetTakesWordsAsTheFileDoes) {
+  const auto loaded = sim::load_world_text(
+      lidar_world(""), "test.yaml",
+      {{"run.speed=max", "run.duration_s=forever", "vehicles.r1.devices.lidar.rate_hz=every_step"}, {}});
+  EXPECT_EQ(loaded.config.run.speed, 0);
+  EXPECT_EQ(loaded.config.run.duration_s, 0);
+  EXPECT_EQ(loaded.config.vehicles[0].config->devices[0].rate_hz, 0);
+  EXPECT_THAT(errors_of(lidar_world(""), {{"run.speed=0"}, {}}),
+              HasSubstr("--set run.speed=0: run: 'speed' must be >= 0.001 and <= 1000000, or 'max', got 0; write "
+                        "'speed: max' ('shoal upgrade' rewrites it)"));
+}
+
+/// The anchor of a joint with these keys, between a body at the origin, one at (1, 2, 3) and the world.
+sim::Vector3d anchor_of(const std::string& keys) {
+  const auto loaded = sim::load_world_text(
+      "shoal: 1\nvehicles: [{name: v, model: {shoal: 1, vehicle: v, bodies: ["
+      "{name: base, parts: [{shape: box, mass_kg: 1}]}, "
+      "{name: arm, position_m: [1, 2, 3], parts: [{shape: box, mass_kg: 1}]}], joints: [{name: j, " +
+          keys + "}]}}]\n",
+      "test.yaml");
+  return loaded.config.vehicles[0].config->joints[0].anchor_m;
+}
+
+TEST(LoadWorld, AnchorOfAJointIsTheOriginOfItsSecondBodyUnlessItIsGiven) {
+  EXPECT_EQ(anchor_of("bodies: [base, arm]"), sim::Vector3d(1, 2, 3));
+  EXPECT_EQ(anchor_of("bodies: [arm, base]"), sim::Vector3d(0, 0, 0));
+  EXPECT_EQ(anchor_of("bodies: [arm, world]"), sim::Vector3d(1, 2, 3));
+  EXPECT_EQ(anchor_of("bodies: [base, arm], anchor_m: [0, 0, 1]"), sim::Vector3d(0, 0, 1));
+  EXPECT_EQ(anchor_of("bodies: [base, arm], anchor_m: [0, 0, 0]"), sim::Vector3d(0, 0, 0));
+}
+
 TEST(LoadWorld, SetReachesIntoAVehiclesFile) {
   const auto loaded = sim::load_world_text(lidar_world(""), "test.yaml", {{"vehicles.r1.devices.lidar.rate_hz=7"}, {}});
   EXPECT_EQ(loaded.config.vehicles[0].config->devices[0].rate_hz, 7);
@@ -101,9 +132,9 @@ TEST(LoadWorld, VehiclesOfOneKindKeepTheContactsEachBrings) {
 
 TEST(LoadWorld, RefusesRatesThatNoStepCanFollow) {
   EXPECT_THAT(errors_of(test::rover_world("        - {name: l, type: lidar, rate_hz: 1e15}\n")),
-              HasSubstr("'rate_hz' must be >= 0 and <= 1000000"));
+              HasSubstr("'rate_hz' must be >= 1e-06 and <= 1000000"));
   EXPECT_THAT(errors_of(test::rover_world("        - {name: l, type: lidar, rate_hz: 1e-300}\n")),
-              HasSubstr("'rate_hz' must be 0 or >= 1e-6"));
+              HasSubstr("'rate_hz' must be >= 1e-06 and <= 1000000, or 'every_step'"));
 }
 
 TEST(LoadWorld, RefusesTheSimulatorsOwnChannels) {

@@ -76,7 +76,8 @@ TEST(VehicleFile, WhereAMapBelongsAWordOrAListIsAnError) {
   EXPECT_THAT(error("model: {}, overrides: fast"), HasSubstr("'overrides' must be a map, got 'fast'"));
   EXPECT_THAT(error("model: {}, parameters: [a]"), HasSubstr("'parameters' must be a map, got [a]"));
   EXPECT_THAT(error_of([] {
-                sim::load_world_text("shoal: 1\nevents: [{at_s: 1, do: [{set: a/b, values: [1]}]}]\n", "w.yaml");
+                sim::load_world_text("shoal: 1\nevents: [{at_s: 1, do: [{set: {device: a/b, values: [1]}}]}]\n",
+                                     "w.yaml");
               }),
               HasSubstr("'values' must be a map, got [1]"));
 }

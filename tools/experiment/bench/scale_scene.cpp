@@ -49,8 +49,8 @@ constexpr const char* rover_model = R"(
           position_m: [0.08, -0.23, 0.1]
           parts: [{name: tyre, shape: sphere, radius_m: 0.1, mass_kg: 0.6, material: rubber}]
       joints:
-        - {name: left, type: hinge, bodies: [chassis, left_wheel], anchor_m: [0.08, 0.23, 0.1], axis: [0, 1, 0]}
-        - {name: right, type: hinge, bodies: [chassis, right_wheel], anchor_m: [0.08, -0.23, 0.1], axis: [0, 1, 0]}
+        - {name: left, type: hinge, bodies: [chassis, left_wheel], axis: [0, 1, 0]}
+        - {name: right, type: hinge, bodies: [chassis, right_wheel], axis: [0, 1, 0]}
       devices:
         - {name: drive, type: differential_drive, left_joint: left, right_joint: right, track_m: 0.46}
         - {name: odometry, type: odometry, left_joint: left, right_joint: right, track_m: 0.46, rate_hz: 10}

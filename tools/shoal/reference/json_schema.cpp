@@ -46,6 +46,7 @@ Json json_scalar(const std::string& text, ParamKind kind) {
 
 /// The default in JSON; null when there is none.
 Json json_default(const ParamInfo& info) {
+  if (!info.word.empty() && info.initial == info.word) return info.word;
   sim::Diagnostics ignored;
   const sim::ConfigNode node = sim::parse_config_text(info.initial, "default", ignored);
   switch (node.kind) {
@@ -84,9 +85,9 @@ struct Special {
 /// another, the other may have it.
 class SchemaWriter {
  public:
-  /// `with_parameters`: every value may hold a ${name}.
-  SchemaWriter(bool with_parameters, std::map<std::string, Special> specials)
-      : with_parameters_(with_parameters), specials_(std::move(specials)) {}
+  /// `with_parameters`: every value may hold a ${name}.  `definitions`: takes the tables that have a name.
+  SchemaWriter(bool with_parameters, std::map<std::string, Special> specials, Json& definitions)
+      : with_parameters_(with_parameters), specials_(std::move(specials)), definitions_(definitions) {}
 
   /// Keys, types and ranges.
   Json keys(const Table& table) const {
@@ -100,6 +101,7 @@ class SchemaWriter {
     Json schema = Json::object();
     for (const ParamInfo& info : table) {
       if (info.required) schema["required"].push_back(info.key);
+      if (!info.definition.empty()) continue;  // it has what it requires itself
       const Special* special = special_of(info);
       Json inner = special ? special->required : required(info.children);
       if (inner.empty()) continue;
@@ -137,6 +139,7 @@ class SchemaWriter {
       return info.kind == ParamKind::maps ? with_exceptions(list_of(special->value), info) : special->value;
     if (!info.choices.empty()) return words(info.choices);
     if (info.kind == ParamKind::any) return Json::object();
+    if (!info.word.empty()) return number_or_word(info);
     return with_exceptions(plain_value(info), info);
   }
 
@@ -161,7 +164,9 @@ class SchemaWriter {
       case ParamKind::map:
         return map_of(info);
       case ParamKind::maps:
-        return list_of(map_of(info));
+        return list_of(item_of(info));
+      case ParamKind::lists:
+        return list_of(list_of(item_of(info)));
       case ParamKind::raw:
         return {{"type", {"object"}}};
       default:
@@ -171,6 +176,36 @@ class SchemaWriter {
 
   /// YAML takes a plain 12 for a number; where text belongs it is text.
   static Json text() { return {{"type", {"string", "number", "boolean"}}}; }
+
+  Json number_or_word(const ParamInfo& info) const {
+    Json number = number_schema(info.kind == ParamKind::integer ? "integer" : "number", info.range);
+    Json schema{{"oneOf", {std::move(number), Json{{"const", info.word}}}}};
+    if (with_parameters_) schema["oneOf"].push_back({{"type", "string"}, {"pattern", parameter}});
+    return schema;
+  }
+
+  /// One map of a list; those of a name stand once in the definitions.
+  Json item_of(const ParamInfo& info) const {
+    if (info.definition.empty()) return map_of(info);
+    if (!info.children.empty()) definitions_[info.definition] = one_of_keys(info.children);
+    return reference_to(info.definition);
+  }
+
+  /// A map with one of these keys, each of which is a map, or the value of its first key.
+  Json one_of_keys(const Table& table) const {
+    Json schema = keys({});
+    schema["minProperties"] = schema["maxProperties"] = 1;
+    for (const ParamInfo& info : table) {
+      Json map = keys(info.children);
+      map.update(required(info.children));
+      Json& key = schema["properties"][info.key];
+      key = {{"description", info.meaning}};
+      const ParamInfo& main = info.children.front();
+      const Json alone = main.kind == ParamKind::any ? text() : value(main);
+      key.update(info.main_alone ? Json{{"anyOf", {alone, map}}} : map);
+    }
+    return schema;
+  }
 
   /// A map without known keys is one that contains itself: any keys.
   Json map_of(const ParamInfo& info) const {
@@ -202,6 +237,7 @@ class SchemaWriter {
 
   bool with_parameters_;
   std::map<std::string, Special> specials_;
+  Json& definitions_;
 };
 
 Json when_type_is(const std::string& type, Json then) {
@@ -220,7 +256,7 @@ Json device_type_schema(const SchemaWriter& writer, const sim::DeviceType& type,
 
 /// An item of `devices:`.  Its keys depend on its type.
 Special device_special(Json& definitions) {
-  const SchemaWriter writer(true, {});
+  const SchemaWriter writer(true, {}, definitions);
   const Table common = common_params();
   Json device = writer.keys(common);
   Json any_type = writer.required(common);
@@ -250,7 +286,7 @@ const Json include_schema{
     {"items", {{"type", "string"}}}};
 
 /// A whole file: keys of `table`, or an `include`, which may bring what is missing here.
-Json file_schema(const std::string& file, const SchemaWriter& writer, const Table& table, Json definitions) {
+Json file_schema(const std::string& file, const SchemaWriter& writer, const Table& table, Json& definitions) {
   Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
               {"$comment", "Generated: shoal describe --schema " + file + ".  Do not edit."},
               {"title", "Shoal " + file + " file"}};
@@ -267,21 +303,21 @@ Json file_schema(const std::string& file, const SchemaWriter& writer, const Tabl
 Json vehicle_schema() {
   Json definitions = Json::object();
   const Special device = device_special(definitions);
-  const SchemaWriter writer(true, {{"devices", device}});
-  return file_schema("vehicle", writer, params_of<sim::VehicleConfig>(), std::move(definitions));
+  const SchemaWriter writer(true, {{"devices", device}}, definitions);
+  return file_schema("vehicle", writer, params_of<sim::VehicleConfig>(), definitions);
 }
 
 Json world_schema() {
   Json definitions = Json::object();
   const Special device = device_special(definitions);
-  const SchemaWriter vehicle(true, {{"devices", device}});
+  const SchemaWriter vehicle(true, {{"devices", device}}, definitions);
   const Table vehicle_table = params_of<sim::VehicleConfig>();
   definitions["vehicle"] = vehicle.keys(vehicle_table);
   definitions["vehicle_required"] = vehicle.required(vehicle_table);
   // A reference hides what stands beside it, such as the description: so it stands in an allOf.
   const Special model{{{"allOf", {reference_to("vehicle")}}}, reference_to("vehicle_required")};
-  const SchemaWriter writer(false, {{"devices", device}, {"model", model}});
-  return file_schema("world", writer, params_of<sim::WorldConfig>(), std::move(definitions));
+  const SchemaWriter writer(false, {{"devices", device}, {"model", model}}, definitions);
+  return file_schema("world", writer, params_of<sim::WorldConfig>(), definitions);
 }
 
 }  // namespace

@@ -111,6 +111,9 @@ std::string world_format_page() {
          "`vehicles.rover7.devices.lidar.rate_hz` with --set, `rover7/devices.lidar.rate_hz` in `overrides:`.\n"
          "* A vehicle file is looked up beside the world file, then in `../vehicles`, then among the shipped ones "
          "(`shoal list`).\n"
+         "* A key takes a word for what no number says: `speed: max`, `duration_s: forever`, `rate_hz: every_step`.\n"
+         "* An action of an event is a map of one key, its word; the value is a map of the action's keys, or the value "
+         "of the first of them where the table says so: `log: text` is `log: {text: text}`.\n"
          "* Where two materials touch, the entry of `contacts` that names both wins over one that says `any`; among "
          "equals the last one wins.\n\n"
          "## World\n\n" +

@@ -70,7 +70,7 @@ TEST_F(ReplayTest, MailThatIsThrownAwayIsNoDifference) {
 TEST_F(ReplayTest, RequestsThatChangeTheWorldAreObeyedAtTheSameSteps) {
   record(driven_world(), [](RecordedRun& run, std::int64_t step) {
     if (step == 40) run.request("spawn", "{name: guest, file: rover_small.yaml, position_m: [0, 3, 0]}");
-    if (step == 60) run.request("do", "{fault: r1/lidar, kind: silent}");
+    if (step == 60) run.request("do", "{fault: {device: r1/lidar, kind: silent}}");
     if (step == 60) run.request("spawn", "{name: guest, file: rover_small.yaml}");  // is refused
     if (step == 70) run.send("guest.drive.cmd", forward(1));
     if (step == 80) run.request("describe", "guest");
@@ -136,7 +136,8 @@ TEST_F(ReplayTest, OneNoisierSensorIsFoundByItsName) {
 
 TEST_F(ReplayTest, AnotherWorldIsComparedByItsNamesAndByItsMotion) {
   record(driven_world());
-  std::string other = driven_world("events:\n  - {name: kick, at: 2, do: [{move: r1, position_m: [5, 5, 0.2]}]}\n");
+  std::string other =
+      driven_world("events:\n  - {name: kick, at: 2, do: [{move: {name: r1, position_m: [5, 5, 0.2]}}]}\n");
   const std::string objects = "objects:\n", file = "file: rover.yaml";
   other.insert(other.find(objects) + objects.size(),
                "  - {name: box, position_m: [9, 9, 0.5], parts: [{shape: box, mass_kg: 5}]}\n");
@@ -299,7 +300,7 @@ TEST_F(ReplayTest, AMeshThatIsAnotherOneIsTold) {
 /// letters came is left out.
 TEST_F(ReplayTest, ARecordIsUsedAsFarAsItGoesWhereverItIsCut) {
   int cuts = 0, used = 0;
-  for (const char* more : {"", "state_rate_hz: 2\n", "run: {seed: 3, hash_every_steps: 0}\n"}) {
+  for (const char* more : {"", "state_rate_hz: 2\n", "run: {seed: 3, hash_every_steps: never}\n"}) {
     log = folder.file("whole" + std::to_string(cuts) + ".lcm");
     std::string world = driven_world(more);
     if (std::string(more).starts_with("run:"))
@@ -408,8 +409,8 @@ TEST_F(ReplayTest, WhatIsAskedForAfterTheLastStepIsDoneAgain) {
     log = folder.file(std::to_string(last) + ".lcm");
     RecordedRun run(driven_world(), log);
     run.run(last, {}, [&] {
-      run.request("do", "{move: crate, position_m: [5, 5, 5]}");
-      run.request("do", "{publish: shore.hail, type: shoal.twist_command_t, value: {forward_mps: 1}}");
+      run.request("do", "{move: {name: crate, position_m: [5, 5, 5]}}");
+      run.request("do", "{publish: {channel: shore.hail, type: shoal.twist_command_t, value: {forward_mps: 1}}}");
     });
     const ReplayOutcome outcome = again();
     EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();

@@ -49,8 +49,8 @@ TEST(RunWorld, EndsByAnEventWithItsVerdictAndTheRecordsOfZones) {
   for (const bool passed : {true, false}) {
     const auto world = small_world(
         "zones: [{name: goal, shape: sphere, radius_m: 1, finish: true}]\n"
-        "events: [{name: stop, at: 0.2, do: [{end: enough, passed: " +
-        std::string(passed ? "true" : "false") + "}]}]\n");
+        "events: [{name: stop, at: 0.2, do: [{end: {reason: enough, passed: " +
+        std::string(passed ? "true" : "false") + "}}]}]\n");
     const tools::Summary summary = tools::run_world(world, quiet_run());
     EXPECT_EQ(summary.ended, "event");
     EXPECT_EQ(summary.exit_code, passed ? 0 : 1);
@@ -221,8 +221,8 @@ TEST(Results, ShowErrorsWithWhatTheEstimateSaysOfThem) {
       test::rover_world("        - {name: lidar, type: lidar}\n", "", "",
                         "run: {duration_s: 1}\n"
                         "events:\n"
-                        "  - {name: think, every: 0.1, do: [{publish: est, type: shoal.estimate_t, value: "
-                        "{position_m: [3, 4, 0], covariance_m2: [9, 0, 0, 0, 16, 0, 0, 0, 1]}}]}\n"
+                        "  - {name: think, every: 0.1, do: [{publish: {channel: est, type: shoal.estimate_t, value: "
+                        "{position_m: [3, 4, 0], covariance_m2: [9, 0, 0, 0, 16, 0, 0, 0, 1]}}}]}\n"
                         "metrics:\n"
                         "  - {name: e, vehicle: r1, channel: est}\n"
                         "  - {name: c, type: consistency, vehicle: r1, channel: est}\n"),
@@ -255,10 +255,11 @@ TEST(Results, ErrorsThatAreVeryDifferentHaveALogarithmicAxis) {
             "        - {name: lidar, type: lidar}\n", "", "",
             "run: {duration_s: 1}\n"
             "events:\n"
-            "  - {name: near, every: 0.1, do: [{publish: near, type: shoal.pose_t, value: {pos: [1, 0, 0]}}]}\n"
-            "  - {name: far, every: 0.1, do: [{publish: far, type: shoal.pose_t, value: {pos: [" +
+            "  - {name: near, every: 0.1, do: [{publish: {channel: near, type: shoal.pose_t, value: {pos: [1, 0, "
+            "0]}}}]}\n"
+            "  - {name: far, every: 0.1, do: [{publish: {channel: far, type: shoal.pose_t, value: {pos: [" +
                 std::string(very ? "6" : "4") +
-                ", 0, 0]}}]}\n"
+                ", 0, 0]}}}]}\n"
                 "metrics:\n"
                 "  - {name: n, vehicle: r1, channel: near}\n"
                 "  - {name: f, vehicle: r1, channel: far}\n"),

@@ -219,7 +219,7 @@ TEST(StudyConfig, TellsWhatIsWrong) {
   EXPECT_THAT(error("cases: [{name: a, set: 3}]\n"), HasSubstr("'set' must be a map, got '3'"));
   EXPECT_THAT(error("cases: [{name: a, set: {vehicles.r9.name: x}}]\n"), HasSubstr("r9"));
   EXPECT_THAT(error("cases: [{name: a, set: {physics.step_s: -1}}]\n"), HasSubstr("'step_s' must be"));
-  EXPECT_THAT(error("cases: [{name: a, set: {run.duration_s: 0}}]\n"),
+  EXPECT_THAT(error("cases: [{name: a, set: {run.duration_s: forever}}]\n"),
               HasSubstr("case 'a': its world runs without end"));
   EXPECT_THAT(error("figures: [e.rms]\n"),
               HasSubstr("study.yaml:5:10: 'figures' names nothing of this world: 'e.rms'; "

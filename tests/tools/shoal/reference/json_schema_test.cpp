@@ -105,6 +105,57 @@ TEST(JsonSchema, CarriesRangeDefaultAndMeaning) {
   EXPECT_THAT(erp["description"].get<std::string>(), HasSubstr("put right"));
 }
 
+TEST(JsonSchema, AnActionIsAMapOfOneKeyWithTheKeysOfTheActionBelow) {
+  const auto schema = nlohmann::json::parse(tools::json_schema("world"));
+  const auto& list = schema["properties"]["events"]["items"]["properties"]["do"];
+  EXPECT_EQ(list["items"]["$ref"], "#/definitions/action");
+  const auto& action = schema["definitions"]["action"];
+  EXPECT_EQ(action["minProperties"], 1);
+  EXPECT_EQ(action["maxProperties"], 1);
+  EXPECT_EQ(action["additionalProperties"], false);
+  const auto& publish = action["properties"]["publish"];
+  EXPECT_EQ(publish["required"], (nlohmann::json{"channel", "type"}));
+  EXPECT_TRUE(publish["properties"].contains("value"));
+  EXPECT_FALSE(action["properties"].contains("channel"));
+  // The main value alone, or the map.
+  EXPECT_EQ(action["properties"]["log"]["anyOf"].size(), 2u);
+  const auto& choices = action["properties"]["one_of"]["anyOf"][1]["properties"]["choices"];
+  EXPECT_EQ(choices["items"]["items"]["$ref"], "#/definitions/action");
+}
+
+TEST(JsonSchema, ANumberOrItsWordIsOffered) {
+  const auto schema = nlohmann::json::parse(tools::json_schema("world"));
+  const auto& speed = schema["properties"]["run"]["properties"]["speed"];
+  EXPECT_EQ(speed["default"], "max");
+  ASSERT_EQ(speed["oneOf"].size(), 2u);
+  EXPECT_EQ(speed["oneOf"][0]["minimum"], 0.001);
+  EXPECT_EQ(speed["oneOf"][1]["const"], "max");
+  // In a vehicle file a ${name} as well.
+  EXPECT_EQ(schema["definitions"]["device"]["properties"]["rate_hz"]["oneOf"].size(), 3u);
+}
+
+TEST(JsonSchema, AcceptsActionsAndWordsAsTheLoaderDoes) {
+  const ScratchTree tree;
+  const std::string world = tree.write("forms.yaml", "world",
+                                       "shoal: 1\n"
+                                       "run: {speed: max, duration_s: forever, hash_every_steps: never}\n"
+                                       "state_rate_hz: never\n"
+                                       "events:\n"
+                                       "  - name: e\n"
+                                       "    at: 1\n"
+                                       "    times: unlimited\n"
+                                       "    do:\n"
+                                       "      - log: hello\n"
+                                       "      - log: {text: hello}\n"
+                                       "      - gravity_mps2: 1.6\n"
+                                       "      - end: {passed: false, reason: enough}\n"
+                                       "      - one_of: [[log: a], [{log: b}, {log: c}]]\n"
+                                       "      - one_of: {weights: [1], choices: [[one_of: [[log: d]]]]}\n");
+  EXPECT_NO_THROW(sim::load_world(world));
+  const Verdict verdict = validate(tree.schemas(), "accept " + world);
+  EXPECT_TRUE(verdict.good) << verdict.output;
+}
+
 TEST(JsonSchema, AcceptsEveryShippedFile) {
   const Verdict verdict = validate(own_schemas, "accept" + shipped_files());
   EXPECT_TRUE(verdict.good) << verdict.output;
