@@ -47,7 +47,7 @@ const std::string two_cases = "seeds: [1, 2]\ncases: [{name: a}, {name: b, set: 
 TEST(Study, RunsAWorldForEverySeedAndCase) {
   const StudyFolder study(two_cases +
                           "plots: [{name: ways, figure: way.travelled_m}]\n"
-                          "pass: [{case: a, figure: way.travelled_m, below: 1}]\n");
+                          "pass: [mean(a.way.travelled_m) < 1]\n");
   const Ended ended = study.run({"--jobs", "2"});
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_THAT(ended.output, HasSubstr("study tiny: 4 runs"));
@@ -101,23 +101,23 @@ TEST(Study, KeepsRunsThatAreDoneUntilSomethingChanges) {
 }
 
 TEST(Study, ExitCodeIs1WhenARuleFails) {
-  const StudyFolder study("seeds: [1]\npass: [{case: world, figure: way.travelled_m, above: 1000}]\n");
+  const StudyFolder study("seeds: [1]\npass: [mean(world.way.travelled_m) > 1000]\n");
   const Ended ended = study.run();
   EXPECT_EQ(ended.exit_code, 1);
   EXPECT_THAT(ended.output, HasSubstr("FAILED: world: mean of way.travelled_m"));
 }
 
 TEST(Study, ARunWhoseOwnRulesFailIsAResult) {
-  const StudyFolder study("seeds: [1]\npass: [{case: world, figure: passed, equals: 0}]\n",
-                          "pass: [{metric: way.travelled_m, above: 1000}]\n");
+  const StudyFolder study("seeds: [1]\npass: [mean(world.passed) == 0]\n",
+                          "pass: [way.travelled_m > 1000]\n");
   const Ended ended = study.run();
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_THAT(ended.errors, HasSubstr("done, its rules failed"));
 }
 
 TEST(Study, AProgramThatFailedFailsItsRunAndTheStudy) {
-  const StudyFolder study("seeds: [1, 2]\nlaunch: true\npass: [{case: world, figure: way.travelled_m, below: 1e6}]\n",
-                          "pass: [{metric: way.travelled_m, below: 1e6}]\n"
+  const StudyFolder study("seeds: [1, 2]\nlaunch: true\npass: [mean(world.way.travelled_m) < 1e6]\n",
+                          "pass: [way.travelled_m < 1e6]\n"
                           "processes: [{name: pilot, client: pilot, command: [sh, -c, exit 3]}]\n"
                           "lockstep: {join_timeout_s: 1000}\n");
   const Ended ended = study.run();
@@ -128,7 +128,7 @@ TEST(Study, AProgramThatFailedFailsItsRunAndTheStudy) {
 
 TEST(Study, ARunThatWasEndedByHandIsNoResult) {
   const StudyFolder study(
-      "seeds: [1]\nlaunch: true\nduration_s: 1e9\npass: [{case: world, figure: way.travelled_m, below: 1e6}]\n",
+      "seeds: [1]\nlaunch: true\nduration_s: 1e9\npass: [mean(world.way.travelled_m) < 1e6]\n",
       "processes: [{name: hand, command: [" + built("shoal") + ", control, quit, --lcm-url, '{lcm_url}']}]\n");
   const Ended ended = study.run();
   EXPECT_EQ(ended.exit_code, 4) << ended.errors;
@@ -230,7 +230,7 @@ TEST(Study, OfTheCooperativeWorldGoesOnWhereItWasStopped) {
                "shoal: 1\nstudy: sea\nworld: " + source("worlds/coop_underwater.yaml") +
                    "\nlaunch: true\nduration_s: 150\nseeds: " + seeds +
                    "\nfigures: [cooperative.rms_m, link.received]\n"
-                   "pass: [{case: world, figure: link.received, statistic: min, above: 5}]\n");
+                   "pass: [min(world.link.received) > 5]\n");
     return run_shoal({"study", folder.file("study.yaml"), "--output", folder.file("out"), "--jobs", "2"});
   };
   ASSERT_EQ(study("[1]").exit_code, 0);

@@ -150,6 +150,7 @@ class SchemaWriter {
       case ParamKind::numbers:
         return list_of(number_schema("number", info.range));
       case ParamKind::texts:
+        return list_of(info.pattern.empty() ? text() : text_like(info));
       case ParamKind::paths:
         return list_of(text());
       case ParamKind::map:
@@ -165,6 +166,10 @@ class SchemaWriter {
 
   /// YAML takes a plain 12 for a number; where text belongs it is text.
   static Json text() { return {{"type", {"string", "number", "boolean"}}}; }
+
+  static Json text_like(const ParamInfo& info) {
+    return {{"type", {"string"}}, {"pattern", info.pattern}, {"examples", info.examples}};
+  }
 
   /// A map without known keys is one that contains itself: any keys.
   Json map_of(const ParamInfo& info) const {

@@ -178,7 +178,7 @@ TEST(Summary, WithoutRulesNothingHasPassed) {
 
 TEST(RunWorld, WithoutItsProgramsIsNotJudged) {
   const auto world = small_world(
-      "metrics: [{name: way, type: distance, vehicle: r1}]\npass: [{metric: way.travelled_m, above: 1000}]\n"
+      "metrics: [{name: way, type: distance, vehicle: r1}]\npass: [way.travelled_m > 1000]\n"
       "processes: [{name: pilot, command: [sleep, '1000']}]\n");
   const tools::Summary summary = tools::run_world(world, quiet_run());
   EXPECT_EQ(summary.exit_code, 0);
@@ -276,7 +276,7 @@ TEST(Results, AreLeftByARunThatFailed) {
   const ScratchFolder folder;
   const auto loaded = small_world(
       "metrics:\n  - {name: position, vehicle: r1, channel: r1.estimate}\n"
-      "pass:\n  - {metric: position.rms_m, below: 1}\n");
+      "pass:\n  - position.rms_m < 1\n");
   auto options = quiet_run();
   options.results = folder.file("results");
   EXPECT_EQ(tools::run_world(loaded, options).exit_code, 1);  // no estimate came

@@ -176,14 +176,14 @@ TEST(Scoring, SurvivesTimesAtTheEndsOfTheirRange) {
 TEST(Scoring, JudgesByTheRulesOfTheWorld) {
   ScoredWorld world(
       "pass:\n"
-      "  - {metric: good.max_m, below: 2}\n"
-      "  - {metric: good.max_m, below: 0.5}\n"
-      "  - {metric: good.max_m, below_metric: late.max_m, factor: 0.5}\n"
-      "  - {metric: good.max_m, below_metric: late.max_m, factor: 0.2}\n"
-      "  - {metric: good.max_m, above: 0.9}\n"
-      "  - {metric: late.max_m, above_metric: good.max_m, factor: 5}\n"
-      "  - {metric: good.samples, equals: 1}\n"
-      "  - {metric: good.samples, equals: 2}\n");
+      "  - good.max_m < 2\n"
+      "  - good.max_m < 0.5\n"
+      "  - good.max_m < 0.5 * late.max_m\n"
+      "  - good.max_m < 0.2 * late.max_m\n"
+      "  - good.max_m > 0.9\n"
+      "  - late.max_m > 5 * good.max_m\n"
+      "  - good.samples == 1\n"
+      "  - good.samples == 2\n");
   world.run_for(1);
   world.estimate("good", 2, 2);  // 1 m off
   world.estimate("late", 5, 2);  // 4 m off
@@ -205,7 +205,7 @@ TEST(Scoring, JudgesByTheRulesOfTheWorld) {
 
 TEST(Scoring, FailsARuleWhenNoEstimateCame) {
   ScoredWorld world(
-      "pass: [{metric: good.rms_m, below: 1000}, {metric: good.rms_m, above: -1000}, {metric: good.rms_m, equals: "
+      "pass: [good.rms_m < 1000, good.rms_m > -1000, {metric: good.rms_m, equals: "
       "0}]\n");
   world.run_for(0.1);
   EXPECT_TRUE(std::isnan(world.scoring.figures().at("good.rms_m")));
@@ -224,16 +224,16 @@ TEST(Scoring, ARuleOnAFigureThatIsNotThereSaysWhy) {
       "  - {name: first, type: messages, channel: nothing}\n"
       "  - {name: cost, type: bytes_per_metre, metric: good, against: late}\n"
       "pass:\n"
-      "  - {metric: way.travelled_m, below: 10}\n"
-      "  - {metric: bumps.count, equals: 0}\n"
-      "  - {metric: talk.count, equals: 0}\n"
-      "  - {metric: gap.longest_gap_s, below: 10}\n"
-      "  - {metric: link.ratio, above: 0}\n"
-      "  - {metric: home.time_s, below: 100}\n"
-      "  - {metric: first.first_s, below: 100}\n"
-      "  - {metric: cost.bytes_per_metre, below: 100}\n"
-      "  - {metric: late.samples, below_metric: late.rms_m}\n"
-      "  - {metric: good.rms_m, above: 0}\n");
+      "  - way.travelled_m < 10\n"
+      "  - bumps.count == 0\n"
+      "  - talk.count == 0\n"
+      "  - gap.longest_gap_s < 10\n"
+      "  - link.ratio > 0\n"
+      "  - home.time_s < 100\n"
+      "  - first.first_s < 100\n"
+      "  - cost.bytes_per_metre < 100\n"
+      "  - late.samples < late.rms_m\n"
+      "  - good.rms_m > 0\n");
   world.run_for(1);
   world.test.send("good", shoal::twist_command_t{});
   world.run_for(0.01);

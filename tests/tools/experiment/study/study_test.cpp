@@ -230,21 +230,21 @@ TEST(StudyConfig, TellsWhatIsWrong) {
   EXPECT_THAT(error("plots: [{name: p, figure: passed, cases: [b]}]\n"), HasSubstr("names no case 'b'"));
   EXPECT_THAT(error("pass: [{case: world, figure: e.rms_m}]\n"), HasSubstr("rule 1: needs one of 'above'"));
   EXPECT_THAT(error("pass: [{case: world, figure: e.rms_m, below: 1, above: 0}]\n"), HasSubstr("not several"));
-  EXPECT_THAT(error("pass: [{case: world, figure: e.rms_m, statistic: average, below: 1}]\n"),
+  EXPECT_THAT(error("pass: [average(world.e.rms_m) < 1]\n"),
               HasSubstr("'statistic' must be one of: mean, std, min, max, median"));
-  EXPECT_THAT(error("pass: [{case: world, figure: x.rms_m, below: 1}]\n"), HasSubstr("names nothing of this world"));
+  EXPECT_THAT(error("pass: [mean(world.x.rms_m) < 1]\n"), HasSubstr("names nothing of this world"));
 }
 
 TEST(StudyResults, JudgeStatisticsOfCases) {
   const StudyFolder folder(two_cases +
                            "pass:\n"
-                           "  - {case: plain, figure: e.rms_m, below: 2.5}\n"                      // mean 2
-                           "  - {case: plain, figure: e.rms_m, statistic: max, below: 2.5}\n"      // max 3
-                           "  - {case: plain, figure: e.rms_m, below_case: quick, factor: 0.5}\n"  // 2 < 0.5 * 6
-                           "  - {case: plain, figure: e.rms_m, below_figure: e.rms_m}\n"           // 2 < 2
-                           "  - {case: plain, figure: passed, equals: 0.5}\n"                      // 1 < 3, not 3 < 3
-                           "  - {case: quick, figure: e.rms_m, statistic: std, above: 0}\n"        // equal ones
-                           "  - {case: quick, figure: e.final_m, above: -1}\n");                   // nobody has it
+                           "  - mean(plain.e.rms_m) < 2.5\n"                      // mean 2
+                           "  - max(plain.e.rms_m) < 2.5\n"      // max 3
+                           "  - mean(plain.e.rms_m) < 0.5 * mean(quick.e.rms_m)\n"  // 2 < 0.5 * 6
+                           "  - mean(plain.e.rms_m) < mean(plain.e.rms_m)\n"           // 2 < 2
+                           "  - mean(plain.passed) == 0.5\n"                      // 1 < 3, not 3 < 3
+                           "  - std(quick.e.rms_m) > 0\n"        // equal ones
+                           "  - mean(quick.e.final_m) > -1\n");                   // nobody has it
   const tools::LoadedStudy study = tools::load_study(folder.path());
   const auto runs = made_up_runs(study, {{1, 3}, {6, 6}});
   const tools::StudyResults results(study, runs);
@@ -268,11 +268,11 @@ TEST(StudyResults, JudgeStatisticsOfCases) {
 TEST(StudyResults, ARuleFailsWhenARunLacksItsFigure) {
   const StudyFolder folder(two_cases +
                            "pass:\n"
-                           "  - {case: quick, figure: e.rms_m, statistic: max, below: 10}\n"
-                           "  - {case: quick, figure: e.rms_m, statistic: min, above: 1}\n"
-                           "  - {case: quick, figure: e.rms_m, equals: 6}\n"
-                           "  - {case: plain, figure: e.rms_m, below_case: quick}\n"
-                           "  - {case: plain, figure: e.rms_m, below: 10}\n");
+                           "  - max(quick.e.rms_m) < 10\n"
+                           "  - min(quick.e.rms_m) > 1\n"
+                           "  - mean(quick.e.rms_m) == 6\n"
+                           "  - mean(plain.e.rms_m) < mean(quick.e.rms_m)\n"
+                           "  - mean(plain.e.rms_m) < 10\n");
   const tools::LoadedStudy study = tools::load_study(folder.path());
   const auto runs = made_up_runs(study, {{1, 3}, {6, std::nan("")}});
   const tools::StudyResults results(study, runs);
@@ -305,7 +305,7 @@ TEST(StudyResults, WithoutRulesNothingHasPassed) {
 }
 
 TEST(StudyResults, ARunThatNobodyJudgedHasNotPassed) {
-  const StudyFolder folder("launch: false\npass: [{case: world, figure: passed, equals: 1}]\n");
+  const StudyFolder folder("launch: false\npass: [mean(world.passed) == 1]\n");
   const tools::LoadedStudy study = tools::load_study(folder.path());
   auto runs = tools::plan_study(study, "out");
   const ScratchFolder results_of_runs;
