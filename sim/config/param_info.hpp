@@ -68,11 +68,11 @@ struct ParamInfo {
 
   // The same for programs.
   ParamKind kind = ParamKind::any;
-  Rule range = {};                        ///< of each number
-  std::vector<std::string> choices = {};  ///< the only words allowed; empty: any
-  PathUse path_use = PathUse::read;       ///< of a path
-  bool may_be_null = false;               ///< `key:` without a value is allowed
-  std::string pattern = {};               ///< regular expression (ECMA) that each text of a list matches; empty: any
+  Rule range = {};                         ///< of each number
+  std::vector<std::string> choices = {};   ///< the only words allowed; empty: any
+  PathUse path_use = PathUse::read;        ///< of a path
+  bool may_be_null = false;                ///< `key:` without a value is allowed
+  std::string pattern = {};                ///< regular expression (ECMA) that each text of a list matches; empty: any
   std::vector<std::string> examples = {};  ///< of such texts
 };
 

@@ -66,9 +66,8 @@ std::vector<std::string> MetricConfig::figures() const {
 std::optional<RuleProblem> figure_problem(const std::vector<MetricConfig>& metrics, const std::string& name) {
   const std::size_t dot = std::min(name.find('.'), name.size());
   const std::string metric_name = name.substr(0, dot);
-  const auto metric = std::find_if(metrics.begin(), metrics.end(), [&](const MetricConfig& each) {
-    return each.name == metric_name;
-  });
+  const auto metric =
+      std::find_if(metrics.begin(), metrics.end(), [&](const MetricConfig& each) { return each.name == metric_name; });
   if (metric == metrics.end()) {
     std::vector<std::string> known;
     for (const MetricConfig& each : metrics) known.push_back(each.name);
@@ -114,7 +113,8 @@ void read_rules(ParamReader& in, std::vector<RuleExpression>& rules, const std::
                           {"bumps.count == 0", "cooperative.rms_m < 0.4 * alone.rms_m"});
   const ConfigNode* list = in.child("pass");
   if (list == nullptr || list->kind == ConfigNode::Kind::null) return;
-  if (list->kind != ConfigNode::Kind::list) return in.error("pass", "'pass' must be a list of rules, got " + shown(*list));
+  if (list->kind != ConfigNode::Kind::list)
+    return in.error("pass", "'pass' must be a list of rules, got " + shown(*list));
   const WorldRuleNames names(metrics);
   for (std::size_t i = 0; i < list->items.size(); ++i) {
     const ConfigNode& item = list->items[i];

@@ -111,8 +111,9 @@ class RuleParser {
   bool read_comparison() {
     // The longer one of two that begin alike comes first.
     static constexpr std::pair<std::string_view, Comparison> comparisons[] = {
-        {"<=", Comparison::less_or_equal}, {">=", Comparison::greater_or_equal}, {"==", Comparison::equal},
-        {"!=", Comparison::not_equal},     {"<", Comparison::less},              {">", Comparison::greater}};
+        {"<=", Comparison::less_or_equal}, {">=", Comparison::greater_or_equal},
+        {"==", Comparison::equal},         {"!=", Comparison::not_equal},
+        {"<", Comparison::less},           {">", Comparison::greater}};
     for (const auto& [sign, comparison] : comparisons)
       if (take(sign)) {
         rule_.comparison_ = comparison;
@@ -195,8 +196,8 @@ class RuleParser {
     const char* const begin = text_.data() + at_;
     const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), number);
     const auto length = static_cast<std::size_t>(end - begin);
-    const bool ends_there = at_ + length >= text_.size() || !is_of_name(text_[at_ + length]) ||
-                            text_[at_ + length] == '-';
+    const bool ends_there =
+        at_ + length >= text_.size() || !is_of_name(text_[at_ + length]) || text_[at_ + length] == '-';
     if (error == std::errc::invalid_argument || !ends_there) {
       if (is_digit(text_[at_]) && has_figure(word())) return read_name();
       fail(at_, quoted(word()) + " is not a number");

@@ -64,8 +64,8 @@ void check_study(const std::string& path, const sim::LoadOptions& options) {
   for (sim::LoadedWorld& world : study.worlds) body_count(world, warnings);
   const StudyConfig& config = study.config;
   std::cout << path << ": study '" << config.name << "' of " << config.world << ": " << config.cases.size()
-            << " cases, " << config.seeds.size() << " seeds, " << config.cases.size() * config.seeds.size()
-            << " runs, " << config.pass.size() << " rules\n";
+            << " cases, " << config.seeds.size() << " seeds, " << config.cases.size() * config.seeds.size() << " runs, "
+            << config.pass.size() << " rules\n";
 }
 
 void check(const std::string& path, const sim::LoadOptions& options) {
@@ -99,12 +99,12 @@ void add_check_command(CLI::App& app, int& exit_code) {
   add_set_option(*command, options->sets);
   add_allow_path_option(*command, *options);
   add_plugin_option(*command);
-  command_line::set_help_end(*command,
-                             {{"shoal check worlds/coop_land.yaml --set run.seed=3", "shoal check worlds/studies/coop_land.yaml"},
-                              {{0, "no mistake was found"}, {2, "wrong usage, or mistakes, each on a line of its own"}},
-                              {"Every mistake is printed as file:line:column: who: rule, value.  Warnings have the "
-                               "same form and leave the exit "
-                               "code at 0; see docs/warnings.md."}});
+  command_line::set_help_end(
+      *command, {{"shoal check worlds/coop_land.yaml --set run.seed=3", "shoal check worlds/studies/coop_land.yaml"},
+                 {{0, "no mistake was found"}, {2, "wrong usage, or mistakes, each on a line of its own"}},
+                 {"Every mistake is printed as file:line:column: who: rule, value.  Warnings have the "
+                  "same form and leave the exit "
+                  "code at 0; see docs/warnings.md."}});
   command->callback([path, options, &exit_code] {
     check(file_by_name({ShippedKind::world, ShippedKind::vehicle, ShippedKind::study}, *path), *options);
     exit_code = exit_ok;

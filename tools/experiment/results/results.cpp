@@ -137,8 +137,7 @@ std::string Summary::to_json() const {
   json["metrics"] = nlohmann::ordered_json::object();
   for (const auto& [name, value] : metrics) json["metrics"][name] = value;  // NaN becomes null
   json["rules"] = nlohmann::ordered_json::array();
-  for (const Scoring::Verdict& verdict : verdicts)
-    json["rules"].push_back(json_of(verdict));
+  for (const Scoring::Verdict& verdict : verdicts) json["rules"].push_back(json_of(verdict));
   json["contacts"] = contacts_json(contacts);
   json["contact_pairs"] = contacts.size();
   json["processes"] = nlohmann::ordered_json::array();

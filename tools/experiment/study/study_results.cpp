@@ -247,8 +247,7 @@ std::string StudyResults::to_json(int exit_code) const {
           {{"case", config.cases[run.in_case].name}, {"seed", run.seed}, {"why", run.failure}});
   json["runs"] = runs_.size();
   json["rules"] = nlohmann::ordered_json::array();
-  for (const Scoring::Verdict& verdict : verdicts())
-    json["rules"].push_back(json_of(verdict));
+  for (const Scoring::Verdict& verdict : verdicts()) json["rules"].push_back(json_of(verdict));
   json["pictures"] = study_pictures(config);
   json["judged"] = judgement() != Judgement::not_judged;
   json["passed"] = nullptr;

@@ -56,9 +56,8 @@ std::optional<sim::RuleProblem> StudyRuleNames::name_problem(const std::string& 
                                    sim::shortened(whole) + ")'; statistics: " + sim::list_text(statistic_words())};
   }
   if (found == cases_.end())
-    return sim::RuleProblem{
-        0, "unknown case '" + sim::shortened(in_case) + "'; known cases: " + sim::list_text(cases_) +
-               suggestion(in_case, cases_)};
+    return sim::RuleProblem{0, "unknown case '" + sim::shortened(in_case) +
+                                   "'; known cases: " + sim::list_text(cases_) + suggestion(in_case, cases_)};
   if (figure.empty())
     return sim::RuleProblem{0, "case '" + in_case + "' needs one of its figures, such as " + in_case + ".passed"};
   if (figure == passed_figure) return std::nullopt;
