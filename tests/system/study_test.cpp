@@ -152,6 +152,23 @@ TEST(Study, ExitCodeIs2ForAMistake) {
   EXPECT_EQ(run_shoal({"study", study.folder.file("none.yaml")}).exit_code, 2);
 }
 
+TEST(Study, IsCheckedAsWorldsAre) {
+  const StudyFolder study(two_cases + "pass: [max(b.way.travelled_m) < 1]\n");
+  const std::string file = study.folder.file("study.yaml");
+  const Ended good = run_shoal({"check", file, "--allow-path", study.folder.file("")});
+  EXPECT_EQ(good.exit_code, 0) << good.errors;
+  EXPECT_THAT(good.output, HasSubstr("study.yaml: study 'tiny' of "));
+  EXPECT_THAT(good.output, HasSubstr(", 2 cases, 2 seeds, 4 runs, 1 rule\n"));
+  study.write_study(two_cases + "pass: [max(b.way.travelled) < 1]\n");
+  const Ended bad = run_shoal({"check", file, "--allow-path", study.folder.file("")});
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_THAT(bad.errors, HasSubstr("study.yaml:6:18: rule 1: metric 'way' has no figure 'travelled'; figures: "
+                                    "travelled_m; did you mean 'travelled_m'?"));
+  EXPECT_FALSE(fs::exists(study.folder.file("out")));
+  for (const auto& entry : fs::directory_iterator(source("worlds/studies")))
+    EXPECT_EQ(run_shoal({"check", entry.path().string()}).exit_code, 0) << entry.path();
+}
+
 TEST(Study, EndsItsRunsOnASignal) {
   const StudyFolder study("seeds: [1, 2]\nduration_s: 1e9\n");
   Program program(

@@ -5,6 +5,7 @@
 #include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/camera/texture.hpp"
+#include "sim/config/message_text.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
@@ -63,9 +64,12 @@ void check_study(const std::string& path, const sim::LoadOptions& options) {
   LoadedStudy study = load_study(path, changes);
   for (sim::LoadedWorld& world : study.worlds) body_count(world, warnings);
   const StudyConfig& config = study.config;
-  std::cout << path << ": study '" << config.name << "' of " << config.world << ": " << config.cases.size()
-            << " cases, " << config.seeds.size() << " seeds, " << config.cases.size() * config.seeds.size() << " runs, "
-            << config.pass.size() << " rules\n";
+  const auto counted = [](std::size_t count, const std::string& word) {
+    return ", " + std::to_string(count) + " " + (count == 1 ? word : sim::plural_of(word));
+  };
+  std::cout << path << ": study '" << config.name << "' of " << config.world << counted(config.cases.size(), "case")
+            << counted(config.seeds.size(), "seed") << counted(config.cases.size() * config.seeds.size(), "run")
+            << counted(config.pass.size(), "rule") << "\n";
 }
 
 void check(const std::string& path, const sim::LoadOptions& options) {

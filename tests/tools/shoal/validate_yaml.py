@@ -100,7 +100,7 @@ def accept(schema_dir, files):
     found = []
     for path in files:
         first = path.read_text().split("\n", 1)[0]
-        named = re.fullmatch(r"# yaml-language-server: \$schema=(\S+/(world|vehicle)\.schema\.json)", first)
+        named = re.fullmatch(r"# yaml-language-server: \$schema=(\S+/(world|vehicle|study)\.schema\.json)", first)
         if not named or (path.parent / named[1]).resolve().parent != schema_dir.resolve():
             found.append(f"{path}: must start with # yaml-language-server: $schema=../docs/schema/world.schema.json")
             continue

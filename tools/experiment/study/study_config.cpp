@@ -95,8 +95,21 @@ std::vector<std::int64_t> read_seed_ranges(sim::ParamReader& in, const sim::Conf
   return seeds;
 }
 
+void describe_seeds(sim::ParamReader& in) {
+  sim::ParamInfo info;
+  info.key = "seeds";
+  info.type = "list of numbers";
+  info.rule = "whole numbers from 0 to 2^53";
+  info.meaning = "seeds of the runs: [1, 2, 3], 1-10, [1-3, 8] or {first: 1, count: 10}";
+  in.describe(std::move(info));
+}
+
 std::vector<std::int64_t> read_seeds(sim::ParamReader& in) {
   in.require("seeds");
+  if (in.describing()) {
+    describe_seeds(in);
+    return {};
+  }
   const sim::ConfigNode* node = in.child("seeds");
   std::vector<std::int64_t> seeds;
   if (node != nullptr && node->kind == sim::ConfigNode::Kind::map) {
