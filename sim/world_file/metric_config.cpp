@@ -40,7 +40,8 @@ void MetricConfig::read(ParamReader& in) {
   const MetricRegistry& registry = MetricRegistry::instance();
   if (in.node() != nullptr) place = in.node()->place;
   in.require("name");
-  in.read_name("name", name, "name of the metric; gives NAME.FIGURE for each figure of its type, see docs/scores.md");
+  in.read_name("name", name,
+               "name of the metric; gives NAME.FIGURE for each figure of its type, see docs/guides/scoring.md");
   std::string type = registry.default_word();
   in.read_choice("type", type, registry.words(), "what it looks at");
   if (in.describing()) {
@@ -109,7 +110,7 @@ void describe_rules(ParamReader& in, const char* meaning, std::vector<std::strin
 
 void read_rules(ParamReader& in, std::vector<RuleExpression>& rules, const std::vector<MetricConfig>& metrics) {
   if (in.describing())
-    return describe_rules(in, "rules; the run passes when every one holds, else exit code 1; see docs/scores.md",
+    return describe_rules(in, "rules; the run passes when every one holds, else exit code 1; see docs/guides/scoring.md",
                           {"bumps.count == 0", "cooperative.rms_m < 0.4 * alone.rms_m"});
   const ConfigNode* list = in.child("pass");
   if (list == nullptr || list->kind == ConfigNode::Kind::null) return;
