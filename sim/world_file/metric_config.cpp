@@ -6,6 +6,7 @@
 
 #include "sim/config/merged_keys.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/world_file/rule_list.hpp"
 #include "sim/world_file/rule_of_map.hpp"
 #include "sim/world_file/world_config.hpp"
 
@@ -89,45 +90,12 @@ std::optional<RuleProblem> figure_problem(const std::vector<MetricConfig>& metri
                                   "'; figures: " + list_text(figures) + suggestion(figure, figures)};
 }
 
-std::string no_text_of_rule(const ConfigNode& entry, const std::optional<std::string>& new_form) {
-  if (new_form) return "a rule is text; write '" + *new_form + "' ('shoal upgrade' rewrites it)";
-  return "a rule is text, a comparison such as 'METRIC.FIGURE < 5', got " + shown(entry);
-}
-
-void describe_rules(ParamReader& in, const char* meaning, std::vector<std::string> examples) {
-  ParamInfo info;
-  info.key = "pass";
-  info.type = type_text(ParamKind::texts);
-  info.rule = "two sides and one of < <= > >= == !=";
-  info.initial = "[]";
-  info.meaning = meaning;
-  info.kind = ParamKind::texts;
-  info.may_be_null = true;
-  info.pattern = R"(^[A-Za-z0-9_.+*/()\s-]+(<|<=|>|>=|==|!=)[A-Za-z0-9_.+*/()\s-]+$)";
-  info.examples = std::move(examples);
-  in.describe(std::move(info));
-}
-
 void read_rules(ParamReader& in, std::vector<RuleExpression>& rules, const std::vector<MetricConfig>& metrics) {
   if (in.describing())
-    return describe_rules(in, "rules; the run passes when every one holds, else exit code 1; see docs/guides/scoring.md",
+    return describe_rules(in, "the run passes when every rule holds; else exit code 1; see docs/guides/scoring.md",
                           {"bumps.count == 0", "cooperative.rms_m < 0.4 * alone.rms_m"});
-  const ConfigNode* list = in.child("pass");
-  if (list == nullptr || list->kind == ConfigNode::Kind::null) return;
-  if (list->kind != ConfigNode::Kind::list)
-    return in.error("pass", "'pass' must be a list of rules, got " + shown(*list));
-  const WorldRuleNames names(metrics);
-  for (std::size_t i = 0; i < list->items.size(); ++i) {
-    const ConfigNode& item = list->items[i];
-    const std::string who = "rule " + std::to_string(i + 1);
-    RuleProblem problem;
-    if (item.kind != ConfigNode::Kind::scalar)
-      in.diagnostics().error(item.place, who, no_text_of_rule(item, rule_of_map(item)));
-    else if (auto rule = RuleExpression::parse(item.scalar, names, problem))
-      rules.push_back(std::move(*rule));
-    else
-      in.diagnostics().error(place_in(item, problem.at), who, problem.text);
-  }
+  if (const ConfigNode* list = in.child("pass"))
+    rules = read_rule_list(*list, WorldRuleNames(metrics), rule_of_map, in.diagnostics());
 }
 
 void declare_metrics(ParamReader& in) {

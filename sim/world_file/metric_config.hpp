@@ -33,10 +33,6 @@ void declare_metrics(ParamReader& in);
 std::optional<RuleProblem> figure_problem(const std::vector<MetricConfig>& metrics, const std::string& name);
 /// Reads `pass:`, the list of rules of a world, which name figures of `metrics`.
 void read_rules(ParamReader& in, std::vector<RuleExpression>& rules, const std::vector<MetricConfig>& metrics);
-/// The row of `pass:` in tables and schemas.
-void describe_rules(ParamReader& in, const char* meaning, std::vector<std::string> examples);
-/// Why an entry of `pass:` that is no text is no rule.  `new_form`: of a rule that is written as a map, as before 0.2.
-std::string no_text_of_rule(const ConfigNode& entry, const std::optional<std::string>& new_form);
 /// What is wrong with metrics when the vehicles are known, such as devices that are not there.
 void check_metrics(const WorldConfig& world, Diagnostics& diagnostics);
 

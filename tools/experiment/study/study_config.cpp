@@ -13,6 +13,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/config/shipped_files.hpp"
 #include "sim/config/yaml_writer.hpp"
+#include "sim/world_file/rule_list.hpp"
 #include "tools/experiment/study/study_rules.hpp"
 
 namespace tools {
@@ -173,7 +174,7 @@ class NameCheck {
       if (!plot.figure.empty()) require("figure", plot.figure, figures_, plot.place, who);
       for (const std::string& metric : plot.metrics) require("metrics", metric, metrics_, plot.place, who);
     }
-    read_study_rules(config.rules, StudyRuleNames(config.cases, study_.worlds), diagnostics_);
+    sim::read_rule_list(config.rules, StudyRuleNames(config.cases, study_.worlds), study_rule_of_map, diagnostics_);
     diagnostics_.throw_if_any();
   }
 
@@ -244,10 +245,10 @@ void StudyConfig::read(sim::ParamReader& in) {
   in.read_list("plots", plots, "plot", "pictures");
   for (const StudyPlot& plot : plots) in.declare("plot", plot.name);
   if (in.describing())
-    return sim::describe_rules(in, "rules; the study passes when every one holds, else exit code 1",
+    return sim::describe_rules(in, "the study passes when every rule holds; else exit code 1",
                                {"mean(cooperative.passed) == 1", "max(cooperative.auv1.rms_m) < 0.8"});
   if (const sim::ConfigNode* node = in.child("pass")) rules = *node;
-  pass = read_study_rules(rules, StudyRuleNames(cases), in.diagnostics());
+  pass = sim::read_rule_list(rules, StudyRuleNames(cases), study_rule_of_map, in.diagnostics());
 }
 
 std::vector<std::int64_t> parse_seeds(const std::string& text) {

@@ -69,26 +69,6 @@ std::optional<sim::RuleProblem> StudyRuleNames::name_problem(const std::string& 
   return problem;
 }
 
-std::vector<sim::RuleExpression> read_study_rules(const sim::ConfigNode& list, const StudyRuleNames& names,
-                                                  sim::Diagnostics& diagnostics) {
-  using Kind = sim::ConfigNode::Kind;
-  std::vector<sim::RuleExpression> rules;
-  if (list.kind != Kind::list && list.kind != Kind::null)
-    diagnostics.error(list.place, "", "'pass' must be a list of rules, got " + sim::shown(list));
-  for (std::size_t i = 0; i < list.items.size(); ++i) {
-    const sim::ConfigNode& item = list.items[i];
-    const std::string who = "rule " + std::to_string(i + 1);
-    sim::RuleProblem problem;
-    if (item.kind != Kind::scalar)
-      diagnostics.error(item.place, who, sim::no_text_of_rule(item, study_rule_of_map(item)));
-    else if (auto rule = sim::RuleExpression::parse(item.scalar, names, problem))
-      rules.push_back(std::move(*rule));
-    else
-      diagnostics.error(sim::place_in(item, problem.at), who, problem.text);
-  }
-  return rules;
-}
-
 std::optional<std::string> study_rule_of_map(const sim::ConfigNode& map) {
   static const std::vector<sim::OldComparison> comparisons{
       {"below", "<"}, {"above", ">"}, {"equals", "=="}, {"below_case", "<"}, {"below_figure", "<"}};

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/config/diagnostics.hpp"
+#include "sim/config/config_node.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/rule_expression.hpp"
 
@@ -32,10 +32,6 @@ class StudyRuleNames final : public sim::RuleNames {
 
 /// The case and the figure of `CASE.FIGURE`.
 std::pair<std::string, std::string> case_and_figure(const std::string& name);
-
-/// Reads the list `pass:` of a study.
-std::vector<sim::RuleExpression> read_study_rules(const sim::ConfigNode& list, const StudyRuleNames& names,
-                                                  sim::Diagnostics& diagnostics);
 
 /// As sim::rule_of_map: the rule that `{case: a, figure: e.rms_m, statistic: max, below: 2}` becomes,
 /// `max(a.e.rms_m) < 2`.
