@@ -86,6 +86,7 @@ class Substitution {
     if (copied == 0) return;
     result.append(text, copied);
     node.scalar = std::move(result);
+    node.verbatim = false;
   }
 
   const ConfigNode* find(const std::string& name) const {
@@ -136,6 +137,12 @@ class Substitution {
 const std::string* name_of(const ConfigNode& item) {
   const ConfigNode* name = item.kind == Kind::map ? item.find("name") : nullptr;
   return name != nullptr && name->kind == Kind::scalar ? &name->scalar : nullptr;
+}
+
+SourcePlace place_in(const ConfigNode& scalar, std::size_t offset) {
+  SourcePlace place = scalar.place;
+  if (scalar.verbatim && place.line > 0) place.column += static_cast<int>(offset) + (scalar.quoted ? 1 : 0);
+  return place;
 }
 
 ConfigNode scalar_node(const std::string& text, const SourcePlace& place) {

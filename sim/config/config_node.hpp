@@ -16,7 +16,8 @@ struct ConfigNode {
   struct Entry;
 
   Kind kind = Kind::null;
-  bool quoted = false;  ///< a scalar in quotes: always text, never a number
+  bool quoted = false;    ///< a scalar in quotes: always text, never a number
+  bool verbatim = false;  ///< a scalar that stands in its file as it is: on one line, without escapes
   std::string scalar;
   std::vector<ConfigNode> items;  ///< of a list
   std::vector<Entry> entries;     ///< of a map, in file order, keys unique
@@ -31,6 +32,9 @@ struct ConfigNode::Entry {
   SourcePlace place;  ///< of the key
   ConfigNode value;
 };
+
+/// The place of one character of a scalar, counted from 0; where the scalar is not verbatim, the place of the scalar.
+SourcePlace place_in(const ConfigNode& scalar, std::size_t offset);
 
 /// A plain scalar, as if it were written at `place`.
 ConfigNode scalar_node(const std::string& text, const SourcePlace& place);

@@ -83,6 +83,8 @@ struct ParamInfo {
   bool one_key = false;                   ///< each map has one of the children and nothing else
   bool main_alone = false;                ///< a value of the first child may stand for the map
   std::string definition = {};            ///< a name of the maps' keys; without children they are those of this name
+  std::string pattern = {};                ///< regular expression (ECMA) that each text of a list matches; empty: any
+  std::vector<std::string> examples = {};  ///< of such texts
 };
 
 }  // namespace sim

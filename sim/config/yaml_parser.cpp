@@ -55,7 +55,12 @@ TreeSize size_of(const ConfigNode& node) {
 /// quotes.
 class TreeBuilder final : public YAML::EventHandler {
  public:
-  TreeBuilder(const std::string* file, Diagnostics& diagnostics) : file_(file), diagnostics_(diagnostics) {}
+  TreeBuilder(std::string_view text, const std::string* file, Diagnostics& diagnostics)
+      : text_(text), file_(file), diagnostics_(diagnostics) {
+    line_starts_.push_back(text.starts_with("\xef\xbb\xbf") ? 3 : 0);  // yaml-cpp skips a byte order mark
+    for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n', end + 1))
+      line_starts_.push_back(end + 1);
+  }
 
   ConfigNode take_root() { return std::move(root_); }
   bool failed() const { return failed_; }
@@ -157,7 +162,15 @@ class TreeBuilder final : public YAML::EventHandler {
     node.quoted = quoted;
     node.scalar = value;
     node.place = place_of(mark);
+    node.verbatim = is_verbatim(mark, value, quoted);
     return node;
+  }
+
+  /// Of block scalars, escapes, and texts of several lines the file has other characters than the value.
+  bool is_verbatim(const YAML::Mark& mark, const std::string& value, bool quoted) const {
+    if (mark.is_null() || static_cast<std::size_t>(mark.line) >= line_starts_.size()) return false;
+    const std::size_t at = line_starts_[static_cast<std::size_t>(mark.line)] + static_cast<std::size_t>(mark.column);
+    return at < text_.size() && text_.substr(at).substr(quoted ? 1 : 0).starts_with(value);
   }
 
   /// `!` is yaml-cpp's tag of a scalar in quotes, `?` of anything else without a tag.
@@ -228,6 +241,8 @@ class TreeBuilder final : public YAML::EventHandler {
     parent.has_key = false;
   }
 
+  std::string_view text_;
+  std::vector<std::size_t> line_starts_;
   const std::string* file_;
   Diagnostics& diagnostics_;
   ConfigNode root_;
@@ -330,7 +345,7 @@ ConfigNode parse_config_text(const std::string& text, const std::string& file_na
     diagnostics.error(place_at(text, bad->at, file), "", bad->text);
     return {};
   }
-  TreeBuilder builder(file, diagnostics);
+  TreeBuilder builder(text, file, diagnostics);
   try {
     std::istringstream stream(text);
     YAML::Parser parser(stream);

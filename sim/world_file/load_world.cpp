@@ -299,7 +299,8 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   gather_from_vehicles(loaded.config);
   check_script(loaded.config, diagnostics);
   diagnostics.throw_if_any();
-  Warnings warnings;
+  Warnings own_warnings;
+  Warnings& warnings = options.warnings != nullptr ? *options.warnings : own_warnings;
   warn_of_missing_water(loaded.config, warnings);
   warn_of_config(loaded.config, root, warnings, options.duration_s);
   if (options.resolve) vehicles.resolve(root);

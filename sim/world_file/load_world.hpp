@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/config/warnings.hpp"
 #include "sim/world_file/world_config.hpp"
 
 namespace sim {
@@ -19,7 +20,8 @@ struct LoadOptions {
   bool only_own_files = false;
   std::vector<std::string> allow_paths = {};  ///< further folders and files
   bool serial_ports = true;                   ///< they are opened: their paths count
-  bool special_files = false;  ///< the world may come from a pipe or a device; it cannot include others then
+  bool special_files = false;    ///< the world may come from a pipe or a device; it cannot include others then
+  Warnings* warnings = nullptr;  ///< of several worlds, so that what is wrong in all is logged once; null: of its own
   /// Put the vehicle files into LoadedWorld::resolved; without them it has no vehicles, nor has `vehicle_entries`.
   bool resolve = true;
   /// Duration of the run instead of the file's, 0: without end.  Warnings are of what comes after both.

@@ -5,18 +5,34 @@
 #include <set>
 
 #include "sim/config/merged_keys.hpp"
+#include "sim/config/message_text.hpp"
+#include "sim/world_file/rule_list.hpp"
+#include "sim/world_file/rule_of_map.hpp"
 #include "sim/world_file/world_config.hpp"
 
 namespace sim {
 
 namespace {
 
-constexpr const char* rule_forms[] = {"above", "above_metric", "below", "below_metric", "equals"};
+/// Rules of a world name figures of its metrics.
+class WorldRuleNames final : public RuleNames {
+ public:
+  explicit WorldRuleNames(const std::vector<MetricConfig>& metrics) : metrics_(metrics) {}
 
-/// An empty reference names nothing, which is a mistake where the key is written.
-void refuse_empty(ParamReader& in, const char* key, const std::string& value) {
-  if (!in.describing() && in.has(key) && value.empty() && in.child(key)->kind != ConfigNode::Kind::list)
-    in.error(key, "'" + std::string(key) + "' must not be empty");
+  std::string function_problem(const std::string& function) const override {
+    return "'" + shortened(function) + "(...)' has no meaning in a world: its rules name figures as they are";
+  }
+  std::optional<RuleProblem> name_problem(const std::string& /*function*/, const std::string& name) const override {
+    return figure_problem(metrics_, name);
+  }
+
+ private:
+  const std::vector<MetricConfig>& metrics_;
+};
+
+std::string suggestion(std::string_view misspelt, const std::vector<std::string>& names) {
+  const std::string meant = closest_name(misspelt, names);
+  return meant.empty() ? "" : "; did you mean '" + meant + "'?";
 }
 
 }  // namespace
@@ -49,28 +65,37 @@ std::vector<std::string> MetricConfig::figures() const {
   return names;
 }
 
-void PassRule::read(ParamReader& in) {
-  in.require("metric");
-  in.read_reference("metric", metric, "figure", "such as NAME.rms_m");
-  in.read("below", below, any_number(), "the figure must be below this");
-  in.read("above", above, any_number(), "the figure must be above this");
-  in.read("equals", equals, any_number(), "the figure must be this, as a count can be");
-  in.read_reference("below_metric", below_metric, "figure", "the figure must be below this other one times factor");
-  in.read_reference("above_metric", above_metric, "figure", "the figure must be above this other one times factor");
-  in.read("factor", factor, sim::above(0), "see below_metric and above_metric");
-  if (in.describing()) return;
-  refuse_empty(in, "metric", metric);
-  refuse_empty(in, "below_metric", below_metric);
-  refuse_empty(in, "above_metric", above_metric);
-  const auto count = std::count_if(std::begin(rule_forms), std::end(rule_forms), [&](auto key) {
-    return in.has(key) && in.child(key)->kind != ConfigNode::Kind::null;
-  });
-  if (count != 1) {
-    const std::string forms = "'above', 'above_metric', 'below', 'below_metric' and 'equals'";
-    in.error("needs one of " + forms + (count > 1 ? ", not several" : ""));
+std::optional<RuleProblem> figure_problem(const std::vector<MetricConfig>& metrics, const std::string& name) {
+  const std::size_t dot = std::min(name.find('.'), name.size());
+  const std::string metric_name = name.substr(0, dot);
+  const auto metric =
+      std::find_if(metrics.begin(), metrics.end(), [&](const MetricConfig& each) { return each.name == metric_name; });
+  if (metric == metrics.end()) {
+    std::vector<std::string> known;
+    for (const MetricConfig& each : metrics) known.push_back(each.name);
+    const std::string shown_name = "'" + shortened(metric_name) + "'";
+    const std::string what = dot < name.size() ? "unknown metric " + shown_name
+                                               : shown_name + " is neither a number nor a figure, METRIC.FIGURE";
+    return RuleProblem{0, what + "; known metrics: " + list_text(known) + suggestion(metric_name, known)};
   }
-  if (in.has("factor") && !in.has("below_metric") && !in.has("above_metric"))
-    in.error("factor", "'factor' belongs to 'below_metric' and 'above_metric'");
+  if (metric->kind == nullptr) return std::nullopt;  // its type is wrong, which has been reported
+  std::vector<std::string> figures;
+  for (const FigureKind& figure : metric->kind->figures) figures.push_back(figure.name);
+  if (dot == name.size())
+    return RuleProblem{0, "'" + metric_name + "' is a metric; a rule names one of its figures, such as " + metric_name +
+                              "." + figures.front() + "; figures: " + list_text(figures)};
+  const std::string figure = name.substr(dot + 1);
+  if (metric->kind->find(figure) != nullptr) return std::nullopt;
+  return RuleProblem{dot + 1, "metric '" + metric_name + "' has no figure '" + shortened(figure) +
+                                  "'; figures: " + list_text(figures) + suggestion(figure, figures)};
+}
+
+void read_rules(ParamReader& in, std::vector<RuleExpression>& rules, const std::vector<MetricConfig>& metrics) {
+  if (in.describing())
+    return describe_rules(in, "the run passes when every rule holds; else exit code 1; see docs/guides/scoring.md",
+                          {"bumps.count == 0", "cooperative.rms_m < 0.4 * alone.rms_m"});
+  if (const ConfigNode* list = in.child("pass"))
+    rules = read_rule_list(*list, WorldRuleNames(metrics), rule_of_map, in.diagnostics());
 }
 
 void declare_metrics(ParamReader& in) {
@@ -85,13 +110,6 @@ void declare_metrics(ParamReader& in) {
   }
   for (const auto& [type, name] : names)
     if (MetricRegistry::instance().find(type) != nullptr) in.declare(type.c_str(), name);
-}
-
-void declare_figures(ParamReader& in, const std::vector<MetricConfig>& metrics) {
-  std::set<std::string> names;  // a metric that is there twice has been reported
-  for (const MetricConfig& metric : metrics)
-    if (names.insert(metric.name).second)
-      for (const std::string& figure : metric.figures()) in.declare("figure", figure);
 }
 
 void check_metrics(const WorldConfig& world, Diagnostics& diagnostics) {

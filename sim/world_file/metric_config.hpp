@@ -8,6 +8,7 @@
 
 #include "sim/config/param_reader.hpp"
 #include "sim/world_file/metric_registry.hpp"
+#include "sim/world_file/rule_expression.hpp"
 
 namespace sim {
 
@@ -25,20 +26,13 @@ struct MetricConfig {
   std::vector<std::string> figures() const;
 };
 
-/// The run passes when every rule holds.
-struct PassRule {
-  std::string metric;  ///< such as `cooperative.rms_m`
-  std::optional<double> below, above, equals;
-  std::string below_metric, above_metric;  ///< another figure, times `factor`
-  double factor = 1;
-  void read(ParamReader& in);
-};
-
 /// Makes each metric known by the word of its type, so that other metrics of the list may name it.  Call before
 /// `metrics` is read.
 void declare_metrics(ParamReader& in);
-/// Makes the figures known that pass rules may name.
-void declare_figures(ParamReader& in, const std::vector<MetricConfig>& metrics);
+/// What is wrong with `METRIC.FIGURE` where these metrics are known, and at which of its characters.
+std::optional<RuleProblem> figure_problem(const std::vector<MetricConfig>& metrics, const std::string& name);
+/// Reads `pass:`, the list of rules of a world, which name figures of `metrics`.
+void read_rules(ParamReader& in, std::vector<RuleExpression>& rules, const std::vector<MetricConfig>& metrics);
 /// What is wrong with metrics when the vehicles are known, such as devices that are not there.
 void check_metrics(const WorldConfig& world, Diagnostics& diagnostics);
 

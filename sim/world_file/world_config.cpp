@@ -201,8 +201,7 @@ void WorldConfig::read(ParamReader& in) {
   declare_metrics(in);
   in.read_list("metrics", metrics, "metric", "figures that score the run");
   for (const MetricConfig& metric : metrics) in.declare("metric", metric.name);
-  declare_figures(in, metrics);
-  in.read_list("pass", pass, "rule", "the run passes when every rule holds; else exit code 1");
+  read_rules(in, pass, metrics);
 }
 
 void declare_surfaces(ParamReader& in, const WorldConfig& world, const VehicleConfig* vehicle) {

@@ -140,7 +140,7 @@ struct WorldConfig {
   std::vector<ProcessConfig> processes;
   LockstepConfig lockstep;
   std::vector<MetricConfig> metrics;
-  std::vector<PassRule> pass;
+  std::vector<RuleExpression> pass;  ///< the run passes when every rule holds
   LimitsConfig limits;
   std::vector<ZoneConfig> zones;
   std::vector<ActorConfig> actors;

@@ -353,7 +353,7 @@ TEST(CommandLine, FilesThatAreNotWhatTheyShouldBeAreNamed) {
 }
 
 TEST(CommandLine, OutputFitsEightyColumns) {
-  for (const char* what : {"device", "noise", "world", "vehicle", "lidar", "micromodem", "camera", "pose_t",
+  for (const char* what : {"device", "noise", "world", "vehicle", "study", "lidar", "micromodem", "camera", "pose_t",
                            "sim_info_t", "planar_lidar_t", "multibeam_t"}) {
     const Ended ended = run_program("shoal", {"describe", what}, {"COLUMNS=80"});
     for (const std::string& line : lines_of(ended.output))

@@ -292,7 +292,7 @@ class UnjudgedRun : public LiveRun {
   void start_it() {
     start(
         "metrics: [{name: way, type: distance, vehicle: rover1}]\n"
-        "pass: [{metric: way.travelled_m, above: 1000000}]\n",
+        "pass: [way.travelled_m > 1000000]\n",
         {"--duration", "1000", "--results", folder_.file("results"), "--no-pictures"});
   }
   void expect_not_judged(const std::string& how) {
@@ -325,7 +325,7 @@ TEST_F(UnjudgedRun, WasEndedByASignal) {
 TEST_F(LiveRun, ThatIsEndedByHandHasFailedWhenAProgramDid) {
   const std::string results = folder_.file("results");
   start(
-      "metrics: [{name: way, type: distance, vehicle: rover1}]\npass: [{metric: way.travelled_m, below: 1000}]\n"
+      "metrics: [{name: way, type: distance, vehicle: rover1}]\npass: [way.travelled_m < 1000]\n"
       "processes: [{name: pilot, command: [sh, -c, exit 3]}]\n",
       {"--launch", "--duration", "1000", "--results", results, "--no-pictures"});
   EXPECT_TRUE(await([&] { return shoal_->errors().find("exited with code 3") != std::string::npos; }, patience));

@@ -294,7 +294,7 @@ TEST_F(Policy, AnotherSimulatorOnTheBusDoesNotEndTheClients) {
 
 TEST_F(Policy, AKilledClientFailsARunThatIsJudgedThoughTheWorldGoesOn) {
   start("--die-at, '5', --on-timeout, continue, --timeout, '1000'",
-        "metrics: [{name: way, type: distance, vehicle: rover2}]\npass: [{metric: way.travelled_m, below: 1e6}]\n");
+        "metrics: [{name: way, type: distance, vehicle: rover2}]\npass: [way.travelled_m < 1e6]\n");
   EXPECT_EQ(shoal_->wait(), 1) << shoal_->errors();
   EXPECT_THAT(shoal_->output(), HasSubstr("FAILED: process 'pilot' must not fail; it was killed by signal 9"));
   EXPECT_THAT(summary(), HasSubstr("\"passed\": false"));

@@ -47,11 +47,11 @@ const std::string two_cases = "seeds: [1, 2]\ncases: [{name: a}, {name: b, set: 
 TEST(Study, RunsAWorldForEverySeedAndCase) {
   const StudyFolder study(two_cases +
                           "plots: [{name: ways, figure: way.travelled_m}]\n"
-                          "pass: [{case: a, figure: way.travelled_m, below: 1}]\n");
+                          "pass: [mean(a.way.travelled_m) < 1]\n");
   const Ended ended = study.run({"--jobs", "2"});
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_THAT(ended.output, HasSubstr("study tiny: 4 runs"));
-  EXPECT_THAT(ended.output, HasSubstr("passed: a: mean of way.travelled_m"));
+  EXPECT_THAT(ended.output, HasSubstr("passed: mean(a.way.travelled_m) < 1 (left 0"));
   EXPECT_THAT(ended.errors, HasSubstr("[4/4] "));
   EXPECT_THAT(study.text("study.csv"), HasSubstr("\na,1,0,,duration,1,"));
   EXPECT_THAT(study.text("study.csv"), HasSubstr("\nb,2,0,,duration,2,"));
@@ -101,23 +101,22 @@ TEST(Study, KeepsRunsThatAreDoneUntilSomethingChanges) {
 }
 
 TEST(Study, ExitCodeIs1WhenARuleFails) {
-  const StudyFolder study("seeds: [1]\npass: [{case: world, figure: way.travelled_m, above: 1000}]\n");
+  const StudyFolder study("seeds: [1]\npass: [mean(world.way.travelled_m) > 1000]\n");
   const Ended ended = study.run();
   EXPECT_EQ(ended.exit_code, 1);
-  EXPECT_THAT(ended.output, HasSubstr("FAILED: world: mean of way.travelled_m"));
+  EXPECT_THAT(ended.output, HasSubstr("FAILED: mean(world.way.travelled_m) > 1000 (left "));
 }
 
 TEST(Study, ARunWhoseOwnRulesFailIsAResult) {
-  const StudyFolder study("seeds: [1]\npass: [{case: world, figure: passed, equals: 0}]\n",
-                          "pass: [{metric: way.travelled_m, above: 1000}]\n");
+  const StudyFolder study("seeds: [1]\npass: [mean(world.passed) == 0]\n", "pass: [way.travelled_m > 1000]\n");
   const Ended ended = study.run();
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_THAT(ended.errors, HasSubstr("done, its rules failed"));
 }
 
 TEST(Study, AProgramThatFailedFailsItsRunAndTheStudy) {
-  const StudyFolder study("seeds: [1, 2]\nlaunch: true\npass: [{case: world, figure: way.travelled_m, below: 1e6}]\n",
-                          "pass: [{metric: way.travelled_m, below: 1e6}]\n"
+  const StudyFolder study("seeds: [1, 2]\nlaunch: true\npass: [mean(world.way.travelled_m) < 1e6]\n",
+                          "pass: [way.travelled_m < 1e6]\n"
                           "processes: [{name: pilot, client: pilot, command: [sh, -c, exit 3]}]\n"
                           "lockstep: {join_timeout_s: 1000}\n");
   const Ended ended = study.run();
@@ -128,7 +127,7 @@ TEST(Study, AProgramThatFailedFailsItsRunAndTheStudy) {
 
 TEST(Study, ARunThatWasEndedByHandIsNoResult) {
   const StudyFolder study(
-      "seeds: [1]\nlaunch: true\nduration_s: 1e9\npass: [{case: world, figure: way.travelled_m, below: 1e6}]\n",
+      "seeds: [1]\nlaunch: true\nduration_s: 1e9\npass: [mean(world.way.travelled_m) < 1e6]\n",
       "processes: [{name: hand, command: [" + built("shoal") + ", control, quit, --lcm-url, '{lcm_url}']}]\n");
   const Ended ended = study.run();
   EXPECT_EQ(ended.exit_code, 4) << ended.errors;
@@ -151,6 +150,23 @@ TEST(Study, ExitCodeIs2ForAMistake) {
   EXPECT_THAT(ended.errors, HasSubstr("study.yaml:5:10: 'figures' names nothing of this world: 'way.rms_m'"));
   EXPECT_FALSE(fs::exists(study.folder.file("out")));
   EXPECT_EQ(run_shoal({"study", study.folder.file("none.yaml")}).exit_code, 2);
+}
+
+TEST(Study, IsCheckedAsWorldsAre) {
+  const StudyFolder study(two_cases + "pass: [max(b.way.travelled_m) < 1]\n");
+  const std::string file = study.folder.file("study.yaml");
+  const Ended good = run_shoal({"check", file, "--allow-path", study.folder.file("")});
+  EXPECT_EQ(good.exit_code, 0) << good.errors;
+  EXPECT_THAT(good.output, HasSubstr("study.yaml: study 'tiny' of "));
+  EXPECT_THAT(good.output, HasSubstr(", 2 cases, 2 seeds, 4 runs, 1 rule\n"));
+  study.write_study(two_cases + "pass: [max(b.way.travelled) < 1]\n");
+  const Ended bad = run_shoal({"check", file, "--allow-path", study.folder.file("")});
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_THAT(bad.errors, HasSubstr("study.yaml:6:18: rule 1: metric 'way' has no figure 'travelled'; figures: "
+                                    "travelled_m; did you mean 'travelled_m'?"));
+  EXPECT_FALSE(fs::exists(study.folder.file("out")));
+  for (const auto& entry : fs::directory_iterator(source("worlds/studies")))
+    EXPECT_EQ(run_shoal({"check", entry.path().string()}).exit_code, 0) << entry.path();
 }
 
 TEST(Study, EndsItsRunsOnASignal) {
@@ -226,11 +242,10 @@ TEST(Study, GivesEachRunASerialPortOfItsOwnWhereThePathNamesTheRun) {
 TEST(Study, OfTheCooperativeWorldGoesOnWhereItWasStopped) {
   const ScratchFolder folder;
   const auto study = [&](const std::string& seeds) {
-    write_file(folder.file("study.yaml"),
-               "shoal: 1\nstudy: sea\nworld: " + source("worlds/coop_underwater.yaml") +
-                   "\nlaunch: true\nduration_s: 150\nseeds: " + seeds +
-                   "\nfigures: [cooperative.rms_m, link.received]\n"
-                   "pass: [{case: world, figure: link.received, statistic: min, above: 5}]\n");
+    write_file(folder.file("study.yaml"), "shoal: 1\nstudy: sea\nworld: " + source("worlds/coop_underwater.yaml") +
+                                              "\nlaunch: true\nduration_s: 150\nseeds: " + seeds +
+                                              "\nfigures: [cooperative.rms_m, link.received]\n"
+                                              "pass: [min(world.link.received) > 5]\n");
     return run_shoal({"study", folder.file("study.yaml"), "--output", folder.file("out"), "--jobs", "2"});
   };
   ASSERT_EQ(study("[1]").exit_code, 0);

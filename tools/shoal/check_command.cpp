@@ -10,6 +10,7 @@
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tools/experiment/process/process_check.hpp"
+#include "tools/experiment/study/study_config.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 
@@ -17,9 +18,12 @@ namespace tools {
 
 namespace {
 
-bool is_vehicle_file(const std::string& path, const sim::LoadOptions& options) {
+sim::ConfigNode keys_of(const std::string& path, const sim::LoadOptions& options) {
   sim::Diagnostics ignored(sim::files_of(path, options));
-  const sim::ConfigNode node = sim::load_config_file(path, ignored);
+  return sim::load_config_file(path, ignored);
+}
+
+bool is_vehicle_file(const sim::ConfigNode& node) {
   return node.find("vehicle") != nullptr || (node.find("bodies") != nullptr && node.find("vehicles") == nullptr);
 }
 
@@ -45,8 +49,36 @@ std::size_t device_count(const sim::WorldConfig& world) {
   return count;
 }
 
+/// Builds a world, which finds what reading cannot: mesh files, bodies without mass.
+std::size_t body_count(sim::LoadedWorld& loaded, sim::Warnings& warnings) {
+  loaded.config.bodies_only_of_many = true;
+  sim::InProcessBus bus;
+  const sim::World world(loaded.config, bus);
+  check_textures(loaded.config);
+  warn_of_processes(loaded, warnings);
+  warn_of_missing_programs(loaded, warnings);
+  return world.physics().bodies().size();
+}
+
+void check_study(const std::string& path, const sim::LoadOptions& options) {
+  sim::Warnings warnings;
+  StudyChanges changes;
+  changes.load = options;
+  changes.load.warnings = &warnings;
+  changes.only_checked = true;
+  LoadedStudy study = load_study(path, changes);
+  for (sim::LoadedWorld& world : study.worlds) body_count(world, warnings);
+  const StudyConfig& config = study.config;
+  std::cout << path << ": study '" << config.name << "' of " << config.world << ": "
+            << counted(config.cases.size(), "case") << ", " << counted(config.seeds.size(), "seed") << ", "
+            << counted(config.cases.size() * config.seeds.size(), "run") << ", " << counted(config.pass.size(), "rule")
+            << '\n';
+}
+
 void check(const std::string& path, const sim::LoadOptions& options) {
-  if (is_vehicle_file(path, options)) {
+  const sim::ConfigNode keys = keys_of(path, options);
+  if (keys.find("study") != nullptr) return check_study(path, options);
+  if (is_vehicle_file(keys)) {
     const sim::VehicleConfig vehicle = sim::load_vehicle(path, options);
     std::cout << path << ": vehicle '" << vehicle.vehicle << "': " << counted(vehicle.bodies.size(), "body") << ", "
               << counted(vehicle.joints.size(), "joint") << ", " << counted(vehicle.devices.size(), "device") << '\n';
@@ -56,38 +88,32 @@ void check(const std::string& path, const sim::LoadOptions& options) {
   with_messages.encode_message = shoal::encode_own_message;
   with_messages.resolve = false;
   sim::LoadedWorld loaded = sim::load_world(path, with_messages);
-  loaded.config.bodies_only_of_many = true;
-  // Building finds what reading cannot: mesh files, bodies without mass.
-  sim::InProcessBus bus;
-  const sim::World world(loaded.config, bus);
-  check_textures(loaded.config);
   sim::Warnings warnings;
-  warn_of_processes(loaded, warnings);
-  warn_of_missing_programs(loaded, warnings);
-  std::cout << path << ": world '" << loaded.config.name << "': " << counted(world.vehicles().size(), "vehicle") << ", "
-            << counted(loaded.config.objects.size(), "object") << ", " << counted(device_count(loaded.config), "device")
-            << ", " << counted(world.physics().bodies().size(), "body") << '\n';
+  const std::size_t bodies = body_count(loaded, warnings);
+  std::cout << path << ": world '" << loaded.config.name << "': " << counted(loaded.config.vehicles.size(), "vehicle")
+            << ", " << counted(loaded.config.objects.size(), "object") << ", "
+            << counted(device_count(loaded.config), "device") << ", " << counted(bodies, "body") << '\n';
 }
 
 }  // namespace
 
 void add_check_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("check", "Check a world or vehicle file without running it");
+  CLI::App* command = app.add_subcommand("check", "Check a world, vehicle or study file without running it");
   const auto path = std::make_shared<std::string>();
   const auto options = std::make_shared<sim::LoadOptions>();
   add_log_level_option(*command);
-  command->add_option("FILE", *path, "world or vehicle file, or the name of a shipped one")->required();
+  command->add_option("FILE", *path, "world, vehicle or study file, or the name of a shipped one")->required();
   add_set_option(*command, options->sets);
   add_allow_path_option(*command, *options);
   add_plugin_option(*command);
-  command_line::set_help_end(*command,
-                             {{"shoal check worlds/coop_land.yaml --set run.seed=3"},
-                              {{0, "no mistake was found"}, {2, "wrong usage, or mistakes, each on a line of its own"}},
-                              {"Every mistake is printed as file:line:column: who: rule, value.  Warnings have the "
-                               "same form and leave the exit "
-                               "code at 0; see docs/reference/warnings.md."}});
+  command_line::set_help_end(
+      *command, {{"shoal check worlds/coop_land.yaml --set run.seed=3", "shoal check worlds/studies/coop_land.yaml"},
+                 {{0, "no mistake was found"}, {2, "wrong usage, or mistakes, each on a line of its own"}},
+                 {"Every mistake is printed as file:line:column: who: rule, value.  Warnings have the "
+                  "same form and leave the exit "
+                  "code at 0; see docs/reference/warnings.md."}});
   command->callback([path, options, &exit_code] {
-    check(file_by_name({ShippedKind::world, ShippedKind::vehicle}, *path), *options);
+    check(file_by_name({ShippedKind::world, ShippedKind::vehicle, ShippedKind::study}, *path), *options);
     exit_code = exit_ok;
   });
 }

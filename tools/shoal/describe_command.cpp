@@ -8,8 +8,10 @@
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
 #include "tools/command_line/text_layout.hpp"
+#include "tools/experiment/study/study_config.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/reference/json_schema.hpp"
+#include "tools/shoal/reference/param_tables.hpp"
 #include "tools/shoal/reference/reference_pages.hpp"
 
 namespace tools {
@@ -17,7 +19,7 @@ namespace tools {
 namespace {
 
 std::string unknown_name(const std::string& name) {
-  std::vector<std::string> known = {"device", "noise", "world", "vehicle", "metrics"};
+  std::vector<std::string> known = {"device", "noise", "world", "vehicle", "study", "metrics"};
   for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all()) known.push_back(type->name);
   for (const auto& [message, schema] : shoal::embedded_types().all())
     known.push_back(message.substr(message.find('.') + 1));
@@ -35,13 +37,13 @@ void add_describe_command(CLI::App& app, int& exit_code) {
   const auto page = std::make_shared<std::string>();
   const auto schema = std::make_shared<std::string>();
   CLI::Option* name_option = command->add_option(
-      "NAME", *name, "a device type, a message type, or one of: device, noise, world, vehicle, metrics");
+      "NAME", *name, "a device type, a message type, or one of: device, noise, world, vehicle, study, metrics");
   CLI::Option* page_option = command->add_option("--page", *page, "print a whole page of docs/ in Markdown")
                                  ->type_name("PAGE")
                                  ->check(one_of({"devices", "messages", "metrics", "world_format"}));
   CLI::Option* schema_option = command->add_option("--schema", *schema, "print the JSON Schema of a file's keys")
                                    ->type_name("FILE")
-                                   ->check(one_of({"world", "vehicle"}));
+                                   ->check(one_of({"world", "vehicle", "study"}));
   name_option->excludes(page_option)->excludes(schema_option);
   page_option->excludes(schema_option);
   add_plugin_option(*command);
@@ -52,11 +54,17 @@ void add_describe_command(CLI::App& app, int& exit_code) {
                                         {}});
   command->callback([name, page, schema, &exit_code] {
     if (!page->empty() || !schema->empty()) {
-      std::cout << (page->empty() ? json_schema(*schema) : reference_page(*page));
+      if (!page->empty())
+        std::cout << reference_page(*page);
+      else
+        std::cout << (*schema == "study" ? study_schema(params_of<StudyConfig>()) : json_schema(*schema));
       return;
     }
     if (name->empty()) throw command_line::UsageError("needs a NAME, --page or --schema; see `shoal list devices`");
-    const std::string text = describe_text(*name, static_cast<std::size_t>(command_line::text_columns(STDOUT_FILENO)));
+    const auto columns = static_cast<std::size_t>(command_line::text_columns(STDOUT_FILENO));
+    const std::string text = *name == "study"
+                                 ? describe_keys("Keys of a study file.", params_of<StudyConfig>(), columns)
+                                 : describe_text(*name, columns);
     if (text.empty()) {
       throw command_line::UsageError(unknown_name(*name));
     }

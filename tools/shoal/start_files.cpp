@@ -51,7 +51,7 @@ metrics:
   - {name: way, type: distance, vehicle: rover1}
   - {name: bumps, type: collisions, vehicle: rover1}
 # pass:
-#   - {metric: way.travelled_m, above: 2}
+#   - way.travelled_m > 2
 
 # Programs that --launch starts; one with a `client` name takes part in lockstep (docs/guides/attach_autonomy.md).
 # processes:
@@ -100,7 +100,7 @@ vehicles:
 metrics:
   - {name: way, type: distance, vehicle: auv1}
 # pass:
-#   - {metric: way.travelled_m, above: 100}
+#   - way.travelled_m > 100
 
 # Programs that --launch starts; one with a `client` name takes part in lockstep (docs/guides/attach_autonomy.md).
 # processes:

@@ -143,7 +143,8 @@ std::string rules_html(const std::vector<RunRecord::Rule>& rules) {
   std::string failed, held;
   std::size_t count = 0;
   for (const RunRecord::Rule& rule : rules) {
-    (rule.passed ? held : failed) += "<li>" + verdict_html(rule.passed) + " " + html_text(rule.rule) + "</li>\n";
+    (rule.passed ? held : failed) += "<li>" + verdict_html(rule.passed) + " " + html_text(rule.rule) +
+                                     (rule.result.empty() ? "" : html_text(" (" + rule.result + ")")) + "</li>\n";
     count += rule.passed ? 1 : 0;
   }
   std::string html;

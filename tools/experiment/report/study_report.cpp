@@ -126,7 +126,7 @@ std::vector<RunRecord::Rule> rules_of(const JsonReader& in) {
   std::vector<RunRecord::Rule> rules;
   for (const auto& item : in.list("rules")) {
     const JsonReader rule(item, in.where() + ": rules");
-    rules.push_back({rule.text("rule"), rule.boolean("passed")});
+    rules.push_back({rule.text("rule"), rule.boolean("passed"), rule.has("result") ? rule.text("result") : ""});
   }
   return rules;
 }

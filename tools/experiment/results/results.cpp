@@ -18,6 +18,7 @@
 #include "tools/experiment/results/notice_text.hpp"
 #include "tools/experiment/results/results_world.hpp"
 #include "tools/experiment/results/run_pictures.hpp"
+#include "tools/experiment/results/verdict_json.hpp"
 
 namespace tools {
 
@@ -136,8 +137,7 @@ std::string Summary::to_json() const {
   json["metrics"] = nlohmann::ordered_json::object();
   for (const auto& [name, value] : metrics) json["metrics"][name] = value;  // NaN becomes null
   json["rules"] = nlohmann::ordered_json::array();
-  for (const Scoring::Verdict& verdict : verdicts)
-    json["rules"].push_back({{"rule", verdict.rule}, {"passed", verdict.passed}});
+  for (const Scoring::Verdict& verdict : verdicts) json["rules"].push_back(json_of(verdict));
   json["contacts"] = contacts_json(contacts);
   json["contact_pairs"] = contacts.size();
   json["processes"] = nlohmann::ordered_json::array();
@@ -213,7 +213,7 @@ std::string Summary::to_text() const {
   for (const auto& [name, value] : metrics)
     text += fmt::format("  {:<{}} {}\n", name, width, std::isnan(value) ? "none" : fmt::format("{:.4g}", value));
   for (const Scoring::Verdict& verdict : verdicts)
-    text += fmt::format("  {}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.rule);
+    text += fmt::format("  {}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.text());
   for (const Process& process : processes)
     text += fmt::format("  process '{}' {} at {:.2f} s\n", process.name, process.how, process.sim_time_s);
   for (const bridges::RunNotice& notice : notices) text += "  " + notice_text(notice) + "\n";

@@ -76,7 +76,7 @@ RunRecord read_run(const std::string& directory) {
   run.metrics = read_figures(in);
   for (const auto& item : in.list("rules")) {
     const JsonReader rule(item, path + ": rules");
-    run.rules.push_back({rule.text("rule"), rule.boolean("passed")});
+    run.rules.push_back({rule.text("rule"), rule.boolean("passed"), rule.has("result") ? rule.text("result") : ""});
   }
   for (const auto& item : in.list("processes")) {
     const JsonReader process(item, path + ": processes");

@@ -17,6 +17,7 @@ struct RunRecord {
   struct Rule {
     std::string rule;
     bool passed = false;
+    std::string result = {};  ///< what its sides came to, or why there is nothing to judge; empty: nothing to add
   };
   struct Process {
     std::string name, how;

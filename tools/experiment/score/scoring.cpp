@@ -77,28 +77,14 @@ std::string Scoring::why_none(const std::string& name) const {
   return "there is no such metric";
 }
 
-Scoring::Verdict Scoring::judge(const sim::PassRule& rule, const Figures& figures) const {
-  const double value = figures.at(rule.metric);
-  const auto shown = [&](const std::string& name, double number) {
-    return std::isnan(number) ? "none: " + why_none(name) : fmt::format("{:.3f}", number);
-  };
-  const auto text = [&](const char* sign, const std::string& right) {
-    return fmt::format("{} ({}) {} {}", rule.metric, shown(rule.metric, value), sign, right);
-  };
-  if (rule.below) return {text("<", fmt::format("{}", *rule.below)), value < *rule.below};
-  if (rule.above) return {text(">", fmt::format("{}", *rule.above)), value > *rule.above};
-  if (rule.equals) return {text("==", fmt::format("{}", *rule.equals)), value == *rule.equals};
-  const bool below = !rule.below_metric.empty();
-  const std::string& other = below ? rule.below_metric : rule.above_metric;
-  const double limit = rule.factor * figures.at(other);
-  const std::string right = fmt::format("{} * {} ({})", rule.factor, other, shown(other, limit));
-  return {text(below ? "<" : ">", right), below ? value < limit : value > limit};
-}
-
 std::vector<Scoring::Verdict> Scoring::verdicts() const {
   const Figures all = figures();
+  const auto value_of = [&](const sim::RuleExpression::Figure& figure) -> FigureValue {
+    const double value = all.at(figure.name);
+    return {value, std::isnan(value) ? why_none(figure.name) : ""};
+  };
   std::vector<Verdict> verdicts;
-  for (const sim::PassRule& rule : world_.config().pass) verdicts.push_back(judge(rule, all));
+  for (const sim::RuleExpression& rule : world_.config().pass) verdicts.push_back(judge_rule(rule, value_of));
   return verdicts;
 }
 

@@ -10,6 +10,7 @@
 #include "sim/world/world.hpp"
 #include "tools/experiment/score/first_contacts.hpp"
 #include "tools/experiment/score/metric.hpp"
+#include "tools/experiment/score/rule_verdict.hpp"
 #include "tools/experiment/score/truth_history.hpp"
 
 namespace tools {
@@ -26,10 +27,7 @@ class Scoring {
     int dimensions;
     const std::vector<ErrorSample>* samples;
   };
-  struct Verdict {
-    std::string rule;
-    bool passed;
-  };
+  using Verdict = RuleVerdict;
 
   /// `world` must outlive this.  `say`: see FirstContacts.
   explicit Scoring(sim::World& world, FirstContacts::Say say = {});
@@ -39,7 +37,7 @@ class Scoring {
 
   /// The figures of every metric, by name.  Before its from_s a metric has none: they are NaN.
   Figures figures() const;
-  /// The pass rules of the world, each with its outcome.  A figure that is NaN fails, and the rule says why.
+  /// The rules of the world, each with its outcome.
   std::vector<Verdict> verdicts() const;
   /// Of the metrics that compare estimates with the truth.
   std::vector<Track> tracks() const;
@@ -57,7 +55,6 @@ class Scoring {
   bool is_early(const Metric& metric) const;
   /// Why a figure, `NAME.figure`, is NaN.
   std::string why_none(const std::string& name) const;
-  Verdict judge(const sim::PassRule& rule, const Figures& figures) const;
 
   sim::World& world_;
   std::map<std::string, std::unique_ptr<TruthHistory>> truths_;  ///< by vehicle

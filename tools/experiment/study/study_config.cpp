@@ -13,6 +13,8 @@
 #include "sim/config/message_text.hpp"
 #include "sim/config/shipped_files.hpp"
 #include "sim/config/yaml_writer.hpp"
+#include "sim/world_file/rule_list.hpp"
+#include "tools/experiment/study/study_rules.hpp"
 
 namespace tools {
 
@@ -94,8 +96,21 @@ std::vector<std::int64_t> read_seed_ranges(sim::ParamReader& in, const sim::Conf
   return seeds;
 }
 
+void describe_seeds(sim::ParamReader& in) {
+  sim::ParamInfo info;
+  info.key = "seeds";
+  info.type = "list of numbers";
+  info.rule = "whole numbers from 0 to 2^53";
+  info.meaning = "seeds of the runs: [1, 2, 3], 1-10, [1-3, 8] or {first: 1, count: 10}";
+  in.describe(std::move(info));
+}
+
 std::vector<std::int64_t> read_seeds(sim::ParamReader& in) {
   in.require("seeds");
+  if (in.describing()) {
+    describe_seeds(in);
+    return {};
+  }
   const sim::ConfigNode* node = in.child("seeds");
   std::vector<std::int64_t> seeds;
   if (node != nullptr && node->kind == sim::ConfigNode::Kind::map) {
@@ -159,12 +174,7 @@ class NameCheck {
       if (!plot.figure.empty()) require("figure", plot.figure, figures_, plot.place, who);
       for (const std::string& metric : plot.metrics) require("metrics", metric, metrics_, plot.place, who);
     }
-    for (std::size_t i = 0; i < config.pass.size(); ++i) {
-      const StudyRule& rule = config.pass[i];
-      const std::string who = "rule " + std::to_string(i + 1);
-      require("figure", rule.figure, figures_, rule.place, who);
-      if (!rule.below_figure.empty()) require("below_figure", rule.below_figure, figures_, rule.place, who);
-    }
+    sim::read_rule_list(config.rules, StudyRuleNames(config.cases, study_.worlds), study_rule_of_map, diagnostics_);
     diagnostics_.throw_if_any();
   }
 
@@ -215,41 +225,6 @@ void StudyPlot::read(sim::ParamReader& in) {
              in.has("metrics") ? "'metrics' are drawn over 'distance' or 'time'" : "a 'figure' is drawn over 'cases'");
 }
 
-const std::vector<std::string>& statistic_words() {
-  static const std::vector<std::string> words{"mean", "std", "min", "max", "median"};
-  return words;
-}
-
-void StudyRule::read(sim::ParamReader& in) {
-  if (in.node() != nullptr) place = in.node()->place;
-  in.require("case");
-  in.read_reference("case", in_case, "case", "whose runs are judged");
-  in.require("figure");
-  in.read("figure", figure, "which figure of them; `passed`: 1 when the run passed the rules of its world");
-  in.read_choice("statistic", statistic, statistic_words(), "over the seeds");
-  in.read("below", below, sim::any_number(), "it must be below this");
-  in.read("above", above, sim::any_number(), "it must be above this");
-  in.read("equals", equals, sim::any_number(), "it must be this");
-  in.read_reference("below_case", below_case, "case", "it must be below the same of this case times factor");
-  in.read("below_figure", below_figure, "it must be below the same of this figure times factor");
-  in.read("factor", factor, sim::above(0), "see below_case and below_figure");
-  if (in.describing()) return;
-  require_something(in, "case", in_case.empty());
-  require_something(in, "figure", figure.empty());
-  require_something(in, "below", !below);
-  require_something(in, "above", !above);
-  require_something(in, "equals", !equals);
-  require_something(in, "below_case", below_case.empty());
-  require_something(in, "below_figure", below_figure.empty());
-  int forms = 0;
-  for (const char* key : {"below", "above", "equals", "below_case", "below_figure"}) forms += in.has(key);
-  if (in.has("factor") && !in.has("below_case") && !in.has("below_figure"))
-    in.error("factor", "'factor' belongs to 'below_case' and 'below_figure'");
-  if (forms != 1)
-    in.error("needs one of 'above', 'below', 'below_case', 'below_figure' and 'equals'" +
-             std::string(forms > 1 ? ", not several" : ""));
-}
-
 void StudyConfig::read(sim::ParamReader& in) {
   int version = 1;
   in.require("shoal");
@@ -269,7 +244,11 @@ void StudyConfig::read(sim::ParamReader& in) {
   if (in.has("figures")) figures_place = in.child("figures")->place;
   in.read_list("plots", plots, "plot", "pictures");
   for (const StudyPlot& plot : plots) in.declare("plot", plot.name);
-  in.read_list("pass", pass, "rule", "the study passes when every rule holds; else exit code 1");
+  if (in.describing())
+    return sim::describe_rules(in, "the study passes when every rule holds; else exit code 1",
+                               {"mean(cooperative.passed) == 1", "max(cooperative.auv1.rms_m) < 0.8"});
+  if (const sim::ConfigNode* node = in.child("pass")) rules = *node;
+  pass = sim::read_rule_list(rules, StudyRuleNames(cases), study_rule_of_map, in.diagnostics());
 }
 
 std::vector<std::int64_t> parse_seeds(const std::string& text) {
@@ -300,6 +279,29 @@ void check_world_file(const std::string& world, const std::string& study, const 
                           "lie below a folder given with --allow-path");
 }
 
+/// Loads the world of a case.  What is wrong with a value of `set:` is told where the study has it.
+sim::LoadedWorld world_of_case(const std::string& world, const StudyCase& in_case, sim::LoadOptions options) {
+  const std::vector<std::string> sets = in_case.sets();
+  options.sets.insert(options.sets.end(), sets.begin(), sets.end());
+  try {
+    return sim::load_world(world, options);
+  } catch (const sim::ConfigError& error) {
+    std::vector<std::string> lines = error.lines();
+    for (std::string& line : lines)
+      for (std::size_t i = 0; i < sets.size(); ++i) {
+        const std::string place = sim::printable("--set " + sets[i]);
+        if (!line.starts_with(place + ":")) continue;
+        // After the text of the option may come a line and a column in it.
+        const std::size_t rest = line.find_first_not_of("0123456789:", place.size());
+        const sim::ConfigNode::Entry& entry = in_case.changes.entries[i];
+        line = entry.value.place.text() + ": case '" + in_case.name + "': '" + entry.key +
+               "':" + (rest == std::string::npos ? "" : line.substr(rest));
+        break;
+      }
+    throw sim::ConfigError(std::move(lines));
+  }
+}
+
 }  // namespace
 
 LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
@@ -317,12 +319,14 @@ LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
   const fs::path world_file = fs::path(path).parent_path() / study.config.world;
   study.config.world = world_file.lexically_normal().string();
   check_world_file(study.config.world, path, root, changes.load);
+  sim::Warnings warnings;
   for (const StudyCase& each : study.config.cases) {
     sim::LoadOptions options = changes.load;
-    options.sets = each.sets();
-    options.allow_plugins = options.serial_ports = study.config.launch;
+    if (options.warnings == nullptr) options.warnings = &warnings;
+    options.allow_plugins = study.config.launch && !changes.only_checked;
+    options.serial_ports = study.config.launch;
     options.encode_message = shoal::encode_own_message;
-    const sim::LoadedWorld& world = study.worlds.emplace_back(sim::load_world(study.config.world, options));
+    const sim::LoadedWorld& world = study.worlds.emplace_back(world_of_case(study.config.world, each, options));
     if (!study.config.duration_s && world.config.run.duration_s == 0)
       sim::throw_config_error(root.place, "case '" + each.name + "'",
                               "its world runs without end: the study needs a 'duration_s'");

@@ -33,17 +33,6 @@ struct StudyPlot {
   void read(sim::ParamReader& in);
 };
 
-/// The study passes when every rule holds.
-struct StudyRule {
-  std::string in_case, figure;
-  std::string statistic = "mean";
-  std::optional<double> below, above, equals;
-  std::string below_case, below_figure;  ///< the same of another case, or of another figure of this case
-  double factor = 1;
-  sim::SourcePlace place;
-  void read(sim::ParamReader& in);
-};
-
 /// A study file: one world, run with many seeds in several cases.
 struct StudyConfig {
   std::string file, name, description;
@@ -54,14 +43,12 @@ struct StudyConfig {
   std::vector<StudyCase> cases;
   std::vector<std::string> figures;  ///< of the table; empty: all
   std::vector<StudyPlot> plots;
-  std::vector<StudyRule> pass;
+  std::vector<sim::RuleExpression> pass;  ///< the study passes when every rule holds
+  sim::ConfigNode rules;                  ///< `pass:` as it was written, for errors that show with the worlds
   sim::SourcePlace figures_place;
 
   void read(sim::ParamReader& in);
 };
-
-/// The words of StudyRule::statistic.
-const std::vector<std::string>& statistic_words();
 
 struct LoadedStudy {
   StudyConfig config;
@@ -72,7 +59,8 @@ struct LoadedStudy {
 struct StudyChanges {
   std::vector<std::int64_t> seeds;  ///< empty: those of the file
   std::optional<double> duration_s;
-  sim::LoadOptions load;  ///< which files its worlds may name
+  sim::LoadOptions load;      ///< which files its worlds may name
+  bool only_checked = false;  ///< nothing will run: plugins that the world names are not loaded
 };
 
 /// Seeds as a command line gives them: `7`, `1-10` or `1-3,8`.  Throws std::invalid_argument with the rule.

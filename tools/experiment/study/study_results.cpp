@@ -9,8 +9,10 @@
 #include <numeric>
 #include <set>
 
+#include "tools/experiment/results/verdict_json.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/study/study_equal_cases.hpp"
+#include "tools/experiment/study/study_rules.hpp"
 
 namespace tools {
 
@@ -30,7 +32,7 @@ std::string field(const std::string& text) {
   return quoted + "\"";
 }
 
-nlohmann::ordered_json json_of(const Statistics& statistics) {
+nlohmann::ordered_json statistics_json(const Statistics& statistics) {
   nlohmann::ordered_json json{{"count", statistics.count}};
   for (const std::string& word : statistic_words()) json[word] = statistics.by_word(word);  // NaN becomes null
   json["mean_low_95"] = statistics.mean_95.low;
@@ -120,40 +122,22 @@ std::size_t StudyResults::runs_of(const std::string& in_case) const {
   }));
 }
 
-StudyResults::Shown StudyResults::statistic(const StudyRule& rule, const std::string& in_case,
-                                            const std::string& figure) const {
-  const Statistics statistics = of(in_case, figure);
+FigureValue StudyResults::value_of(const sim::RuleExpression::Figure& figure) const {
+  const auto [in_case, name] = case_and_figure(figure.name);
+  const Statistics statistics = of(in_case, name);
   const std::size_t runs = runs_of(in_case);
   const std::size_t lacking = runs - static_cast<std::size_t>(statistics.count);
   // A figure that nothing could be made of in some of the runs is no good figure.
   if (lacking > 0)
-    return {no_figure,
-            fmt::format("none: {} of {} runs {} no such figure", lacking, runs, lacking == 1 ? "has" : "have")};
-  const double value = statistics.by_word(rule.statistic);
-  if (std::isnan(value)) return {no_figure, fmt::format("none: {} needs two runs", rule.statistic)};
-  return {value, fmt::format("{:.4g}", value)};
-}
-
-Scoring::Verdict StudyResults::judge(const StudyRule& rule) const {
-  const Shown left = statistic(rule, rule.in_case, rule.figure);
-  const auto text = [&](const char* sign, const std::string& right) {
-    return fmt::format("{}: {} of {} ({}) {} {}", rule.in_case, rule.statistic, rule.figure, left.text, sign, right);
-  };
-  if (rule.below) return {text("<", fmt::format("{}", *rule.below)), left.value < *rule.below};
-  if (rule.above) return {text(">", fmt::format("{}", *rule.above)), left.value > *rule.above};
-  if (rule.equals) return {text("==", fmt::format("{}", *rule.equals)), left.value == *rule.equals};
-  const bool other_case = !rule.below_case.empty();
-  const Shown right =
-      other_case ? statistic(rule, rule.below_case, rule.figure) : statistic(rule, rule.in_case, rule.below_figure);
-  const std::string other = other_case ? "that of " + rule.below_case : rule.below_figure;
-  const double limit = rule.factor * right.value;
-  const std::string shown = std::isnan(limit) ? right.text : fmt::format("{:.4g}", limit);
-  return {text("<", fmt::format("{} * {} ({})", rule.factor, other, shown)), left.value < limit};
+    return {no_figure, fmt::format("{} of {} runs {} no such figure", lacking, runs, lacking == 1 ? "has" : "have")};
+  const double value = statistics.by_word(figure.function);
+  return {value, std::isnan(value) ? figure.function + " needs two runs" : ""};
 }
 
 std::vector<Scoring::Verdict> StudyResults::verdicts() const {
   std::vector<Scoring::Verdict> verdicts;
-  for (const StudyRule& rule : study_.config.pass) verdicts.push_back(judge(rule));
+  for (const sim::RuleExpression& rule : study_.config.pass)
+    verdicts.push_back(judge_rule(rule, [this](const auto& figure) { return value_of(figure); }));
   if (!verdicts.empty() && runs_with_failed_programs() > 0)
     verdicts.push_back(
         {fmt::format("{} of {} runs had programs that failed", runs_with_failed_programs(), runs_.size()), false});
@@ -202,7 +186,7 @@ std::string StudyResults::to_text() const {
                    number(s.mean_95.high));
     }
   for (const Scoring::Verdict& verdict : verdicts())
-    text += fmt::format("{}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.rule);
+    text += fmt::format("{}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.text());
   if (config.pass.empty() && runs_with_failed_programs() > 0)
     text += fmt::format("{} of {} runs had programs that failed\n", runs_with_failed_programs(), runs_.size());
   for (const EqualCases& group : equal_cases(study_, runs_)) text += "note: " + equal_cases_text(group) + "\n";
@@ -250,8 +234,8 @@ std::string StudyResults::to_json(int exit_code) const {
   json["cases"] = nlohmann::ordered_json::array();
   for (const StudyCase& each : config.cases) {
     nlohmann::ordered_json entry{{"name", each.name}, {"set", each.sets()}, {"figures", nlohmann::json::object()}};
-    entry["figures"][passed_figure] = json_of(of(each.name, passed_figure));
-    for (const std::string& figure : figures_) entry["figures"][figure] = json_of(of(each.name, figure));
+    entry["figures"][passed_figure] = statistics_json(of(each.name, passed_figure));
+    for (const std::string& figure : figures_) entry["figures"][figure] = statistics_json(of(each.name, figure));
     json["cases"].push_back(std::move(entry));
   }
   json["notes"] = nlohmann::ordered_json::array();
@@ -263,8 +247,7 @@ std::string StudyResults::to_json(int exit_code) const {
           {{"case", config.cases[run.in_case].name}, {"seed", run.seed}, {"why", run.failure}});
   json["runs"] = runs_.size();
   json["rules"] = nlohmann::ordered_json::array();
-  for (const Scoring::Verdict& verdict : verdicts())
-    json["rules"].push_back({{"rule", verdict.rule}, {"passed", verdict.passed}});
+  for (const Scoring::Verdict& verdict : verdicts()) json["rules"].push_back(json_of(verdict));
   json["pictures"] = study_pictures(config);
   json["judged"] = judgement() != Judgement::not_judged;
   json["passed"] = nullptr;

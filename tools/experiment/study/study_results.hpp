@@ -53,14 +53,9 @@ class StudyResults {
   std::string to_json(int exit_code) const;
 
  private:
-  Scoring::Verdict judge(const StudyRule& rule) const;
   std::size_t runs_of(const std::string& in_case) const;
-  /// A statistic over the runs of a case; why there is none is in the text.
-  struct Shown {
-    double value = no_figure;
-    std::string text;
-  };
-  Shown statistic(const StudyRule& rule, const std::string& in_case, const std::string& figure) const;
+  /// A statistic over the runs of a case.
+  FigureValue value_of(const sim::RuleExpression::Figure& figure) const;
 
   const LoadedStudy& study_;
   const std::vector<StudyRun>& runs_;

@@ -159,6 +159,7 @@ class SchemaWriter {
       case ParamKind::numbers:
         return list_of(number_schema("number", info.range));
       case ParamKind::texts:
+        return list_of(info.pattern.empty() ? text() : text_like(info));
       case ParamKind::paths:
         return list_of(text());
       case ParamKind::map:
@@ -205,6 +206,10 @@ class SchemaWriter {
       key.update(info.main_alone ? Json{{"anyOf", {alone, map}}} : map);
     }
     return schema;
+  }
+
+  static Json text_like(const ParamInfo& info) {
+    return {{"type", {"string"}}, {"pattern", info.pattern}, {"examples", info.examples}};
   }
 
   /// A map without known keys is one that contains itself: any keys.
@@ -321,6 +326,18 @@ Json world_schema() {
 }
 
 }  // namespace
+
+std::string study_schema(const std::vector<sim::ParamInfo>& table) {
+  const Json seed = number_schema("integer", sim::at_least(0));
+  const Json range{{"type", "string"}, {"pattern", "^[0-9]+( *- *[0-9]+)?$"}};
+  const Json one_seed{{"anyOf", {seed, range}}};
+  Json count{{"type", "object"}, {"required", {"count"}}, {"additionalProperties", false}};
+  count["properties"] = {{"first", seed}, {"count", number_schema("integer", sim::at_least(1))}};
+  const Json list{{"type", "array"}, {"items", one_seed}, {"minItems", 1}};
+  const Special seeds{{{"anyOf", {seed, range, list, count}}}, Json::object()};
+  const SchemaWriter writer(false, {{"seeds", seeds}});
+  return file_schema("study", writer, table, Json::object()).dump(1) + "\n";
+}
 
 std::string json_schema(const std::string& file) {
   if (file == "world") return world_schema().dump(1) + "\n";

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include "sim/config/param_info.hpp"
 
 namespace tools {
 
@@ -9,5 +12,8 @@ namespace tools {
 /// it accepts may still be refused by the loader: names that must exist, sums, limits that depend on other keys.
 /// `file`: world or vehicle.  Throws std::out_of_range on any other.
 std::string json_schema(const std::string& file);
+
+/// The same of a study, whose keys are `table`.
+std::string study_schema(const std::vector<sim::ParamInfo>& table);
 
 }  // namespace tools

@@ -3,6 +3,9 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
+
+#include "sim/config/param_info.hpp"
 
 namespace tools {
 
@@ -14,5 +17,9 @@ std::string reference_page(const std::string& name);
 /// `device` (keys of all devices), `world`, `vehicle`, `noise`, `metrics`, or a message type.  Empty when nothing is
 /// called so.
 std::string describe_text(const std::string& name, std::size_t columns = 1000);
+
+/// A title and a table of keys, as describe_text() has them.
+std::string describe_keys(const std::string& title, const std::vector<sim::ParamInfo>& params,
+                          std::size_t columns = 1000);
 
 }  // namespace tools

@@ -122,8 +122,8 @@ TEST(Report, OfARunIsOnePageWithVerdictsFirst) {
   const std::string directory = folder.file("run");
   const tools::Summary summary = run_into(directory,
                                           "metrics: [{name: way, type: distance, vehicle: r1}]\n"
-                                          "pass: [{metric: way.travelled_m, below: 1}, "
-                                          "{metric: way.travelled_m, above: 1}]\n");
+                                          "pass: [way.travelled_m < 1, "
+                                          "way.travelled_m > 1]\n");
   ASSERT_EQ(summary.exit_code, 1);
   const std::string page = tools::report_page({directory});
   EXPECT_EQ(problems_of_page(page), "");
@@ -189,7 +189,7 @@ TEST(Report, SaysWhatTheWorldIsAndThatNothingWasJudged) {
   EXPECT_THAT(page, Not(HasSubstr("passed</span>")));
   run_into(folder.file("b"),
            "metrics: [{name: way, type: distance, vehicle: r1}]\n"
-           "pass: [{metric: way.travelled_m, below: 1}]\n");
+           "pass: [way.travelled_m < 1]\n");
   EXPECT_THAT(tools::report_page({folder.file("a"), folder.file("b")}),
               HasSubstr("<tr><td>verdict</td><td>not judged</td><td>passed</td></tr>"));
 }

@@ -74,7 +74,7 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   summary.state_hash = 0x0123456789abcdef;
   summary.run_hash = 0xfedcba9876543210;
   summary.metrics["position.rms_m"] = 0.25;
-  summary.verdicts = {{"position.rms_m (0.250) < 1", true}};
+  summary.verdicts = {{"position.rms_m < 1", true, "left 0.25, right 1, margin 0.75", 0.25, 1, 0.75}, {"a", true}};
   summary.processes = {{"pilot", "exited with code 1", 2.5}};
   const auto json = nlohmann::ordered_json::parse(summary.to_json());
   std::vector<std::string> keys;
@@ -91,7 +91,15 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   EXPECT_EQ(json["state_hash"], "0123456789abcdef");
   EXPECT_EQ(json["run_hash"], "fedcba9876543210");
   EXPECT_EQ(json["metrics"]["position.rms_m"], 0.25);
+  EXPECT_EQ(json["rules"][0]["rule"], "position.rms_m < 1");
   EXPECT_EQ(json["rules"][0]["passed"], true);
+  EXPECT_EQ(json["rules"][0]["left"], 0.25);
+  EXPECT_EQ(json["rules"][0]["right"], 1);
+  EXPECT_EQ(json["rules"][0]["margin"], 0.75);
+  EXPECT_EQ(json["rules"][0]["result"], "left 0.25, right 1, margin 0.75");
+  EXPECT_TRUE(json["rules"][1]["left"].is_null());
+  EXPECT_THAT(summary.to_text(),
+              testing::HasSubstr("passed: position.rms_m < 1 (left 0.25, right 1, margin 0.75)\n  passed: a\n"));
   EXPECT_EQ(json["processes"][0]["name"], "pilot");
   EXPECT_EQ(json["processes"][0]["how"], "exited with code 1");
   EXPECT_EQ(json["processes"][0]["sim_time_s"], 2.5);
@@ -178,7 +186,7 @@ TEST(Summary, WithoutRulesNothingHasPassed) {
 
 TEST(RunWorld, WithoutItsProgramsIsNotJudged) {
   const auto world = small_world(
-      "metrics: [{name: way, type: distance, vehicle: r1}]\npass: [{metric: way.travelled_m, above: 1000}]\n"
+      "metrics: [{name: way, type: distance, vehicle: r1}]\npass: [way.travelled_m > 1000]\n"
       "processes: [{name: pilot, command: [sleep, '1000']}]\n");
   const tools::Summary summary = tools::run_world(world, quiet_run());
   EXPECT_EQ(summary.exit_code, 0);
@@ -277,7 +285,7 @@ TEST(Results, AreLeftByARunThatFailed) {
   const ScratchFolder folder;
   const auto loaded = small_world(
       "metrics:\n  - {name: position, vehicle: r1, channel: r1.estimate}\n"
-      "pass:\n  - {metric: position.rms_m, below: 1}\n");
+      "pass:\n  - position.rms_m < 1\n");
   auto options = quiet_run();
   options.results = folder.file("results");
   EXPECT_EQ(tools::run_world(loaded, options).exit_code, 1);  // no estimate came

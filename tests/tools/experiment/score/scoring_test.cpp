@@ -176,14 +176,14 @@ TEST(Scoring, SurvivesTimesAtTheEndsOfTheirRange) {
 TEST(Scoring, JudgesByTheRulesOfTheWorld) {
   ScoredWorld world(
       "pass:\n"
-      "  - {metric: good.max_m, below: 2}\n"
-      "  - {metric: good.max_m, below: 0.5}\n"
-      "  - {metric: good.max_m, below_metric: late.max_m, factor: 0.5}\n"
-      "  - {metric: good.max_m, below_metric: late.max_m, factor: 0.2}\n"
-      "  - {metric: good.max_m, above: 0.9}\n"
-      "  - {metric: late.max_m, above_metric: good.max_m, factor: 5}\n"
-      "  - {metric: good.samples, equals: 1}\n"
-      "  - {metric: good.samples, equals: 2}\n");
+      "  - good.max_m < 2\n"
+      "  - good.max_m < 0.5\n"
+      "  - good.max_m < 0.5 * late.max_m\n"
+      "  - good.max_m < 0.2 * late.max_m\n"
+      "  - good.max_m > 0.9\n"
+      "  - late.max_m > 5 * good.max_m\n"
+      "  - good.samples == 1\n"
+      "  - good.samples == 2\n");
   world.run_for(1);
   world.estimate("good", 2, 2);  // 1 m off
   world.estimate("late", 5, 2);  // 4 m off
@@ -198,19 +198,23 @@ TEST(Scoring, JudgesByTheRulesOfTheWorld) {
   EXPECT_FALSE(verdicts[5].passed) << verdicts[5].rule;
   EXPECT_TRUE(verdicts[6].passed) << verdicts[6].rule;
   EXPECT_FALSE(verdicts[7].passed) << verdicts[7].rule;
-  EXPECT_EQ(verdicts[7].rule, "good.samples (1.000) == 2");
-  EXPECT_EQ(verdicts[1].rule, "good.max_m (1.000) < 0.5");
-  EXPECT_EQ(verdicts[3].rule, "good.max_m (1.000) < 0.2 * late.max_m (0.800)");
+  EXPECT_EQ(verdicts[7].rule, "good.samples == 2");
+  EXPECT_EQ(verdicts[7].text(), "good.samples == 2 (left 1, right 2)");
+  EXPECT_EQ(verdicts[3].rule, "good.max_m < 0.2 * late.max_m");
+  // Rovers that stand still creep by some 0.01 mm.
+  EXPECT_NEAR(verdicts[3].left, 1, 1e-4);
+  EXPECT_NEAR(verdicts[3].right, 0.2 * 4, 1e-4);
+  EXPECT_NEAR(verdicts[3].margin, 0.2 * 4 - 1, 1e-4);
+  EXPECT_THAT(verdicts[3].result, testing::StartsWith("left "));
 }
 
 TEST(Scoring, FailsARuleWhenNoEstimateCame) {
   ScoredWorld world(
-      "pass: [{metric: good.rms_m, below: 1000}, {metric: good.rms_m, above: -1000}, {metric: good.rms_m, equals: "
-      "0}]\n");
+      "pass: [good.rms_m < 1000, good.rms_m > -1000, good.rms_m == 0, good.rms_m != 0, 0 * good.rms_m <= 1]\n");
   world.run_for(0.1);
   EXPECT_TRUE(std::isnan(world.scoring.figures().at("good.rms_m")));
   for (const auto& verdict : world.scoring.verdicts()) EXPECT_FALSE(verdict.passed) << verdict.rule;
-  EXPECT_EQ(world.scoring.verdicts()[0].rule, "good.rms_m (none: no estimate came on 'good') < 1000");
+  EXPECT_EQ(world.scoring.verdicts()[0].text(), "good.rms_m < 1000 (good.rms_m is none: no estimate came on 'good')");
 }
 
 TEST(Scoring, ARuleOnAFigureThatIsNotThereSaysWhy) {
@@ -224,34 +228,37 @@ TEST(Scoring, ARuleOnAFigureThatIsNotThereSaysWhy) {
       "  - {name: first, type: messages, channel: nothing}\n"
       "  - {name: cost, type: bytes_per_metre, metric: good, against: late}\n"
       "pass:\n"
-      "  - {metric: way.travelled_m, below: 10}\n"
-      "  - {metric: bumps.count, equals: 0}\n"
-      "  - {metric: talk.count, equals: 0}\n"
-      "  - {metric: gap.longest_gap_s, below: 10}\n"
-      "  - {metric: link.ratio, above: 0}\n"
-      "  - {metric: home.time_s, below: 100}\n"
-      "  - {metric: first.first_s, below: 100}\n"
-      "  - {metric: cost.bytes_per_metre, below: 100}\n"
-      "  - {metric: late.samples, below_metric: late.rms_m}\n"
-      "  - {metric: good.rms_m, above: 0}\n");
+      "  - way.travelled_m < 10\n"
+      "  - bumps.count == 0\n"
+      "  - talk.count == 0\n"
+      "  - gap.longest_gap_s < 10\n"
+      "  - link.ratio > 0\n"
+      "  - home.time_s < 100\n"
+      "  - first.first_s < 100\n"
+      "  - cost.bytes_per_metre < 100\n"
+      "  - late.samples < late.rms_m\n"
+      "  - good.rms_m > 0\n");
   world.run_for(1);
   world.test.send("good", shoal::twist_command_t{});
   world.run_for(0.01);
   std::vector<std::string> rules;
   for (const auto& verdict : world.scoring.verdicts()) {
     EXPECT_FALSE(verdict.passed) << verdict.rule;
-    rules.push_back(verdict.rule);
+    rules.push_back(verdict.text());
   }
-  const std::string early = "none: the run ended at 1.01 s, before from_s, 100 s";
+  const std::string early = " is none: the run ended at 1.01 s, before from_s, 100 s";
   EXPECT_THAT(
-      rules,
-      testing::ElementsAre(
-          "way.travelled_m (" + early + ") < 10", "bumps.count (" + early + ") == 0", "talk.count (" + early + ") == 0",
-          "gap.longest_gap_s (" + early + ") < 10", "link.ratio (none: nothing was sent to these modems) > 0",
-          "home.time_s (none: it did not happen) < 100", "first.first_s (none: no message came on 'nothing') < 100",
-          "cost.bytes_per_metre (none: the error of 'good' is not known to be the smaller one) < 100",
-          "late.samples (0.000) < 1 * late.rms_m (none: no estimate came on 'late' from 0.5 s on)",
-          "good.rms_m (none: none of 1 message on 'good' could be used) > 0"));
+      rules, testing::ElementsAre(
+                 "way.travelled_m < 10 (way.travelled_m" + early + ")", "bumps.count == 0 (bumps.count" + early + ")",
+                 "talk.count == 0 (talk.count" + early + ")", "gap.longest_gap_s < 10 (gap.longest_gap_s" + early + ")",
+                 "link.ratio > 0 (link.ratio is none: nothing was sent to these modems)",
+                 "home.time_s < 100 (home.time_s is none: it did not happen)",
+                 "first.first_s < 100 (first.first_s is none: no message came on 'nothing')",
+                 "cost.bytes_per_metre < 100 (cost.bytes_per_metre is none: the error of 'good' is not known to be the "
+                 "smaller "
+                 "one)",
+                 "late.samples < late.rms_m (late.rms_m is none: no estimate came on 'late' from 0.5 s on)",
+                 "good.rms_m > 0 (good.rms_m is none: none of 1 message on 'good' could be used)"));
 }
 
 }  // namespace

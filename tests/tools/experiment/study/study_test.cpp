@@ -196,17 +196,6 @@ TEST(StudyConfig, TellsWhatIsWrong) {
   EXPECT_THAT(error("", "[]"), HasSubstr("study.yaml:4:8: 'seeds' must have at least one seed"));
   EXPECT_THAT(error("", "[1, 1]"), HasSubstr("'seeds' must differ from each other"));
   EXPECT_THAT(error("", "~"), HasSubstr("study.yaml:4:8: 'seeds' must have at least one seed"));
-  const auto rule = [&](const std::string& keys) {
-    return error("pass: [{case: world, figure: passed, " + keys + "}]\n");
-  };
-  EXPECT_EQ(rule("below: 1"), "");
-  for (const char* key : {"below", "above", "equals", "below_case", "below_figure"})
-    EXPECT_THAT(rule(std::string(key) + ": ~"), HasSubstr("study.yaml:5:")) << key;
-  for (const char* key : {"below_case", "below_figure"})
-    EXPECT_THAT(rule(std::string(key) + ": ''"), HasSubstr("'" + std::string(key) + "' must not be empty")) << key;
-  EXPECT_THAT(rule("below: 1, factor: 2"), HasSubstr("'factor' belongs to 'below_case' and 'below_figure'"));
-  EXPECT_THAT(error("pass: [{case: '', figure: passed, below: 1}]\n"), HasSubstr("'case' must not be empty"));
-  EXPECT_THAT(error("pass: [{case: world, figure: '', below: 1}]\n"), HasSubstr("'figure' must not be empty"));
   EXPECT_THAT(error("plots: [{name: p, figure: ''}]\n"), HasSubstr("'figure' must not be empty"));
   EXPECT_THAT(error("plots: [{name: p, metrics: [], over: time}]\n"), HasSubstr("'metrics' must not be empty"));
   EXPECT_THAT(error("", "[1.5]"), HasSubstr("'seeds' must be whole numbers, got 1.5"));
@@ -228,23 +217,80 @@ TEST(StudyConfig, TellsWhatIsWrong) {
   EXPECT_THAT(error("plots: [{name: p, metrics: [e]}]\n"), HasSubstr("'metrics' are drawn over 'distance' or 'time'"));
   EXPECT_THAT(error("plots: [{name: p, metrics: [f], over: time}]\n"), HasSubstr("names nothing of this world: 'f'"));
   EXPECT_THAT(error("plots: [{name: p, figure: passed, cases: [b]}]\n"), HasSubstr("names no case 'b'"));
-  EXPECT_THAT(error("pass: [{case: world, figure: e.rms_m}]\n"), HasSubstr("rule 1: needs one of 'above'"));
-  EXPECT_THAT(error("pass: [{case: world, figure: e.rms_m, below: 1, above: 0}]\n"), HasSubstr("not several"));
-  EXPECT_THAT(error("pass: [{case: world, figure: e.rms_m, statistic: average, below: 1}]\n"),
-              HasSubstr("'statistic' must be one of: mean, std, min, max, median"));
-  EXPECT_THAT(error("pass: [{case: world, figure: x.rms_m, below: 1}]\n"), HasSubstr("names nothing of this world"));
+}
+
+TEST(StudyConfig, PointsAtTheMistakeInARule) {
+  const auto error = [](const std::string& rule) {
+    const std::string text = StudyFolder("pass: ['" + rule + "']\n", "[1]").error();
+    const std::size_t at = text.find("study.yaml:5:");
+    return at == std::string::npos ? text : text.substr(at + 13);
+  };
+  EXPECT_EQ(error("mean(world.passed) == 1"), "");
+  EXPECT_EQ(error("max(world.e.rms_m) < 0.5 * min(world.e.rms_m)"), "");
+  // The text begins at column 9.
+  EXPECT_EQ(error("avg(world.e.rms_m) < 1"),
+            "9: rule 1: unknown statistic 'avg'; known statistics: mean, std, min, max, median");
+  EXPECT_THAT(error("meam(world.e.rms_m) < 1"), HasSubstr("did you mean 'mean'?"));
+  EXPECT_EQ(error("max(word.e.rms_m) < 1"),
+            "13: rule 1: unknown case 'word'; known cases: world; did you mean 'world'?");
+  EXPECT_EQ(error("1 > max(world.x.rms_m)"), "23: rule 1: unknown metric 'x'; known metrics: e");
+  EXPECT_THAT(error("max(world.e.rms) < 1"), HasSubstr("21: rule 1: metric 'e' has no figure 'rms'; figures: rms_m, "));
+  EXPECT_THAT(error("max(world.e) < 1"), HasSubstr("19: rule 1: 'e' is a metric; a rule names one of its figures"));
+  EXPECT_EQ(error("max(world) < 1"), "13: rule 1: case 'world' needs one of its figures, such as world.passed");
+  const std::string known = "'; statistics: mean, std, min, max, median";
+  const std::string needs = "9: rule 1: a rule of a study needs a statistic over the seeds, such as 'mean(";
+  EXPECT_EQ(error("world.e.rms_m < 1"), needs + "world.e.rms_m)" + known);
+  EXPECT_EQ(error("e.rms_m < 1"), needs + "world.e.rms_m)" + known);
+  EXPECT_EQ(error("passed == 1"), needs + "world.passed)" + known);
+  EXPECT_THAT(error("nan < 1"), HasSubstr("9: rule 1: 'nan' is neither a number nor a statistic"));
+  EXPECT_EQ(error("max(world.e.rms_m)"), "27: rule 1: the rule has no comparison; write one of < <= > >= == !=");
+}
+
+TEST(StudyConfig, RefusesRulesAsMapsWithTheirNewForm) {
+  const auto error = [](const std::string& map) { return StudyFolder("pass: [{" + map + "}]\n", "[1]").error(); };
+  const auto written = [](const std::string& rule) {
+    return HasSubstr("study.yaml:5:8: rule 1: a rule is text; write '" + rule + "' ('shoal upgrade' rewrites it)");
+  };
+  EXPECT_THAT(error("case: a, figure: e.rms_m, below: 1"), written("mean(a.e.rms_m) < 1"));
+  EXPECT_THAT(error("case: a, figure: passed, statistic: min, above: 0.5"), written("min(a.passed) > 0.5"));
+  EXPECT_THAT(error("case: a, figure: passed, equals: 1"), written("mean(a.passed) == 1"));
+  EXPECT_THAT(error("case: a, figure: e.rms_m, statistic: max, below_case: b, factor: 0.5"),
+              written("max(a.e.rms_m) < 0.5 * max(b.e.rms_m)"));
+  EXPECT_THAT(error("case: a, figure: e.rms_m, below_figure: f.rms_m"), written("mean(a.e.rms_m) < mean(a.f.rms_m)"));
+  for (const char* map :
+       {"case: a, figure: passed", "case: a, figure: passed, below: 1, above: 0", "figure: p, below: 1",
+        "case: a, figure: passed, below: ~", "case: a, figure: passed, below: 1, factor: 2"})
+    EXPECT_THAT(error(map), HasSubstr("rule 1: a rule is text, a comparison such as")) << map;
+  EXPECT_THAT(StudyFolder("pass: passed\n").error(), HasSubstr("'pass' must be a list of rules, got 'passed'"));
+}
+
+TEST(StudyConfig, TellsWhatIsWrongWithASettingWhereItStands) {
+  EXPECT_THAT(StudyFolder("cases:\n  - {name: a, set: {physics.step_s: -1}}\n").error(),
+              HasSubstr("study.yaml:6:37: case 'a': 'physics.step_s': physics: 'step_s' must be"));
+}
+
+TEST(StudyConfig, WarnsOnceOfWhatIsWrongInAllCases) {
+  const StudyFolder folder("cases: [{name: a}, {name: b}, {name: c}]\n");
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  tools::load_study(folder.path());
+  const std::string log = testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr();
+  const std::string warning = "nothing in this world publishes on 'est'";
+  const std::size_t first = log.find(warning);
+  ASSERT_NE(first, std::string::npos) << log;
+  EXPECT_EQ(log.find(warning, first + 1), std::string::npos) << log;
 }
 
 TEST(StudyResults, JudgeStatisticsOfCases) {
   const StudyFolder folder(two_cases +
                            "pass:\n"
-                           "  - {case: plain, figure: e.rms_m, below: 2.5}\n"                      // mean 2
-                           "  - {case: plain, figure: e.rms_m, statistic: max, below: 2.5}\n"      // max 3
-                           "  - {case: plain, figure: e.rms_m, below_case: quick, factor: 0.5}\n"  // 2 < 0.5 * 6
-                           "  - {case: plain, figure: e.rms_m, below_figure: e.rms_m}\n"           // 2 < 2
-                           "  - {case: plain, figure: passed, equals: 0.5}\n"                      // 1 < 3, not 3 < 3
-                           "  - {case: quick, figure: e.rms_m, statistic: std, above: 0}\n"        // equal ones
-                           "  - {case: quick, figure: e.final_m, above: -1}\n");                   // nobody has it
+                           "  - mean(plain.e.rms_m) < 2.5\n"                        // mean 2
+                           "  - max(plain.e.rms_m) < 2.5\n"                         // max 3
+                           "  - mean(plain.e.rms_m) < 0.5 * mean(quick.e.rms_m)\n"  // 2 < 0.5 * 6
+                           "  - mean(plain.e.rms_m) < mean(plain.e.rms_m)\n"        // 2 < 2
+                           "  - mean(plain.passed) == 0.5\n"                        // 1 < 3, not 3 < 3
+                           "  - std(quick.e.rms_m) > 0\n"                           // equal ones
+                           "  - mean(quick.e.final_m) > -1\n");                     // nobody has it
   const tools::LoadedStudy study = tools::load_study(folder.path());
   const auto runs = made_up_runs(study, {{1, 3}, {6, 6}});
   const tools::StudyResults results(study, runs);
@@ -252,9 +298,14 @@ TEST(StudyResults, JudgeStatisticsOfCases) {
   for (const auto& verdict : results.verdicts()) passed.push_back(verdict.passed);
   EXPECT_THAT(passed, ElementsAre(true, false, true, false, true, false, false));
   EXPECT_EQ(results.judgement(), tools::Judgement::failed);
-  EXPECT_EQ(results.verdicts()[2].rule, "plain: mean of e.rms_m (2) < 0.5 * that of quick (3)");
-  EXPECT_THAT(results.to_text(), HasSubstr("FAILED: plain: max of e.rms_m (3) < 2.5"));
+  EXPECT_EQ(results.verdicts()[2].text(),
+            "mean(plain.e.rms_m) < 0.5 * mean(quick.e.rms_m) (left 2, right 3, margin 1)");
+  EXPECT_THAT(results.to_text(), HasSubstr("FAILED: max(plain.e.rms_m) < 2.5 (left 3, right 2.5, margin -0.5)"));
   const auto json = nlohmann::json::parse(results.to_json(1));
+  EXPECT_EQ(json["rules"][1]["rule"], "max(plain.e.rms_m) < 2.5");
+  EXPECT_EQ(json["rules"][1]["left"], 3);
+  EXPECT_EQ(json["rules"][1]["margin"], -0.5);
+  EXPECT_TRUE(json["rules"][6]["left"].is_null());
   EXPECT_EQ(json["cases"][0]["figures"]["e.rms_m"]["mean"], 2);
   EXPECT_NEAR(json["cases"][0]["figures"]["e.rms_m"]["mean_high_95"], 2 + 12.7062, 1e-3);  // std / sqrt(2) is 1
   EXPECT_NEAR(json["cases"][1]["figures"]["passed"]["mean_high_95"], 0.657620, 1e-5);      // 0 of 2: z^2 / (2 + z^2)
@@ -268,18 +319,19 @@ TEST(StudyResults, JudgeStatisticsOfCases) {
 TEST(StudyResults, ARuleFailsWhenARunLacksItsFigure) {
   const StudyFolder folder(two_cases +
                            "pass:\n"
-                           "  - {case: quick, figure: e.rms_m, statistic: max, below: 10}\n"
-                           "  - {case: quick, figure: e.rms_m, statistic: min, above: 1}\n"
-                           "  - {case: quick, figure: e.rms_m, equals: 6}\n"
-                           "  - {case: plain, figure: e.rms_m, below_case: quick}\n"
-                           "  - {case: plain, figure: e.rms_m, below: 10}\n");
+                           "  - max(quick.e.rms_m) < 10\n"
+                           "  - min(quick.e.rms_m) > 1\n"
+                           "  - mean(quick.e.rms_m) == 6\n"
+                           "  - mean(plain.e.rms_m) < mean(quick.e.rms_m)\n"
+                           "  - mean(plain.e.rms_m) < 10\n");
   const tools::LoadedStudy study = tools::load_study(folder.path());
   const auto runs = made_up_runs(study, {{1, 3}, {6, std::nan("")}});
   const tools::StudyResults results(study, runs);
   std::vector<bool> passed;
   for (const auto& verdict : results.verdicts()) passed.push_back(verdict.passed);
   EXPECT_THAT(passed, ElementsAre(false, false, false, false, true));
-  EXPECT_EQ(results.verdicts()[0].rule, "quick: max of e.rms_m (none: 1 of 2 runs has no such figure) < 10");
+  EXPECT_EQ(results.verdicts()[0].text(),
+            "max(quick.e.rms_m) < 10 (max(quick.e.rms_m) is none: 1 of 2 runs has no such figure)");
   EXPECT_THAT(results.to_text(), testing::ContainsRegex("e.rms_m +quick +1/2 "));
   EXPECT_THAT(results.to_text(), testing::ContainsRegex("e.rms_m +plain +2 "));
   const auto json = nlohmann::json::parse(results.to_json(1));
@@ -305,7 +357,7 @@ TEST(StudyResults, WithoutRulesNothingHasPassed) {
 }
 
 TEST(StudyResults, ARunThatNobodyJudgedHasNotPassed) {
-  const StudyFolder folder("launch: false\npass: [{case: world, figure: passed, equals: 1}]\n");
+  const StudyFolder folder("launch: false\npass: [mean(world.passed) == 1]\n");
   const tools::LoadedStudy study = tools::load_study(folder.path());
   auto runs = tools::plan_study(study, "out");
   const ScratchFolder results_of_runs;
@@ -319,7 +371,8 @@ TEST(StudyResults, ARunThatNobodyJudgedHasNotPassed) {
   const tools::StudyResults results(study, runs);
   EXPECT_EQ(results.of("world", "passed").count, 1);
   EXPECT_EQ(results.verdicts().at(0).passed, false);
-  EXPECT_EQ(results.verdicts().at(0).rule, "world: mean of passed (none: 1 of 2 runs has no such figure) == 1");
+  EXPECT_EQ(results.verdicts().at(0).text(),
+            "mean(world.passed) == 1 (mean(world.passed) is none: 1 of 2 runs has no such figure)");
   EXPECT_THAT(results.to_csv(), HasSubstr("\nworld,1,0,1,"));
   EXPECT_THAT(results.to_csv(), HasSubstr("\nworld,2,0,,"));
 }

@@ -13,6 +13,8 @@
 #include "sim/device/device_registry.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
+#include "tools/experiment/study/study_config.hpp"
+#include "tools/shoal/reference/param_tables.hpp"
 
 namespace {
 
@@ -67,20 +69,22 @@ const std::string own_schemas = test_support::source_path("docs/reference/schema
 
 std::string shipped_files() {
   std::string files;
-  for (const char* folder : {"worlds", "vehicles"})
+  for (const char* folder : {"worlds", "worlds/studies", "vehicles"})
     for (const auto& entry : fs::directory_iterator(fs::path(test_support::source_path("")) / folder))
       if (entry.path().extension() == ".yaml") files += " " + entry.path().string();
   return files;
 }
 
 TEST(JsonSchema, InDocsIsUpToDate) {
-  for (const std::string file : {"world", "vehicle"}) {
+  for (const std::string file : {"world", "vehicle", "study"}) {
     const std::string path = own_schemas + "/" + file + ".schema.json";
     std::ifstream in(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
-    EXPECT_TRUE(text == tools::json_schema(file))
-        << path << " is stale; type\n  build/release/bin/shoal describe --schema " << file
-        << " > docs/reference/schema/" << file << ".schema.json";
+    const bool of_study = file == "study";
+    const std::string made =
+        of_study ? tools::study_schema(tools::params_of<tools::StudyConfig>()) : tools::json_schema(file);
+    EXPECT_TRUE(text == made) << path << " is stale; type\n  build/release/bin/shoal describe --schema " << file
+                              << " > docs/reference/schema/" << file << ".schema.json";
   }
 }
 
@@ -208,6 +212,25 @@ TEST(JsonSchema, AcceptsTheWorldAsItIsWrittenToResults) {
   const std::string world = tree.write("resolved.yaml", "world", sim::to_yaml(loaded.resolved));
   const Verdict verdict = validate(tree.schemas(), "accept " + world);
   EXPECT_TRUE(verdict.good) << verdict.output;
+}
+
+TEST(JsonSchema, KnowsARuleByItsForm) {
+  const ScratchTree tree;
+  const auto refused = [&](const std::string& kind, const std::string& keys, const std::string& rule) {
+    return !validate(tree.schemas(),
+                     "accept " + tree.write("ruled.yaml", kind, "shoal: 1\n" + keys + "pass: [" + rule + "]\n"))
+                .good;
+  };
+  const std::string study = "study: s\nworld: w.yaml\nseeds: [1-3, 8]\n";
+  for (const auto& [kind, keys] : {std::pair{"world", std::string()}, {"study", study}}) {
+    EXPECT_FALSE(refused(kind, keys, "a.rms_m < 0.4 * (b.rms_m - 1)")) << kind;
+    EXPECT_FALSE(refused(kind, keys, "max(a.b.rms_m) != -1e-3")) << kind;
+    EXPECT_TRUE(refused(kind, keys, "a.rms_m")) << kind;
+    EXPECT_TRUE(refused(kind, keys, "1 < a.rms_m < 2")) << kind;
+    EXPECT_TRUE(refused(kind, keys, "'{metric: a.rms_m, below: 3}'")) << kind;
+    EXPECT_TRUE(refused(kind, keys, "{metric: a.rms_m, below: 3}")) << kind;
+  }
+  EXPECT_TRUE(refused("study", "study: s\nworld: w.yaml\nseeds: 3-\n", "mean(a.passed) == 1"));
 }
 
 TEST(JsonSchema, AsksForNothingThatAnIncludedFileMayBring) {

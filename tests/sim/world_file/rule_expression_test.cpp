@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world_file/rule_expression.hpp"
+
+#include <gmock/gmock.h>
+
+#include <clocale>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "sim/world_file/load_world.hpp"
+#include "sim/world_file/rule_of_map.hpp"
+#include "tests/sim/config/parse.hpp"
+
+namespace {
+
+using sim::RuleExpression;
+using sim::RuleProblem;
+using testing::HasSubstr;
+
+/// Knows some figures, and the function `max`.
+class SomeNames final : public sim::RuleNames {
+ public:
+  std::string function_problem(const std::string& function) const override {
+    return function == "max" ? "" : "unknown function '" + function + "'";
+  }
+  std::optional<RuleProblem> name_problem(const std::string& /*function*/, const std::string& name) const override {
+    if (values.contains(name)) return std::nullopt;
+    return RuleProblem{name.find('.') + 1, "unknown name '" + name + "'"};
+  }
+
+  const std::map<std::string, double> values{{"a.x_m", 6}, {"b.x_m", 2}, {"a-b.x_m", 5}, {"3d.x_m", 7}};
+};
+
+const SomeNames some_names;
+
+RuleExpression rule_of(const std::string& text) {
+  RuleProblem problem;
+  const auto rule = RuleExpression::parse(text, some_names, problem);
+  EXPECT_TRUE(rule) << text << ": " << problem.text;
+  return rule.value_or(RuleExpression());
+}
+
+RuleExpression::Outcome outcome_of(const std::string& text) {
+  const RuleExpression rule = rule_of(text);
+  std::vector<double> values;
+  for (const RuleExpression::Figure& figure : rule.figures()) values.push_back(some_names.values.at(figure.name));
+  return rule.evaluate(values);
+}
+
+bool holds(const std::string& text) {
+  return outcome_of(text).holds;
+}
+
+/// `AT: TEXT`, with the character counted from 0.
+std::string problem_of(const std::string& text) {
+  RuleProblem problem;
+  if (RuleExpression::parse(text, some_names, problem)) return "none";
+  return std::to_string(problem.at) + ": " + problem.text;
+}
+
+TEST(RuleExpression, ComparesItsTwoSides) {
+  EXPECT_TRUE(holds("a.x_m < 6.5"));
+  EXPECT_FALSE(holds("a.x_m < 6"));
+  EXPECT_TRUE(holds("a.x_m <= 6"));
+  EXPECT_FALSE(holds("a.x_m > 6"));
+  EXPECT_TRUE(holds("a.x_m >= 6"));
+  EXPECT_TRUE(holds("a.x_m == 6"));
+  EXPECT_FALSE(holds("a.x_m != 6"));
+  EXPECT_TRUE(holds("7 > a.x_m"));
+  EXPECT_TRUE(holds("a.x_m<6.5"));
+}
+
+TEST(RuleExpression, CalculatesAsOnPaper) {
+  EXPECT_EQ(outcome_of("a.x_m + 2 * b.x_m < 0").left, 6 + 2 * 2);
+  EXPECT_EQ(outcome_of("(a.x_m + 2) * b.x_m < 0").left, (6 + 2) * 2);
+  EXPECT_EQ(outcome_of("a.x_m - b.x_m - 1 < 0").left, 6 - 2 - 1);
+  EXPECT_EQ(outcome_of("a.x_m / b.x_m / 4 < 0").left, 6.0 / 2 / 4);
+  EXPECT_EQ(outcome_of("-a.x_m * -2 < 0").left, 12);
+  EXPECT_EQ(outcome_of("a.x_m - -2 < 0").left, 8);
+  EXPECT_EQ(outcome_of("a.x_m < -(b.x_m + 1e1) / 0.5").right, -24);
+  EXPECT_EQ(outcome_of("a.x_m < .5").right, 0.5);
+  EXPECT_EQ(outcome_of("a.x_m\n  < 1e-3\t").right, 0.001);
+}
+
+TEST(RuleExpression, TellsAMinusFromADashInAName) {
+  EXPECT_EQ(outcome_of("a-b.x_m < 0").left, 5);
+  EXPECT_EQ(outcome_of("a.x_m-b.x_m < 0").left, 6 - 2);
+  EXPECT_EQ(outcome_of("a.x_m-a-b.x_m < 0").left, 6 - 5);
+  EXPECT_EQ(outcome_of("a.x_m-(b.x_m) < 0").left, 6 - 2);
+  EXPECT_EQ(outcome_of("a.x_m-3 < 0").left, 6 - 3);
+  EXPECT_EQ(outcome_of("9-3d.x_m < 0").left, 9 - 7);
+}
+
+TEST(RuleExpression, NamesEachFigureOnce) {
+  const RuleExpression rule = rule_of("max(a.x_m) + a.x_m < max( a.x_m ) * b.x_m");
+  std::vector<std::string> names;
+  for (const RuleExpression::Figure& figure : rule.figures()) names.push_back(figure.text());
+  EXPECT_THAT(names, testing::ElementsAre("max(a.x_m)", "a.x_m", "b.x_m"));
+  EXPECT_EQ(rule.evaluate(std::vector<double>{1, 2, 3}).right, 3);
+}
+
+TEST(RuleExpression, ItsMarginIsAboveZeroWhereItHolds) {
+  EXPECT_EQ(outcome_of("a.x_m < 8").margin, 2);
+  EXPECT_EQ(outcome_of("a.x_m <= 5").margin, -1);
+  EXPECT_EQ(outcome_of("a.x_m > 8").margin, -2);
+  EXPECT_EQ(outcome_of("a.x_m >= 5").margin, 1);
+  EXPECT_TRUE(std::isnan(outcome_of("a.x_m == 6").margin));
+  EXPECT_TRUE(std::isnan(outcome_of("a.x_m != 5").margin));
+}
+
+TEST(RuleExpression, NothingHoldsForAFigureThatIsNotThere) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  for (const std::string sign : {"<", "<=", ">", ">=", "==", "!="}) {
+    EXPECT_FALSE(rule_of("a.x_m " + sign + " 3").evaluate(std::vector{none}).holds) << sign;
+    EXPECT_FALSE(rule_of("3 " + sign + " a.x_m").evaluate(std::vector{none}).holds) << sign;
+  }
+  const double endless = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(rule_of("a.x_m > 3").evaluate(std::vector{endless}).holds);
+  EXPECT_FALSE(rule_of("a.x_m - a.x_m != 3").evaluate(std::vector{endless}).holds);
+}
+
+TEST(RuleExpression, ADivisionByZeroFailsTheRule) {
+  for (const std::string sign : {"<", "<=", ">", ">=", "==", "!="})
+    EXPECT_FALSE(rule_of("a.x_m / b.x_m " + sign + " 3").evaluate(std::vector{1.0, 0.0}).holds) << sign;
+  EXPECT_EQ(problem_of("a.x_m / 0 < 3"), "8: a division by 0 has no result");
+}
+
+TEST(RuleExpression, SaysWhatIsWrongAtWhichCharacter) {
+  const std::string made_of = ": a rule is made of numbers, figures, + - * / ( ) and one of < <= > >= == !=";
+  EXPECT_EQ(problem_of(""), "0: the rule is empty; write a comparison such as 'METRIC.FIGURE < 5'");
+  EXPECT_EQ(problem_of("  "), "0: the rule is empty; write a comparison such as 'METRIC.FIGURE < 5'");
+  EXPECT_EQ(problem_of("a.y_m < 3"), "2: unknown name 'a.y_m'");
+  EXPECT_EQ(problem_of("3 > b.x_m - a.y_m"), "14: unknown name 'a.y_m'");
+  EXPECT_EQ(problem_of("3 > c.x_m-b.x_m"), "6: unknown name 'c.x_m'");
+  EXPECT_EQ(problem_of("a.x_m b.x_m < 3"), "6: an operator is missing before 'b.x_m'");
+  EXPECT_EQ(problem_of("2 a.x_m < 3"), "2: an operator is missing before 'a.x_m'");
+  EXPECT_EQ(problem_of("a.x_m < 2 (3)"), "10: an operator is missing before '('");
+  EXPECT_EQ(problem_of("a.x_m"), "5: the rule has no comparison; write one of < <= > >= == !=");
+  EXPECT_EQ(problem_of("1 < a.x_m < 3"), "10: a rule has one comparison; write a second rule for '<'");
+  EXPECT_EQ(problem_of("a.x_m <> 3"), "7: a number or a figure is missing before '>'");
+  EXPECT_EQ(problem_of("a.x_m = 3"), "6: write '==' instead of '='");
+  EXPECT_EQ(problem_of("a.x_m =< 3"), "6: write '<=' instead of '=<'");
+  EXPECT_EQ(problem_of("a.x_m => 3"), "6: write '>=' instead of '=>'");
+  EXPECT_EQ(problem_of("a.x_m <"), "7: a number or a figure is missing at the end of the rule");
+  EXPECT_EQ(problem_of("a.x_m + < 3"), "8: a number or a figure is missing before '<'");
+  EXPECT_EQ(problem_of("* a.x_m < 3"), "0: a number or a figure is missing before '*'");
+  EXPECT_EQ(problem_of("(a.x_m < 3"), "7: a comparison cannot stand in parentheses, got '<'");
+  EXPECT_EQ(problem_of("2 * (a.x_m"), "4: '(' is not closed");
+  EXPECT_EQ(problem_of("a.x_m < 3)"), "9: ')' closes nothing");
+  EXPECT_EQ(problem_of("() < 3"), "1: a number or a figure is missing before ')'");
+  EXPECT_EQ(problem_of("a.x_m < 3 and b.x_m < 3"), "10: a rule has one comparison; write two rules instead of 'and'");
+  EXPECT_EQ(problem_of("a.x_m < 3 && b.x_m < 3"), "10: a rule has one comparison; write two rules instead of '&'");
+  EXPECT_EQ(problem_of("a.x_m ≤ 3"), "6: '≤' has no meaning here" + made_of);
+  EXPECT_EQ(problem_of("a.x_m < $"), "8: '$' has no meaning here" + made_of);
+  EXPECT_EQ(problem_of("a.x_m < 5m"), "8: '5m' is not a number");
+  EXPECT_EQ(problem_of("a.x_m < 1,5"), "9: ',' has no meaning here" + made_of);
+  EXPECT_EQ(problem_of("a.x_m < 1.2.3"), "8: '1.2.3' is not a number");
+  EXPECT_EQ(problem_of("a.x_m < 0x10"), "8: '0x10' is not a number");
+  EXPECT_EQ(problem_of("a.x_m < 1e999"), "8: '1e999' is outside the range of numbers");
+  EXPECT_EQ(problem_of("a.x_m < nan"), "8: unknown name 'nan'");
+  EXPECT_EQ(problem_of("a.x_m < inf"), "8: unknown name 'inf'");
+  EXPECT_EQ(problem_of("1 < 2"), "0: the rule names no figure, so that no run can change its outcome");
+  EXPECT_EQ(problem_of("min(a.x_m) < 2"), "0: unknown function 'min'");
+  EXPECT_EQ(problem_of("max(a.x_m, b.x_m) < 2"), "9: 'max(...)' holds the name of one figure, got ','");
+  EXPECT_EQ(problem_of("max(a.x_m + 1) < 2"), "10: 'max(...)' holds the name of one figure, got '+'");
+  EXPECT_EQ(problem_of("max() < 2"), "4: the name of a figure must stand in 'max(...)', got ')'");
+  EXPECT_EQ(problem_of("max(a.x_m"), "3: '(' is not closed");
+  EXPECT_EQ(problem_of("max(a.y_m) < 2"), "6: unknown name 'a.y_m'");
+}
+
+TEST(RuleExpression, IsBoundedInLengthAndDepth) {
+  const std::string deep(RuleExpression::max_depth - 1, '(');
+  const std::string closed(RuleExpression::max_depth - 1, ')');
+  EXPECT_EQ(problem_of(deep + "a.x_m" + closed + " < 3"), "none");
+  EXPECT_EQ(problem_of("(" + deep + "a.x_m" + closed + ") < 3"), "32: the rule is nested more than 32 deep");
+  EXPECT_EQ(problem_of(std::string(400, '-') + "a.x_m < 3"), "32: the rule is nested more than 32 deep");
+  std::string longest = "a.x_m < 1";
+  while (longest.size() + 4 <= RuleExpression::max_length) longest += " + 1";
+  EXPECT_EQ(problem_of(longest), "none");
+  EXPECT_EQ(problem_of(longest + " + 1"), "500: a rule has at most 500 characters");
+}
+
+TEST(RuleExpression, ReadsNumbersTheSameInEveryLanguage) {
+  const std::string before = std::setlocale(LC_ALL, nullptr);
+  for (const char* comma : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8"})
+    if (std::setlocale(LC_ALL, comma) != nullptr) break;
+  EXPECT_EQ(outcome_of("a.x_m < 0.25").right, 0.25);
+  std::setlocale(LC_ALL, before.c_str());
+}
+
+// Worlds
+
+/// The errors of a world with two metrics and this text after them, without the name of the file.
+std::string world_error(const std::string& text) {
+  try {
+    sim::load_world_text("shoal: 1\n" + text, "w.yaml");
+    return {};
+  } catch (const sim::ConfigError& error) {
+    return error.what();
+  }
+}
+
+TEST(RulesOfAWorld, PointAtTheCharacterInPlainAndQuotedText) {
+  const std::string what = "rule 1: unknown metric 'm'; known metrics: none";
+  EXPECT_EQ(world_error("pass: [m.count < 3]\n"), "w.yaml:2:8: " + what);
+  EXPECT_EQ(world_error("pass:\n  - 3 > m.count\n"), "w.yaml:3:9: " + what);
+  EXPECT_EQ(world_error("pass:\n  - '3 > m.count'\n"), "w.yaml:3:10: " + what);
+  EXPECT_EQ(world_error("pass:\n  - \"3 > m.count\"\n"), "w.yaml:3:10: " + what);
+  EXPECT_EQ(world_error("pass:\r\n  - 3 > m.count\r\n"), "w.yaml:3:9: " + what);
+  EXPECT_EQ(world_error("name: ä\npass:\n  - 3 > m.count\n"), "w.yaml:4:9: " + what);
+}
+
+TEST(RulesOfAWorld, PointAtTheStartOfTextThatTheFileHasInOtherForm) {
+  const std::string what = "rule 1: unknown metric 'm'; known metrics: none";
+  EXPECT_EQ(world_error("pass:\n  - >\n    3\n    > m.count\n"), "w.yaml:3:5: " + what);
+  EXPECT_EQ(world_error("pass:\n  - |\n    3 > m.count\n"), "w.yaml:3:5: " + what);
+  EXPECT_EQ(world_error("pass:\n  - 3\n    > m.count\n"), "w.yaml:3:5: " + what);
+  EXPECT_EQ(world_error("pass:\n  - \"3\\x20> m.count\"\n"), "w.yaml:3:5: " + what);
+}
+
+TEST(RulesOfAWorld, AreRefusedAsMapsWithTheirNewForm) {
+  EXPECT_EQ(world_error("pass: [{metric: m.count, below: 3}]\n"),
+            "w.yaml:2:8: rule 1: a rule is text; write 'm.count < 3' ('shoal upgrade' rewrites it)");
+  EXPECT_THAT(world_error("pass: [{metric: m.count, below: }]\n"),
+              HasSubstr("rule 1: a rule is text, a comparison such as 'METRIC.FIGURE < 5', got {metric: m.count"));
+  EXPECT_THAT(world_error("pass: [~]\n"), HasSubstr("rule 1: a rule is text"));
+  EXPECT_EQ(world_error("pass: m.count < 3\n"), "w.yaml:2:7: 'pass' must be a list of rules, got 'm.count < 3'");
+  EXPECT_EQ(world_error("pass:\n"), "");
+}
+
+TEST(RulesOfAWorld, OldFormsHaveANewOne) {
+  const auto new_form = [](const std::string& map) { return sim::rule_of_map(test::parse(map)).value_or("none"); };
+  EXPECT_EQ(new_form("{metric: a.rms_m, below: 1e1}"), "a.rms_m < 1e1");
+  EXPECT_EQ(new_form("{above: -2, metric: a.rms_m}"), "a.rms_m > -2");
+  EXPECT_EQ(new_form("{metric: a.count, equals: 0}"), "a.count == 0");
+  EXPECT_EQ(new_form("{metric: a.rms_m, below_metric: b.rms_m, factor: 0.4}"), "a.rms_m < 0.4 * b.rms_m");
+  EXPECT_EQ(new_form("{metric: a.rms_m, above_metric: b.rms_m}"), "a.rms_m > b.rms_m");
+  EXPECT_EQ(new_form("{metric: a.rms_m, below: 1, above: 0}"), "none");
+  EXPECT_EQ(new_form("{metric: a.rms_m, below: 1, factor: 2}"), "none");
+  EXPECT_EQ(new_form("{metric: a.rms_m}"), "none");
+  EXPECT_EQ(new_form("{below: 1}"), "none");
+  EXPECT_EQ(new_form("[a]"), "none");
+}
+
+}  // namespace

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/study/study_rules.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "sim/config/message_text.hpp"
+#include "sim/world_file/rule_of_map.hpp"
+#include "tools/experiment/study/study_config.hpp"
+
+namespace tools {
+
+namespace {
+
+constexpr const char* passed_figure = "passed";
+
+std::string suggestion(const std::string& misspelt, const std::vector<std::string>& names) {
+  const std::string meant = sim::closest_name(misspelt, names);
+  return meant.empty() ? "" : "; did you mean '" + meant + "'?";
+}
+
+}  // namespace
+
+const std::vector<std::string>& statistic_words() {
+  static const std::vector<std::string> words{"mean", "std", "min", "max", "median"};
+  return words;
+}
+
+std::pair<std::string, std::string> case_and_figure(const std::string& name) {
+  const std::size_t dot = std::min(name.find('.'), name.size());
+  return {name.substr(0, dot), dot < name.size() ? name.substr(dot + 1) : ""};
+}
+
+StudyRuleNames::StudyRuleNames(const std::vector<StudyCase>& cases, const std::vector<sim::LoadedWorld>& worlds) {
+  for (const StudyCase& each : cases) cases_.push_back(each.name);
+  for (const sim::LoadedWorld& world : worlds) metrics_.push_back(&world.config.metrics);
+}
+
+std::string StudyRuleNames::function_problem(const std::string& function) const {
+  const std::vector<std::string>& words = statistic_words();
+  if (std::find(words.begin(), words.end(), function) != words.end()) return {};
+  return "unknown statistic '" + sim::shortened(function) + "'; known statistics: " + sim::list_text(words) +
+         suggestion(function, words);
+}
+
+std::optional<sim::RuleProblem> StudyRuleNames::name_problem(const std::string& function,
+                                                             const std::string& name) const {
+  const auto [in_case, figure] = case_and_figure(name);
+  const auto found = std::find(cases_.begin(), cases_.end(), in_case);
+  if (function.empty()) {
+    const std::string whole = found != cases_.end() && !figure.empty() ? name : cases_.front() + "." + name;
+    if (name.find('.') == std::string::npos && name != passed_figure)
+      return sim::RuleProblem{0, "'" + sim::shortened(name) + "' is neither a number nor a statistic, " +
+                                     "STATISTIC(CASE.METRIC.FIGURE); statistics: " + sim::list_text(statistic_words())};
+    return sim::RuleProblem{0, "a rule of a study needs a statistic over the seeds, such as 'mean(" +
+                                   sim::shortened(whole) + ")'; statistics: " + sim::list_text(statistic_words())};
+  }
+  if (found == cases_.end())
+    return sim::RuleProblem{0, "unknown case '" + sim::shortened(in_case) +
+                                   "'; known cases: " + sim::list_text(cases_) + suggestion(in_case, cases_)};
+  if (figure.empty())
+    return sim::RuleProblem{0, "case '" + in_case + "' needs one of its figures, such as " + in_case + ".passed"};
+  if (figure == passed_figure) return std::nullopt;
+  const std::size_t begin = in_case.size() + 1;
+  const auto index = static_cast<std::size_t>(found - cases_.begin());
+  if (index >= metrics_.size()) return std::nullopt;
+  auto problem = sim::figure_problem(*metrics_[index], figure);
+  if (problem) problem->at += begin;
+  return problem;
+}
+
+std::optional<std::string> study_rule_of_map(const sim::ConfigNode& map) {
+  static const std::vector<sim::OldComparison> comparisons{
+      {"below", "<"}, {"above", ">"}, {"equals", "=="}, {"below_case", "<"}, {"below_figure", "<"}};
+  if (map.kind != sim::ConfigNode::Kind::map) return std::nullopt;
+  const auto in_case = sim::scalar_of_key(map, "case");
+  const auto figure = sim::scalar_of_key(map, "figure");
+  const sim::OldComparison* comparison = sim::only_comparison(map, comparisons);
+  if (!in_case || !figure || comparison == nullptr) return std::nullopt;
+  const auto value = sim::scalar_of_key(map, comparison->key);
+  const std::string key = comparison->key;
+  const bool of_figure = key.starts_with("below_");
+  if (!value || (map.find("factor") != nullptr && !of_figure)) return std::nullopt;
+  const std::string statistic = sim::scalar_of_key(map, "statistic").value_or("mean");
+  const auto taken = [&](const std::string& of_case, const std::string& name) {
+    return statistic + "(" + of_case + "." + name + ")";
+  };
+  const auto factor = sim::scalar_of_key(map, "factor");
+  std::string right = *value;
+  if (key == "below_case") right = taken(*value, *figure);
+  if (key == "below_figure") right = taken(*in_case, *value);
+  return taken(*in_case, *figure) + " " + comparison->sign + " " + (factor ? *factor + " * " : "") + right;
+}
+
+}  // namespace tools
