@@ -64,11 +64,6 @@ void Diagnostics::error(const SourcePlace& place, const std::string& who, const 
   lines_.push_back(std::move(line));
 }
 
-void Diagnostics::append(const Diagnostics& other) {
-  for (const std::string& line : other.lines_)
-    if (lines_.size() <= max_lines && seen_.insert(line).second) lines_.push_back(line);
-}
-
 void Diagnostics::throw_if_any() const {
   if (!ok()) throw ConfigError(lines_);
 }

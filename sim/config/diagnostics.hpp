@@ -55,8 +55,6 @@ class Diagnostics {
 
   /// Adds `place: who: text` (who may be empty).  The same text at the same place is kept once, whoever it is about.
   void error(const SourcePlace& place, const std::string& who, const std::string& text);
-  /// Adds the errors that other diagnostics have collected.
-  void append(const Diagnostics& other);
   bool ok() const { return lines_.empty(); }
   const std::vector<std::string>& lines() const { return lines_; }
   /// Throws ConfigError when there are errors.

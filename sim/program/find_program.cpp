@@ -31,7 +31,7 @@ FoundProgram read_found(const std::string& path, const std::string& file, bool q
   auto declaration = std::make_shared<ProgramDeclaration>(read_declaration_file(file, own));
   if (own.ok()) return {path, std::move(declaration), true};
   if (quoted)
-    diagnostics.append(own);
+    for (const std::string& line : own.lines()) diagnostics.error({}, "", line);
   else
     diagnostics.error(place, who,
                       "the declaration '" + file + "' has " + std::to_string(own.lines().size()) +
@@ -77,9 +77,9 @@ FoundProgram find_program(const std::string& program, const std::vector<std::str
   }
   const std::string file = program + declaration_ending;
   if (files != nullptr && place.origin != Origin::command_line && !files->may_read(file)) {
-    diagnostics.error(place, who,
-                      "the declaration of 'program' " + FileAccess::reading_rule() + ", got '" +
-                          shortened(printable(file)) + "'");
+    diagnostics.error(
+        place, who,
+        "the declaration of 'program' " + FileAccess::reading_rule() + ", got '" + shortened(printable(file)) + "'");
     return {program, nullptr, true};
   }
   if (!is_file(file)) return {};

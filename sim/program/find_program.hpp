@@ -27,8 +27,8 @@ struct FoundProgram {
 };
 
 /// Reads the declaration of the program that `program` names, in the first of `folders` that has one; a name with a
-/// slash is a path, of which `files` must allow the declaration.  A declaration that is broken is an error, with its own
-/// place unless a world names the path of it.  Never starts the program.
+/// slash is a path, of which `files` must allow the declaration.  A declaration that is broken is an error, with its
+/// own place unless a world names the path of it.  Never starts the program.
 FoundProgram find_program(const std::string& program, const std::vector<std::string>& folders, const FileAccess* files,
                           const SourcePlace& place, const std::string& who, Diagnostics& diagnostics);
 

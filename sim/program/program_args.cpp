@@ -31,12 +31,12 @@ bool read_numbers(const ArgDeclaration& arg, const std::string& name, const Conf
                   Diagnostics& diagnostics, std::vector<double>& numbers) {
   const std::size_t before = diagnostics.lines().size();
   const std::size_t least = arg.needed_columns(), count = arg.columns.size();
-  const std::string how_many =
-      std::to_string(least) + (least == count ? "" : " to " + std::to_string(count)) + (count == 1 ? " number" : " numbers");
+  const std::string how_many = std::to_string(least) + (least == count ? "" : " to " + std::to_string(count)) +
+                               (count == 1 ? " number" : " numbers");
   if (value.kind != Kind::list) {
-    diagnostics.error(value.place, who,
-                      "'" + name + "' must be a list of " + (count == 0 ? "numbers" : how_many) + ", got " +
-                          shown(value));
+    diagnostics.error(
+        value.place, who,
+        "'" + name + "' must be a list of " + (count == 0 ? "numbers" : how_many) + ", got " + shown(value));
     return false;
   }
   if (count > 0 && (value.items.size() < least || value.items.size() > count)) {
@@ -64,8 +64,7 @@ void check_unknown(const ProgramDeclaration& declaration, const ConfigNode& args
   std::size_t unknown = 0;
   for (const ConfigNode::Entry& entry : args.entries) {
     if (declaration.find(entry.key) != nullptr) continue;
-    if (++unknown > max_unknown)
-      return diagnostics.error(entry.place, who, "more unknown arguments are not shown");
+    if (++unknown > max_unknown) return diagnostics.error(entry.place, who, "more unknown arguments are not shown");
     const std::string meant = closest_name(entry.key, known);
     diagnostics.error(entry.place, who,
                       "unknown argument '" + shortened(printable(entry.key)) + "'" +
@@ -95,9 +94,9 @@ void check_together(const ProgramDeclaration& declaration, const ConfigNode& arg
           last = value;
         }
       if (given.size() > 1)
-        diagnostics.error(last->place, who,
-                          "of " + list_text(group, group.size()) + " only one may be given, got " +
-                              list_text(given, given.size()));
+        diagnostics.error(
+            last->place, who,
+            "of " + list_text(group, group.size()) + " only one may be given, got " + list_text(given, given.size()));
       if (given.empty() && one_needed)
         diagnostics.error(place, who, "missing argument: one of " + list_text(group, group.size()));
     }

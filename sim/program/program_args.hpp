@@ -15,8 +15,8 @@ std::string option_of(const std::string& arg_name);
 std::vector<std::vector<double>> read_tuples(const ArgDeclaration& arg, const ConfigNode& value, const std::string& who,
                                              Diagnostics& diagnostics);
 
-/// Checks one value and appends what it is on the command line: `--key=VALUE`, lists as JSON; `--key` for a flag that is
-/// true, nothing for one that is false.
+/// Checks one value and appends what it is on the command line: `--key=VALUE`, lists as JSON; `--key` for a flag that
+/// is true, nothing for one that is false.
 void append_words(const ArgDeclaration& arg, const ConfigNode& value, const std::string& who, Diagnostics& diagnostics,
                   std::vector<std::string>& words);
 

@@ -99,8 +99,7 @@ ConfigNode node_of(const ArgDeclaration& arg) {
 }
 
 /// A list of lists of names of arguments.
-void read_groups(ParamReader& in, const char* key, std::vector<std::vector<std::string>>& groups,
-                 const char* meaning) {
+void read_groups(ParamReader& in, const char* key, std::vector<std::vector<std::string>>& groups, const char* meaning) {
   ParamInfo info;
   info.key = key;
   info.type = "list of lists of text";
@@ -133,8 +132,8 @@ void check_names(ParamReader& in, const ProgramDeclaration& declaration) {
     if (!seen.insert(arg.name).second) in.error("args", "duplicate argument '" + shortened(printable(arg.name)) + "'");
     for (const std::string& name : arg.needs) check("args", name, "'needs' of '" + arg.name + "'");
   }
-  for (const auto& [key, groups] : {std::pair{"exactly_one", &declaration.exactly_one},
-                                    std::pair{"at_most_one", &declaration.at_most_one}})
+  for (const auto& [key, groups] :
+       {std::pair{"exactly_one", &declaration.exactly_one}, std::pair{"at_most_one", &declaration.at_most_one}})
     for (const auto& group : *groups)
       for (const std::string& name : group) check(key, name, "'" + std::string(key) + "'");
 }
@@ -226,15 +225,16 @@ void ProgramDeclaration::read(ParamReader& in) {
   }
   in.read_list("args", args, "argument", "its arguments");
   if (args.size() > max_args)
-    in.error("args", "'args' must have at most " + std::to_string(max_args) + " arguments, got " +
-                         std::to_string(args.size()));
+    in.error("args",
+             "'args' must have at most " + std::to_string(max_args) + " arguments, got " + std::to_string(args.size()));
   read_groups(in, "exactly_one", exactly_one, "groups of arguments of which exactly one must be given");
   read_groups(in, "at_most_one", at_most_one, "groups of arguments of which at most one may be given");
   if (!in.describing()) check_names(in, *this);
 }
 
 const ArgDeclaration* ProgramDeclaration::find(const std::string& name) const {
-  const auto found = std::find_if(args.begin(), args.end(), [&](const ArgDeclaration& arg) { return arg.name == name; });
+  const auto found =
+      std::find_if(args.begin(), args.end(), [&](const ArgDeclaration& arg) { return arg.name == name; });
   return found == args.end() ? nullptr : &*found;
 }
 

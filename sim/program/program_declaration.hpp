@@ -35,8 +35,9 @@ struct ArgDeclaration {
   std::vector<std::string> columns;  ///< names of the numbers of a tuple
   int min_columns = 0;               ///< the columns after these may be left out; 0: none may
   bool required = false;
-  std::optional<ConfigNode> initial;  ///< value of the argument when it is not given; unset: the meaning says what happens
-  std::vector<std::string> needs;     ///< arguments that must be given with this one
+  std::optional<ConfigNode>
+      initial;                     ///< value of the argument when it is not given; unset: the meaning says what happens
+  std::vector<std::string> needs;  ///< arguments that must be given with this one
   std::string meaning;
 
   void read(ParamReader& in);
@@ -50,7 +51,8 @@ struct ProgramDeclaration {
   int shoal_args = 1;  ///< version of the format
   std::string program;
   std::string meaning;
-  std::optional<std::vector<std::string>> publishes, subscribes;  ///< channels, with {name} for an argument; unset: unknown
+  std::optional<std::vector<std::string>> publishes,
+      subscribes;  ///< channels, with {name} for an argument; unset: unknown
   std::vector<ArgDeclaration> args;
   std::vector<std::vector<std::string>> exactly_one;  ///< groups of arguments of which one must be given
   std::vector<std::vector<std::string>> at_most_one;  ///< groups of arguments of which one may be given

@@ -15,8 +15,6 @@
 #include "sim/config/shipped_files.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/device/plugin.hpp"
-#include "sim/program/find_program.hpp"
-#include "sim/program/program_args.hpp"
 #include "sim/world_file/check_script.hpp"
 #include "sim/world_file/config_warnings.hpp"
 #include "sim/world_file/data_files.hpp"
@@ -274,45 +272,6 @@ void check_buses(const WorldConfig& world, const ConfigNode& root, const LoadOpt
   }
 }
 
-/// Where a program without a slash is looked up: beside shoal, then where the command line allows files, then in PATH.
-std::vector<std::string> folders_of_programs(const LoadOptions& options) {
-  std::vector<std::string> folders = options.program_folders.empty() ? program_folders() : options.program_folders;
-  folders.insert(folders.empty() ? folders.end() : folders.begin() + 1, options.allow_paths.begin(),
-                 options.allow_paths.end());
-  return folders;
-}
-
-std::string no_declaration(const std::string& program, const std::vector<std::string>& folders) {
-  const bool looked_up = program.find('/') == std::string::npos;
-  const std::vector<std::string> known =
-      folders.empty() ? std::vector<std::string>() : declared_programs(folders.front());
-  const std::string name = shortened(printable(program)), meant = closest_name(program, known);
-  std::string text = "no declaration '" + name + declaration_ending + "'";
-  if (looked_up) text += " in " + list_text(folders, 4);
-  if (!meant.empty()) return text + "; did you mean '" + meant + "'?";
-  return text + "; 'command: [" + name + ", ...]' takes a program without one";
-}
-
-/// Checks the arguments of programs by their declarations, and makes command lines of them.
-void read_programs(WorldConfig& world, const LoadOptions& options, Diagnostics& diagnostics) {
-  if (options.declarations == ReadDeclarations::none) return;
-  const std::vector<std::string> folders = folders_of_programs(options);
-  for (ProcessConfig& process : world.processes) {
-    if (process.program.empty()) continue;
-    const std::string who = "process '" + process.name + "'";
-    const std::string with_program = who + ": program '" + shortened(printable(process.program)) + "'";
-    FoundProgram found =
-        find_program(process.program, folders, world.files.get(), process.program_place, with_program, diagnostics);
-    if (!found.exists && options.declarations == ReadDeclarations::all)
-      diagnostics.error(process.program_place, with_program, no_declaration(process.program, folders));
-    if (found.declaration == nullptr) continue;
-    const SourcePlace& place = process.args.place.file != nullptr ? process.args.place : process.program_place;
-    process.command = command_line_of(*found.declaration, process.args, place, with_program, diagnostics);
-    process.command.insert(process.command.begin(), found.path);
-    process.declaration = std::move(found.declaration);
-  }
-}
-
 LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& options, Diagnostics& diagnostics) {
   diagnostics.throw_if_any();
   LoadedWorld loaded;
@@ -325,7 +284,6 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   in.finish();
   check_weight_of_water(loaded.config, root, diagnostics);
   check_buses(loaded.config, root, options, diagnostics);
-  read_programs(loaded.config, options, diagnostics);
   // Its devices would all be of unknown types, which would bury the mistake.
   if (!load_plugins(root, options, diagnostics)) diagnostics.throw_if_any();
   if (file.file != nullptr) loaded.config.file = *file.file;

@@ -9,13 +9,6 @@
 
 namespace sim {
 
-/// Which declarations of the programs of a world are read.  No program is started.
-enum class ReadDeclarations {
-  none,   ///< `args:` are not looked at
-  found,  ///< arguments are checked where there is a declaration
-  all     ///< a `program:` without a declaration is an error
-};
-
 struct LoadOptions {
   std::vector<std::string> sets;      ///< `path=value`, as given with --set
   std::optional<std::int64_t> seed;   ///< instead of the file's
@@ -29,8 +22,6 @@ struct LoadOptions {
   bool special_files = false;  ///< the world may come from a pipe or a device; it cannot include others then
   /// Put the vehicle files into LoadedWorld::resolved; without them it has no vehicles, nor has `vehicle_entries`.
   bool resolve = true;
-  ReadDeclarations declarations = ReadDeclarations::none;
-  std::vector<std::string> program_folders = {};  ///< where programs are looked up; empty: sim::program_folders()
 };
 
 /// Which files a world (or vehicle) in `world_file` may name; null: any.

@@ -68,7 +68,8 @@ namespace {
 
 /// A list of a program and its arguments.  A text is an error that shows it as a list.
 void read_command(ParamReader& in, std::vector<std::string>& command) {
-  constexpr const char* meaning = "instead of 'program': any program and its arguments; {lcm_url} and {run} are replaced";
+  constexpr const char* meaning =
+      "instead of 'program': any program and its arguments; {lcm_url} and {run} are replaced";
   const ConfigNode* node = in.describing() ? nullptr : in.child("command");
   if (node == nullptr || node->kind != ConfigNode::Kind::scalar || node->scalar.empty()) {
     in.read("command", command, meaning);
@@ -87,10 +88,11 @@ void read_command(ParamReader& in, std::vector<std::string>& command) {
 void ProcessConfig::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "name of the process in messages");
-  if (in.node() != nullptr) place = program_place = in.node()->place;
-  in.read("program", program, "a program with a declaration of its arguments (docs/program_arguments.md)");
-  if (in.has("program")) program_place = in.child("program")->place;
-  in.read_raw("args", args, "arguments of the program by name; in texts {lcm_url} and {run} are replaced");
+  // Whoever starts programs makes the command of these, by the declaration of the program.
+  std::string program;
+  ConfigNode args;
+  in.read("program", program, "a program with a declaration of its arguments, see docs/program_arguments.md");
+  in.read_raw("args", args, "arguments of 'program' by name; in texts {lcm_url} and {run} are replaced");
   read_command(in, command);
   in.read("client", client, "the name it joins the lockstep with; the run then waits for it");
   in.read_reference("bus", bus, "bus", "its LCM URL is that of this bus, named in `buses`; unset: the world's");

@@ -16,7 +16,6 @@
 #include "sim/model/object_config.hpp"
 #include "sim/model/physics_config.hpp"
 #include "sim/model/placement.hpp"
-#include "sim/program/program_declaration.hpp"
 #include "sim/scene/light.hpp"
 #include "sim/script/actor_config.hpp"
 #include "sim/script/event_config.hpp"
@@ -86,12 +85,7 @@ struct BusConfig {
 /// An external program of the experiment, started only with --launch.
 struct ProcessConfig {
   std::string name;
-  std::string program;  ///< a program with a declaration; empty: `command` says it all
-  ConfigNode args;      ///< its arguments, as the world says them
-  SourcePlace place, program_place;
-  std::shared_ptr<const ProgramDeclaration> declaration;  ///< filled by load_world; null: not read, or there is none
-  /// Program and arguments, looked up beside the shoal program, then in PATH.  Of a `program` load_world fills it.
-  std::vector<std::string> command;
+  std::vector<std::string> command;  ///< program and arguments; looked up beside the shoal program, then in PATH
   std::string client;                ///< name it joins the lockstep with; empty: it does not
   std::string bus;                   ///< of `buses:`; empty: the world's
   std::string on_exit = "continue";  ///< when it ends before the run: continue, end (exit code 1), ignore

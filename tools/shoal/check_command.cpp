@@ -5,10 +5,12 @@
 #include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/camera/texture.hpp"
+#include "sim/program/find_program.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tools/experiment/process/process_check.hpp"
+#include "tools/experiment/process/world_programs.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 
@@ -39,7 +41,16 @@ std::size_t device_count(const sim::WorldConfig& world) {
   return count;
 }
 
+void check_declaration(const std::string& path) {
+  sim::Diagnostics diagnostics;
+  const sim::ProgramDeclaration declaration = sim::read_declaration_file(path, diagnostics);
+  diagnostics.throw_if_any();
+  std::cout << path << ": declaration of program '" << declaration.program << "': " << declaration.args.size()
+            << " arguments\n";
+}
+
 void check(const std::string& path, const sim::LoadOptions& options) {
+  if (path.ends_with(sim::declaration_ending)) return check_declaration(path);
   if (is_vehicle_file(path, options)) {
     const sim::VehicleConfig vehicle = sim::load_vehicle(path, options);
     std::cout << path << ": vehicle '" << vehicle.vehicle << "': " << vehicle.bodies.size() << " bodies, "
@@ -50,6 +61,7 @@ void check(const std::string& path, const sim::LoadOptions& options) {
   with_messages.encode_message = shoal::encode_own_message;
   with_messages.resolve = false;
   sim::LoadedWorld loaded = sim::load_world(path, with_messages);
+  read_programs(loaded, {true, options.allow_paths});
   loaded.config.bodies_only_of_many = true;
   // Building finds what reading cannot: mesh files, bodies without mass.
   sim::InProcessBus bus;
@@ -58,6 +70,7 @@ void check(const std::string& path, const sim::LoadOptions& options) {
   sim::Warnings warnings;
   warn_of_processes(loaded, warnings);
   warn_of_missing_programs(loaded, warnings);
+  warn_of_unchecked_arguments(loaded, warnings);
   std::cout << path << ": world '" << loaded.config.name << "': " << world.vehicles().size() << " vehicles, "
             << loaded.config.objects.size() << " objects, " << device_count(loaded.config) << " devices, "
             << world.physics().bodies().size() << " bodies\n";
@@ -66,16 +79,19 @@ void check(const std::string& path, const sim::LoadOptions& options) {
 }  // namespace
 
 void add_check_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("check", "Check a world or vehicle file without running it");
+  CLI::App* command =
+      app.add_subcommand("check", "Check a world, a vehicle file or a declaration without running anything");
   const auto path = std::make_shared<std::string>();
   const auto options = std::make_shared<sim::LoadOptions>();
   add_log_level_option(*command);
-  command->add_option("FILE", *path, "world or vehicle file, or the name of a shipped one")->required();
+  command
+      ->add_option("FILE", *path, "world or vehicle file, the name of a shipped one, or a declaration NAME.args.yaml")
+      ->required();
   add_set_option(*command, options->sets);
   add_allow_path_option(*command, *options);
   add_plugin_option(*command);
   command_line::set_help_end(*command,
-                             {{"shoal check worlds/coop_land.yaml --set run.seed=3"},
+                             {{"shoal check worlds/coop_land.yaml --set run.seed=3", "shoal check pilot.args.yaml"},
                               {{0, "no mistake was found"}, {2, "wrong usage, or mistakes, each on a line of its own"}},
                               {"Every mistake is printed as file:line:column: who: rule, value.  Warnings have the "
                                "same form and leave the exit "

@@ -13,6 +13,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/config/shipped_files.hpp"
 #include "sim/config/yaml_writer.hpp"
+#include "tools/experiment/process/world_programs.hpp"
 
 namespace tools {
 
@@ -322,7 +323,8 @@ LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
     options.sets = each.sets();
     options.allow_plugins = options.serial_ports = study.config.launch;
     options.encode_message = shoal::encode_own_message;
-    const sim::LoadedWorld& world = study.worlds.emplace_back(sim::load_world(study.config.world, options));
+    sim::LoadedWorld& world = study.worlds.emplace_back(sim::load_world(study.config.world, options));
+    read_programs(world, {study.config.launch, options.allow_paths});
     if (!study.config.duration_s && world.config.run.duration_s == 0)
       sim::throw_config_error(root.place, "case '" + each.name + "'",
                               "its world runs without end: the study needs a 'duration_s'");
