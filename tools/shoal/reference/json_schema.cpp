@@ -9,6 +9,7 @@
 
 #include "sim/world_file/world_config.hpp"
 #include "tools/shoal/reference/param_tables.hpp"
+#include "tools/shoal/reference/program_schema.hpp"
 
 namespace tools {
 
@@ -275,7 +276,9 @@ Json world_schema() {
   // A reference hides what stands beside it, such as the description: so it stands in an allOf.
   const Special model{{{"allOf", {reference_to("vehicle")}}}, reference_to("vehicle_required")};
   const SchemaWriter writer(false, {{"devices", device}, {"model", model}});
-  return file_schema("world", writer, params_of<sim::WorldConfig>(), std::move(definitions));
+  Json schema = file_schema("world", writer, params_of<sim::WorldConfig>(), std::move(definitions));
+  add_program_schemas(schema["properties"]["processes"]["items"], schema["definitions"]);
+  return schema;
 }
 
 }  // namespace

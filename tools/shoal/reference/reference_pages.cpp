@@ -8,12 +8,13 @@
 
 #include "shoal/message_schema.hpp"
 #include "sim/config/param_table.hpp"
-#include "sim/program/find_program.hpp"
+#include "sim/program/program_declaration.hpp"
 #include "sim/random/noise.hpp"
 #include "sim/world_file/metric_registry.hpp"
 #include "sim/world_file/world_config.hpp"
 #include "tools/command_line/text_layout.hpp"
 #include "tools/shoal/reference/param_tables.hpp"
+#include "tools/shoal/reference/program_schema.hpp"
 
 namespace tools {
 
@@ -162,21 +163,6 @@ std::string groups_text(const char* rule, const std::vector<std::vector<std::str
     text += fmt::format("{} of {} {} given. ", rule, names, rule[0] == 'E' ? "must be" : "may be");
   }
   return text;
-}
-
-/// The declarations of the programs that come with Shoal, beside the running one.
-std::vector<sim::ProgramDeclaration> shipped_declarations() {
-  std::vector<sim::ProgramDeclaration> declarations;
-  const std::vector<std::string> folders = sim::program_folders();
-  if (folders.empty()) return declarations;
-  for (const std::string& name : sim::declared_programs(folders.front())) {
-    if (!name.starts_with("shoal-")) continue;
-    sim::Diagnostics diagnostics;
-    declarations.push_back(
-        sim::read_declaration_file(folders.front() + "/" + name + sim::declaration_ending, diagnostics));
-    diagnostics.throw_if_any();
-  }
-  return declarations;
 }
 
 std::string programs_page() {
