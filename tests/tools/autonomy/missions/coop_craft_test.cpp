@@ -11,6 +11,8 @@ namespace {
 
 using namespace voyage_test;
 using autonomy::CoopCraft;
+using autonomy::make_circle;
+using autonomy::make_follow;
 
 CoopCraft::Params craft_params() {
   CoopCraft::Params params;
