@@ -8,8 +8,7 @@ include(CMakePackageConfigHelpers)
 set(package_dir lib/cmake/Shoal)
 set(types_dir ${PROJECT_SOURCE_DIR}/messages)
 
-install(TARGETS shoal shoal-coop-rover shoal-coop-craft shoal-coop-auv shoal-coop-station shoal-balance RUNTIME DESTINATION bin
-        COMPONENT programs)
+install(TARGETS shoal RUNTIME DESTINATION bin COMPONENT programs)  # the others: shoal_describe_program()
 install(TARGETS generate_type_tables RUNTIME DESTINATION lib/shoal COMPONENT device)
 install(TARGETS shoal_client ARCHIVE DESTINATION lib COMPONENT client)
 install(FILES bridges/client/shoal/client.hpp DESTINATION include/shoal/shoal COMPONENT client)
@@ -38,4 +37,4 @@ configure_package_config_file(cmake/ShoalConfig.cmake.in ${PROJECT_BINARY_DIR}/S
                               INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/ShoalConfigVersion.cmake COMPATIBILITY ExactVersion)
 install(FILES ${PROJECT_BINARY_DIR}/ShoalConfig.cmake ${PROJECT_BINARY_DIR}/ShoalConfigVersion.cmake
-              cmake/LcmGenerate.cmake DESTINATION ${package_dir} COMPONENT client)
+              cmake/LcmGenerate.cmake cmake/DescribeProgram.cmake DESTINATION ${package_dir} COMPONENT client)

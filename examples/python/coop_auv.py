@@ -1,7 +1,8 @@
+#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Estimates where an AUV is, beside whatever steers it, in lockstep with the simulator.
 
-    PYTHONPATH=build/release/python:examples/python python3 examples/python/coop_auv.py auv --sound-speed 1506
+    PYTHONPATH=build/release/python:examples/python python3 examples/python/coop_auv.py --name auv --sound-speed-mps 1506
 
 Reads NAME.dvl, .ahrs or .compass, .pressure, .gps and .modem; publishes NAME.python_estimate.
 """
@@ -129,7 +130,7 @@ class CoopAuv:
 def attach(options):
     """The navigator of a vehicle, and its place in the lockstep, which LockstepClient.run() takes."""
     name = options.name
-    auv = CoopAuv(options.sound_speed, options.heading_noise)
+    auv = CoopAuv(options.sound_speed_mps, options.heading_noise_radprtHz)
     bus = LockstepClient(name + "_python", PERIOD_S)
     bus.subscribe(name + ".ahrs", shoal.ins_t, auv.on_ahrs)
     bus.subscribe(name + ".compass", shoal.compass_t, auv.on_compass)
@@ -153,9 +154,9 @@ def attach(options):
 
 def parse(arguments=None):
     parser = argparse.ArgumentParser(description="Estimates where an AUV is, by dead reckoning and acoustic ranges.")
-    parser.add_argument("name", nargs="?", default="auv", help="vehicle; auv")
-    parser.add_argument("--sound-speed", type=float, default=1500.0, help="that makes a range of a travel time, m/s")
-    parser.add_argument("--heading-noise", type=float, default=0.035, help="of the measured heading, rad in 1 s")
+    parser.add_argument("--name", default="auv", help="vehicle; auv")
+    parser.add_argument("--sound-speed-mps", type=float, default=1500.0, help="converts travel times to ranges")
+    parser.add_argument("--heading-noise-radprtHz", type=float, default=0.035, help="noise of the heading, rad in 1 s")
     return parser.parse_args(arguments)
 
 

@@ -6,9 +6,11 @@
 #include <cstdio>
 #include <ctime>
 #include <set>
+#include <sstream>
 
 #include "sim/bus/bus.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/config/yaml_writer.hpp"
 
 namespace sim {
 
@@ -63,19 +65,49 @@ void BusConfig::read(ParamReader& in) {
   if (in.has("lcm_url") && lcm_url.empty()) in.error("lcm_url", "'lcm_url' must not be empty");
 }
 
+namespace {
+
+/// A list of a program and its arguments.  A text is an error that shows it as a list.
+void read_command(ParamReader& in, std::vector<std::string>& command) {
+  constexpr const char* meaning =
+      "instead of 'program': any program and its arguments; {lcm_url} and {run} are replaced";
+  const ConfigNode* node = in.describing() ? nullptr : in.child("command");
+  if (node == nullptr || node->kind != ConfigNode::Kind::scalar || node->scalar.empty()) {
+    in.read("command", command, meaning);
+    if (in.has("command") && command.empty()) in.error("command", "'command' must name a program");
+    return;
+  }
+  ConfigNode list;
+  list.kind = ConfigNode::Kind::list;
+  std::istringstream words(node->scalar);
+  for (std::string word; words >> word;) list.items.push_back(scalar_node(word, node->place));
+  in.error("command", "'command' must be a list; write 'command: " + shortened(to_flow_yaml(list, 240), 240) + "'");
+}
+
+}  // namespace
+
 void ProcessConfig::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "name of the process in messages");
-  in.require("command");
-  in.read("command", command, "program and its arguments; {lcm_url} and {run} are replaced");
+  // Whoever starts programs makes the command of these, by the declaration of the program.
+  std::string program;
+  ConfigNode args;
+  in.read("program", program, "a program with a declaration of its arguments, see docs/guides/program_arguments.md");
+  in.read_raw("args", args, "arguments of 'program' by name; in texts {lcm_url} and {run} are replaced");
+  read_command(in, command);
   in.read("client", client, "the name it joins the lockstep with; the run then waits for it");
   in.read_reference("bus", bus, "bus", "its LCM URL is that of this bus, named in `buses`; unset: the world's");
   in.read_choice(
       "on_exit", on_exit, {"continue", "end", "ignore"},
       "when it ends before the run; continue: the run goes on, and fails if the program failed; end: the run "
       "ends with exit code 1; ignore: the run goes on, and a failure does not count");
-  if (in.has("command") && command.empty() && in.child("command")->scalar.empty())
-    in.error("command", "'command' must name a program");
+  if (in.describing()) return;
+  if (in.has("program") && program.empty()) in.error("program", "'program' must not be empty");
+  if (in.has("program") == in.has("command"))
+    in.error(in.has("program") ? "needs either 'program' or 'command', not both"
+                               : "needs either 'program' with 'args' or 'command'");
+  if (in.has("args") && !in.has("program"))
+    in.error("args", "'args' goes with 'program'; 'command' has its arguments in its list");
 }
 
 void LockstepConfig::read(ParamReader& in) {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/spdlog.h>
 
+#include <iostream>
+
 #include "bridges/base/bus_error.hpp"
 #include "bridges/lcm/lcm_connection.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
-#include "tools/autonomy/acomms/tdma.hpp"
-#include "tools/autonomy/behaviours/behaviour_text.hpp"
-#include "tools/autonomy/behaviours/waypoint_text.hpp"
 #include "tools/command_line/arguments.hpp"
 #include "tools/command_line/checks.hpp"
+#include "tools/command_line/declared_options.hpp"
 
-// Words of command lines: options with their checks, LCM URLs, waypoints, behaviours and slots.
+// Words of command lines: options with their checks, those of a declaration with their lists, LCM URLs.
 
 namespace {
 
@@ -48,11 +48,55 @@ void parse_line(const std::string& text) {
   fuzz::allow<CLI::ParseError, command_line::UsageError>([&] { app.parse(std::move(arguments.for_cli11)); });
 }
 
+/// What programs print is of no use here.
+class Mute {
+ public:
+  Mute() : out_(std::cout.rdbuf(nullptr)), err_(std::cerr.rdbuf(nullptr)) {}
+  ~Mute() {
+    std::cout.rdbuf(out_);
+    std::cerr.rdbuf(err_);
+  }
+  Mute(const Mute&) = delete;
+  Mute& operator=(const Mute&) = delete;
+
+ private:
+  std::streambuf *out_, *err_;
+};
+
+/// The options of a declaration, whose lists are JSON.
+void parse_declared(const std::string& text) {
+  CLI::App app("fuzz", "pilot");
+  command_line::DeclaredOptions options(app);
+  std::vector<std::vector<double>> lists;
+  std::vector<double> list;
+  std::string word = "a";
+  std::optional<double> number;
+  options.tuples(
+      "waypoints_m", {"x", "y"}, 1, sim::any_place(), [&](const auto& given) { lists = given; }, "");
+  options.tuple(
+      "start_m", {"x", "y"}, sim::any_place(), [&](const auto& given) { list = given; }, "");
+  options.choice("word", word, {"a", "b"}, "");
+  options.number("speed_mps", number, 0, 10, "");
+  std::vector<std::string> words = {"pilot"};
+  std::size_t at = 0;
+  while (at <= text.size()) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    words.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  std::vector<const char*> pointers;
+  for (const std::string& each : words) pointers.push_back(each.c_str());
+  const Mute mute;
+  options.parse(static_cast<int>(pointers.size()), pointers.data());
+  for (const auto& each : lists) fuzz::require(each.size() == 1 || each.size() == 2, "a tuple has its columns");
+  fuzz::require(list.empty() || list.size() == 2, "a tuple has its columns");
+}
+
 }  // namespace
 
 SHOAL_FUZZ_TARGET(command_line) {
   fuzz::Reader reader(input);
-  const std::size_t kind = reader.below(6);
+  const std::size_t kind = reader.below(3);
   const std::string text(fuzz::text_of(reader.rest()));
   fuzz::allow<std::invalid_argument, bridges::BusError>([&] {
     switch (kind) {
@@ -62,17 +106,8 @@ SHOAL_FUZZ_TARGET(command_line) {
       case 1:
         if (text.find('\0') == text.npos) bridges::lcm_endpoint(bridges::resolve_lcm_url(text));
         break;
-      case 2:
-        autonomy::parse_waypoints(text);
-        break;
-      case 3:
-        autonomy::parse_start(text);
-        break;
-      case 4:
-        autonomy::make_behaviour(text, {{0, 0}, {1, 1}}, 1.0, true);
-        break;
       default:
-        autonomy::parse_slot(text);
+        parse_declared(text);
     }
   });
 }

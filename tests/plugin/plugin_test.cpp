@@ -318,6 +318,25 @@ TEST_F(Plugin, ClientExampleIsThatOfThePage) {
   }
 }
 
+TEST_F(Plugin, AProgramOutsideOfTheTreeIsDescribedWhenItIsBuilt) {
+  fs::create_directories(path("own"));
+  write_file(path("own/pilot.cpp"),
+             "#include <cstdio>\nint main() { std::puts(\"shoal_args: 1\\nprogram: pilot\\nargs: [{name: speed_mps, "
+             "type: number, max: 2}]\"); }\n");
+  write_file(path("own/CMakeLists.txt"),
+             "cmake_minimum_required(VERSION 3.25)\nproject(own LANGUAGES CXX)\n"
+             "find_package(Shoal REQUIRED COMPONENTS client)\nadd_executable(pilot pilot.cpp)\n"
+             "shoal_describe_program(pilot DESTINATION bin)\n");
+  build(path("own"));
+  const Ended installed = run({"cmake", "--install", path("own/build"), "--prefix", path("prefix")});
+  ASSERT_EQ(installed.exit_code, 0) << installed.errors;
+  write_file(path("own.yaml"), "shoal: 1\nprocesses: [{name: p, program: pilot, args: {speed_mps: 3}}]\n");
+  const Ended wrong = shoal({"check", path("own.yaml")});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.errors, HasSubstr(":2:56: process 'p': program 'pilot': 'speed_mps' must be <= 2, got 3"));
+  EXPECT_EQ(shoal({"check", path("own.yaml"), "--set", "processes.p.args.speed_mps=2"}).exit_code, 0);
+}
+
 TEST_F(Plugin, InstallationRunsItsOwnWorlds) {
   const Ended ended = shoal({"check", path("prefix/share/shoal/worlds/coop_land.yaml")});
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;

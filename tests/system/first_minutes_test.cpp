@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include "tests/system/shoal_program.hpp"
 
@@ -156,8 +158,8 @@ TEST(New, WritesAPythonProgramThatFindsItsModules) {
 
 TEST(Waiting, ProgramsAndCommandsSayAfterThreeSecondsForWhat) {
   const std::string url = own_url();
-  Program rover(
-      {built("shoal-coop-rover"), "--name", "rover1", "--waypoints", "1,1", "--lcm-url", url, "--join-timeout", "5"});
+  Program rover({built("shoal-coop-rover"), "--name", "rover1", "--waypoints-m", "[[1,1]]", "--lcm-url", url,
+                 "--join-timeout-s", "5"});
   Program spy({built("shoal"), "spy", "rover1.odometry", "--lcm-url", url, "--duration", "5"});
   Program control({built("shoal"), "control", "where", "--lcm-url", url, "--timeout", "5"});
   rover.wait();
@@ -166,6 +168,16 @@ TEST(Waiting, ProgramsAndCommandsSayAfterThreeSecondsForWhat) {
   EXPECT_THAT(rover.errors(), HasSubstr("waits for a simulator to answer its join on 'sim.control.reply', at " + url));
   EXPECT_THAT(spy.errors(), HasSubstr("waiting for messages on 'rover1.odometry', at " + url));
   EXPECT_THAT(control.errors(), HasSubstr("waiting for a simulator to answer on 'sim.control.reply', at " + url));
+}
+
+TEST(Waiting, ARequestMayBeMadeBeforeTheRunHasStarted) {
+  const std::string url = own_url();
+  Program control({built("shoal"), "control", "quit", "--lcm-url", url, "--timeout", "30"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  Program run({built("shoal"), "run", "minimal", "--lcm-url", url, "--speed", "1", "--duration", "1000"});
+  EXPECT_EQ(control.wait(), 0) << control.errors();
+  EXPECT_EQ(control.output(), "ok\n");
+  EXPECT_EQ(run.wait(), 0) << run.errors();
 }
 
 }  // namespace

@@ -43,37 +43,62 @@ struct Mistake {
 TEST(MarinePrograms, WrongUsageIsExitCodeTwoAndSaysWhat) {
   const std::vector<Mistake> mistakes = {
       {"shoal-coop-craft", {}, "--name is required"},
-      {"shoal-coop-craft", {"--name", "b"}, "the behaviour 'route' needs --route"},
-      {"shoal-coop-craft", {"--name", "b", "--route", "1,x"}, "shoal-coop-craft: --route: 'x' is not a number"},
-      {"shoal-coop-craft", {"--name", "b", "--route", "1,1", "--slot", "2/2"}, "0 <= I < N, got 2/2"},
-      {"shoal-coop-craft", {"--name", "b", "--route", "1,1", "--slot", "0/2", "--guard-s", "10"}, "guard time shorter"},
-      {"shoal-coop-craft", {"--name", "b", "--route", "1,1", "--slot", "0/2", "--random-s", "5"}, "give one"},
-      {"shoal-coop-auv", {"--name", "a", "--behaviour", "orbit:1"}, "unknown behaviour 'orbit:1'"},
-      {"shoal-coop-auv", {"--name", "a", "--behaviour", "circle:1,2"}, "circle:X,Y,RADIUS"},
-      {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--states", "3"}, "--states"},
-      {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--start", "1"}, "--start: '1' is not of the form x,y"},
-      {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--steer", "luck"}, "--steer"},
-      {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--depth", "-1"}, "--depth"},
-      {"shoal-coop-auv",
-       {"--name", "a", "--route", "1,1", "--depth", "nan"},
-       "--depth: must be from 0 to 10000, got 'nan'"},
-      {"shoal-coop-auv",
-       {"--name", "a", "--route", "1,1", "--heading-noise", "nan"},
-       "must be from 0 to 10, got 'nan'"},
-      {"shoal-coop-craft", {"--name", "b", "--route", "1,1", "--speed", "nan"}, "must be from 0.05 to 10, got 'nan'"},
+      {"shoal-coop-craft", {"--name", "b"}, "needs --waypoints-m, --circle-m, --zigzag-m or --follow"},
       {"shoal-coop-craft",
-       {"--name", "b", "--route", "1,1", "--join-timeout", "nan"},
+       {"--name", "b", "--waypoints-m", "[[1,x]]"},
+       "shoal-coop-craft: --waypoints-m: item 2 of 'waypoints_m[1]' must be a number, got 'x'"},
+      {"shoal-coop-craft",
+       {"--name", "b", "--waypoints-m", "[[1, 2], [3]]"},
+       "shoal-coop-craft: --waypoints-m: 'waypoints_m[2]' must be 2 numbers, got 1"},
+      {"shoal-coop-craft", {"--name", "b", "--waypoints-m", "[]"}, "waypoint"},
+      {"shoal-coop-craft", {"--name", "b", "--waypoints-m", "[[1,1]]", "--slot", "0"}, "--slot needs --slots"},
+      {"shoal-coop-craft",
+       {"--name", "b", "--waypoints-m", "[[1,1]]", "--slot", "2", "--slots", "2"},
+       "0 <= I < N, got 2/2"},
+      {"shoal-coop-craft",
+       {"--name", "b", "--waypoints-m", "[[1,1]]", "--slot", "0", "--slots", "2", "--guard-s", "10"},
+       "guard time shorter"},
+      {"shoal-coop-craft",
+       {"--name", "b", "--waypoints-m", "[[1,1]]", "--slot", "0", "--slots", "2", "--random-s", "5"},
+       "does not go with --"},
+      {"shoal-coop-craft", {"--name", "b", "--waypoints-m", "[[1,1]]", "--circle-m", "[1,1,5]"}, "does not go with --"},
+      {"shoal-coop-auv", {"--name", "a", "--orbit", "1"}, "unknown option '--orbit'"},
+      {"shoal-coop-auv", {"--name", "a", "--circle-m", "[1,2]"}, "--circle-m: 'circle_m' must be 3 numbers, got 2"},
+      {"shoal-coop-auv", {"--name", "a", "--circle-m", "[1,2,0]"}, "the radius of a circle must be > 0"},
+      {"shoal-coop-auv", {"--name", "a", "--waypoints-m", "[[1,1]]", "--states", "3"}, "--states"},
+      {"shoal-coop-auv",
+       {"--name", "a", "--waypoints-m", "[[1,1]]", "--start-m", "1"},
+       "--start-m: 'start_m' must be a list of 2 numbers, got '1'"},
+      {"shoal-coop-auv", {"--name", "a", "--waypoints-m", "[[1,1]]", "--steer", "luck"}, "--steer"},
+      {"shoal-coop-auv", {"--name", "a", "--waypoints-m", "[[1,1]]", "--depth-m", "-1"}, "--depth-m"},
+      {"shoal-coop-auv",
+       {"--name", "a", "--waypoints-m", "[[1,1]]", "--depth-m", "nan"},
+       "--depth-m: must be from 0 to 10000, got 'nan'"},
+      {"shoal-coop-auv",
+       {"--name", "a", "--waypoints-m", "[[1,1]]", "--heading-noise-radprtHz", "nan"},
+       "must be from 0 to 10, got 'nan'"},
+      {"shoal-coop-craft",
+       {"--name", "b", "--waypoints-m", "[[1,1]]", "--speed-mps", "nan"},
+       "must be from 0.05 to 10, got 'nan'"},
+      {"shoal-coop-craft",
+       {"--name", "b", "--waypoints-m", "[[1,1]]", "--join-timeout-s", "nan"},
        "must be from 0.1 to 3600, got 'nan'"},
-      {"shoal-coop-craft", {"--name", "b", "--behaviour", "follow:b,0,10"}, "'b' cannot follow itself"},
-      {"shoal-coop-auv", {"--name", "a", "--route", "1,1", "--hold-radius", "0"}, "--hold-radius"},
+      {"shoal-coop-craft", {"--name", "b", "--follow", "b", "--follow-offset-m", "[0,10]"}, "'b' cannot follow itself"},
+      {"shoal-coop-craft", {"--name", "b", "--follow", "a"}, "--follow needs --follow-offset-m"},
+      {"shoal-coop-auv", {"--name", "a", "--waypoints-m", "[[1,1]]", "--hold-radius-m", "0"}, "--hold-radius-m"},
+      {"shoal-coop-auv",
+       {"--name", "a", "--waypoints-m", "[[1,1]]", "--describe"},
+       "--describe takes no other options"},
       {"shoal-coop-station",
-       {"--name", "s", "--to", "0", "--orders", "1:2,3,4", "--speed", "nan"},
+       {"--name", "s", "--to", "0", "--orders", "[[1,2,3,4]]", "--speed-mps", "nan"},
        "must be from 0.05 to 10"},
       {"shoal-coop-station", {"--name", "s", "--to", "0"}, "--orders is required"},
-      {"shoal-coop-station", {"--name", "s", "--to", "0", "--orders", "1:2,3,4"}, "give --slot or --random-s"},
-      {"shoal-coop-station", {"--name", "s", "--to", "0", "--orders", "1;2", "--slot", "0/1"}, "TIME:X,Y,DEPTH"},
+      {"shoal-coop-station", {"--name", "s", "--to", "0", "--orders", "[[1,2,3,4]]"}, "needs --slot or --random-s"},
       {"shoal-coop-station",
-       {"--name", "s", "--to", "0", "--orders", "2:0,0,1;1:0,0,1", "--slot", "0/1"},
+       {"--name", "s", "--to", "0", "--orders", "[[1,2]]", "--slot", "0", "--slots", "1"},
+       "--orders: 'orders[1]' must be 4 to 5 numbers, got 2"},
+      {"shoal-coop-station",
+       {"--name", "s", "--to", "0", "--orders", "[[2,0,0,1],[1,0,0,1]]", "--slot", "0", "--slots", "1"},
        "must not go back"},
   };
   for (const Mistake& mistake : mistakes) {
@@ -85,15 +110,16 @@ TEST(MarinePrograms, WrongUsageIsExitCodeTwoAndSaysWhat) {
 
 TEST(MarinePrograms, WithoutASimulatorIsExitCodeFour) {
   for (const char* name : {"shoal-coop-craft", "shoal-coop-auv"}) {
-    const Ended ended = run(name, {"--name", "a", "--route", "1,1", "--slot", "0/3", "--slot-s", "5", "--join-timeout",
-                                   "0.2", "--lcm-url", own_url(3)});
+    const Ended ended = run(name, {"--name", "a", "--waypoints-m", "[[1,1]]", "--slot", "0", "--slots", "3", "--slot-s",
+                                   "5", "--join-timeout-s", "0.2", "--lcm-url", own_url(3)});
     EXPECT_EQ(ended.exit_code, 4) << name;
     EXPECT_THAT(ended.errors, HasSubstr("no simulator answered 'a' in time"));
   }
 }
 
 TEST(MarinePrograms, SignalWhileItWaitsForTheSimulatorIsSaid) {
-  system_test::Program program({built("shoal-coop-auv"), "--name", "a", "--route", "1,1", "--lcm-url", own_url(3)});
+  system_test::Program program(
+      {built("shoal-coop-auv"), "--name", "a", "--waypoints-m", "[[1,1]]", "--lcm-url", own_url(3)});
   // Its requests to join say that it waits.
   bridges::LcmListener requests(own_url(3));
   requests.listen("sim.control");
@@ -123,12 +149,9 @@ TEST(CoopRelay, OrderComesToTheAuvByTheRelayAndNotWithoutIt) {
 TEST(CoopRelay, ARefusedOrderComesBackToTheStationByTheRelay) {
   const ScratchFolder folder;
   // The first order is for 15 m.
-  const std::string command =
-      "processes.auv.command=[shoal-coop-auv, --name, auv, --id, '0', --obey, --behaviour, 'circle:0,0,40', --speed, "
-      "'1.5', --depth, '10', --states, '6', --sound-speed, '1505', --slot, 2/3, --slot-s, '5', --order-depth-max, "
-      "'12']";
+  const std::string change = "processes.auv.args.order_depth_max_m=12";
   const Ended ended = run_shoal({"run", source("worlds/coop_relay.yaml"), "--launch", "--duration", "300", "--lcm-url",
-                                 own_url(6), "--results", folder.file("out"), "--no-pictures", "--set", command});
+                                 own_url(6), "--results", folder.file("out"), "--no-pictures", "--set", change});
   EXPECT_EQ(ended.exit_code, 1) << ended.errors;  // its rules fail
   const std::string said = text_of_file(folder.file("out/station.log"));
   EXPECT_THAT(said, HasSubstr("station: order 1 was refused: too deep, 15 m\n"));

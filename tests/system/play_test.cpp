@@ -24,9 +24,9 @@ using testing::Not;
 class Play : public testing::Test {
  protected:
   /// The third rover of coop_land, as its process is started there, but for its way.
-  static Program rover3(const std::string& waypoints = "-6,28;0,28;0,-28;6,-28;6,28") {
-    return Program({built("shoal-coop-rover"), "--name", "rover3", "--start=-6,-28,90", "--waypoints=" + waypoints,
-                    "--lcm-url", own_url(1)});
+  static Program rover3(const std::string& waypoints = "[[-6,28],[0,28],[0,-28],[6,-28],[6,28]]") {
+    return Program({built("shoal-coop-rover"), "--name", "rover3", "--start-m", "[-6,-28]", "--start-yaw-deg", "90",
+                    "--waypoints-m", waypoints, "--lcm-url", own_url(1)});
   }
   Program player(std::vector<std::string> more) {
     std::vector<std::string> arguments{built("shoal"), "replay", record, "--play", "--quiet", "--lcm-url", own_url(1)};
@@ -64,11 +64,11 @@ TEST_F(Play, ARoverThatIsGivenItsRecordSaysTheSame) {
 TEST_F(Play, ARoverThatDecidesOtherwiseIsFoundOut) {
   record_coop_land();
   Program play = player({"--await", "rover3", "--compare"});
-  Program rover = rover3("-6,28;-28,28");  // the first leg is the same one
+  Program rover = rover3("[[-6,28],[-28,28]]");  // the first leg is the same one
   EXPECT_EQ(play.wait(), 0) << play.output() << play.errors();
   rover.wait();
   Program again = player({"--await", "rover3", "--compare"});
-  Program other = rover3("28,-28;-6,28");
+  Program other = rover3("[[28,-28],[-6,28]]");
   EXPECT_EQ(again.wait(), 1) << again.output() << again.errors();
   EXPECT_THAT(again.output(),
               AllOf(HasSubstr("rover3.drive.cmd: "), HasSubstr(" different; first at step 10 (0.100 s): "),

@@ -107,9 +107,9 @@ TEST(Rewind, AProgramThatIsNotToGoBackEndsAndSaysSo) {
   const ScratchFolder folder;
   const std::string world = folder.file("segway.yaml");
   std::string text = text_of_file(source("worlds/segway.yaml"));
-  const std::string command = "[shoal-balance, --name, segway1";
-  ASSERT_NE(text.find(command), std::string::npos);
-  text.insert(text.find(command) + command.size(), ", --rewind-s, \"2\"");
+  const std::string args = "args: {name: segway1";
+  ASSERT_NE(text.find(args), std::string::npos);
+  text.insert(text.find(args) + args.size(), ", rewind_s: 2");
   const std::string file = "file: segway_rmp.yaml";
   text.replace(text.find(file), file.size(), "file: " + source("vehicles/segway_rmp.yaml"));
   write_file(world, text);

@@ -45,11 +45,11 @@ TEST(SegwayRun, IsTheSameAtAnySpeed) {
 TEST(SegwayRun, ItsProgramSaysWhatIsWrongWithItsOptions) {
   const std::pair<std::vector<std::string>, const char*> mistakes[] = {
       {{}, "--name is required"},
-      {{"--name", "s", "--speeds", "1"}, "--speeds: '1' must be TIME:SPEED or TIME:SPEED:TURN"},
-      {{"--name", "s", "--speeds", "1:x"}, "'x' in '1:x' is not a number"},
-      {{"--name", "s", "--speeds", "2:1;1:0"}, "the times must grow"},
-      {{"--name", "s", "--kp", "nan"}, "--kp: must be from 0 to 10000, got 'nan'"},
-      {{"--name", "s", "--period", "0"}, "--period"},
+      {{"--name", "s", "--speeds", "[[1]]"}, "--speeds: 'speeds[1]' must be 2 to 3 numbers, got 1"},
+      {{"--name", "s", "--speeds", "[[1,x]]"}, "item 2 of 'speeds[1]' must be a number, got 'x'"},
+      {{"--name", "s", "--speeds", "[[2,1],[1,0]]"}, "the times of the speeds must grow"},
+      {{"--name", "s", "--kp-Nm-per-rad", "nan"}, "--kp-Nm-per-rad: must be from 0 to 10000, got 'nan'"},
+      {{"--name", "s", "--period-s", "0"}, "--period-s"},
   };
   for (const auto& [options, says] : mistakes) {
     std::vector<std::string> arguments{built("shoal-balance")};

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "tests/system/shoal_program.hpp"
 
@@ -46,7 +47,76 @@ TEST(Warnings, NameAProgramThatIsNotThere) {
   EXPECT_EQ(check.exit_code, 0);
   EXPECT_EQ(check.errors, "warning: " + file +
                               ":2:33: process 'p': there is no program 'shoal-coop-submarine' beside "
-                              "shoal or in PATH\n");
+                              "shoal or in PATH\nwarning: " +
+                              file +
+                              ":2:76: process 'q': the arguments in 'command' are not checked; those of 'program: "
+                              "shoal-coop-rover' with 'args:' are, by its declaration\n");
+}
+
+TEST(CheckPrograms, WrongArgumentsAreFoundByCheckAndRun) {
+  const system_test::ScratchFolder folder;
+  const std::string file = folder.file("world.yaml");
+  system_test::write_file(file,
+                          "shoal: 1\nprocesses:\n  - {name: rover1, program: shoal-coop-rover, args: {name: rover1, "
+                          "waypoints_m: [[1, 2], [3]]}}\n");
+  const std::string error = file +
+                            ":3:94: process 'rover1': program 'shoal-coop-rover': 'waypoints_m[2]' must be 2 numbers, "
+                            "got 1";
+  for (const char* command : {"check", "run"}) {
+    const system_test::Ended ended = system_test::run_shoal({command, file});
+    EXPECT_EQ(ended.exit_code, 2) << command;
+    EXPECT_THAT(ended.errors, testing::HasSubstr(error)) << command;
+  }
+  EXPECT_EQ(system_test::run_shoal({"check", file, "--set", "processes.rover1.args.waypoints_m=[[1, 2]]"}).exit_code,
+            0);
+}
+
+TEST(CheckPrograms, StartsNoProgram) {
+  const system_test::ScratchFolder folder;
+  const std::string program = folder.file("pilot"), mark = folder.file("started");
+  system_test::write_file(program, "#!/bin/sh\ntouch " + mark + "\n");
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  system_test::write_file(program + ".args.yaml", "shoal_args: 1\nprogram: pilot\nargs: [{name: a, type: number}]\n");
+  const std::string file = folder.file("world.yaml");
+  system_test::write_file(file, "shoal: 1\nprocesses: [{name: p, program: " + program + ", args: {a: 1}}]\n");
+  const system_test::Ended check = system_test::run_shoal({"check", file});
+  EXPECT_EQ(check.exit_code, 0) << check.errors;
+  EXPECT_EQ(check.errors, "");
+  EXPECT_FALSE(std::filesystem::exists(mark));
+}
+
+TEST(CheckPrograms, AProgramGetsItsArgumentsAsWords) {
+  const system_test::ScratchFolder folder;
+  const std::string program = folder.file("bin/pilot"), results = folder.file("out");
+  std::filesystem::create_directory(folder.file("bin"));
+  system_test::write_file(program, "#!/bin/sh\nprintf '%s\\n' \"$@\"\n");
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  system_test::write_file(program + ".args.yaml",
+                          "shoal_args: 1\nprogram: pilot\nargs:\n  - {name: run_name, type: text}\n  - {name: start_m, "
+                          "type: tuple, columns: [x, y]}\n  - {name: loop, type: flag}\n");
+  const std::string file = folder.file("world.yaml");
+  system_test::write_file(file,
+                          "shoal: 1\nprocesses: [{name: p, program: pilot, args: {run_name: 'a {run}', start_m: [1, "
+                          "2.50], loop: true}}]\n");
+  // --allow-path is where its program may be, too.
+  const system_test::Ended ended = system_test::run_shoal(
+      {"run", file, "--launch", "--run-name", "seven", "--duration", "1", "--speed", "1", "--lcm-url",
+       system_test::own_url(), "--results", results, "--no-pictures", "--allow-path", folder.file("bin")});
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_EQ(system_test::text_of_file(results + "/p.log"), "--run-name=a seven\n--start-m=[1,2.5]\n--loop\n");
+}
+
+TEST(CheckPrograms, ADeclarationIsCheckedToo) {
+  const system_test::ScratchFolder folder;
+  const std::string file = folder.file("pilot.args.yaml");
+  system_test::write_file(file, "shoal_args: 1\nprogram: pilot\nargs: [{name: a, type: numbr}]\n");
+  const system_test::Ended wrong = system_test::run_shoal({"check", file});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.errors, testing::HasSubstr(file + ":3:23: argument 'a': 'type' must be one of"));
+  const system_test::Ended good =
+      system_test::run_shoal({"check", system_test::source("examples/python/coop_auv.py.args.yaml")});
+  EXPECT_EQ(good.exit_code, 0) << good.errors;
+  EXPECT_THAT(good.output, testing::HasSubstr("declaration of program 'coop_auv.py': 3 arguments"));
 }
 
 TEST(Warnings, TellAtTheEndOfAMetricThatHeardNothing) {

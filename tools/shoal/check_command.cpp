@@ -6,11 +6,13 @@
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/camera/texture.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/program/find_program.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tools/experiment/process/process_check.hpp"
 #include "tools/experiment/study/study_config.hpp"
+#include "tools/experiment/process/world_programs.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 
@@ -57,6 +59,7 @@ std::size_t body_count(sim::LoadedWorld& loaded, sim::Warnings& warnings) {
   check_textures(loaded.config);
   warn_of_processes(loaded, warnings);
   warn_of_missing_programs(loaded, warnings);
+  warn_of_unchecked_arguments(loaded, warnings);
   return world.physics().bodies().size();
 }
 
@@ -75,7 +78,16 @@ void check_study(const std::string& path, const sim::LoadOptions& options) {
             << '\n';
 }
 
+void check_declaration(const std::string& path) {
+  sim::Diagnostics diagnostics;
+  const sim::ProgramDeclaration declaration = sim::read_declaration_file(path, diagnostics);
+  diagnostics.throw_if_any();
+  std::cout << path << ": declaration of program '" << declaration.program << "': " << declaration.args.size()
+            << " arguments\n";
+}
+
 void check(const std::string& path, const sim::LoadOptions& options) {
+  if (path.ends_with(sim::declaration_ending)) return check_declaration(path);
   const sim::ConfigNode keys = keys_of(path, options);
   if (keys.find("study") != nullptr) return check_study(path, options);
   if (is_vehicle_file(keys)) {
@@ -88,6 +100,7 @@ void check(const std::string& path, const sim::LoadOptions& options) {
   with_messages.encode_message = shoal::encode_own_message;
   with_messages.resolve = false;
   sim::LoadedWorld loaded = sim::load_world(path, with_messages);
+  read_programs(loaded, {true, options.allow_paths});
   sim::Warnings warnings;
   const std::size_t bodies = body_count(loaded, warnings);
   std::cout << path << ": world '" << loaded.config.name << "': " << counted(loaded.config.vehicles.size(), "vehicle")
@@ -102,16 +115,19 @@ void add_check_command(CLI::App& app, int& exit_code) {
   const auto path = std::make_shared<std::string>();
   const auto options = std::make_shared<sim::LoadOptions>();
   add_log_level_option(*command);
-  command->add_option("FILE", *path, "world, vehicle or study file, or the name of a shipped one")->required();
+  command
+      ->add_option("FILE", *path,
+                   "world, vehicle or study file, the name of a shipped one, or a declaration NAME.args.yaml")
+      ->required();
   add_set_option(*command, options->sets);
   add_allow_path_option(*command, *options);
   add_plugin_option(*command);
   command_line::set_help_end(
-      *command, {{"shoal check worlds/coop_land.yaml --set run.seed=3", "shoal check worlds/studies/coop_land.yaml"},
+      *command, {{"shoal check worlds/coop_land.yaml --set run.seed=3", "shoal check worlds/studies/coop_land.yaml",
+                  "shoal check pilot.args.yaml"},
                  {{0, "no mistake was found"}, {2, "wrong usage, or mistakes, each on a line of its own"}},
                  {"Every mistake is printed as file:line:column: who: rule, value.  Warnings have the "
-                  "same form and leave the exit "
-                  "code at 0; see docs/reference/warnings.md."}});
+                  "same form and leave the exit code at 0; see docs/reference/warnings.md."}});
   command->callback([path, options, &exit_code] {
     check(file_by_name({ShippedKind::world, ShippedKind::vehicle, ShippedKind::study}, *path), *options);
     exit_code = exit_ok;

@@ -66,7 +66,8 @@ bool leaves_paused(const std::string& command, const std::string& reply) {
          reply.find(", paused") != std::string::npos;
 }
 
-/// Requests and their answers.  A request is sent once: sent again it might be obeyed twice.
+/// Requests and their answers.  A request is sent once, for a second one might be obeyed as well; so it is not sent
+/// until a simulator answers the question whether one is there, which changes nothing.
 class Session {
  public:
   explicit Session(const ControlArguments& arguments) : arguments_(arguments), lcm_(arguments.lcm_url) {
@@ -77,18 +78,35 @@ class Session {
 
   /// The reply; nothing when none came in time.
   std::optional<shoal::sim_control_reply_t> ask(const std::string& command, const std::string& text, double value) {
+    const Clock::time_point deadline =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(arguments_.timeout_s));
+    bridges::WaitNotice notice("shoal control: waiting for a simulator to answer on 'sim.control.reply', at " +
+                               lcm_.url());
+    if (!simulator_is_there_) {
+      const auto reply = find_simulator(deadline, notice);
+      if (!reply || !reply->ok) return reply;  // who is refused here is refused anything
+      simulator_is_there_ = true;
+    }
+    send(command, text, value);
+    return await_reply(deadline, notice);
+  }
+
+  const std::string& url() const { return lcm_.url(); }
+
+ private:
+  void send(const std::string& command, const std::string& text, double value) {
     shoal::sim_control_request_t request{};
     request.id = ++id_;
     request.client = arguments_.client;
     request.command = command;
     request.text = text;
     request.value = value;
-    const Clock::time_point deadline =
-        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(arguments_.timeout_s));
     const sim::Bytes payload = shoal::encode(request);
     lcm_.publish("sim.control", signer_ ? signer_->sign("sim.control", payload) : payload);
-    bridges::WaitNotice notice("shoal control: waiting for a simulator to answer on 'sim.control.reply', at " +
-                               lcm_.url());
+  }
+
+  /// The reply to the request that was sent last.
+  std::optional<shoal::sim_control_reply_t> await_reply(Clock::time_point deadline, bridges::WaitNotice& notice) {
     while (Clock::now() < deadline && caught_signal() == 0) {
       notice.look();
       const auto message = lcm_.next(50ms);
@@ -103,13 +121,22 @@ class Session {
     return std::nullopt;
   }
 
-  const std::string& url() const { return lcm_.url(); }
+  /// Asks, less and less often, until a simulator answers: the request may be made before the run has started.
+  std::optional<shoal::sim_control_reply_t> find_simulator(Clock::time_point deadline, bridges::WaitNotice& notice) {
+    for (Clock::duration wait = 100ms; Clock::now() < deadline && caught_signal() == 0;
+         wait = std::min<Clock::duration>(2 * wait, 1s)) {
+      send("alive", "", 0);
+      if (auto reply = await_reply(std::min(deadline, Clock::now() + wait), notice)) return reply;
+      --id_;  // the next question has the same number, so that a late answer to this one counts
+    }
+    return std::nullopt;
+  }
 
- private:
   const ControlArguments& arguments_;
   bridges::LcmListener lcm_;
   std::optional<bridges::MessageSigner> signer_;  // unset: there is no key
   std::int32_t id_ = static_cast<std::int32_t>(getpid()) * 1000;
+  bool simulator_is_there_ = false;
 };
 
 int control(const ControlArguments& arguments) {

@@ -7,6 +7,7 @@
 #include "shoal/message_schema.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
+#include "sim/program/find_program.hpp"
 #include "tools/command_line/text_layout.hpp"
 #include "tools/experiment/study/study_config.hpp"
 #include "tools/shoal/commands.hpp"
@@ -23,6 +24,8 @@ std::string unknown_name(const std::string& name) {
   for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all()) known.push_back(type->name);
   for (const auto& [message, schema] : shoal::embedded_types().all())
     known.push_back(message.substr(message.find('.') + 1));
+  if (const auto folders = sim::program_folders(); !folders.empty())
+    for (const std::string& program : sim::declared_programs(folders.front())) known.push_back(program);
   const std::string meant = sim::closest_name(name, known);
   return "nothing is called '" + sim::shortened(sim::printable(name)) + "'; " +
          (meant.empty() ? "see `shoal list devices` and `shoal list messages`" : "did you mean '" + meant + "'?");
@@ -31,27 +34,29 @@ std::string unknown_name(const std::string& name) {
 }  // namespace
 
 void add_describe_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("describe", "Say what a device, a message or a file's keys are");
+  CLI::App* command = app.add_subcommand("describe", "Say what a device, a message, a program or a file's keys are");
   add_log_level_option(*command);
   const auto name = std::make_shared<std::string>();
   const auto page = std::make_shared<std::string>();
   const auto schema = std::make_shared<std::string>();
   CLI::Option* name_option = command->add_option(
-      "NAME", *name, "a device type, a message type, or one of: device, noise, world, vehicle, study, metrics");
+      "NAME", *name,
+      "a device type, a message type, a program, or one of: device, noise, world, vehicle, study, metrics");
   CLI::Option* page_option = command->add_option("--page", *page, "print a whole page of docs/ in Markdown")
                                  ->type_name("PAGE")
-                                 ->check(one_of({"devices", "messages", "metrics", "world_format"}));
+                                 ->check(one_of({"devices", "messages", "metrics", "programs", "world_format"}));
   CLI::Option* schema_option = command->add_option("--schema", *schema, "print the JSON Schema of a file's keys")
                                    ->type_name("FILE")
                                    ->check(one_of({"world", "vehicle", "study"}));
   name_option->excludes(page_option)->excludes(schema_option);
   page_option->excludes(schema_option);
   add_plugin_option(*command);
-  command_line::set_help_end(*command, {{"shoal describe lidar", "shoal describe world", "shoal describe metrics",
-                                         "shoal describe pose_t", "shoal describe --schema world > world.schema.json",
-                                         "shoal describe thermometer --plugin build/thermometer.so"},
-                                        {{0, "success"}, {2, "wrong usage, or nothing has this name"}},
-                                        {}});
+  command_line::set_help_end(
+      *command, {{"shoal describe lidar", "shoal describe world", "shoal describe metrics", "shoal describe pose_t",
+                  "shoal describe shoal-coop-rover", "shoal describe --schema world > world.schema.json",
+                  "shoal describe thermometer --plugin build/thermometer.so"},
+                 {{0, "success"}, {2, "wrong usage, or nothing has this name"}},
+                 {}});
   command->callback([name, page, schema, &exit_code] {
     if (!page->empty() || !schema->empty()) {
       if (!page->empty())

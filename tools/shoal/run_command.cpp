@@ -9,6 +9,7 @@
 
 #include "messages/yaml/message_writer.hpp"
 #include "tools/experiment/bug_report/bug_report.hpp"
+#include "tools/experiment/process/world_programs.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
@@ -69,8 +70,9 @@ int run(RunArguments& arguments) {
   const bool nowhere = arguments.run.snapshots.empty() && arguments.run.results.empty();
   if (nowhere && (!arguments.snapshot_at.empty() || arguments.run.snapshot_every_s))
     throw CLI::ValidationError("--snapshot-at", "needs --snapshots DIR or --results DIR");
-  const sim::LoadedWorld loaded =
+  sim::LoadedWorld loaded =
       arguments.from.empty() ? sim::load_world(world_file(arguments.world), arguments.load) : load_from(arguments);
+  read_programs(loaded, {arguments.run.launch, arguments.load.allow_paths});
   catch_signals(true);
   const Summary summary = run_world(loaded, arguments.run);
   if (!summary.error.empty()) std::cerr << "shoal: " << summary.error << '\n';

@@ -4,6 +4,7 @@ datagrams of LCM."""
 import math
 import os
 import random
+import re
 import struct
 import sys
 import types
@@ -92,6 +93,15 @@ class Filter(unittest.TestCase):
         self.assertFalse(ekf.update_position((math.nan, 0), 1))
         self.assertTrue(ekf.update_position((300, 0), 1))
         self.assertAlmostEqual(ekf.x[0], 300, delta=0.1)
+
+
+class Declaration(unittest.TestCase):
+    def test_has_the_options_of_the_program_with_their_defaults(self):
+        with open(coop_auv.__file__ + ".args.yaml", encoding="utf-8") as file:
+            text = file.read()
+        declared = dict(re.findall(r"- \{name: (\w+),.* default: ([^,}]+)", text))
+        self.assertEqual(declared, {name: f"{value:g}" if isinstance(value, float) else value
+                                    for name, value in vars(coop_auv.parse([])).items()})
 
 
 class Frame(unittest.TestCase):

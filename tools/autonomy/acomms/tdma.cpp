@@ -2,10 +2,9 @@
 #include "tools/autonomy/acomms/tdma.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
-#include <string_view>
+#include <string>
 
 namespace autonomy {
 
@@ -33,22 +32,6 @@ bool Tdma::take_turn(std::int64_t utime) {
 
 double default_guard_s(double slot_s) {
   return std::max(0.5 * slot_s, slot_s - 1);
-}
-
-Tdma::Params parse_slot(const std::string& text) {
-  Tdma::Params params;
-  const std::size_t slash = text.find('/');
-  const auto number = [&](std::string_view part, int& value) {
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-    if (part.empty() || error != std::errc() || end != part.data() + part.size())
-      throw std::invalid_argument("'" + text + "' is not a slot; it looks like 0/2, the first of two");
-  };
-  if (slash == std::string::npos)
-    throw std::invalid_argument("'" + text + "' is not a slot; it looks like 0/2, the first of two");
-  number(std::string_view(text).substr(0, slash), params.slot);
-  number(std::string_view(text).substr(slash + 1), params.slots);
-  const Tdma checked(params);
-  return params;
 }
 
 }  // namespace autonomy

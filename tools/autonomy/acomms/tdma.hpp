@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 
 namespace autonomy {
 
@@ -34,8 +33,5 @@ class Tdma {
 /// The guard time of who does not know how long a packet is: turns begin in the first second of the slot only, in a
 /// slot of less than 2 s in its first half.  Stamps that come once a second give a turn in each.
 double default_guard_s(double slot_s);
-
-/// A slot as on the command line: `0/2` is the first of two.  Throws std::invalid_argument.
-Tdma::Params parse_slot(const std::string& text);
 
 }  // namespace autonomy

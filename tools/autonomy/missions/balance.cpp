@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 #include "shoal/message_codec.hpp"
@@ -11,27 +10,6 @@
 namespace autonomy {
 
 namespace {
-
-/// Numbers between colons.
-SpeedPoint parse_point(const std::string& text) {
-  std::vector<double> numbers;
-  std::stringstream parts(text);
-  for (std::string part; std::getline(parts, part, ':');) {
-    std::size_t read = 0;
-    double number = 0;
-    try {
-      number = std::stod(part, &read);
-    } catch (const std::exception&) {
-      read = 0;
-    }
-    if (read == 0 || read != part.size() || !std::isfinite(number))
-      throw std::invalid_argument("'" + part + "' in '" + text + "' is not a number");
-    numbers.push_back(number);
-  }
-  if (numbers.size() != 2 && numbers.size() != 3)
-    throw std::invalid_argument("'" + text + "' must be TIME:SPEED or TIME:SPEED:TURN");
-  return {numbers[0], numbers[1], numbers.size() == 3 ? numbers[2] : 0};
-}
 
 /// A lean that is later than this does not belong to the same clock.
 constexpr double most_late_s = 0.1;
@@ -45,13 +23,9 @@ double share(double time_s, double time_constant_s) {
 
 }  // namespace
 
-std::vector<SpeedPoint> parse_speeds(const std::string& text) {
-  std::vector<SpeedPoint> points;
-  std::stringstream parts(text);
-  for (std::string part; std::getline(parts, part, ';');) points.push_back(parse_point(part));
+void check_speeds(const std::vector<SpeedPoint>& points) {
   for (std::size_t i = 1; i < points.size(); ++i)
-    if (points[i].from_s <= points[i - 1].from_s) throw std::invalid_argument("the times must grow, in '" + text + "'");
-  return points;
+    if (!(points[i].from_s > points[i - 1].from_s)) throw std::invalid_argument("the times of the speeds must grow");
 }
 
 Balance::Balance(const Params& params) : params_(params) {

@@ -19,9 +19,8 @@ struct SpeedPoint {
   double forward_mps = 0;
   double turn_radps = 0;
 };
-/// "10:0.5;20:-0.5;30:0:0.2": from 10 s on 0.5 m/s, and so on; the third number is a turn rate, rad/s.  Throws
-/// std::invalid_argument with what is wrong.
-std::vector<SpeedPoint> parse_speeds(const std::string& text);
+/// Throws std::invalid_argument when the times do not grow.
+void check_speeds(const std::vector<SpeedPoint>& points);
 
 /// Keeps a two-wheeled inverted pendulum upright and drives it: a PD law from lean to torque of the wheels, and around
 /// it a PI law from speed to lean.  A pure function of the messages in their order: it knows no clock and no bus.

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "tools/autonomy/acomms/state_packet.hpp"
-#include "tools/autonomy/behaviours/waypoint_text.hpp"
 
 namespace autonomy {
 
@@ -115,26 +114,6 @@ CoopStation::Decision CoopStation::step() {
     if (decision.send) ++counts_.sent;
   }
   return decision;
-}
-
-std::vector<CoopStation::TimedOrder> parse_orders(const std::string& text, double speed_mps) {
-  constexpr const char* form = "TIME:X,Y,DEPTH or TIME:X,Y,DEPTH,SPEED";
-  std::vector<CoopStation::TimedOrder> orders;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(';', begin), text.size());
-    const std::string each = text.substr(begin, end - begin);
-    begin = end + 1;
-    const std::size_t colon = each.find(':');
-    if (colon == std::string::npos) throw std::invalid_argument("'" + each + "' is not of the form " + form);
-    const std::string place = each.substr(colon + 1);
-    const bool has_speed = std::count(place.begin(), place.end(), ',') == 3;
-    const std::vector<double> numbers = parse_numbers(place, has_speed ? 4 : 3, form);
-    orders.push_back({parse_numbers(each.substr(0, colon), 1, form)[0],
-                      {numbers[0], numbers[1]},
-                      numbers[2],
-                      has_speed ? numbers[3] : speed_mps});
-  }
-  return orders;
 }
 
 }  // namespace autonomy

@@ -79,8 +79,4 @@ class CoopStation {
   Counts counts_;
 };
 
-/// Orders as on the command line: `120:500,200,15;600:900,-100,20,1.2`, each the time in s, east, north and depth in m,
-/// and speed in m/s, without which it is `speed_mps`.  Throws std::invalid_argument with what is wrong.
-std::vector<CoopStation::TimedOrder> parse_orders(const std::string& text, double speed_mps);
-
 }  // namespace autonomy

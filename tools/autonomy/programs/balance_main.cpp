@@ -12,7 +12,7 @@ namespace {
 
 struct Options {
   std::string name;
-  std::string speeds;
+  std::vector<autonomy::SpeedPoint> speeds;
   double balanced_lean_deg = -9.926;
   autonomy::Balance::Params balance;
   autonomy::Participation participation;
@@ -28,8 +28,7 @@ struct State {
 int balance(const Options& options) {
   State state{autonomy::Balance(options.balance)};
   autonomy::Balance& balance = state.balance;
-  const std::vector<autonomy::SpeedPoint> speeds =
-      autonomy::read_option("--speeds", [&] { return autonomy::parse_speeds(options.speeds); });
+  const std::vector<autonomy::SpeedPoint>& speeds = options.speeds;
   shoal::Client client(options.name, options.participation.lcm_url);
 
   const auto take = [&](const auto& message) { balance.receive(message); };
@@ -66,26 +65,46 @@ int balance(const Options& options) {
   return exit_code;
 }
 
-void add_gains(CLI::App& app, Options& options) {
+void declare_gains(command_line::DeclaredOptions& declared, Options& options) {
   autonomy::Balance::Params& gains = options.balance;
-  const auto number = [&app](const char* option, double& value, double low, double high, const char* meaning) {
-    autonomy::add_number(app, option, value, "NUMBER", low, high, meaning);
-  };
-  number("--balanced-lean", options.balanced_lean_deg, -45, 45,
-         "deg forward where its centre of mass is over its axle");
-  number("--kp", gains.kp_Nm_per_rad, 0, 1e4, "torque of both wheels for the error of the lean, N m/rad");
-  number("--kd", gains.kd_Nms_per_rad, 0, 1e4, "torque for the rate of the lean, N m s/rad");
-  number("--kv", gains.kv_rad_per_mps, 0, 10, "wanted lean for the error of the speed, rad/(m/s)");
-  number("--ki", gains.ki_rad_per_m, 0, 10, "wanted lean for the integral of that error, rad/m");
-  number("--max-lean", gains.max_lean_rad, 0.01, 0.7, "of the wanted lean, from the balanced one, rad");
-  number("--max-acceleration", gains.max_acceleration_mps2, 0.01, 10, "of the wanted speed, m/s^2");
-  number("--turn-gain", gains.turn_gain_Nms_per_rad, 0, 1e4, "torque between the wheels for the turn rate, N m s/rad");
-  number("--turn-ki", gains.turn_ki_Nm_per_rad, 0, 1e4, "torque between the wheels for its integral, N m/rad");
-  number("--rate-filter", gains.rate_filter_s, 0, 1, "time constant of the low pass on the rate of the lean, s");
-  number("--speed-filter", gains.speed_filter_s, 0, 1, "time constant of the low pass on speed and turn rate, s");
-  number("--wheel-radius", gains.wheel_radius_m, 0.01, 10, "m");
-  number("--track", gains.track_m, 0.01, 10, "between the wheels, m");
-  number("--max-torque", gains.max_torque_Nm, 0.1, 1e4, "of each wheel, N m");
+  declared.number("balanced_lean_deg", options.balanced_lean_deg, -45, 45,
+                  "lean, positive forward, at which its centre of mass is over its axle");
+  declared.number("kp_Nm_per_rad", gains.kp_Nm_per_rad, 0, 1e4, "torque of both wheels for the error of the lean");
+  declared.number("kd_Nms_per_rad", gains.kd_Nms_per_rad, 0, 1e4, "torque for the rate of the lean");
+  declared.number("kv_rad_per_mps", gains.kv_rad_per_mps, 0, 10, "lean setpoint for the error of the speed");
+  declared.number("ki_rad_per_m", gains.ki_rad_per_m, 0, 10, "lean setpoint for the integral of that error");
+  declared.number("max_lean_rad", gains.max_lean_rad, 0.01, 0.7, "limit of the lean setpoint, from the balanced lean");
+  declared.number("max_acceleration_mps2", gains.max_acceleration_mps2, 0.01, 10, "limit of the speed setpoint");
+  declared.number("turn_gain_Nms_per_rad", gains.turn_gain_Nms_per_rad, 0, 1e4,
+                  "torque between the wheels for the error of the turn rate");
+  declared.number("turn_ki_Nm_per_rad", gains.turn_ki_Nm_per_rad, 0, 1e4,
+                  "torque between the wheels for the integral of that error");
+  declared.number("rate_filter_s", gains.rate_filter_s, 0, 1, "time constant of the low pass on the rate of the lean");
+  declared.number("speed_filter_s", gains.speed_filter_s, 0, 1, "time constant of the low pass on speed and turn rate");
+  declared.number("wheel_radius_m", gains.wheel_radius_m, 0.01, 10, "radius of its wheels");
+  declared.number("track_m", gains.track_m, 0.01, 10, "distance between the wheels");
+  declared.number("max_torque_Nm", gains.max_torque_Nm, 0.1, 1e4, "limit of the torque of each wheel");
+}
+
+void declare(command_line::DeclaredOptions& declared, Options& options) {
+  declared.publishes({"{name}.left_motor.cmd", "{name}.right_motor.cmd", "{name}.fallen"});
+  declared.subscribes({"{name}.inclinometer", "{name}.encoder", "{name}.balance.cmd"});
+  autonomy::add_name(declared, options.name, "vehicle to balance").required_in_worlds();
+  declared.tuples(
+      "speeds", {"from_s", "forward_mps", "turn_radps"}, 2, sim::any_place(),
+      [&options](const auto& lists) {
+        for (const auto& numbers : lists)
+          options.speeds.push_back({numbers[0], numbers[1], numbers.size() > 2 ? numbers[2] : 0});
+      },
+      "from a time on a speed and a turn rate, which is 0 when it is left out");
+  declare_gains(declared, options);
+  options.participation.declare(declared);
+  autonomy::set_help_end(
+      declared, {"shoal-balance --name segway1 --speeds '[[5,0.5],[15,-0.5],[25,0]]'", "shoal-balance --delay-margin"},
+      "It reads NAME.inclinometer and NAME.encoder, and drives as shoal.twist_command_t on "
+      "NAME.balance.cmd says; it publishes NAME.left_motor.cmd and NAME.right_motor.cmd, and "
+      "NAME.fallen when it fell.  Start it beside `shoal run worlds/segway.yaml --await segway1`.  "
+      "docs/models/segway.md explains the gains.");
 }
 
 int run(int argc, char** argv) {
@@ -93,31 +112,22 @@ int run(int argc, char** argv) {
   options.participation.period_s = 0.01;
   CLI::App app{"Balances a vehicle on two wheels, such as the Segway RMP, in lockstep with `shoal run`.",
                "shoal-balance"};
-  autonomy::add_name(app, options.name, "vehicle to balance");
-  bool tell_margin = false;
-  app.add_flag("--delay-margin", tell_margin,
+  command_line::DeclaredOptions declared(app);
+  declare(declared, options);
+  bool print_margin = false;
+  app.add_flag("--delay-margin", print_margin,
                "print how late the torque of a Segway RMP may come with these gains, and end");
-  app.add_option("--speeds", options.speeds,
-                 "such as \"10:0.5;20:-0.5;30:0:0.3\": from 10 s on 0.5 m/s, ..., from 30 s on turn at 0.3 rad/s")
-      ->type_name("SPEEDS");
-  add_gains(app, options);
-  options.participation.add_options(app);
-  autonomy::set_help_end(
-      app, {"shoal-balance --name segway1 --speeds \"5:0.5;15:-0.5;25:0\"", "shoal-balance --delay-margin"},
-      "It reads NAME.inclinometer and NAME.encoder, and drives as shoal.twist_command_t on "
-      "NAME.balance.cmd says; it publishes NAME.left_motor.cmd and NAME.right_motor.cmd, and "
-      "NAME.fallen when it fell.  Start it beside `shoal run worlds/segway.yaml --await segway1`.  "
-      "docs/models/segway.md explains the gains.");
-  if (const auto exit_code = autonomy::parse(app, argc, argv)) return *exit_code;
+  if (const auto exit_code = declared.parse(argc, argv)) return *exit_code;
   options.balance.period_s = options.participation.period_s;
   options.balance.balanced_lean_rad = sim::degrees_to_radians(options.balanced_lean_deg);
-  if (tell_margin) {
+  if (print_margin) {
     const autonomy::DelayMargin margin = autonomy::delay_margin(options.balance);
     std::cout << "it swings at " << margin.frequency_radps << " rad/s when the torque comes " << 1e3 * margin.delay_s
               << " ms late\n";
     return autonomy::exit_ok;
   }
   if (options.name.empty()) throw std::invalid_argument("--name is required");
+  autonomy::check_speeds(options.speeds);
   return balance(options);
 }
 

@@ -5,7 +5,6 @@
 #include "tools/autonomy/missions/coop_auv.hpp"
 #include "tools/autonomy/programs/marine_options.hpp"
 #include "tools/autonomy/programs/program.hpp"
-#include "tools/command_line/checks.hpp"
 
 namespace {
 
@@ -14,7 +13,6 @@ struct Options {
   autonomy::MarineOptions marine;
   autonomy::Participation participation;
   std::string steer = "cooperative";
-  std::string start, modem_at, gps_at;
   bool no_cooperation = false;
   double heading_bias_std_deg = 3;
   double clock_std_ms = 20;
@@ -56,62 +54,60 @@ int drive(const Options& options) {
   return exit_code;
 }
 
-void add_filter_options(CLI::App& app, Options& options) {
+void declare_filter(command_line::DeclaredOptions& declared, Options& options) {
   autonomy::CoopAuv::Params& auv = options.auv;
-  app.add_flag("--no-cooperation", options.no_cooperation, "use no ranges: the estimate is dead reckoning");
-  app.add_option("--steer", options.steer, "by which estimate")
-      ->type_name("ESTIMATE")
-      ->capture_default_str()
-      ->check(command_line::one_of({"cooperative", "dead-reckoning"}));
-  app.add_option("--states", auv.filter.states,
-                 "2 position; 4 and heading bias, speed scale; 5 and clock; 6 and its drift")
-      ->type_name("N")
-      ->capture_default_str()
-      ->check(command_line::one_of({"2", "4", "5", "6"}));
-  using autonomy::add_number;
-  add_number(app, "--sound-speed", auv.sound_speed_mps, "M/S", 1000, 2000, "converts travel times to ranges");
-  add_number(app, "--range-std", auv.range_std_m, "M", 0.001, 1000, "error of a range");
-  add_number(app, "--sound-speed-std", auv.sound_speed_std, "RATIO", 0, 0.5, "error of a range, of the range");
-  add_number(app, "--heading-bias-std", options.heading_bias_std_deg, "DEG", 0, 90, "steady error of the heading");
-  add_number(app, "--speed-scale-std", auv.filter.speed_scale_std, "RATIO", 0, 0.5, "scale error of the DVL");
-  add_number(app, "--heading-noise", auv.filter.heading_noise_radprtHz, "NOISE", 0, 10,
-             "rad in 1 s; for a slow error s of time T: s sqrt(2 T)");
-  add_number(app, "--clock-std-ms", options.clock_std_ms, "MS", 0, 1e6,
-             "error of the clock at the start, with 5 or 6 states");
-  add_number(app, "--clock-drift-std-ppm", options.clock_drift_std_ppm, "PPM", 0, 1e4,
-             "drift of the clock, with 6 states");
+  declared.flag("no_cooperation", options.no_cooperation, "use no ranges: the estimate is dead reckoning");
+  declared.choice("steer", options.steer, {"cooperative", "dead_reckoning"}, "estimate to steer by");
+  declared.choice("states", auv.filter.states, {"2", "4", "5", "6"},
+                  "states of the filter: 2 position; 4 and heading bias, speed scale; 5 and clock; 6 and its drift");
+  declared.number("sound_speed_mps", auv.sound_speed_mps, 1000, 2000, "converts travel times to ranges");
+  declared.number("range_std_m", auv.range_std_m, 0.001, 1000, "error of a range");
+  declared.number("sound_speed_std", auv.sound_speed_std, 0, 0.5, "error of a range, as a ratio of the range");
+  declared.number("heading_bias_std_deg", options.heading_bias_std_deg, 0, 90, "steady error of the heading");
+  declared.number("speed_scale_std", auv.filter.speed_scale_std, 0, 0.5, "scale error of the DVL, as a ratio");
+  declared.number("heading_noise_radprtHz", auv.filter.heading_noise_radprtHz, 0, 10,
+                  "noise of the heading, rad in 1 s; for a slow error s of time T: s sqrt(2 T)");
+  declared.number("clock_std_ms", options.clock_std_ms, 0, 1e6, "error of the clock at the start, with 5 or 6 states");
+  declared.number("clock_drift_std_ppm", options.clock_drift_std_ppm, 0, 1e4, "drift of the clock, with 6 states");
 }
 
-Eigen::Vector3d place_on_vehicle(const char* option, const std::string& text) {
-  if (text.empty()) return Eigen::Vector3d::Zero();
-  return Eigen::Vector3d(
-      autonomy::read_option(option, [&] { return autonomy::parse_numbers(text, 3, "x,y,z"); }).data());
+/// A position on the vehicle, which is its origin unless it is given.
+void declare_position(command_line::DeclaredOptions& declared, const char* key, Eigen::Vector3d& position_B,
+                      const std::string& meaning) {
+  declared
+      .tuple(
+          key, {"x", "y", "z"}, sim::any_place(),
+          [&position_B](const auto& numbers) { position_B = Eigen::Vector3d(numbers.data()); }, meaning)
+      .by_default({0, 0, 0});
 }
 
-void add_options(CLI::App& app, Options& options) {
+void declare(command_line::DeclaredOptions& declared, Options& options) {
   autonomy::CoopAuv::Params& auv = options.auv;
-  using autonomy::add_number;
-  autonomy::add_name(app, auv.name, "vehicle to steer")->required();
-  autonomy::add_id(app, "--id", auv.id, "of the vehicle in its frames")->capture_default_str();
-  add_number(app, "--depth", auv.depth_m, "M", 0, 10'000, "depth to dive to");
-  app.add_option("--start", options.start, "known position at the start, m; without it the vehicle waits for GPS")
-      ->type_name("X,Y");
-  add_number(app, "--start-std", auv.start_std_m, "M", 0.001, 1000, "error of --start");
-  app.add_option("--modem-at", options.modem_at, "position of the modem on the vehicle, m; without it 0,0,0")
-      ->type_name("X,Y,Z");
-  app.add_option("--gps-at", options.gps_at, "position of the GPS antenna, likewise")->type_name("X,Y,Z");
-  add_number(app, "--surface-s", auv.surface_s, "S", 0, 3600, "time at the surface after the first fix");
-  app.add_flag("--obey", auv.obey, "obey orders for its --id: go to the position and circle there");
-  add_number(app, "--order-depth-max", auv.order_depth_max_m, "M", 0, 10'000, "deeper orders are refused");
-  add_number(app, "--order-speed-max", auv.order_speed_max_mps, "M/S", 0.01, 10, "faster orders are refused");
-  add_number(app, "--hold-radius", auv.hold_radius_m, "M", 1, 10'000, "of the circle at an ordered position");
-  options.marine.add_options(app);
-  add_filter_options(app, options);
-  options.participation.add_options(app);
+  declared.publishes({"{name}.autopilot.cmd", "{name}.estimate", "{name}.dead_reckoning", "{name}.modem.cmd"});
+  declared.subscribes({"{name}.dvl", "{name}.ahrs", "{name}.compass", "{name}.pressure", "{name}.gps", "{name}.modem"});
+  autonomy::add_name(declared, auv.name, "vehicle to steer").required();
+  autonomy::add_id(declared, "id", auv.id, "number of the vehicle in its frames");
+  declared.number("depth_m", auv.depth_m, 0, 10'000, "depth to dive to");
+  declared.tuple(
+      "start_m", {"x", "y"}, sim::any_place(),
+      [&auv](const auto& numbers) { auv.start_W = autonomy::Vector2d(numbers[0], numbers[1]); },
+      "known position at the start, east and north; without it the vehicle waits for GPS");
+  declared.number("start_std_m", auv.start_std_m, 0.001, 1000, "error of that position");
+  declare_position(declared, "modem_position_m", auv.modem_B, "position of the modem on the vehicle");
+  declare_position(declared, "gps_position_m", auv.gps_B, "position of the GPS antenna on the vehicle");
+  declared.number("surface_s", auv.surface_s, 0, 3600, "time at the surface after the first fix");
+  declared.flag("accept_orders", auv.obey, "follow orders for its id: go to the position and circle there");
+  declared.number("order_depth_max_m", auv.order_depth_max_m, 0, 10'000, "deeper orders are refused");
+  declared.number("order_speed_max_mps", auv.order_speed_max_mps, 0.01, 10, "faster orders are refused");
+  declared.number("hold_radius_m", auv.hold_radius_m, 1, 10'000, "radius of the circle at an ordered position");
+  options.marine.declare(declared);
+  declared.at_most_one({"slot", "random_s"});
+  declare_filter(declared, options);
+  options.participation.declare(declared);
   autonomy::set_help_end(
-      app,
-      {"shoal-coop-auv --name auv --route \"400,0;400,40;0,40;0,80\" --depth 15 --states 6",
-       "shoal-coop-auv --name auv --start 0,0 --route 2000,0 --no-cooperation"},
+      declared,
+      {"shoal-coop-auv --name auv --waypoints-m '[[400,0],[400,40],[0,40],[0,80]]' --depth-m 15 --states 6",
+       "shoal-coop-auv --name auv --start-m '[0,0]' --waypoints-m '[[2000,0]]' --no-cooperation"},
       "It reads NAME.dvl, .ahrs or .compass, .pressure, .gps and .modem; it publishes NAME.autopilot.cmd, .estimate, "
       ".dead_reckoning and, with --slot or --random-s, .modem.cmd.");
 }
@@ -121,22 +117,16 @@ int run(int argc, char** argv) {
   options.participation.period_s = 0.5;
   CLI::App app{"Steers an AUV that localises itself by dead reckoning and by one-way acoustic ranges.",
                "shoal-coop-auv"};
-  add_options(app, options);
-  if (const auto exit_code = autonomy::parse(app, argc, argv)) return *exit_code;
+  command_line::DeclaredOptions declared(app);
+  declare(declared, options);
+  if (const auto exit_code = declared.parse(argc, argv)) return *exit_code;
   autonomy::CoopAuv::Params& auv = options.auv;
   auv.period_s = options.participation.period_s;
   auv.use_ranges = !options.no_cooperation;
-  auv.steer_by_dead_reckoning = options.steer == "dead-reckoning";
+  auv.steer_by_dead_reckoning = options.steer == "dead_reckoning";
   auv.filter.heading_bias_std_rad = sim::degrees_to_radians(options.heading_bias_std_deg);
   auv.filter.range_bias_std_m = auv.sound_speed_mps * 1e-3 * options.clock_std_ms;
   auv.filter.range_drift_std_mps = auv.sound_speed_mps * 1e-6 * options.clock_drift_std_ppm;
-  if (!options.start.empty()) {
-    const auto start =
-        autonomy::read_option("--start", [&] { return autonomy::parse_numbers(options.start, 2, "x,y"); });
-    auv.start_W = autonomy::Vector2d(start[0], start[1]);
-  }
-  auv.modem_B = place_on_vehicle("--modem-at", options.modem_at);
-  auv.gps_B = place_on_vehicle("--gps-at", options.gps_at);
   auv.access = options.marine.access();
   return drive(options);
 }

@@ -38,17 +38,21 @@ int run(int argc, char** argv) {
   autonomy::Participation participation;
   participation.period_s = 0.5;
   CLI::App app{"Steers a surface craft that sends its GPS position by acoustic modem.", "shoal-coop-craft"};
-  autonomy::add_name(app, craft.name, "vehicle to steer")->required();
-  autonomy::add_id(app, "--id", craft.id, "of the vehicle in its frames")->capture_default_str();
-  autonomy::add_number(app, "--transducer-depth", craft.transducer_depth_m, "M", 0, 1000, "of its modem");
-  marine.add_options(app);
-  participation.add_options(app);
+  command_line::DeclaredOptions options(app);
+  options.publishes({"{name}.autopilot.cmd", "{name}.modem.cmd", "{name}.estimate"});
+  options.subscribes({"{name}.gps", "{name}.modem"});
+  autonomy::add_name(options, craft.name, "vehicle to steer").required();
+  autonomy::add_id(options, "id", craft.id, "number of the vehicle in its frames");
+  options.number("transducer_depth_m", craft.transducer_depth_m, 0, 1000, "depth of its modem below the surface");
+  marine.declare(options);
+  options.at_most_one({"slot", "random_s"});
+  participation.declare(options);
   autonomy::set_help_end(
-      app,
-      {"shoal-coop-craft --name boat1 --behaviour circle:100,50,40 --slot 0/2",
-       "shoal-coop-craft --name boat2 --behaviour follow:auv,0,-60 --speed 2 --slot 1/3"},
+      options,
+      {"shoal-coop-craft --name boat1 --circle-m '[100,50,40]' --slot 0 --slots 2",
+       "shoal-coop-craft --name boat2 --follow auv --follow-offset-m '[0,-60]' --speed-mps 2 --slot 1 --slots 3"},
       "It reads NAME.gps and NAME.modem; it publishes NAME.autopilot.cmd, .modem.cmd and .estimate.");
-  if (const auto exit_code = autonomy::parse(app, argc, argv)) return *exit_code;
+  if (const auto exit_code = options.parse(argc, argv)) return *exit_code;
   craft.period_s = participation.period_s;
   craft.access = marine.access();
   return drive(craft, marine, participation);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
 
-#include "tools/autonomy/behaviours/waypoint_text.hpp"
+#include "sim/base/math.hpp"
 #include "tools/autonomy/missions/coop_rover.hpp"
+#include "tools/autonomy/programs/marine_options.hpp"
 #include "tools/autonomy/programs/program.hpp"
 
 namespace {
@@ -25,27 +26,39 @@ int drive(const autonomy::CoopRover::Params& params, const autonomy::Participati
 int run(int argc, char** argv) {
   autonomy::CoopRover::Params rover;
   autonomy::Participation participation;
-  std::string waypoints;
-  std::string start = "0,0,0";
+  double start_yaw_deg = 0;
   CLI::App app{"Drives one rover of the cooperative experiment, in lockstep with `shoal run`.", "shoal-coop-rover"};
-  autonomy::add_name(app, rover.name, "vehicle to drive")->required();
-  app.add_option("--waypoints", waypoints, "\"x,y;x,y;...\", east and north in m, driven in a loop")
-      ->type_name("ROUTE")
-      ->required();
-  app.add_option("--start", start, "pose of the rover at the start, m and degrees")
-      ->type_name("X,Y,YAW")
-      ->capture_default_str();
-  autonomy::add_number(app, "--speed", rover.speed_mps, "M/S", 0.05, 5, "of the rover");
-  autonomy::add_number(app, "--seen-std", rover.seen_std_m, "M", 0.001, 100, "error of a swarm_position sighting");
-  participation.add_options(app);
+  command_line::DeclaredOptions options(app);
+  options.publishes({"{name}.drive.cmd", "{name}.modem.cmd", "{name}.estimate", "{name}.odometry_only"});
+  options.subscribes({"{name}.odometry", "{name}.lidar", "{name}.modem", "{name}.gps", "{name}.swarm_position"});
+  autonomy::add_name(options, rover.name, "vehicle to drive").required();
+  options
+      .tuples(
+          "waypoints_m", {"x", "y"}, 2, sim::any_place(),
+          [&](const auto& lists) { rover.waypoints_W = autonomy::points_of(lists); },
+          "waypoints, east and north, driven in a loop")
+      .required();
+  options
+      .tuple(
+          "start_m", {"x", "y"}, sim::any_place(),
+          [&](const auto& numbers) {
+            rover.start.p_W = {numbers[0], numbers[1]};
+          },
+          "position of the rover at the start, east and north")
+      .by_default({0, 0});
+  options.number("start_yaw_deg", start_yaw_deg, -360, 360, "its heading at the start, counter-clockwise from east");
+  options.number("speed_mps", rover.speed_mps, 0.05, 5, "speed of the rover");
+  options.number("seen_std_m", rover.seen_std_m, 0.001, 100, "error of a swarm_position sighting");
+  participation.declare(options);
   autonomy::set_help_end(
-      app, {"shoal-coop-rover --name rover1 --start=-20,-20,90 --waypoints \"-20,20;-5,20;-5,-20;-20,-20\""},
+      options,
+      {"shoal-coop-rover --name rover1 --start-m '[-20,-20]' --start-yaw-deg 90 --waypoints-m "
+       "'[[-20,20],[-5,20],[-5,-20],[-20,-20]]'"},
       "It reads NAME.odometry, .lidar, .modem and, where they exist, .gps and .swarm_position; it publishes "
       "NAME.drive.cmd, .modem.cmd, .estimate and .odometry_only.  Start it beside `shoal run worlds/coop_land.yaml "
       "--await rover1,rover2,rover3`, or let that start it with --launch.");
-  if (const auto exit_code = autonomy::parse(app, argc, argv)) return *exit_code;
-  rover.waypoints_W = autonomy::read_option("--waypoints", [&] { return autonomy::parse_waypoints(waypoints); });
-  rover.start = autonomy::read_option("--start", [&] { return autonomy::parse_start(start); });
+  if (const auto exit_code = options.parse(argc, argv)) return *exit_code;
+  rover.start.yaw_rad = sim::wrap_angle(sim::degrees_to_radians(start_yaw_deg));
   return drive(rover, participation);
 }
 

@@ -32,29 +32,39 @@ int run(int argc, char** argv) {
   autonomy::AccessOptions sending;
   autonomy::Participation participation;
   participation.period_s = 0.5;
-  std::string orders;
+  std::vector<std::vector<double>> orders;
   double speed_mps = 1.5;
   CLI::App app{"Sends orders to a submerged vehicle, by radio and by whoever relays its messages.",
                "shoal-coop-station"};
-  autonomy::add_name(app, station.name, "vehicle that is the station")->required();
-  autonomy::add_id(app, "--id", station.id, "of the station in its frames")->capture_default_str();
-  autonomy::add_id(app, "--to", station.to_id, "id of the vehicle that gets the orders")->required();
-  app.add_option("--orders", orders,
-                 "\"TIME:X,Y,DEPTH;TIME:X,Y,DEPTH,SPEED;...\": s after the start, east, north and depth in m, m/s")
-      ->type_name("ORDERS")
-      ->required();
-  autonomy::add_number(app, "--speed", speed_mps, "M/S", 0.05, 10, "of orders without one, through the water");
-  sending.add_options(app, "its order");
-  participation.add_options(app);
+  command_line::DeclaredOptions options(app);
+  options.publishes({"{name}.radio.cmd", "{name}.knowledge"});
+  options.subscribes({"{name}.gps", "{name}.radio"});
+  autonomy::add_name(options, station.name, "vehicle that is the station").required();
+  autonomy::add_id(options, "id", station.id, "number of the station in its frames");
+  autonomy::add_id(options, "to", station.to_id, "number of the vehicle that gets the orders").required();
+  options
+      .tuples(
+          "orders", {"time_s", "x_m", "y_m", "depth_m", "speed_mps"}, 4, sim::any_place(),
+          [&](const auto& lists) { orders = lists; },
+          "orders, each the time after the start, the position east and north, the depth, and the speed unless it is "
+          "that of speed_mps")
+      .required();
+  options.number("speed_mps", speed_mps, 0.05, 10, "speed of orders without one, through the water");
+  sending.declare(options, "its order");
+  options.exactly_one({"slot", "random_s"});
+  participation.declare(options);
   autonomy::set_help_end(
-      app, {"shoal-coop-station --name station --to 0 --slot 1/3 --orders \"120:500,200,15;600:900,-100,20,1.2\""},
+      options,
+      {"shoal-coop-station --name station --to 0 --slot 1 --slots 3 --orders "
+       "'[[120,500,200,15],[600,900,-100,20,1.2]]'"},
       "It reads NAME.gps and NAME.radio; it publishes NAME.radio.cmd and NAME.knowledge, where the vehicle was by its "
       "newest state.");
-  if (const auto exit_code = autonomy::parse(app, argc, argv)) return *exit_code;
+  if (const auto exit_code = options.parse(argc, argv)) return *exit_code;
   station.access = sending.access();
   if (!station.access.slot && station.access.random_mean_s <= 0)
-    throw std::invalid_argument("a station that never sends is of no use; give --slot or --random-s");
-  station.orders = autonomy::read_option("--orders", [&] { return autonomy::parse_orders(orders, speed_mps); });
+    throw std::invalid_argument("--random-s must be above 0 for a station");
+  for (const std::vector<double>& order : orders)
+    station.orders.push_back({order[0], {order[1], order[2]}, order[3], order.size() > 4 ? order[4] : speed_mps});
   return drive(station, participation);
 }
 

@@ -1,55 +1,79 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/autonomy/programs/marine_options.hpp"
 
-#include "tools/autonomy/behaviours/behaviour_text.hpp"
-#include "tools/autonomy/programs/program.hpp"
-#include "tools/command_line/checks.hpp"
+#include <stdexcept>
+
+#include "tools/autonomy/acomms/tdma.hpp"
 
 namespace autonomy {
 
-void MarineOptions::add_options(CLI::App& app) {
-  app.add_option("--route", route, "\"x,y;x,y;...\": waypoints, east and north in m")->type_name("ROUTE");
-  app.add_option("--behaviour", behaviour,
-                 "route, circle:X,Y,RADIUS, zigzag:X1,Y1,X2,Y2,AMPLITUDE,LEGS or follow:VEHICLE,AHEAD,LEFT, in m")
-      ->type_name("BEHAVIOUR")
-      ->capture_default_str();
-  app.add_flag("--loop", loop, "begin the route again after its last waypoint; without it the vehicle stops there");
-  add_number(app, "--speed", speed_mps, "M/S", 0.05, 10, "through the water; the greatest of follow:");
-  sending.add_options(app, "its state");
+void MarineOptions::declare(command_line::DeclaredOptions& options) {
+  options.tuples(
+      "waypoints_m", {"x", "y"}, 2, sim::any_place(), [this](const auto& lists) { waypoints_W = points_of(lists); },
+      "route, east and north");
+  options.tuple(
+      "circle_m", {"x", "y", "radius"}, sim::any_place(), [this](const auto& numbers) { circle_m = numbers; },
+      "circle round a point, counter-clockwise");
+  options
+      .tuple(
+          "zigzag_m", {"x1", "y1", "x2", "y2", "amplitude"}, sim::any_place(),
+          [this](const auto& numbers) { zigzag_m = numbers; }, "zigzag about the line between two points")
+      .needs({"zigzag_legs"});
+  options.integer("zigzag_legs", zigzag_legs, 1, 1000, "legs of the zigzag").needs({"zigzag_m"});
+  options.text("follow", "VEHICLE", follow, "vehicle to follow, which must send its state").needs({"follow_offset_m"});
+  options
+      .tuple(
+          "follow_offset_m", {"ahead", "left"}, sim::any_place(),
+          [this](const auto& numbers) { follow_offset_m = numbers; }, "place beside that vehicle, by its course")
+      .needs({"follow"});
+  options.exactly_one({"waypoints_m", "circle_m", "zigzag_m", "follow"});
+  options.flag("loop", loop, "begin the route again after its last waypoint; without it the vehicle stops there");
+  options.number("speed_mps", speed_mps, 0.05, 10, "speed through the water; when it follows, the largest");
+  sending.declare(options, "its state");
 }
 
 std::unique_ptr<HelmBehaviour> MarineOptions::make(const std::string& name) const {
-  if (behaviour.starts_with("follow:" + name + ",")) throw std::invalid_argument("'" + name + "' cannot follow itself");
-  const std::vector<Vector2d> waypoints =
-      route.empty() ? std::vector<Vector2d>() : read_option("--route", [&] { return parse_waypoints(route); });
-  return read_option("--behaviour", [&] { return make_behaviour(behaviour, waypoints, speed_mps, loop); });
+  if (!circle_m.empty()) return make_circle({circle_m[0], circle_m[1]}, circle_m[2], speed_mps);
+  if (!zigzag_m.empty())
+    return make_zigzag({zigzag_m[0], zigzag_m[1]}, {zigzag_m[2], zigzag_m[3]}, zigzag_m[4], zigzag_legs.value_or(1),
+                       speed_mps, loop);
+  if (!follow.empty()) {
+    if (follow == name) throw std::invalid_argument("'" + name + "' cannot follow itself");
+    return make_follow(follow, follow_offset_m[0], follow_offset_m[1], speed_mps);
+  }
+  return make_route(waypoints_W, speed_mps, loop);
 }
 
-void AccessOptions::add_options(CLI::App& app, const std::string& what) {
-  app.add_option("--slot", slot, "sends " + what + " in slot I of N, from 0, by the clock of its vehicle")
-      ->type_name("I/N");
-  add_number(app, "--slot-s", slot_s, "S", 0.1, 3600, "length of a slot");
-  app.add_option("--guard-s", guard_s,
+void AccessOptions::declare(command_line::DeclaredOptions& options, const std::string& what) {
+  options.integer("slot", slot, 0, 999, "sends " + what + " in this slot, counted from 0, by the clock of its vehicle")
+      .needs({"slots"});
+  options.integer("slots", slots, 1, 1000, "slots in a cycle").needs({"slot"});
+  options.number("slot_s", slot_s, 0.1, 3600, "length of a slot");
+  options.number("guard_s", guard_s, 0, 3600,
                  "the end of a slot in which nothing is begun; without it all but its first second, or the second half "
-                 "of a short one")
-      ->type_name("S")
-      ->check(command_line::number_from(0, 3600));
-  add_number(app, "--random-s", random_s, "S", 0, 3600,
-             "sends at random, so often on average; 0: in its slot or never");
-  app.add_option("--seed", seed, "of --random-s")->type_name("N")->capture_default_str()->check(command_line::seed());
+                 "of a short one");
+  options.number("random_s", random_s, 0, 3600, "sends " + what + " at random, so often on average; 0: never");
+  options.seed("seed", seed, "seed of the random times");
 }
 
 ChannelAccess::Params AccessOptions::access() const {
   ChannelAccess::Params access;
-  access.random_mean_s = random_s;
+  access.random_mean_s = random_s.value_or(0);
   access.seed = seed;
-  if (slot.empty()) return access;
-  if (random_s > 0) throw std::invalid_argument("--slot and --random-s are two ways of sending; give one");
-  access.slot = read_option("--slot", [&] { return parse_slot(slot); });
+  if (!slot) return access;
+  access.slot.emplace();
+  access.slot->slot = *slot;
+  access.slot->slots = slots.value_or(1);
   access.slot->slot_s = slot_s;
   access.slot->guard_s = guard_s.value_or(default_guard_s(slot_s));
   const Tdma checked(*access.slot);
   return access;
+}
+
+std::vector<Vector2d> points_of(const std::vector<std::vector<double>>& lists) {
+  std::vector<Vector2d> points;
+  for (const std::vector<double>& numbers : lists) points.emplace_back(numbers[0], numbers[1]);
+  return points;
 }
 
 }  // namespace autonomy

@@ -1,44 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "tools/autonomy/acomms/channel_access.hpp"
-#include "tools/autonomy/behaviours/helm_behaviour.hpp"
-#include "tools/autonomy/behaviours/waypoint_text.hpp"
+#include "tools/autonomy/behaviours/make_behaviour.hpp"
+#include "tools/command_line/declared_options.hpp"
 
 namespace autonomy {
 
 /// When to send.
 struct AccessOptions {
-  std::string slot;
+  std::optional<int> slot, slots;
   double slot_s = 10;
   std::optional<double> guard_s;  ///< default_guard_s() unless set
-  double random_s = 0;
+  std::optional<double> random_s;
   std::uint64_t seed = 1;
 
   /// `what` it sends, for the help.
-  void add_options(CLI::App& app, const std::string& what);
+  void declare(command_line::DeclaredOptions& options, const std::string& what);
   /// Throws std::invalid_argument with what is wrong.
   ChannelAccess::Params access() const;
 };
 
 /// The options that both programs of vehicles have.
 struct MarineOptions {
-  std::string route;
-  std::string behaviour = "route";
+  std::vector<Vector2d> waypoints_W;
+  std::vector<double> circle_m, zigzag_m;  ///< columns as declared; empty: not given
+  std::optional<int> zigzag_legs;
+  std::string follow;
+  std::vector<double> follow_offset_m;
   double speed_mps = 1.5;
   bool loop = false;
   AccessOptions sending;
 
-  void add_options(CLI::App& app);
-  /// Of the vehicle `name`.  Throw std::invalid_argument with what is wrong.
+  void declare(command_line::DeclaredOptions& options);
+  /// The behaviour of the vehicle `name`.  Throws std::invalid_argument with what is wrong.
   std::unique_ptr<HelmBehaviour> make(const std::string& name) const;
   ChannelAccess::Params access() const { return sending.access(); }
 };
+
+/// Waypoints of the columns x and y.
+std::vector<Vector2d> points_of(const std::vector<std::vector<double>>& lists);
 
 }  // namespace autonomy

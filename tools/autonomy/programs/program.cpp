@@ -5,7 +5,6 @@
 #include <csignal>
 #include <iostream>
 
-#include "tools/command_line/checks.hpp"
 #include "tools/command_line/help.hpp"
 #include "tools/command_line/parse.hpp"
 
@@ -40,41 +39,34 @@ class StopBySignal {
 
 }  // namespace
 
-void set_help_end(CLI::App& app, const std::vector<std::string>& examples, const std::string& channels) {
-  command_line::set_help_end(app, {examples,
-                                   {{0, "the run ended"},
-                                    {2, "wrong usage"},
-                                    {4, "bus trouble"},
-                                    {5, "the simulator fell silent or dropped the program"},
-                                    {6, "the world went further back than --rewind-s"},
-                                    {130, "ended by SIGINT; 143 by SIGTERM"}},
-                                   {channels}});
+void set_help_end(command_line::DeclaredOptions& options, const std::vector<std::string>& examples,
+                  const std::string& channels) {
+  command_line::set_help_end(options.app(), {examples,
+                                             {{0, "the run ended"},
+                                              {2, "wrong usage"},
+                                              {4, "bus trouble"},
+                                              {5, "the simulator fell silent or dropped the program"},
+                                              {6, "the world went further back than --rewind-s"},
+                                              {130, "ended by SIGINT; 143 by SIGTERM"}},
+                                             {channels}});
 }
 
-void Participation::add_options(CLI::App& app) {
-  add_number(app, "--period", period_s, "S", 0.001, 10, "simulated seconds between decisions");
-  add_number(app, "--rewind-s", rewind_s, "S", 0, 1e6,
-             "how far the program can go back with the world, in simulated seconds; 0: not at all");
-  add_number(app, "--join-timeout", join_timeout_s, "S", 0.1, 3600, "seconds to wait for the simulator");
-  app.add_option("--lcm-url", lcm_url, "instead of LCM_DEFAULT_URL and the default")->type_name("URL");
+void Participation::declare(command_line::DeclaredOptions& options) {
+  options.number("period_s", period_s, 0.001, 10, "simulated seconds between decisions");
+  options.number("rewind_s", rewind_s, 0, 1e6,
+                 "how far the program can go back with the world, in simulated seconds; 0: not at all");
+  options.number("join_timeout_s", join_timeout_s, 0.1, 3600, "wall seconds to wait for the simulator");
+  options.text("lcm_url", "URL", lcm_url, "instead of LCM_DEFAULT_URL and the default");
 }
 
-void add_number(CLI::App& app, const char* option, double& value, const char* unit, double low, double high,
-                const std::string& meaning) {
-  app.add_option(option, value, meaning)
-      ->type_name(unit)
-      ->capture_default_str()
-      ->check(command_line::number_from(low, high));
+command_line::DeclaredOptions::Added add_id(command_line::DeclaredOptions& options, const char* key, int& id,
+                                            const std::string& meaning) {
+  return options.integer(key, id, 0, 255, meaning);
 }
 
-CLI::Option* add_id(CLI::App& app, const char* option, int& id, const std::string& meaning) {
-  return app.add_option(option, id, meaning)->type_name("N")->check(command_line::whole_from(0, 255));
-}
-
-CLI::Option* add_name(CLI::App& app, std::string& name, const std::string& meaning) {
-  return app.add_option("--name", name, meaning + "; also the name in the lockstep")
-      ->type_name("NAME")
-      ->check(command_line::not_empty());
+command_line::DeclaredOptions::Added add_name(command_line::DeclaredOptions& options, std::string& name,
+                                              const std::string& meaning) {
+  return options.text("name", "NAME", name, meaning + "; also the name in the lockstep");
 }
 
 int take_part(shoal::Client& client, const Participation& participation, Memory memory,
@@ -118,11 +110,6 @@ int run_program(const char* name, const std::function<int()>& program) {
     std::cerr << name << ": " << error.what() << '\n';
     return signal_caught != 0 ? 128 + signal_caught : exit_bus;
   }
-}
-
-std::optional<int> parse(CLI::App& app, int argc, char** argv) {
-  app.set_help_flag("-h,--help", "print this help");
-  return command_line::parse(app, argc, argv);
 }
 
 }  // namespace autonomy

@@ -1,42 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "shoal/client.hpp"
 #include "tools/autonomy/missions/memory.hpp"
+#include "tools/command_line/declared_options.hpp"
 
 namespace autonomy {
 
 enum ExitCode { exit_ok = 0, exit_usage = 2, exit_bus = 4, exit_timeout = 5, exit_rewound = 6 };
 
 /// Ends the help of a program: its examples, what it reads and publishes, and the exit codes that all have.
-void set_help_end(CLI::App& app, const std::vector<std::string>& examples, const std::string& channels);
+void set_help_end(command_line::DeclaredOptions& options, const std::vector<std::string>& examples,
+                  const std::string& channels);
 
-/// Adds an option for a number of a closed range, with its present value as default.
-void add_number(CLI::App& app, const char* option, double& value, const char* unit, double low, double high,
-                const std::string& meaning);
+/// Declares the number of a vehicle in acoustic frames, with its present value as default.
+command_line::DeclaredOptions::Added add_id(command_line::DeclaredOptions& options, const char* key, int& id,
+                                            const std::string& meaning);
 
-/// Adds an option for the number of a vehicle in acoustic frames, with its present value as default.
-CLI::Option* add_id(CLI::App& app, const char* option, int& id, const std::string& meaning);
-
-/// Adds the required `--name`.
-CLI::Option* add_name(CLI::App& app, std::string& name, const std::string& meaning);
-
-/// Reads the text of an option: an std::invalid_argument names the option, too.
-template <class Read>
-auto read_option(const char* option, const Read& read) {
-  try {
-    return read();
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(std::string(option) + ": " + error.what());
-  }
-}
+/// Declares `name`, which is required.
+command_line::DeclaredOptions::Added add_name(command_line::DeclaredOptions& options, std::string& name,
+                                              const std::string& meaning);
 
 /// How a program takes part in a run.
 struct Participation {
@@ -45,7 +33,7 @@ struct Participation {
   double join_timeout_s = 30;
   double rewind_s = 60;  ///< of simulated time: how far back the program goes with the world; 0: not at all
 
-  void add_options(CLI::App& app);
+  void declare(command_line::DeclaredOptions& options);
 };
 
 /// Joins the run and calls `decide` at each tick, until the run ends or a signal comes.  When the world goes back,
@@ -62,8 +50,5 @@ int take_part(shoal::Client& client, const Participation& participation, State& 
 
 /// Runs a program: what std::invalid_argument says is wrong usage, any other exception is bus trouble.
 int run_program(const char* name, const std::function<int()>& program);
-
-/// Parses the command line.  Nothing: go on; else the exit code.
-std::optional<int> parse(CLI::App& app, int argc, char** argv);
 
 }  // namespace autonomy

@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <filesystem>
-#include <map>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -14,24 +11,15 @@
 #include <vector>
 
 #include "sim/config/message_text.hpp"
+#include "sim/program/find_program.hpp"
+#include "sim/program/program_args.hpp"
 #include "sim/world_file/config_warnings.hpp"
-#include "tools/autonomy/acomms/tdma.hpp"
 #include "tools/experiment/process/process_group.hpp"
+#include "tools/experiment/process/world_programs.hpp"
 
 namespace tools {
 
 namespace {
-
-/// What a program that comes with Shoal publishes, after `NAME.`.
-const std::map<std::string, std::vector<std::string>>& known_programs() {
-  static const std::map<std::string, std::vector<std::string>> programs{
-      {"shoal-coop-rover", {"drive.cmd", "modem.cmd", "estimate", "odometry_only"}},
-      {"shoal-coop-auv", {"autopilot.cmd", "modem.cmd", "estimate", "dead_reckoning"}},
-      {"shoal-coop-craft", {"autopilot.cmd", "modem.cmd", "estimate"}},
-      {"shoal-coop-station", {"radio.cmd", "knowledge"}},
-      {"shoal-balance", {"left_motor.cmd", "right_motor.cmd", "fallen"}}};
-  return programs;
-}
 
 /// The slots of a sender, in microseconds.
 struct Slots {
@@ -44,52 +32,52 @@ struct Slots {
   }
 };
 
-/// A process, with the places of its arguments.
+/// A process, with the declaration of its program where it has one.
 class Program {
  public:
-  Program(const sim::ProcessConfig& config, const sim::ConfigNode* node) : config_(config) {
-    if (node != nullptr) place_ = node->place;
-    const sim::ConfigNode* command = node != nullptr ? node->find("command") : nullptr;
-    for (std::size_t i = 0; i < config.command.size(); ++i)
-      places_.push_back(command != nullptr && i < command->items.size() ? command->items[i].place : place_);
+  Program(const sim::LoadedWorld& loaded, std::size_t index)
+      : config_(loaded.config.processes[index]), written_(written_process(loaded, index)) {
+    if (written_.program.empty() || config_.command.empty()) return;
+    sim::Diagnostics ignored;
+    declaration_ = sim::read_declaration_file(config_.command.front() + sim::declaration_ending, ignored);
+    if (!ignored.ok()) declaration_.reset();
   }
 
   const sim::ProcessConfig& config() const { return config_; }
   std::string who() const { return "process '" + config_.name + "'"; }
-  const std::string& path() const { return config_.command.front(); }
-  std::string file_name() const { return std::filesystem::path(path()).filename().string(); }
-  bool known() const { return known_programs().contains(file_name()); }
-  const sim::SourcePlace& place(std::size_t argument = 0) const {
-    return argument < places_.size() ? places_[argument] : place_;
+  /// A program that comes with Shoal: what its arguments mean is known here.
+  bool is_shipped() const { return declaration_ && written_.program.starts_with("shoal-"); }
+  const sim::SourcePlace& place(const char* argument) const {
+    const sim::ConfigNode* value = written_.args->find(argument);
+    return value != nullptr ? value->place : written_.place;
   }
 
-  /// Which argument has the value of an option, `--slot 0/2` or `--slot=0/2`.
-  std::optional<std::size_t> argument_of(const std::string& option) const {
-    for (std::size_t i = 1; i < config_.command.size(); ++i) {
-      if (config_.command[i] == option && i + 1 < config_.command.size()) return i + 1;
-      if (config_.command[i].starts_with(option + "=")) return i;
-    }
-    return std::nullopt;
-  }
-  std::string value_of(const std::string& option) const {
-    const auto at = argument_of(option);
-    if (!at) return {};
-    const std::string& text = config_.command[*at];
-    return text.starts_with(option + "=") ? text.substr(option.size() + 1) : text;
+  bool has(const char* argument) const { return written_.args->find(argument) != nullptr; }
+  /// As the world or the declaration gives it; empty: neither does.
+  std::string value_of(const char* argument) const {
+    return declaration_ ? sim::text_of_arg(*declaration_, *written_.args, argument) : std::string();
   }
   /// The vehicle that it drives, which is its name in the lockstep too.
-  std::string vehicle() const { return value_of("--name"); }
-  bool sends() const { return argument_of("--slot") || argument_of("--random-s"); }
+  std::string vehicle() const { return value_of("name"); }
+  /// The channels that it publishes on; nothing: nobody knows.
+  std::optional<std::vector<std::string>> channels() const {
+    if (!declaration_ || !declaration_->publishes) return std::nullopt;
+    std::vector<std::string> channels;
+    for (const std::string& pattern : *declaration_->publishes)
+      channels.push_back(sim::channel_of(*declaration_, *written_.args, pattern));
+    return channels;
+  }
+  bool sends() const { return has("slot") || has("random_s"); }
+  std::string slot_text() const { return value_of("slot") + "/" + value_of("slots"); }
 
   /// Nothing when it has none, or one that the program itself refuses.
   std::optional<Slots> slots() const {
     try {
-      const autonomy::Tdma::Params slot = autonomy::parse_slot(value_of("--slot"));
-      const std::string given = value_of("--slot-s");
-      const double slot_s = given.empty() ? slot.slot_s : std::stod(given);
-      if (!(slot_s >= 0.1 && slot_s <= 3600)) return std::nullopt;
+      const int slot = std::stoi(value_of("slot")), slots = std::stoi(value_of("slots"));
+      const double slot_s = std::stod(value_of("slot_s"));
+      if (slot < 0 || slot >= slots || !(slot_s >= 0.1 && slot_s <= 3600)) return std::nullopt;
       const std::int64_t length_us = std::llround(slot_s * 1e6);
-      return Slots{slot.slot * length_us, length_us, slot.slots * length_us};
+      return Slots{slot * length_us, length_us, slots * length_us};
     } catch (const std::exception&) {
       return std::nullopt;
     }
@@ -97,17 +85,13 @@ class Program {
 
  private:
   const sim::ProcessConfig& config_;
-  sim::SourcePlace place_;
-  std::vector<sim::SourcePlace> places_;
+  WrittenProcess written_;
+  std::optional<sim::ProgramDeclaration> declaration_;
 };
 
 std::vector<Program> programs_of(const sim::LoadedWorld& loaded) {
-  const sim::ConfigNode* list = loaded.resolved.find("processes");
   std::vector<Program> programs;
-  for (std::size_t i = 0; i < loaded.config.processes.size(); ++i)
-    if (!loaded.config.processes[i].command.empty())
-      programs.emplace_back(loaded.config.processes[i],
-                            list != nullptr && i < list->items.size() ? &list->items[i] : nullptr);
+  for (std::size_t i = 0; i < loaded.config.processes.size(); ++i) programs.emplace_back(loaded, i);
   return programs;
 }
 
@@ -140,43 +124,42 @@ void check_slots(const sim::WorldConfig& world, const std::vector<Program>& prog
   for (std::size_t i = 0; i < programs.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const Program &later = programs[i], &earlier = programs[j];
-      if (!later.known() || !earlier.known()) continue;
+      if (!later.is_shipped() || !earlier.is_shipped()) continue;
       const auto slots = later.slots(), taken = earlier.slots();
       if (!slots || !taken || !slots->meets(*taken)) continue;
       if (!share_the_water(world, later.vehicle(), earlier.vehicle())) continue;
-      const std::string both = slots->cycle_us == taken->cycle_us
-                                   ? "is also that of " + earlier.who()
-                                   : "meets that of " + earlier.who() + " (" + earlier.value_of("--slot") +
-                                         "), whose cycle has another length";
-      warnings.warn(later.place(*later.argument_of("--slot")), later.who(),
-                    "its slot " + later.value_of("--slot") + " " + both + ": their packets collide");
+      const std::string both =
+          slots->cycle_us == taken->cycle_us
+              ? "is also that of " + earlier.who()
+              : "meets that of " + earlier.who() + " (" + earlier.slot_text() + "), whose cycle has another length";
+      warnings.warn(later.place("slot"), later.who(),
+                    "its slot " + later.slot_text() + " " + both + ": their packets collide");
     }
 }
 
 void check_follow(const sim::WorldConfig& world, const std::vector<Program>& programs, sim::Warnings& warnings) {
   for (const Program& program : programs) {
-    const std::string behaviour = program.value_of("--behaviour");
-    if (!program.known() || !behaviour.starts_with("follow:")) continue;
-    const std::string other = behaviour.substr(7, behaviour.find(',') - 7);
-    const sim::SourcePlace& place = program.place(*program.argument_of("--behaviour"));
+    if (!program.is_shipped() || !program.has("follow")) continue;
+    const std::string other = program.value_of("follow");
     if (find_vehicle(world, other) == nullptr) {
-      warnings.warn(place, program.who(), "it is to follow '" + other + "', and there is no such vehicle");
+      warnings.warn(program.place("follow"), program.who(),
+                    "it is to follow '" + other + "', and there is no such vehicle");
       continue;
     }
     const auto driver = std::find_if(programs.begin(), programs.end(),
-                                     [&](const Program& each) { return each.known() && each.vehicle() == other; });
+                                     [&](const Program& each) { return each.is_shipped() && each.vehicle() == other; });
     if (driver != programs.end() && !driver->sends())
       warnings.warn(
-          place, program.who(),
-          "it is to follow '" + other + "', whose program sends nothing: it has neither --slot nor --random-s");
+          program.place("follow"), program.who(),
+          "it is to follow '" + other + "', whose program sends nothing: it has neither 'slot' nor 'random_s'");
   }
 }
 
 void check_names(const std::vector<Program>& programs, sim::Warnings& warnings) {
   for (const Program& program : programs) {
     const std::string &client = program.config().client, vehicle = program.vehicle();
-    if (program.known() && !client.empty() && !vehicle.empty() && client != vehicle)
-      warnings.warn(program.place(*program.argument_of("--name")), program.who(),
+    if (program.is_shipped() && !client.empty() && !vehicle.empty() && client != vehicle)
+      warnings.warn(program.place("name"), program.who(),
                     "the run waits for client '" + client + "', and it joins as '" + vehicle + "'");
   }
 }
@@ -185,9 +168,9 @@ void check_metrics(const sim::WorldConfig& world, const std::vector<Program>& pr
   if (programs.empty()) return;  // the loader looked at those
   std::set<std::string> spoken = sim::channels_of(world);
   for (const Program& program : programs) {
-    const auto known = known_programs().find(program.file_name());
-    if (known == known_programs().end() || program.vehicle().empty()) return;  // who knows what it publishes
-    for (const std::string& channel : known->second) spoken.insert(program.vehicle() + "." + channel);
+    const auto channels = program.channels();
+    if (!channels) return;
+    spoken.insert(channels->begin(), channels->end());
   }
   for (const sim::MetricConfig& metric : world.metrics) {
     const std::string& channel = metric.params->channel;
@@ -210,12 +193,31 @@ void warn_of_processes(const sim::LoadedWorld& loaded, sim::Warnings& warnings) 
 }
 
 void warn_of_missing_programs(const sim::LoadedWorld& loaded, sim::Warnings& warnings) {
-  for (const Program& program : programs_of(loaded))
-    if (!can_be_started(program.path()))
-      warnings.warn(program.place(), program.who(),
-                    program.path().find('/') == std::string::npos
-                        ? "there is no program '" + program.path() + "' beside shoal or in PATH"
-                        : "there is no program '" + program.path() + "'");
+  for (std::size_t i = 0; i < loaded.config.processes.size(); ++i) {
+    const sim::ProcessConfig& process = loaded.config.processes[i];
+    if (process.command.empty() || can_be_started(process.command.front())) continue;
+    const std::string& program = process.command.front();
+    warnings.warn(written_process(loaded, i).place, "process '" + process.name + "'",
+                  "there is no program '" + program + "'" +
+                      (program.find('/') == std::string::npos ? " beside shoal or in PATH" : ""));
+  }
+}
+
+void warn_of_unchecked_arguments(const sim::LoadedWorld& loaded, sim::Warnings& warnings) {
+  const std::vector<std::string> folders = sim::program_folders();
+  for (std::size_t i = 0; i < loaded.config.processes.size(); ++i) {
+    const sim::ProcessConfig& process = loaded.config.processes[i];
+    const WrittenProcess written = written_process(loaded, i);
+    if (!written.program.empty() || process.command.empty()) continue;
+    const std::string& program = process.command.front();
+    sim::Diagnostics ignored;
+    const sim::FoundProgram found =
+        sim::find_program(program, folders, loaded.config.files.get(), written.place, "", ignored);
+    if (found.declaration != nullptr)
+      warnings.warn(written.place, "process '" + process.name + "'",
+                    "the arguments in 'command' are not checked; those of 'program: " + program +
+                        "' with 'args:' are, by its declaration");
+  }
 }
 
 }  // namespace tools

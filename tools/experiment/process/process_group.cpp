@@ -76,6 +76,8 @@ ProcessGroup::~ProcessGroup() {
 void ProcessGroup::start(const sim::ProcessConfig& config, const std::string& lcm_url,
                          const std::string& log_directory) {
   std::vector<std::string> arguments = config.command;
+  if (arguments.empty())
+    throw std::runtime_error("process '" + config.name + "': the declaration of its program was not read");
   arguments[0] = find_program(arguments[0]);
   for (std::string& argument : arguments)
     for (std::size_t at = argument.find("{lcm_url}"); at != std::string::npos; at = argument.find("{lcm_url}"))

@@ -15,6 +15,7 @@
 #include "sim/config/yaml_writer.hpp"
 #include "sim/world_file/rule_list.hpp"
 #include "tools/experiment/study/study_rules.hpp"
+#include "tools/experiment/process/world_programs.hpp"
 
 namespace tools {
 
@@ -326,7 +327,8 @@ LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
     options.allow_plugins = study.config.launch && !changes.only_checked;
     options.serial_ports = study.config.launch;
     options.encode_message = shoal::encode_own_message;
-    const sim::LoadedWorld& world = study.worlds.emplace_back(world_of_case(study.config.world, each, options));
+    sim::LoadedWorld& world = study.worlds.emplace_back(world_of_case(study.config.world, each, options));
+    read_programs(world, {study.config.launch, options.allow_paths});
     if (!study.config.duration_s && world.config.run.duration_s == 0)
       sim::throw_config_error(root.place, "case '" + each.name + "'",
                               "its world runs without end: the study needs a 'duration_s'");

@@ -9,6 +9,7 @@
 
 #include "sim/world_file/world_config.hpp"
 #include "tools/shoal/reference/param_tables.hpp"
+#include "tools/shoal/reference/program_schema.hpp"
 
 namespace tools {
 
@@ -129,7 +130,7 @@ class SchemaWriter {
  private:
   /// Null for a key of the same name whose value is a word, such as the `model` of absorption.
   const Special* special_of(const ParamInfo& info) const {
-    if (info.kind != ParamKind::raw && info.kind != ParamKind::maps) return nullptr;
+    if (!info.choices.empty()) return nullptr;
     const auto found = specials_.find(info.key);
     return found == specials_.end() ? nullptr : &found->second;
   }
@@ -322,7 +323,9 @@ Json world_schema() {
   // A reference hides what stands beside it, such as the description: so it stands in an allOf.
   const Special model{{{"allOf", {reference_to("vehicle")}}}, reference_to("vehicle_required")};
   const SchemaWriter writer(false, {{"devices", device}, {"model", model}}, definitions);
-  return file_schema("world", writer, params_of<sim::WorldConfig>(), definitions);
+  Json schema = file_schema("world", writer, params_of<sim::WorldConfig>(), definitions);
+  add_program_schemas(schema["properties"]["processes"]["items"], schema["definitions"]);
+  return schema;
 }
 
 }  // namespace
@@ -335,8 +338,9 @@ std::string study_schema(const std::vector<sim::ParamInfo>& table) {
   count["properties"] = {{"first", seed}, {"count", number_schema("integer", sim::at_least(1))}};
   const Json list{{"type", "array"}, {"items", one_seed}, {"minItems", 1}};
   const Special seeds{{{"anyOf", {seed, range, list, count}}}, Json::object()};
-  const SchemaWriter writer(false, {{"seeds", seeds}});
-  return file_schema("study", writer, table, Json::object()).dump(1) + "\n";
+  Json definitions = Json::object();
+  const SchemaWriter writer(false, {{"seeds", seeds}}, definitions);
+  return file_schema("study", writer, table, definitions).dump(1) + "\n";
 }
 
 std::string json_schema(const std::string& file) {

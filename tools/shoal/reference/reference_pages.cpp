@@ -8,11 +8,13 @@
 
 #include "shoal/message_schema.hpp"
 #include "sim/config/param_table.hpp"
+#include "sim/program/program_declaration.hpp"
 #include "sim/random/noise.hpp"
 #include "sim/world_file/metric_registry.hpp"
 #include "sim/world_file/world_config.hpp"
 #include "tools/command_line/text_layout.hpp"
 #include "tools/shoal/reference/param_tables.hpp"
+#include "tools/shoal/reference/program_schema.hpp"
 
 namespace tools {
 
@@ -148,6 +150,57 @@ std::string messages_page() {
   return page;
 }
 
+std::string channels_text(const char* verb, const std::optional<std::vector<std::string>>& channels) {
+  if (!channels || channels->empty()) return {};
+  std::string text;
+  for (const std::string& channel : *channels) text += (text.empty() ? "" : ", ") + ("`" + channel + "`");
+  return fmt::format("{} {}. ", verb, text);
+}
+
+std::string groups_text(const char* rule, const std::vector<std::vector<std::string>>& groups) {
+  std::string text;
+  for (const std::vector<std::string>& group : groups) {
+    std::string names;
+    for (std::size_t i = 0; i < group.size(); ++i)
+      names += (i == 0 ? "" : i + 1 == group.size() ? " and " : ", ") + ("`" + group[i] + "`");
+    text += fmt::format("{} of {} {} given. ", rule, names, rule[0] == 'E' ? "must be" : "may be");
+  }
+  return text;
+}
+
+std::string programs_page() {
+  std::string page = fmt::format(fmt::runtime(generated), "programs") +
+                     "# Programs and their arguments\n\nThe programs that come with Shoal, as the files "
+                     "`NAME.args.yaml` beside them declare them. In a world:\n\n"
+                     "```yaml\nprocesses:\n  - name: rover1\n    client: rover1\n    program: shoal-coop-rover\n"
+                     "    args: {name: rover1, waypoints_m: [[-28, 28], [-20, 28]]}\n```\n\n"
+                     "On a command line the argument `speed_mps` is `--speed-mps`. "
+                     "[program_arguments.md](../guides/program_arguments.md) explains the declarations, and how a program of "
+                     "your own gets one. `{name}` in a channel stands for the argument `name`; a column with `?` may "
+                     "be left out.\n";
+  for (const sim::ProgramDeclaration& program : shipped_declarations())
+    page += fmt::format("\n## {}\n\n{}\n\n{}{}{}{}\n\n{}", program.program, program.meaning,
+                        channels_text("Receives", program.subscribes), channels_text("Publishes", program.publishes),
+                        groups_text("Exactly one", program.exactly_one),
+                        groups_text("At most one", program.at_most_one), sim::markdown_table(param_table_of(program)));
+  for (std::size_t at = page.find(" \n"); at != std::string::npos; at = page.find(" \n")) page.erase(at, 1);
+  return page;
+}
+
+/// What `shoal describe` prints of a program; empty: there is no such program.
+std::string program_text(const std::string& name, std::size_t columns) {
+  for (const sim::ProgramDeclaration& program : shipped_declarations()) {
+    if (program.program != name) continue;
+    return command_line::wrapped(program.program + ": " + program.meaning, columns) + "\n" +
+           command_line::wrapped(
+               channels_text("Receives", program.subscribes) + channels_text("Publishes", program.publishes) +
+                   groups_text("Exactly one", program.exactly_one) + groups_text("At most one", program.at_most_one),
+               columns) +
+           "\n\n" + keys_text(param_table_of(program), columns);
+  }
+  return {};
+}
+
 std::string unit_text(const sim::FigureKind& figure) {
   return figure.unit == "1" ? "ratio" : figure.unit;
 }
@@ -199,7 +252,8 @@ std::string reference_page(const std::string& name) {
   if (name == "world_format") return world_format_page();
   if (name == "messages") return messages_page();
   if (name == "metrics") return metrics_page();
-  throw std::out_of_range("no page '" + name + "'; pages: devices, messages, metrics, world_format");
+  if (name == "programs") return programs_page();
+  throw std::out_of_range("no page '" + name + "'; pages: devices, messages, metrics, programs, world_format");
 }
 
 std::string describe_keys(const std::string& title, const std::vector<sim::ParamInfo>& params, std::size_t columns) {
@@ -224,7 +278,7 @@ std::string describe_text(const std::string& name, std::size_t columns) {
   const shoal::MessageTypes& types = shoal::embedded_types();
   for (const std::string& full : {name, "shoal." + name})
     if (const shoal::MessageSchema* schema = types.find(std::string_view(full))) return message_text(*schema, columns);
-  return {};
+  return program_text(name, columns);
 }
 
 }  // namespace tools

@@ -11,7 +11,6 @@
 
 namespace {
 
-using autonomy::parse_slot;
 using autonomy::RandomAccess;
 using autonomy::Tdma;
 
@@ -107,10 +106,6 @@ TEST(Tdma, SlotsAreChecked) {
   EXPECT_THROW(slot(0, 0), std::invalid_argument);
   EXPECT_THROW(slot(0, 1, 5, 5), std::invalid_argument);
   EXPECT_THROW(slot(0, 1, 0, 0), std::invalid_argument);
-  EXPECT_EQ(parse_slot("1/3").slot, 1);
-  EXPECT_EQ(parse_slot("1/3").slots, 3);
-  for (const char* text : {"", "1", "/", "1/", "/2", "2/2", "-1/2", "a/b", "1/2 ", "1/2/3", "1.5/2"})
-    EXPECT_THROW(parse_slot(text), std::invalid_argument) << text;
 }
 
 TEST(RandomAccess, ScattersAboutItsMean) {

@@ -10,7 +10,7 @@
 
 #include "sim/base/math.hpp"
 #include "tests/tools/autonomy/second.hpp"
-#include "tools/autonomy/behaviours/behaviour_text.hpp"
+#include "tools/autonomy/behaviours/make_behaviour.hpp"
 
 namespace {
 
@@ -18,7 +18,10 @@ using autonomy::CircleBehaviour;
 using autonomy::Course;
 using autonomy::FollowBehaviour;
 using autonomy::HoldBehaviour;
-using autonomy::make_behaviour;
+using autonomy::make_circle;
+using autonomy::make_follow;
+using autonomy::make_route;
+using autonomy::make_zigzag;
 using autonomy::Motion;
 using autonomy::RouteBehaviour;
 using autonomy::turned;
@@ -224,19 +227,18 @@ TEST(Zigzag, CrossesItsLine) {
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_NEAR((points[i] - expected[i]).norm(), 0, 1e-9);
 }
 
-TEST(BehaviourText, MakesEachBehaviour) {
-  const std::vector<Vector2d> route = {{1, 2}};
-  EXPECT_NE(dynamic_cast<RouteBehaviour*>(make_behaviour("route", route, 1, false).get()), nullptr);
-  EXPECT_NE(dynamic_cast<RouteBehaviour*>(make_behaviour("zigzag:0,0,400,0,20,4", {}, 1, false).get()), nullptr);
-  EXPECT_NE(dynamic_cast<CircleBehaviour*>(make_behaviour("circle:1,2,30", {}, 1, false).get()), nullptr);
-  EXPECT_NE(dynamic_cast<FollowBehaviour*>(make_behaviour("follow:auv,-10,30", {}, 1, false).get()), nullptr);
+TEST(MakeBehaviour, MakesEachBehaviour) {
+  EXPECT_NE(dynamic_cast<RouteBehaviour*>(make_route({{1, 2}}, 1, false).get()), nullptr);
+  EXPECT_NE(dynamic_cast<RouteBehaviour*>(make_zigzag({0, 0}, {400, 0}, 20, 4, 1, false).get()), nullptr);
+  EXPECT_NE(dynamic_cast<CircleBehaviour*>(make_circle({1, 2}, 30, 1).get()), nullptr);
+  EXPECT_NE(dynamic_cast<FollowBehaviour*>(make_follow("auv", -10, 30, 1).get()), nullptr);
 }
 
-TEST(BehaviourText, SaysWhatIsWrong) {
-  for (const char* text : {"route", "", "circle", "circle:", "circle:1,2", "circle:1,2,0", "circle:1,2,nan",
-                           "zigzag:0,0,1,1,5,0", "zigzag:0,0,1,1,5,1e9", "follow:auv", "follow:,1,2", "follow:auv,1",
-                           "follow:auv,x,1", "orbit:1,2,3", "route:1,2"})
-    EXPECT_THROW(make_behaviour(text, {}, 1, false), std::invalid_argument) << text;
+TEST(MakeBehaviour, RefusesWhatCannotBeSteered) {
+  EXPECT_THROW(make_route({}, 1, false), std::invalid_argument);
+  for (const double radius_m : {0.0, -1.0, std::nan("")})
+    EXPECT_THROW(make_circle({1, 2}, radius_m, 1), std::invalid_argument) << radius_m;
+  for (const int legs : {0, 1001}) EXPECT_THROW(make_zigzag({0, 0}, {1, 1}, 5, legs, 1, false), std::invalid_argument);
 }
 
 }  // namespace

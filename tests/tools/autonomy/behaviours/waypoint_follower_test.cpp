@@ -7,12 +7,9 @@
 
 #include "tests/tools/autonomy/behaviours/flat_room.hpp"
 #include "tools/autonomy/behaviours/obstacle_avoidance.hpp"
-#include "tools/autonomy/behaviours/waypoint_text.hpp"
 
 namespace {
 
-using autonomy::parse_start;
-using autonomy::parse_waypoints;
 using autonomy::Pose2;
 using autonomy::Vector2d;
 using autonomy::WaypointFollower;
@@ -69,28 +66,6 @@ TEST(WaypointFollower, ReachesAllWaypointsInAFreeField) {
 
 TEST(WaypointFollower, NeedsAWaypoint) {
   EXPECT_THROW(WaypointFollower({}), std::invalid_argument);
-}
-
-TEST(WaypointText, IsRead) {
-  const std::vector<Vector2d> waypoints = parse_waypoints("10,5.5; -20 , -3;1e1,0");
-  ASSERT_EQ(waypoints.size(), 3u);
-  EXPECT_EQ(waypoints[0], Vector2d(10, 5.5));
-  EXPECT_EQ(waypoints[1], Vector2d(-20, -3));
-  EXPECT_EQ(waypoints[2], Vector2d(10, 0));
-  const Pose2 start = parse_start("1,-2,90");
-  EXPECT_EQ(start.p_W, Vector2d(1, -2));
-  EXPECT_NEAR(start.yaw_rad, std::numbers::pi / 2, 1e-15);
-}
-
-TEST(WaypointText, SaysWhatIsWrong) {
-  for (const char* text : {"", "1", "1,2;", "1,2,3", "1,x", "1,nan", "1,inf", "1,2;;3,4", "1,2 3"})
-    EXPECT_THROW(parse_waypoints(text), std::invalid_argument) << text;
-  try {
-    parse_start("1,2,north");
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "'north' is not a number");
-  }
 }
 
 }  // namespace

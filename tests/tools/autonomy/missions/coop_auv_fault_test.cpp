@@ -74,7 +74,7 @@ TEST(CoopAuv, RangesAreThoseOfItsModem) {
 TEST(CoopAuv, FixesAreThoseOfItsAntenna) {
   CoopAuv::Params params = auv_params();
   params.gps_B = {3, 0, 0};
-  CoopAuv auv(params, make_behaviour("route", {{100, 0}}, 1.5, false));
+  CoopAuv auv(params, make_route({{100, 0}}, 1.5, false));
   auv.receive(compass_at(epoch, 0.5 * pi));
   auv.receive(fix_at(epoch, {10, 20}));
   EXPECT_NEAR((auv.cooperative()->position() - Vector2d(10, 17)).norm(), 0, 1e-9);
@@ -94,7 +94,7 @@ TEST(CoopAuv, SpeaksHoweverSeldomItDecides) {
   for (const int period_s : {2, 5}) {
     CoopAuv::Params params = auv_params();
     params.period_s = period_s;
-    CoopAuv auv(params, make_behaviour("route", {{1000, 0}}, 1.5, false));
+    CoopAuv auv(params, make_route({{1000, 0}}, 1.5, false));
     std::int64_t t = epoch;
     for (int step = 0; step < 20; ++step) {
       for (int i = 0; i < 2 * period_s; ++i) {

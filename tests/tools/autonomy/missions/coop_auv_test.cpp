@@ -122,7 +122,7 @@ TEST(CoopAuv, ClockThatIsSetInASilenceIsBoth) {
 TEST(CoopAuv, KnownStartNeedsNoFix) {
   CoopAuv::Params params = auv_params();
   params.start_W = Vector2d(10, 20);
-  CoopAuv auv(params, make_behaviour("route", {{100, 20}}, 1.5, false));
+  CoopAuv auv(params, make_route({{100, 20}}, 1.5, false));
   auv.receive(compass_at(epoch, 0));
   auv.receive(dvl_at(epoch, 0));
   const auto decision = auv.step();
@@ -134,7 +134,7 @@ TEST(CoopAuv, KnownStartNeedsNoFix) {
 TEST(CoopAuv, ComesUpWhenItsRouteIsDone) {
   CoopAuv::Params params = auv_params();
   params.start_W = Vector2d(0, 0);
-  CoopAuv auv(params, make_behaviour("route", {{2, 0}}, 1.5, false));
+  CoopAuv auv(params, make_route({{2, 0}}, 1.5, false));
   auv.receive(compass_at(epoch, 0));
   auv.receive(dvl_at(epoch, 0));
   auv.step();
@@ -232,7 +232,7 @@ TEST(CoopAuv, ObeysAnOrderAndSaysSoInItsState) {
 
 TEST(CoopAuv, ObeysOnlyNewOrdersThatAreForItAndCanBeDone) {
   const auto obeyed = [](auto change, const CoopAuv::Params& params = obeying_params()) {
-    CoopAuv auv(params, make_behaviour("route", {{100, 0}}, 1.5, false));
+    CoopAuv auv(params, make_route({{100, 0}}, 1.5, false));
     auv.receive(order_packet(2, {0, 100}, 10, epoch));
     auv.receive(change(order_packet(3, {0, 100}, 10, epoch + second)));
     return auv.counts().orders;
@@ -286,7 +286,7 @@ TEST(CoopAuv, SaysInItsStateThatItRefusedAnOrderUntilItObeysALaterOne) {
 TEST(CoopAuv, OrderFetchesItBackFromTheEndOfItsRoute) {
   CoopAuv::Params params = obeying_params();
   params.start_W = Vector2d(0, 0);
-  CoopAuv auv(params, make_behaviour("route", {{2, 0}}, 1.5, false));
+  CoopAuv auv(params, make_route({{2, 0}}, 1.5, false));
   auv.receive(compass_at(epoch, 0));
   auv.receive(dvl_at(epoch, 0));
   auv.step();

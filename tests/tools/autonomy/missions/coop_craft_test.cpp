@@ -11,6 +11,8 @@ namespace {
 
 using namespace voyage_test;
 using autonomy::CoopCraft;
+using autonomy::make_circle;
+using autonomy::make_follow;
 
 CoopCraft::Params craft_params() {
   CoopCraft::Params params;
@@ -22,7 +24,7 @@ CoopCraft::Params craft_params() {
 }
 
 TEST(CoopCraft, TellsItsPlaceInItsSlotsByItsOwnClock) {
-  CoopCraft craft(craft_params(), make_behaviour("circle:0,0,30", {}, 1.5, false));
+  CoopCraft craft(craft_params(), make_circle({0, 0}, 30, 1.5));
   std::vector<std::int64_t> sent;
   for (std::int64_t t = epoch; t < epoch + 60 * second; t += second / 2) {
     shoal::gps_data_t fix = fix_at(t, {3, -4});
@@ -49,7 +51,7 @@ TEST(CoopCraft, TellsItsPlaceInItsSlotsByItsOwnClock) {
 }
 
 TEST(CoopCraft, RemarksOnceThatItNeverHeardOfWhomItFollows) {
-  CoopCraft craft(craft_params(), make_behaviour("follow:auv,0,30", {}, 1.5, false));
+  CoopCraft craft(craft_params(), make_follow("auv", 0, 30, 1.5));
   std::vector<std::pair<std::int64_t, std::string>> remarks;
   for (std::int64_t t = epoch; t < epoch + 200 * second; t += second) {
     craft.receive(fix_at(t, {3, -4}));
@@ -62,7 +64,7 @@ TEST(CoopCraft, RemarksOnceThatItNeverHeardOfWhomItFollows) {
 }
 
 TEST(CoopCraft, StopsAndSaysNothingWithoutAFix) {
-  CoopCraft craft(craft_params(), make_behaviour("route", {{100, 0}}, 1.5, false));
+  CoopCraft craft(craft_params(), make_route({{100, 0}}, 1.5, false));
   EXPECT_FALSE(craft.step().helm);
   craft.receive(fix_at(epoch, {0, 0}));
   EXPECT_EQ(craft.step().helm->speed_mps, 1.5);
@@ -75,7 +77,7 @@ TEST(CoopCraft, StopsAndSaysNothingWithoutAFix) {
 }
 
 TEST(CoopCraft, StopsAndSaysNothingWhenItsGpsFallsSilent) {
-  CoopCraft craft(craft_params(), make_behaviour("route", {{100, 0}}, 1.5, false));
+  CoopCraft craft(craft_params(), make_route({{100, 0}}, 1.5, false));
   craft.receive(fix_at(epoch, {0, 0}));
   for (int i = 0; i <= 6; ++i) EXPECT_EQ(craft.step().helm->speed_mps, 1.5) << i;  // 3 s
   for (int i = 0; i < 3; ++i) {
@@ -91,7 +93,7 @@ TEST(CoopCraft, SpeaksHoweverSeldomItDecides) {
   for (const int period_s : {2, 5}) {
     CoopCraft::Params params = craft_params();
     params.period_s = period_s;
-    CoopCraft craft(params, make_behaviour("route", {{1000, 0}}, 1.5, false));
+    CoopCraft craft(params, make_route({{1000, 0}}, 1.5, false));
     std::int64_t t = epoch;
     for (int step = 0; step < 5; ++step) {
       for (int i = 0; i < period_s; ++i) craft.receive(fix_at(t += second, {0, 0}));
@@ -103,7 +105,7 @@ TEST(CoopCraft, SpeaksHoweverSeldomItDecides) {
 }
 
 TEST(CoopCraft, FollowsWhatItHears) {
-  CoopCraft craft(craft_params(), make_behaviour("follow:boat1,0,0", {}, 2, false));
+  CoopCraft craft(craft_params(), make_follow("boat1", 0, 0, 2));
   craft.receive(fix_at(epoch, {0, 0}));
   EXPECT_EQ(craft.step().helm->speed_mps, 0);
   craft.receive(packet({500, 0}, epoch, epoch + second));
@@ -116,7 +118,7 @@ TEST(CoopCraft, FollowsWhatItHears) {
 }
 
 TEST(CoopCraft, FollowsNobodyByARelayedStateAndTakesNoOrders) {
-  CoopCraft craft(craft_params(), make_behaviour("follow:boat1,0,0", {}, 2, false));
+  CoopCraft craft(craft_params(), make_follow("boat1", 0, 0, 2));
   craft.receive(fix_at(epoch, {0, 0}));
   craft.receive(packet({500, 0}, epoch, epoch + second));
   shoal::acoustic_received_t relayed = packet({0, 500}, epoch + 10 * second, epoch + 11 * second);

@@ -14,7 +14,6 @@ namespace {
 
 using autonomy::AcousticState;
 using autonomy::CoopStation;
-using autonomy::parse_orders;
 using autonomy::Vector2d;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
@@ -27,7 +26,7 @@ CoopStation::Params station_params() {
   CoopStation::Params params;
   params.name = "station";
   params.to_id = 7;
-  params.orders = parse_orders("20:500,-200,15;100:0,300,20,1.2", 1.5);
+  params.orders = {{20, {500, -200}, 15, 1.5}, {100, {0, 300}, 20, 1.2}};
   params.access.slot.emplace();
   params.access.slot->slot = 1;
   params.access.slot->slots = 3;
@@ -196,31 +195,20 @@ TEST(CoopStation, SaysNothingBeforeItKnowsTheTime) {
 }
 
 TEST(CoopStation, OrdersThatCannotBeSaidAreRefused) {
-  const auto with = [](const char* orders) {
+  const auto with = [](const std::vector<CoopStation::TimedOrder>& orders) {
     CoopStation::Params params = station_params();
-    params.orders = parse_orders(orders, 1.5);
+    params.orders = orders;
     return [params] { CoopStation station(params); };
   };
-  EXPECT_NO_THROW(with("0:1,1,1;0:2,2,2")());
-  EXPECT_THAT(with("10:1,1,1;5:2,2,2"), ThrowsMessage<std::invalid_argument>(HasSubstr("must not go back")));
-  EXPECT_THAT(with("-1:1,1,1"), ThrowsMessage<std::invalid_argument>(HasSubstr("must be >= 0")));
-  EXPECT_THAT(with("1:1,1,-3"), ThrowsMessage<std::invalid_argument>(HasSubstr("order 1 does not fit")));
-  EXPECT_THAT(with("1:1,1,3;2:1,1,3,0"), ThrowsMessage<std::invalid_argument>(HasSubstr("order 2 does not fit")));
-  std::string many = "1:0,0,0";
-  for (int i = 0; i < 255; ++i) many += ";1:0,0,0";
-  EXPECT_THAT(with(many.c_str()), ThrowsMessage<std::invalid_argument>(HasSubstr("up to 255 orders")));
-}
-
-TEST(ParseOrders, SaysWhatIsWrong) {
-  const auto orders = parse_orders(" 1:2,3,4 ; 5:6,7,8,9", 0.5);
-  ASSERT_EQ(orders.size(), 2u);
-  EXPECT_EQ(orders[0].at_s, 1);
-  EXPECT_EQ(orders[0].p_W, Vector2d(2, 3));
-  EXPECT_EQ(orders[0].speed_mps, 0.5);
-  EXPECT_EQ(orders[1].depth_m, 8);
-  EXPECT_EQ(orders[1].speed_mps, 9);
-  for (const char* text : {"", "1", "1:2,3", "1:2,3,4,5,6", "1:2,3,4;", "x:1,2,3", "1:2,nan,3", "1,2:3,4,5"})
-    EXPECT_THROW(parse_orders(text, 1), std::invalid_argument) << text;
+  EXPECT_NO_THROW(with({{0, {1, 1}, 1, 1.5}, {0, {2, 2}, 2, 1.5}})());
+  EXPECT_THAT(with({{10, {1, 1}, 1, 1.5}, {5, {2, 2}, 2, 1.5}}),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("must not go back")));
+  EXPECT_THAT(with({{-1, {1, 1}, 1, 1.5}}), ThrowsMessage<std::invalid_argument>(HasSubstr("must be >= 0")));
+  EXPECT_THAT(with({{1, {1, 1}, -3, 1.5}}), ThrowsMessage<std::invalid_argument>(HasSubstr("order 1 does not fit")));
+  EXPECT_THAT(with({{1, {1, 1}, 3, 1.5}, {2, {1, 1}, 3, 0}}),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("order 2 does not fit")));
+  EXPECT_THAT(with(std::vector<CoopStation::TimedOrder>(256, {1, {0, 0}, 0, 1.5})),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("up to 255 orders")));
 }
 
 }  // namespace

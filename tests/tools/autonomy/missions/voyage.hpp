@@ -11,7 +11,7 @@
 
 #include "sim/random/random.hpp"
 #include "tools/autonomy/acomms/state_packet.hpp"
-#include "tools/autonomy/behaviours/behaviour_text.hpp"
+#include "tools/autonomy/behaviours/make_behaviour.hpp"
 #include "tools/autonomy/missions/coop_auv.hpp"
 
 /// Reports of a surface craft's and an AUV's devices, and an AUV that lives on them.
@@ -19,7 +19,7 @@ namespace voyage_test {
 
 using autonomy::AcousticState;
 using autonomy::CoopAuv;
-using autonomy::make_behaviour;
+using autonomy::make_route;
 using autonomy::Vector2d;
 
 inline constexpr std::int64_t second = 1'000'000;
@@ -83,7 +83,7 @@ inline shoal::acoustic_received_t packet(const Vector2d& beacon_W, std::int64_t 
 /// An AUV that goes east at 1.5 m/s with a compass that is 4 degrees off, between two beacons that send each 10 s; a
 /// packet takes 3 s, and is reported when it is complete.
 struct Voyage {
-  explicit Voyage(const CoopAuv::Params& params) : auv(params, make_behaviour("route", {{5000, 0}}, 1.5, false)) {}
+  explicit Voyage(const CoopAuv::Params& params) : auv(params, make_route({{5000, 0}}, 1.5, false)) {}
 
   void run(int seconds) {
     sim::Random random(1, "voyage");

@@ -16,7 +16,7 @@
 namespace {
 
 TEST(ReferencePages, InDocsAreUpToDate) {
-  for (const std::string name : {"devices", "world_format", "messages", "metrics"}) {
+  for (const std::string name : {"devices", "world_format", "messages", "metrics", "programs"}) {
     std::ifstream in(test_support::source_path("docs/reference/") + name + ".md", std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     // Not EXPECT_EQ: nobody wants to read two whole pages.

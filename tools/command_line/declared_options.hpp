@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/program/program_declaration.hpp"
+
+namespace command_line {
+
+/// The arguments of a program, each declared once.  From the declaration come the options of its command line with
+/// their help, and what `--describe` prints: the file NAME.args.yaml, by which `shoal check` checks `args:` in a world.
+/// An argument `speed_mps` is the option --speed-mps.
+class DeclaredOptions {
+ public:
+  /// Adds to a declared argument.
+  class Added {
+   public:
+    Added(DeclaredOptions& options, std::size_t index, CLI::Option* option)
+        : options_(options), index_(index), option_(option) {}
+    /// The program cannot do without it.
+    Added& required();
+    /// A world cannot do without it; on the command line the program itself says so, where it wants it.
+    Added& required_in_worlds();
+    /// Says what a tuple is when it is not given.
+    Added& by_default(const std::vector<double>& numbers);
+    /// These must be given with it.
+    Added& needs(std::vector<std::string> keys);
+
+   private:
+    DeclaredOptions& options_;
+    std::size_t index_;
+    CLI::Option* option_;
+  };
+  using TakeList = std::function<void(const std::vector<double>&)>;
+  using TakeLists = std::function<void(const std::vector<std::vector<double>>&)>;
+
+  /// Program and meaning are those of `app`, which must outlive this.
+  explicit DeclaredOptions(CLI::App& app);
+  DeclaredOptions(const DeclaredOptions&) = delete;
+  DeclaredOptions& operator=(const DeclaredOptions&) = delete;
+
+  // The present value is the default, except of an argument that is required.
+  Added number(const std::string& key, double& value, double low, double high, const std::string& meaning);
+  Added number(const std::string& key, std::optional<double>& value, double low, double high,
+               const std::string& meaning);
+  Added integer(const std::string& key, int& value, int low, int high, const std::string& meaning);
+  Added integer(const std::string& key, std::optional<int>& value, int low, int high, const std::string& meaning);
+  Added seed(const std::string& key, std::uint64_t& value, const std::string& meaning);
+  /// `shown` stands for the value in the help.
+  Added text(const std::string& key, const char* shown, std::string& value, const std::string& meaning);
+  Added flag(const std::string& key, bool& value, const std::string& meaning);
+  Added choice(const std::string& key, std::string& value, const std::vector<std::string>& words,
+               const std::string& meaning);
+  Added choice(const std::string& key, int& value, const std::vector<std::string>& words, const std::string& meaning);
+  /// Numbers in `columns`, each inside `range`.
+  Added tuple(const std::string& key, const std::vector<std::string>& columns, const sim::Rule& range, TakeList take,
+              const std::string& meaning);
+  /// A list of such; the columns after the first `min_columns` may be left out.
+  Added tuples(const std::string& key, const std::vector<std::string>& columns, std::size_t min_columns,
+               const sim::Rule& range, TakeLists take, const std::string& meaning);
+
+  /// Channels, where {name} stands for the argument `name`.
+  void publishes(std::vector<std::string> channels) { declaration_.publishes = std::move(channels); }
+  void subscribes(std::vector<std::string> channels) { declaration_.subscribes = std::move(channels); }
+  void exactly_one(std::vector<std::string> keys) { declaration_.exactly_one.push_back(std::move(keys)); }
+  void at_most_one(std::vector<std::string> keys) { declaration_.at_most_one.push_back(std::move(keys)); }
+
+  CLI::App& app() { return app_; }
+  const sim::ProgramDeclaration& declaration() const { return declaration_; }
+  /// Parses the command line once all is declared.  Nothing: go on; else the exit code, also after `--describe`.
+  std::optional<int> parse(int argc, const char* const* argv);
+
+ private:
+  template <class Value>
+  CLI::Option* bind(const std::string& key, Value& value, const std::string& meaning);
+  CLI::Option* bind_list(const sim::ArgDeclaration& arg, const std::string& form, TakeLists take);
+  Added add(sim::ArgDeclaration arg, CLI::Option* option);
+  CLI::Option* option_of(const std::string& key) const;
+  void connect_options();
+  void check_groups() const;
+
+  CLI::App& app_;
+  sim::ProgramDeclaration declaration_;
+  bool describe_ = false;
+};
+
+}  // namespace command_line
