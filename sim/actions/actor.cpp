@@ -16,7 +16,7 @@ class ActorAction final : public Action {
   void read(ParamReader& in) override {
     if (!in.describing()) in.read_reference("actor", actor_, "actor", "");
     in.require("command");
-    in.read_choice("command", command_, actor_command_words(), "what it does from now on");
+    in.read_choice("command", command_, actor_command_words, "what it does from now on");
   }
   void carry_out(const ActionRun& run) const override { run.script.command_actor(actor_, command_); }
 

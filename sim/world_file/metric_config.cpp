@@ -27,7 +27,7 @@ void MetricConfig::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "name of the metric; gives NAME.FIGURE for each figure of its type, see docs/scores.md");
   std::string type = registry.default_word();
-  in.read_choice("type", type, registry.words(), "what it looks at");
+  in.read_one_of("type", type, registry.words(), "what it looks at");
   if (in.describing()) {
     std::vector<std::pair<std::string, std::vector<ParamInfo>>> types;
     for (const MetricKind* each : registry.all()) types.emplace_back(each->word, each->keys());

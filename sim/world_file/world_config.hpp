@@ -20,6 +20,7 @@
 #include "sim/script/actor_config.hpp"
 #include "sim/script/event_config.hpp"
 #include "sim/world_file/metric_config.hpp"
+#include "sim/world_file/on_timeout.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 
 namespace sim {
@@ -93,10 +94,10 @@ struct ProcessConfig {
 };
 
 struct LockstepConfig {
-  double timeout_s = 10;           ///< wall time to wait for an acknowledgement
-  double join_timeout_s = 30;      ///< wall time to wait for the launched clients to join
-  std::string on_timeout = "end";  ///< what is done then: wait, pause, continue, end
-  bool agreed = false;             ///< the file says on_timeout
+  double timeout_s = 10;       ///< wall time to wait for an acknowledgement
+  double join_timeout_s = 30;  ///< wall time to wait for the launched clients to join
+  OnTimeout on_timeout = OnTimeout::end_run;
+  bool agreed = false;  ///< the file says on_timeout
   void read(ParamReader& in);
 };
 

@@ -226,7 +226,7 @@ void StudyRule::read(sim::ParamReader& in) {
   in.read_reference("case", in_case, "case", "whose runs are judged");
   in.require("figure");
   in.read("figure", figure, "which figure of them; `passed`: 1 when the run passed the rules of its world");
-  in.read_choice("statistic", statistic, statistic_words(), "over the seeds");
+  in.read_one_of("statistic", statistic, statistic_words(), "over the seeds");
   in.read("below", below, sim::any_number(), "it must be below this");
   in.read("above", above, sim::any_number(), "it must be above this");
   in.read("equals", equals, sim::any_number(), "it must be this");
