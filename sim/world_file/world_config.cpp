@@ -69,8 +69,8 @@ void ProcessConfig::read(ParamReader& in) {
   in.read("command", command, "program and its arguments; {lcm_url} and {run} are replaced");
   in.read("client", client, "the name it joins the lockstep with; the run then waits for it");
   in.read_reference("bus", bus, "bus", "its LCM URL is that of this bus, named in `buses`; unset: the world's");
-  in.read_one_of(
-      "on_exit", on_exit, {"continue", "end", "ignore"},
+  in.read_choice(
+      "on_exit", on_exit, {{"continue", OnExit::go_on}, {"end", OnExit::end_run}, {"ignore", OnExit::ignore}},
       "when it ends before the run; continue: the run goes on, and fails if the program failed; end: the run "
       "ends with exit code 1; ignore: the run goes on, and a failure does not count");
   if (in.has("command") && command.empty() && in.child("command")->scalar.empty())

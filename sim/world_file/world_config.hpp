@@ -83,13 +83,20 @@ struct BusConfig {
   void read(ParamReader& in);
 };
 
+/// What happens when a program ends before the run.
+enum class OnExit {
+  go_on,    ///< the run goes on, and fails if the program failed
+  end_run,  ///< with exit code 1
+  ignore,   ///< the run goes on, and a failure does not count
+};
+
 /// An external program of the experiment, started only with --launch.
 struct ProcessConfig {
   std::string name;
   std::vector<std::string> command;  ///< program and arguments; looked up beside the shoal program, then in PATH
   std::string client;                ///< name it joins the lockstep with; empty: it does not
   std::string bus;                   ///< of `buses:`; empty: the world's
-  std::string on_exit = "continue";  ///< when it ends before the run: continue, end (exit code 1), ignore
+  OnExit on_exit = OnExit::go_on;
   void read(ParamReader& in);
 };
 
