@@ -6,6 +6,7 @@
 
 #include "bridges/base/bus_error.hpp"
 #include "bridges/lockstep_client/lockstep_client.hpp"
+#include "bridges/lockstep_client/lockstep_terms.hpp"
 #include "shoal/utime_t.hpp"
 
 namespace shoal {
@@ -103,7 +104,9 @@ void Client::join(double period_s, std::chrono::milliseconds timeout) {
 }
 
 void Client::join(double period_s, const JoinOptions& options) {
-  with_own_errors([&] { connection_->lcm.join(period_s, options.timeout, {options.on_timeout, options.timeout_s}); });
+  with_own_errors([&] {
+    connection_->lcm.join(period_s, options.timeout, {bridges::on_timeout_of(options.on_timeout), options.timeout_s});
+  });
   connection_->end = End::none;
   connection_->joined = true;  // a tick that was open before stays so, in the same session
 }

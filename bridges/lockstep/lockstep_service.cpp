@@ -260,7 +260,7 @@ void LockstepService::check_time(const std::string& client, Asked& asked, Clock:
                               ? "the process of client '" + client + "' ended before it answered step " + step
                               : "no acknowledgement from '" + client + "' for step " + step + " " + when;
   if (!asked.told) ++summary_of(client).timeouts;
-  switch (member->terms.policy()) {
+  switch (member->terms.on_timeout) {
     case sim::OnTimeout::wait:
       if (!asked.told) spdlog::warn("lockstep: {}; the world waits", why);
       break;

@@ -126,7 +126,11 @@ void LockstepClient::wait_for(const std::string& what) {
 
 void LockstepClient::ask_to_join(Clock::time_point deadline) {
   const std::size_t told = inbox_.channels().size();
-  const sim::LockstepTerms terms{session_, inbox_.channels(), options_.on_timeout, options_.timeout_s};
+  const sim::LockstepTerms terms{.session = session_,
+                                 .receives = inbox_.channels(),
+                                 .on_timeout = options_.on_timeout.value_or(sim::OnTimeout::end_run),
+                                 .timeout_s = options_.timeout_s,
+                                 .agreed = options_.on_timeout.has_value()};
   request("join", period_s_, text_of(terms), deadline, true);
   channels_told_ = told;
 }

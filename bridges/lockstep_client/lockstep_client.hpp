@@ -18,6 +18,7 @@
 #include "bridges/lockstep_client/wait_notice.hpp"
 #include "bridges/signing/signed_message.hpp"
 #include "shoal/sim_tick_t.hpp"
+#include "sim/run/lockstep.hpp"
 
 namespace bridges {
 
@@ -49,8 +50,8 @@ class LockstepClient {
     dropped,  ///< the world went on without this client; see reason()
   };
   struct JoinOptions {
-    std::string on_timeout;  ///< wait, pause, continue, end; empty: the world's choice
-    double timeout_s = 0;    ///< wall time; 0: the world's
+    std::optional<sim::OnTimeout> on_timeout;  ///< unset: the world's choice
+    double timeout_s = 0;                      ///< wall time; 0: the world's
   };
   using Counts = ClientInbox::Counts;
 

@@ -56,8 +56,7 @@ class JournalPorts::Port final : public sim::BytePort {
 
 sim::PortOpener JournalPorts::wrap(sim::PortOpener open) {
   if (!open) return {};
-  return [this, open = std::move(open)](const std::string& kind,
-                                        const std::string& path) -> std::unique_ptr<sim::BytePort> {
+  return [this, open = std::move(open)](sim::PortKind kind, const std::string& path) -> std::unique_ptr<sim::BytePort> {
     return std::make_unique<Port>(*this, path, open(kind, path));
   };
 }

@@ -289,14 +289,19 @@ class FifoPort final : public sim::BytePort {
 
 }  // namespace
 
-std::unique_ptr<sim::BytePort> open_serial_port(const std::string& kind, const std::string& folder,
+std::unique_ptr<sim::BytePort> open_serial_port(sim::PortKind kind, const std::string& folder,
                                                 const std::string& path) {
   Place place = open_place(folder, path);
-  if (kind == "fifo") return std::make_unique<FifoPort>(place);
+  switch (kind) {
+    case sim::PortKind::pty:
+      break;
+    case sim::PortKind::fifo:
+      return std::make_unique<FifoPort>(place);
+  }
   return std::make_unique<PtyPort>(std::move(place));
 }
 
-std::unique_ptr<sim::BytePort> open_serial_port(const std::string& kind, const std::string& path) {
+std::unique_ptr<sim::BytePort> open_serial_port(sim::PortKind kind, const std::string& path) {
   const fs::path whole(path);
   return open_serial_port(kind, whole.parent_path().string(), whole.filename().string());
 }

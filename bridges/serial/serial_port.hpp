@@ -13,9 +13,8 @@ namespace bridges {
 /// left behind is replaced: a link in Shoal's own spelling (`/dev/pts/./7`) whose terminal no run holds, a FIFO of this
 /// user with the sticky bit set that nobody reads.  Anything else at the path is an error.  Throws std::runtime_error
 /// that names the path.
-std::unique_ptr<sim::BytePort> open_serial_port(const std::string& kind, const std::string& folder,
-                                                const std::string& path);
+std::unique_ptr<sim::BytePort> open_serial_port(sim::PortKind kind, const std::string& folder, const std::string& path);
 /// The same for a path that is trusted, links on the way included.
-std::unique_ptr<sim::BytePort> open_serial_port(const std::string& kind, const std::string& path);
+std::unique_ptr<sim::BytePort> open_serial_port(sim::PortKind kind, const std::string& path);
 
 }  // namespace bridges

@@ -22,8 +22,7 @@ void StationParams::read(sim::ParamReader& in) {
 }
 
 void AutopilotParams::read(sim::ParamReader& in) {
-  std::string first = "auto";
-  in.read_choice("mode", first, {"auto", "off", "hold", "waypoints", "station", "circle"},
+  in.read_choice("mode", mode, "auto", autopilot_mode_words,
                  "at the start; auto: waypoints where there are some, else hold; off: others drive the actuators");
   in.read("thrusters", thrusters, "names of thrusters of the vehicle");
   in.read("fins", fins, "names of fins of the vehicle; with fins it turns and climbs by them");
@@ -47,8 +46,6 @@ void AutopilotParams::read(sim::ParamReader& in) {
   in.read("gains", gains, "of the controllers");
   in.read("altitude_range_m", altitude_range_m, sim::above(0), "the bottom is looked for so far below");
   if (in.describing()) return;
-  const std::vector<std::string> words{"off", "hold", "waypoints", "station", "circle"};
-  if (first != "auto") mode = static_cast<AutopilotMode>(std::find(words.begin(), words.end(), first) - words.begin());
   check(in);
 }
 

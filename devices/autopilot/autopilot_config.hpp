@@ -13,6 +13,12 @@ namespace devices {
 /// What an autopilot does.
 enum class AutopilotMode { off = 0, hold = 1, waypoints = 2, station = 3, circle = 4 };
 
+inline constexpr sim::ChoiceWords<AutopilotMode> autopilot_mode_words{{"off", AutopilotMode::off},
+                                                                      {"hold", AutopilotMode::hold},
+                                                                      {"waypoints", AutopilotMode::waypoints},
+                                                                      {"station", AutopilotMode::station},
+                                                                      {"circle", AutopilotMode::circle}};
+
 /// What to do after the last waypoint.
 enum class AtEnd { station, stop, hold, circle };
 

@@ -22,7 +22,8 @@ std::uint64_t serial_dropped_bytes(const sim::World& world) {
 }
 
 void SerialParams::read(sim::ParamReader& in) {
-  in.read_choice("kind", kind, {"pty", "fifo"}, "pseudo-terminal, or a pair of FIFOs PATH.in and PATH.out");
+  in.read_choice("kind", kind, {{"pty", sim::PortKind::pty}, {"fifo", sim::PortKind::fifo}},
+                 "pseudo-terminal, or a pair of FIFOs PATH.in and PATH.out");
   in.require("path");
   in.read_path("path", path, sim::PathUse::made,
                "where programs find it, from the folder of the run; {vehicle}, {device} and {run} are replaced");
@@ -31,7 +32,8 @@ void SerialParams::read(sim::ParamReader& in) {
 
 void SerialMessageParams::read(sim::ParamReader& in) {
   SerialParams::read(in);
-  in.read_choice("framing", framing, {"line", "raw"}, "line: a message is a line; raw: what came within a step");
+  in.read_choice("framing", framing, {{"line", Framing::line}, {"raw", Framing::raw}},
+                 "line: a message is a line; raw: what came within a step");
 }
 
 SerialPort::SerialPort(const SerialParams& params, const sim::DeviceContext& context)
@@ -71,7 +73,7 @@ void warn_of_length(sim::WorldWarnings& warnings, const std::string& device, std
 }
 
 SerialMessages::SerialMessages(const SerialMessageParams& params, const sim::DeviceContext& context)
-    : port_(params, context), lines_(params.framing == "line") {}
+    : port_(params, context), lines_(params.framing == SerialMessageParams::Framing::line) {}
 
 std::vector<sim::Bytes> SerialMessages::take(std::size_t max_bytes) {
   sim::Bytes bytes = port_.read();

@@ -14,14 +14,19 @@ namespace devices {
 
 /// A way for other programs to talk to a modem, beside the bus.
 struct SerialParams {
-  std::string kind = "pty";
+  sim::PortKind kind = sim::PortKind::pty;
   std::string path;
   void read(sim::ParamReader& in);
 };
 
 /// The same for bytes that are messages.
 struct SerialMessageParams : SerialParams {
-  std::string framing = "line";
+  enum class Framing {
+    line,  ///< a message is a line
+    raw,   ///< a message is what came within a step
+  };
+
+  Framing framing = Framing::line;
   void read(sim::ParamReader& in);
 };
 

@@ -81,7 +81,7 @@ void AcousticModem::Params::read(sim::ParamReader& in) {
   for (const MicromodemRate& rate : micromodem_rates())
     presets.push_back("micromodem_rate" + std::to_string(rate.number));
   presets.insert(presets.end(), {"low_rate", "high_rate"});
-  in.read_choice("preset", preset, presets, "a packet type or a modem as there are many; the keys below win over it");
+  in.read_one_of("preset", preset, presets, "a packet type or a modem as there are many; the keys below win over it");
   if (!in.describing()) use_preset(*this);
   in.read("network", network, "modems understand each other only in the same network; the others are noise");
   in.read("source_level_dB", source_level_dB, sim::between(0, 300), "re 1 uPa at 1 m, on its axis");

@@ -71,8 +71,8 @@ bool meets_ground(const sim::PartConfig& part) {
 /// Something between its wheels gives.
 bool gives(const sim::VehicleConfig& vehicle) {
   return std::any_of(vehicle.joints.begin(), vehicle.joints.end(), [&](const sim::JointConfig& joint) {
-    if (joint.type == "fixed") return false;
-    if (joint.type != "hinge" && joint.type != "hinge2") return true;
+    if (joint.type == sim::JointType::fixed) return false;
+    if (!sim::joint_info(joint.type).carries_a_wheel) return true;
     if (joint.axis1.suspension_erp || joint.axis1.suspension_cfm) return true;
     return wheel_geometry(vehicle, joint.name).body == nullptr;  // a rocker, or an arm that may lean on the ground
   });

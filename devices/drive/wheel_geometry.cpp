@@ -52,7 +52,7 @@ WheelGeometry wheel_geometry(const sim::VehicleConfig& vehicle, const std::strin
   const sim::JointConfig& joint = joint_named(vehicle, name);
   WheelGeometry wheel;
   wheel.center_V_m = joint.anchor_m;
-  wheel.axis_V = (joint.type == "hinge2" ? joint.axis2 : joint.axis1).axis.normalized();
+  wheel.axis_V = (joint.type == sim::JointType::hinge2 ? joint.axis2 : joint.axis1).axis.normalized();
   for (const std::size_t end : {1u, 0u}) {
     if (end >= joint.bodies.size()) continue;
     const sim::BodyConfig* body = body_named(vehicle, joint.bodies[end]);
@@ -100,7 +100,7 @@ std::optional<double> wheelbase_m_of(const sim::VehicleConfig& vehicle,
   double rear_m = std::numeric_limits<double>::infinity();
   for (const sim::JointConfig& joint : vehicle.joints) {
     const bool steered = std::find(steered_joints.begin(), steered_joints.end(), joint.name) != steered_joints.end();
-    if (steered || (joint.type != "hinge" && joint.type != "hinge2")) continue;
+    if (steered || !sim::joint_info(joint.type).carries_a_wheel) continue;
     const WheelGeometry wheel = wheel_geometry(vehicle, joint.name);
     if (wheel.rolls()) rear_m = std::min(rear_m, wheel.center_V_m.x());
   }

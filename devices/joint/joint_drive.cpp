@@ -28,8 +28,9 @@ namespace {
 sim::Joint& joint_with_motors(const sim::DeviceContext& context, const std::string& name) {
   sim::Joint& joint = context.joint(name);
   if (joint.axes() > 0) return joint;
-  refuse(context, "joint '" + name + "' is " +
-                      (joint.type() == "ball" ? "a ball without 'motor: true'" : joint.type() + " and has no axis"));
+  const bool ball = joint.type() == sim::JointType::ball;
+  const std::string type(word_of(sim::joint_type_words, joint.type()));
+  refuse(context, "joint '" + name + "' is " + (ball ? "a ball without 'motor: true'" : type + " and has no axis"));
 }
 
 std::vector<int> numbers_of(const JointDrive::Params& params, const sim::DeviceContext& context, int axes_of_joint) {
@@ -57,13 +58,13 @@ std::optional<double> if_finite(double stop) {
 JointDrive::JointDrive(const Params& params, const sim::DeviceContext& context)
     : params_(params), joint_(joint_with_motors(context, params.joint)), vehicle_(context.vehicle) {
   const sim::JointConfig& config = joint_config(context.vehicle, params.joint);
-  const bool ball = joint_.type() == "ball";
+  const bool ball = joint_.type() == sim::JointType::ball;
   for (const int number : numbers_of(params, context, joint_.axes())) {
     const sim::JointAxisConfig& of_axis = number == 0 || ball ? config.axis1 : config.axis2;
     Axis axis{.number = number, .max_force = params.max_force};
     axis.low_stop = of_axis.low_stop.value_or(axis.low_stop);
     axis.high_stop = of_axis.high_stop.value_or(axis.high_stop);
-    axis.has_stops = joint_.type() != "hinge2" || number == 0;
+    axis.has_stops = joint_.type() != sim::JointType::hinge2 || number == 0;
     axes_.push_back(axis);
   }
 }
@@ -106,7 +107,7 @@ void JointDrive::check_stops(const Axis& axis, const Settings& settings) const {
   for (const double stop : {settings.low_stop, settings.high_stop}) {
     if (std::isnan(stop)) continue;
     if (!axis.has_stops) throw std::runtime_error(text("the wheel of a hinge2 has no stops"));
-    if (joint_.type() != "slider" && std::isfinite(stop) && std::abs(stop) > std::numbers::pi)
+    if (sim::joint_info(joint_.type()).turns && std::isfinite(stop) && std::abs(stop) > std::numbers::pi)
       throw std::runtime_error(text("stops of an angle must lie between -pi and pi, got " + sim::number_text(stop)));
   }
   if (settings.low_stop == std::numeric_limits<double>::infinity() ||

@@ -10,7 +10,7 @@ namespace devices {
 void JointLoad::Params::read(sim::ParamReader& in) {
   in.require("joint");
   in.read_reference("joint", joint, "joint", "joint that it measures, of any type");
-  in.read_choice("frame", frame, {"sensor", "body", "world"},
+  in.read_choice("frame", frame, {{"sensor", Frame::sensor}, {"body", Frame::body}, {"world", Frame::world}},
                  "axes of the reading: as the device is mounted, of the body it is mounted on, or of the world");
   in.read("force_noise", force_noise, "error of each component of the force, N");
   in.read("torque_noise", torque_noise, "error of each component of the torque, N m");
@@ -26,8 +26,14 @@ JointLoad::JointLoad(const Params& params, const sim::DeviceContext& context)
 }
 
 sim::Matrix3d JointLoad::R_FW(const sim::SenseContext& context) const {
-  if (params_.frame == "sensor") return context.X_WS.linear().transpose();
-  if (params_.frame == "body") return body_.X_WB().linear().transpose();
+  switch (params_.frame) {
+    case Frame::sensor:
+      return context.X_WS.linear().transpose();
+    case Frame::body:
+      return body_.X_WB().linear().transpose();
+    case Frame::world:
+      break;
+  }
   return sim::Matrix3d::Identity();
 }
 

@@ -14,9 +14,10 @@ class JointLoad final : public sim::Sensor {
   static constexpr const char* meaning = "Force and torque that go through a joint, about its anchor.";
   static constexpr double default_rate_hz = 100;
   static constexpr const char* fixed_keys[] = {"joint"};
+  enum class Frame { sensor, body, world };
   struct Params {
     std::string joint;
-    std::string frame = "sensor";
+    Frame frame = Frame::sensor;
     sim::NoiseParams force_noise;
     sim::NoiseParams torque_noise;
     void read(sim::ParamReader& in);

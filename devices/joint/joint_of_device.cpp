@@ -12,8 +12,19 @@ namespace {
 
 /// Such as: joint 'lift' is a slider.
 std::string what_it_is(const sim::Joint& joint, const std::string& name) {
-  const std::string& type = joint.type();
-  return "joint '" + name + "' is " + (type == "fixed" ? type : (type == "ball" ? "a ball joint" : "a " + type));
+  const std::string type(word_of(sim::joint_type_words, joint.type()));
+  switch (joint.type()) {
+    case sim::JointType::fixed:
+      return "joint '" + name + "' is fixed";
+    case sim::JointType::ball:
+      return "joint '" + name + "' is a ball joint";
+    case sim::JointType::hinge:
+    case sim::JointType::hinge2:
+    case sim::JointType::universal:
+    case sim::JointType::slider:
+      break;
+  }
+  return "joint '" + name + "' is a " + type;
 }
 
 }  // namespace
@@ -25,7 +36,7 @@ void refuse(const sim::DeviceContext& context, const std::string& text) {
 
 sim::Joint& joint_with_axis(const sim::DeviceContext& context, const std::string& name, int axis) {
   sim::Joint& joint = context.joint(name);
-  if (joint.type() == "ball" && joint.axes() > 0)
+  if (joint.type() == sim::JointType::ball && joint.axes() > 0)
     refuse(context, what_it_is(joint, name) + "; a device of type joint_drive moves it");
   if (axis >= joint.axes())
     refuse(context,
@@ -35,7 +46,7 @@ sim::Joint& joint_with_axis(const sim::DeviceContext& context, const std::string
 
 sim::Joint& wheel_joint(const sim::DeviceContext& context, const std::string& name) {
   sim::Joint& joint = context.joint(name);
-  if (joint.type() != "hinge" && joint.type() != "hinge2")
+  if (!sim::joint_info(joint.type()).carries_a_wheel)
     refuse(context, what_it_is(joint, name) + "; a wheel must be on a hinge or hinge2");
   return joint;
 }

@@ -28,7 +28,8 @@ std::vector<JointState::Axis> axes_of(const JointState::Params& params, const si
   std::vector<JointState::Axis> axes;
   for (const std::string& name : names) {
     sim::Joint& named = context.joint(name);
-    sim::Joint& joint = named.type() == "ball" && named.axes() > 0 ? named : joint_with_axis(context, name, 0);
+    sim::Joint& joint =
+        named.type() == sim::JointType::ball && named.axes() > 0 ? named : joint_with_axis(context, name, 0);
     for (int axis = 0; axis < joint.axes(); ++axis)
       axes.push_back({axis == 0 ? name : name + "/" + std::to_string(axis), &joint, axis});
   }

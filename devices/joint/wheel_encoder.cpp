@@ -26,7 +26,7 @@ std::vector<WheelEncoder::Wheel> wheels_of(const WheelEncoder::Params& params, c
   std::vector<WheelEncoder::Wheel> wheels;
   for (const std::string& name : params.joints) {
     const sim::Joint& joint = joint_with_axis(context, name, 0);
-    if (joint.type() == "slider") refuse(context, "joint '" + name + "' is a slider and does not turn");
+    if (!sim::joint_info(joint.type()).turns) refuse(context, "joint '" + name + "' is a slider and does not turn");
     wheels.push_back({name, &joint, joint.axes() - 1});
   }
   return wheels;

@@ -7,15 +7,15 @@
 namespace devices {
 
 void FinCoefficients::read(sim::ParamReader& in) {
-  std::string frame = "flu";
-  in.read_choice("frame", frame, {"flu", "frd"}, "axes of the numbers: frd as papers print them");
+  sim::AxesFrame frame = sim::AxesFrame::flu;
+  in.read_choice("frame", frame, sim::axes_frame_words, "axes of the numbers: frd as papers print them");
   const char* const keys[] = {"X", "Y", "Z", "K", "M", "N"};
   const char* const meanings[] = {"force along x, N per rad and (m/s)^2",    "force along y, N per rad and (m/s)^2",
                                   "force along z, N per rad and (m/s)^2",    "moment about x, N m per rad and (m/s)^2",
                                   "moment about y, N m per rad and (m/s)^2", "moment about z, N m per rad and (m/s)^2"};
   for (int i = 0; i < 3; ++i) in.read(keys[i], force[i], sim::between(-1e6, 1e6), meanings[i]);
   for (int i = 0; i < 3; ++i) in.read(keys[i + 3], moment[i], sim::between(-1e6, 1e6), meanings[i + 3]);
-  if (frame == "flu") return;
+  if (frame == sim::AxesFrame::flu) return;
   force = {force.x(), -force.y(), -force.z()};
   moment = {moment.x(), -moment.y(), -moment.z()};
 }
@@ -71,12 +71,18 @@ void Fin::act(const sim::ActContext& context) {
   if (flow.density_kgpm3 == 0) return;
   const double share = share_under_water(flow.depth_m, span_m_);
   if (share == 0) return;
-  if (params_.model == Model::coefficients)
-    act_as_published(flow, angle, share, context.step_s);
-  else if (params_.flow == Flow::body)
-    lift_by_speed_of_body(flow, angle, share, context.step_s);
-  else
-    lift_locally(flow, angle, share, context.step_s);
+  switch (params_.model) {
+    case Model::coefficients:
+      return act_as_published(flow, angle, share, context.step_s);
+    case Model::lift:
+      break;
+  }
+  switch (params_.flow) {
+    case Flow::local:
+      return lift_locally(flow, angle, share, context.step_s);
+    case Flow::body:
+      return lift_by_speed_of_body(flow, angle, share, context.step_s);
+  }
 }
 
 void Fin::lift_locally(const WaterFlow& flow, double angle_rad, double scale, double step_s) {

@@ -45,7 +45,7 @@ std::optional<BeamSystem> beam_system(const std::array<sim::Vector3d, dvl_beams>
 void Dvl::Params::read(sim::ParamReader& in) {
   std::vector<std::string> names;
   for (const DvlPreset& unit : dvl_presets()) names.push_back(unit.name);
-  in.read_choice("preset", preset, names, "a unit by its data sheet; the keys below win over it");
+  in.read_one_of("preset", preset, names, "a unit by its data sheet; the keys below win over it");
   // The preset is the default of the keys that follow.
   for (const DvlPreset& unit : dvl_presets()) {
     if (unit.name != preset || in.describing()) continue;

@@ -12,7 +12,7 @@ namespace devices {
 
 void WaterSpeed::Params::read(sim::ParamReader& in) {
   in.read_choice(
-      "senses", senses, {"both", "forward", "magnitude"},
+      "senses", senses, {{"both", Senses::both}, {"forward", Senses::forward}, {"magnitude", Senses::magnitude}},
       "both: the speed with its sign; forward: 0 when the water comes from behind, as a pitot tube; magnitude: "
       "without its sign, as a paddle wheel");
   in.read("threshold_mps", threshold_mps, sim::at_least(0), "slower than this it reports 0: a paddle wheel sticks");
@@ -30,8 +30,16 @@ void WaterSpeed::measure(const sim::SenseContext& context) {
   valid_ = medium.in_water(p_WS);
   if (!valid_) return;
   speed_mps_ = context.X_WS.linear().col(0).dot(context.v_WS_W - medium.water_velocity_W(p_WS));
-  if (params_.senses == "forward") speed_mps_ = std::max(speed_mps_, 0.0);
-  if (params_.senses == "magnitude") speed_mps_ = std::abs(speed_mps_);
+  switch (params_.senses) {
+    case Senses::both:
+      break;
+    case Senses::forward:
+      speed_mps_ = std::max(speed_mps_, 0.0);
+      break;
+    case Senses::magnitude:
+      speed_mps_ = std::abs(speed_mps_);
+      break;
+  }
   if (std::abs(speed_mps_) < params_.threshold_mps) speed_mps_ = 0;
   speed_mps_ = std::clamp(speed_mps_, -params_.speed_max_mps, params_.speed_max_mps);
 }

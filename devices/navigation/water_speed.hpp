@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
-
 #include "sim/random/noise.hpp"
 #include "sim/vehicle/device_context.hpp"
 
@@ -13,8 +11,13 @@ class WaterSpeed final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Paddle wheel or pitot tube: speed through the water along its x axis.";
   static constexpr double default_rate_hz = 5;
+  enum class Senses {
+    both,
+    forward,    ///< 0 when the water comes from behind, as a pitot tube
+    magnitude,  ///< without its sign, as a paddle wheel
+  };
   struct Params {
-    std::string senses = "both";
+    Senses senses = Senses::both;
     double threshold_mps = 0;
     double speed_max_mps = 20;
     sim::NoiseParams speed_noise;  ///< m/s

@@ -72,9 +72,8 @@ void Camera::Params::read(sim::ParamReader& in) {
                  "of the message; raw16: depth in mm, 0 where there is none; png of depth too");
   in.read("jpeg_quality", jpeg_quality, sim::between(1, 100), "of jpeg");
   in.read("range_max_m", range_max_m, sim::above_to(0, 100'000), "what is farther along the ray is not seen");
-  std::string along = depth_along_ray ? "ray" : "axis";
-  in.read_choice("depth_along", along, {"axis", "ray"}, "depth: distance along the optical axis, or range of the ray");
-  depth_along_ray = along == "ray";
+  in.read_choice("depth_along", depth_along, depth_along_words,
+                 "depth: distance along the optical axis, or range of the ray");
   in.read("antialias", antialias, sim::between(1, 4), "rgb, grey: so many rays along each side of a pixel");
   in.read("exposure", exposure, "rgb, grey: how bright it becomes");
   in.read("noise", noise, "rgb, grey: error of each level from 0 to 255; depth: of each depth, m");
@@ -149,7 +148,7 @@ void Camera::change(const Params& params) {
   options.filter =
       make_ray_filter(physics_, sim::RayKind::light, params.see_through, own_group_, params.sees_own_vehicle);
   options.range_max_m = params.range_max_m;
-  options.depth_along_ray = params.depth_along_ray;
+  options.depth_along_ray = params.depth_along == DepthAlong::ray;
   options.light = world_.config().light;
   // A mean of depths or labels is neither.
   const int per_side = takes_light(params.image) ? params.antialias : 1;

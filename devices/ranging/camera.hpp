@@ -32,13 +32,16 @@ class Camera final : public sim::Sensor {
   static constexpr bool reuses_message = true;
   enum class Kind { rgb, grey, depth, parts, vehicles };
   enum class Encoding { raw, raw16, png, jpeg };
+  /// Depth along the optical axis, or range along the ray.
+  enum class DepthAlong { axis, ray };
+  static constexpr sim::ChoiceWords<DepthAlong> depth_along_words{{"axis", DepthAlong::axis}, {"ray", DepthAlong::ray}};
   struct Params {
     sim::OpticsConfig optics;
     Kind image = Kind::rgb;
     Encoding encoding = Encoding::raw;
     int jpeg_quality = 85;
     double range_max_m = 10'000;
-    bool depth_along_ray = false;
+    DepthAlong depth_along = DepthAlong::axis;
     int antialias = 1;
     ExposureParams exposure;
     sim::NoiseParams noise;          ///< of levels 0 to 255, or of depth, m

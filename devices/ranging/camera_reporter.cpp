@@ -72,7 +72,7 @@ void set_depth(shoal::image_t& message, const Camera& camera) {
   else
     set_16_bits(message, millimetres(camera.depth_m()), camera.params().encoding == Camera::Encoding::png);
   add_metadata(message, "unit", meters ? "m" : "mm");
-  add_metadata(message, "depth_along", camera.params().depth_along_ray ? "ray" : "axis");
+  add_metadata(message, "depth_along", std::string(word_of(Camera::depth_along_words, camera.params().depth_along)));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ class ImagingSonar final : public sim::Sensor {
     int beam_rays = 1;
     SonarParams sonar;
     SonarPictureParams picture;
-    Params() { sonar.tvg = "20log"; }
+    Params() { sonar.tvg = SonarParams::Gain::log20; }
     void read(sim::ParamReader& in);
   };
 

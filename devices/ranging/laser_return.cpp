@@ -39,7 +39,8 @@ void LaserParams::read(sim::ParamReader& in) {
   in.read(
       "merge_m", merge_m, sim::at_least(0),
       "echoes of one beam nearer together than this (half a pulse's length) are one, at their mean weighted by power");
-  in.read_choice("returns", returns, {"strongest", "first"}, "which of several echoes of a beam is reported");
+  in.read_choice("returns", returns, {{"strongest", Returns::strongest}, {"first", Returns::first}},
+                 "which of several echoes of a beam is reported");
   in.read("sees_own_vehicle", sees_own_vehicle, "rays hit the parts of the own vehicle");
   in.read_references("see_through", see_through, "category", "categories of parts that rays pass");
   in.read("weather", weather, "rain, fog or dust");
@@ -111,7 +112,7 @@ void LaserReceiver::receive(std::span<const sim::RayHit> hits, std::span<const s
     if (hits[k].hit())
       echoes_.push_back({hits[k].range_m, intensity(hits[k], rays[k].direction_W) / static_cast<double>(hits.size())});
   std::sort(echoes_.begin(), echoes_.end(), [](const Echo& a, const Echo& b) { return a.range_m < b.range_m; });
-  const bool first = params_.returns == "first";
+  const bool first = params_.returns == LaserParams::Returns::first;
   for (std::size_t from = 0, to = 0; from < echoes_.size(); from = to) {
     double power = 0, moment = 0, sum_m = 0;
     for (; to < echoes_.size() && (to == from || echoes_[to].range_m - echoes_[from].range_m < params_.merge_m); ++to) {

@@ -23,6 +23,9 @@ struct LaserWeather {
 
 /// What all laser scanners have in common; read from the device's own map.
 struct LaserParams {
+  /// Which of several echoes of a beam is reported.
+  enum class Returns { strongest, first };
+
   double range_min_m = 0.05;
   double range_max_m = 30.0;
   double resolution_m = 0;
@@ -32,7 +35,7 @@ struct LaserParams {
   double beam_divergence_rad = 0;
   int beam_samples = 1;
   double merge_m = 0.3;
-  std::string returns = "strongest";
+  Returns returns = Returns::strongest;
   bool sees_own_vehicle = false;
   std::vector<std::string> see_through;  ///< part categories
   LaserWeather weather;

@@ -15,7 +15,7 @@ namespace devices {
 void Lidar::Params::read(sim::ParamReader& in) {
   std::vector<std::string> names{"none"};
   for (const LidarPreset& unit : lidar_presets()) names.push_back(unit.name);
-  in.read_choice("preset", preset, names, "a unit by its data sheet; the keys below win over it");
+  in.read_one_of("preset", preset, names, "a unit by its data sheet; the keys below win over it");
   // The preset is the default of the keys that follow.
   for (const LidarPreset& unit : lidar_presets()) {
     if (unit.name != preset || in.describing()) continue;

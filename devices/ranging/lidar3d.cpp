@@ -23,7 +23,7 @@ constexpr int max_rings = 1000;  // their numbers are 16 bits in the message
 void Lidar3d::Params::read(sim::ParamReader& in) {
   std::vector<std::string> names{"none"};
   for (const Lidar3dPreset& unit : lidar3d_presets()) names.push_back(unit.name);
-  in.read_choice("preset", preset, names, "a unit by its data sheet; the keys below win over it");
+  in.read_one_of("preset", preset, names, "a unit by its data sheet; the keys below win over it");
   // The preset is the default of the keys that follow.
   for (const Lidar3dPreset& unit : lidar3d_presets()) {
     if (unit.name != preset || in.describing()) continue;

@@ -11,7 +11,7 @@
 namespace devices {
 
 SideScan::Params::Params() {
-  sonar.tvg = "20log";
+  sonar.tvg = SonarParams::Gain::log20;
   sonar.range_min_m = 0;
 }
 

@@ -15,12 +15,24 @@ namespace {
 constexpr double dry_sound_speed_mps = 1500;  // worlds without water stand for water everywhere, or say otherwise
 constexpr int surface_material = -1;          // of a hit that is the surface of the water
 
+bool works(SonarParams::WorksIn where, bool wet) {
+  switch (where) {
+    case SonarParams::WorksIn::water:
+      return wet;
+    case SonarParams::WorksIn::air:
+      return !wet;
+    case SonarParams::WorksIn::any:
+      break;
+  }
+  return true;
+}
+
 }  // namespace
 
 void SonarParams::read(sim::ParamReader& in) {
   in.read("range_min_m", range_min_m, sim::at_least(0), "echoes from nearer are not heard: the sonar still sends");
   in.read("range_max_m", range_max_m, sim::above_to(0, 20000), "how long it listens");
-  in.read_choice("works_in", works_in, {"water", "air", "any"},
+  in.read_choice("works_in", works_in, {{"water", WorksIn::water}, {"air", WorksIn::air}, {"any", WorksIn::any}},
                  "in a world with water: where it hears; on the other side of the surface it hears nothing");
   in.read("sound_speed_mps", sound_speed_mps, sim::between(100, 10000),
           "true speed of sound; unset: that of the medium at the sonar, 1500 in a world without water");
@@ -33,7 +45,7 @@ void SonarParams::read(sim::ParamReader& in) {
   in.read("surface_backscatter_dB", surface_backscatter_dB, sim::between(-100, 0), "of the surface of the water");
   in.read("source_level_dB", source_level_dB, sim::between(0, 300), "re 1 uPa at 1 m");
   in.read("pulse_s", pulse_s, sim::above_to(0, 1), "length of the ping; c pulse / 2 is the resolution in range");
-  in.read_choice("tvg", tvg, {"none", "20log", "40log"},
+  in.read_choice("tvg", tvg, {{"none", Gain::none}, {"20log", Gain::log20}, {"40log", Gain::log40}},
                  "gain that grows with range: 20 or 40 log10 r, and twice the absorption");
   in.read("speckle", speckle, "strengths fluctuate from ping to ping, with a Rayleigh amplitude");
   in.read("sees_own_vehicle", sees_own_vehicle, "sound hits the parts of the own vehicle");
@@ -71,7 +83,7 @@ void SonarReceiver::change(const SonarParams& params) {
 bool SonarReceiver::look_at_medium(const sim::Vector3d& p_WS) {
   if (!medium_.has_water()) return true;
   const bool wet = medium_.in_water(p_WS);
-  if (params_.works_in != "any" && wet != (params_.works_in == "water")) return false;
+  if (!works(params_.works_in, wet)) return false;
   sound_speed_mps_ = params_.sound_speed_mps ? *params_.sound_speed_mps : medium_.sound_speed_mps(p_WS);
   range_scale_ = params_.assumed_sound_speed_mps.value_or(sound_speed_mps_) / sound_speed_mps_;
   if (params_.frequency_kHz && !params_.absorption_dBpkm && wet) {
@@ -136,8 +148,17 @@ double SonarReceiver::range_slope(std::size_t ray, const sim::Vector3d& tangent_
 }
 
 double SonarReceiver::gain_dB(double range_m) const {
-  if (params_.tvg == "none") return 0;
-  const double steps = params_.tvg == "40log" ? 40 : 20;
+  double steps = 0;
+  switch (params_.tvg) {
+    case SonarParams::Gain::none:
+      return 0;
+    case SonarParams::Gain::log20:
+      steps = 20;
+      break;
+    case SonarParams::Gain::log40:
+      steps = 40;
+      break;
+  }
   return steps * std::log10(std::max(range_m, 1e-3)) + 2 * absorption_dBpm_ * range_m;
 }
 

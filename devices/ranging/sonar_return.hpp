@@ -15,9 +15,13 @@ namespace devices {
 
 /// What all sonars have in common; read from the device's own map.  Levels are in dB re 1 uPa.
 struct SonarParams {
+  enum class WorksIn { water, air, any };
+  /// Gain over range: 20 or 40 log10 r, and twice the absorption.
+  enum class Gain { none, log20, log40 };
+
   double range_min_m = 0.1;
   double range_max_m = 50;
-  std::string works_in = "water";
+  WorksIn works_in = WorksIn::water;
   std::optional<double> sound_speed_mps;          ///< unset: the medium's; 1500 in a world without water
   std::optional<double> assumed_sound_speed_mps;  ///< that turns times into ranges; unset: the true one
   std::optional<double> absorption_dBpkm;         ///< unset: by the frequency; without that 0
@@ -26,7 +30,7 @@ struct SonarParams {
   double surface_backscatter_dB = -30;
   double source_level_dB = 200;  ///< at 1 m
   double pulse_s = 1e-4;
-  std::string tvg = "none";  ///< gain over range: none, 20log, 40log
+  Gain tvg = Gain::none;
   bool speckle = true;
   bool sees_own_vehicle = false;
   std::vector<std::string> see_through;  ///< part categories

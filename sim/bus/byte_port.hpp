@@ -21,7 +21,10 @@ class BytePort {
   virtual std::uint64_t dropped_bytes() const = 0;
 };
 
-/// Opens a port.  `kind`: pty or fifo.  Throws std::runtime_error that names the path.
-using PortOpener = std::function<std::unique_ptr<BytePort>(const std::string& kind, const std::string& path)>;
+/// A pseudo-terminal, or a pair of FIFOs PATH.in and PATH.out.
+enum class PortKind { pty, fifo };
+
+/// Opens a port.  Throws std::runtime_error that names the path.
+using PortOpener = std::function<std::unique_ptr<BytePort>(PortKind kind, const std::string& path)>;
 
 }  // namespace sim

@@ -24,7 +24,14 @@ constexpr double least_focal_px = 1e-3, most_focal_px = 1e9;
 Vector2d focal_px_of(const OpticsConfig& config) {
   if (!config.focal_px.empty()) return {config.focal_px.front(), config.focal_px.back()};
   const double half_rad = 0.5 * config.fov_rad;
-  return Vector2d::Constant(0.5 * config.width / (config.lens == "fisheye" ? half_rad : std::tan(half_rad)));
+  const double half_width_px = 0.5 * config.width;
+  switch (config.lens) {
+    case OpticsConfig::Lens::pinhole:
+      return Vector2d::Constant(half_width_px / std::tan(half_rad));
+    case OpticsConfig::Lens::fisheye:
+      break;
+  }
+  return Vector2d::Constant(half_width_px / half_rad);
 }
 
 bool in_form(const std::vector<double>& values, std::size_t least, std::size_t most) {
@@ -36,7 +43,7 @@ bool in_form(const std::vector<double>& values, std::size_t least, std::size_t m
 void OpticsConfig::read(ParamReader& in) {
   in.read("width", width, between(1, max_image_side_px), "pixels in a row");
   in.read("height", height, between(1, max_image_side_px), "rows");
-  in.read_choice("lens", lens, {"pinhole", "fisheye"}, "how angles become places in the image");
+  in.read_choice("lens", lens, lens_words, "how angles become places in the image");
   in.read_deg("fov_deg", fov_rad, above_to(0, 359),
               "horizontal angle of view, without the distortion; a pinhole's is < 180");
   in.read("focal_px", focal_px, above(0), "focal length, or fx and fy, instead of fov_deg");
@@ -61,10 +68,11 @@ std::string OpticsConfig::problem() const {
   if (!in_form(focal_px, 1, 2)) return fmt::format("'focal_px' must have 1 or 2 numbers, got {}", focal_px.size());
   if (!in_form(principal_px, 2, 2))
     return fmt::format("'principal_px' must have 2 numbers, got {}", principal_px.size());
-  const bool fisheye = lens == "fisheye";
+  const bool fisheye = lens == Lens::fisheye;
   const std::size_t most = fisheye ? 4 : 5;
   if (distortion.size() > most)
-    return fmt::format("'distortion' of a {} must have at most {} numbers, got {}", lens, most, distortion.size());
+    return fmt::format("'distortion' of a {} must have at most {} numbers, got {}", word_of(lens_words, lens), most,
+                       distortion.size());
   if (focal_px.empty() && !fisheye && !(fov_rad > 0 && fov_rad < std::numbers::pi))
     return fmt::format("'fov_deg' of a pinhole must be > 0 and < 180, got {:g}", radians_to_degrees(fov_rad));
   if (!(fov_rad > 0 && fov_rad < 2 * std::numbers::pi))
@@ -91,12 +99,13 @@ std::string OpticsConfig::text() const {
   const double cx = principal_px.empty() ? 0.5 * width : principal_px[0];
   const double cy = principal_px.empty() ? 0.5 * height : principal_px[1];
   return fmt::format(
-      "{{lens: {}, width: {}, height: {}, focal_px: [{}, {}], principal_px: [{}, {}], distortion: [{}]{}}}", lens,
-      width, height, optics.focal_x_px(), optics.focal_y_px(), cx, cy, fmt::join(distortion, ", "),
-      lens == "fisheye" ? fmt::format(", max_angle_deg: {}", radians_to_degrees(max_angle_rad)) : "");
+      "{{lens: {}, width: {}, height: {}, focal_px: [{}, {}], principal_px: [{}, {}], distortion: [{}]{}}}",
+      word_of(lens_words, lens), width, height, optics.focal_x_px(), optics.focal_y_px(), cx, cy,
+      fmt::join(distortion, ", "),
+      lens == Lens::fisheye ? fmt::format(", max_angle_deg: {}", radians_to_degrees(max_angle_rad)) : "");
 }
 
-Optics::Optics(const OpticsConfig& config) : config_(config), fisheye_(config.lens == "fisheye") {
+Optics::Optics(const OpticsConfig& config) : config_(config), fisheye_(config.lens == OpticsConfig::Lens::fisheye) {
   const std::vector<double>& k = config_.distortion;
   const auto number = [&](std::size_t i) { return i < k.size() ? k[i] : 0.0; };
   if (fisheye_) {

@@ -20,9 +20,12 @@ using Vector2d = Eigen::Vector2d;
 /// its centre at (i + 0.5, j + 0.5).  OpenCV counts from the centre of the first pixel: its principal point is 0.5
 /// less.
 struct OpticsConfig {
+  enum class Lens { pinhole, fisheye };
+  static constexpr ChoiceWords<Lens> lens_words{{"pinhole", Lens::pinhole}, {"fisheye", Lens::fisheye}};
+
   int width = 320;
   int height = 240;
-  std::string lens = "pinhole";                    ///< pinhole, fisheye
+  Lens lens = Lens::pinhole;
   double fov_rad = degrees_to_radians(45);         ///< horizontal, of the lens without distortion
   std::vector<double> focal_px;                    ///< fx, fy or one for both; empty: from the field of view
   std::vector<double> principal_px;                ///< empty: the middle of the image

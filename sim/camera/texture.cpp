@@ -68,11 +68,7 @@ LinearColor ImagePyramid::sample(double u_px, double v_px, double footprint_px) 
 }
 
 Texture::Texture(const TextureConfig& config, std::shared_ptr<const ImagePyramid> image)
-    : pattern_(config.pattern == "checker"   ? Pattern::checker
-               : config.pattern == "stripes" ? Pattern::stripes
-                                             : Pattern::image),
-      size_m_(config.size_m),
-      image_(std::move(image)) {
+    : pattern_(config.pattern), size_m_(config.size_m), image_(std::move(image)) {
   for (std::size_t i = 0; i < 2; ++i)
     colors_[i] =
         i < config.colors.size() ? linear_color(parse_color(config.colors[i]).value_or(Color{})) : LinearColor::Zero();
@@ -84,21 +80,28 @@ LinearColor Texture::color(const Vector3d& p_P, const Vector3d& normal_P, double
   const double u = (axis == 0 ? p_P.y() : p_P.x()) / size_m_;
   const double v = (axis == 2 ? p_P.y() : p_P.z()) / size_m_;
   const double footprint = footprint_m / size_m_;
-  if (pattern_ == Pattern::image)
-    return image_->sample(u * image_->width(), -v * image_->width(), footprint * image_->width());
-  const double a = share_of_second(u, footprint);
-  double second = a;
-  if (pattern_ == Pattern::checker) {
-    const double b = share_of_second(v, footprint);
-    second = a * (1 - b) + b * (1 - a);
+  double second = 0;
+  switch (pattern_) {
+    case TextureConfig::Pattern::none:
+      break;
+    case TextureConfig::Pattern::checker: {
+      const double a = share_of_second(u, footprint), b = share_of_second(v, footprint);
+      second = a * (1 - b) + b * (1 - a);
+      break;
+    }
+    case TextureConfig::Pattern::stripes:
+      second = share_of_second(u, footprint);
+      break;
+    case TextureConfig::Pattern::image:
+      return image_->sample(u * image_->width(), -v * image_->width(), footprint * image_->width());
   }
   return static_cast<float>(1 - second) * colors_[0] + static_cast<float>(second) * colors_[1];
 }
 
 std::shared_ptr<const Texture> TextureLibrary::get(const TextureConfig& config, const std::string& who) {
-  if (config.pattern == "none") return nullptr;
+  if (config.pattern == TextureConfig::Pattern::none) return nullptr;
   std::shared_ptr<const ImagePyramid> image;
-  if (config.pattern == "image") {
+  if (config.pattern == TextureConfig::Pattern::image) {
     const std::string path = (std::filesystem::path(config.directory) / config.file).lexically_normal().string();
     const std::lock_guard lock(mutex_);
     auto& known = images_[path];

@@ -45,8 +45,7 @@ class Texture {
   LinearColor color(const Vector3d& p_P, const Vector3d& normal_P, double footprint_m) const;
 
  private:
-  enum class Pattern { checker, stripes, image };
-  Pattern pattern_;
+  TextureConfig::Pattern pattern_;
   double size_m_;
   LinearColor colors_[2];
   std::shared_ptr<const ImagePyramid> image_;

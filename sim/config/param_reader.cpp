@@ -497,10 +497,10 @@ std::size_t ParamReader::take_choice(const char* key, const std::vector<std::str
   return static_cast<std::size_t>(chosen - choices.begin());
 }
 
-void ParamReader::read_choice(const char* key, std::string& value, const std::vector<std::string>& choices,
+void ParamReader::read_one_of(const char* key, std::string& value, const std::vector<std::string>& names,
                               const char* meaning) {
-  const std::size_t chosen = take_choice(key, choices, value, meaning);
-  if (chosen < choices.size()) value = choices[chosen];
+  const std::size_t chosen = take_choice(key, names, value, meaning);
+  if (chosen < names.size()) value = names[chosen];
 }
 
 void ParamReader::read_reference(const char* key, std::string& value, const char* kind, const char* meaning) {

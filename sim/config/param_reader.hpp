@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "sim/base/math.hpp"
+#include "sim/config/choice_words.hpp"
 #include "sim/config/config_node.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/param_info.hpp"
@@ -75,13 +77,24 @@ class ParamReader {
   void read_deg(const char* key, double& value_rad, const Rule& rule, const char* meaning);
   /// Three angles in degrees in the file, in radians in the struct.
   void read_deg(const char* key, Vector3d& value_rad, const char* meaning);
-  /// One word out of `choices`.
-  void read_choice(const char* key, std::string& value, const std::vector<std::string>& choices, const char* meaning);
-  /// Reads one word out of `choices` as the enumerator that stands beside it.
+  /// Reads one word out of those of an enum.
   template <typename Enum>
   requires std::is_enum_v<Enum>
-  void read_choice(const char* key, Enum& value, const std::vector<std::pair<std::string, Enum>>& choices,
+  void read_choice(const char* key, Enum& value, const std::type_identity_t<ChoiceWords<Enum>>& words,
                    const char* meaning);
+  /// Reads the same with a further word, listed first, for none of them.
+  template <typename Enum>
+  requires std::is_enum_v<Enum>
+  void read_choice(const char* key, std::optional<Enum>& value, const char* word_of_none,
+                   const std::type_identity_t<ChoiceWords<Enum>>& words, const char* meaning);
+  /// Reads one word out of those of an enum whose values are in `allowed`.
+  template <typename Enum>
+  requires std::is_enum_v<Enum>
+  void read_choice(const char* key, Enum& value, const std::type_identity_t<ChoiceWords<Enum>>& words,
+                   std::span<const std::type_identity_t<Enum>> allowed, const char* meaning);
+  /// Reads one name out of a list that is known only when the program runs, or has no meaning beyond its row of a table:
+  /// registered types, presets.  A word that the program decides by belongs to an enum, see read_choice.
+  void read_one_of(const char* key, std::string& value, const std::vector<std::string>& names, const char* meaning);
   /// A name that must have been announced by `declare(kind, name)`.  Empty (the default) means none.
   void read_reference(const char* key, std::string& value, const char* kind, const char* meaning);
   /// Reads a list of names, each as by read_reference().

@@ -3,6 +3,8 @@
 
 // The templates of ParamReader; included by param_reader.hpp.
 
+#include <algorithm>
+
 #include "sim/config/param_reader.hpp"
 
 namespace sim {
@@ -17,16 +19,39 @@ inline constexpr char type_mark = 0;
 
 template <typename Enum>
 requires std::is_enum_v<Enum>
-void ParamReader::read_choice(const char* key, Enum& value, const std::vector<std::pair<std::string, Enum>>& choices,
+void ParamReader::read_choice(const char* key, Enum& value, const std::type_identity_t<ChoiceWords<Enum>>& words,
                               const char* meaning) {
-  std::vector<std::string> words;
-  std::string initial;
-  for (const auto& [word, choice] : choices) {
-    words.push_back(word);
-    if (choice == value) initial = word;
+  std::vector<std::string> choices;
+  for (const ChoiceWord<Enum>& each : words) choices.emplace_back(each.word);
+  const std::size_t chosen = take_choice(key, choices, std::string(word_of(words, value)), meaning);
+  if (chosen < words.size()) value = words.begin()[chosen].value;
+}
+
+template <typename Enum>
+requires std::is_enum_v<Enum>
+void ParamReader::read_choice(const char* key, std::optional<Enum>& value, const char* word_of_none,
+                              const std::type_identity_t<ChoiceWords<Enum>>& words, const char* meaning) {
+  std::vector<std::string> choices{word_of_none};
+  for (const ChoiceWord<Enum>& each : words) choices.emplace_back(each.word);
+  const std::string initial = value ? std::string(word_of(words, *value)) : word_of_none;
+  const std::size_t chosen = take_choice(key, choices, initial, meaning);
+  if (chosen == 0) value.reset();
+  if (chosen > 0 && chosen < choices.size()) value = words.begin()[chosen - 1].value;
+}
+
+template <typename Enum>
+requires std::is_enum_v<Enum>
+void ParamReader::read_choice(const char* key, Enum& value, const std::type_identity_t<ChoiceWords<Enum>>& words,
+                              std::span<const std::type_identity_t<Enum>> allowed, const char* meaning) {
+  std::vector<std::string> choices;
+  std::vector<Enum> values;
+  for (const ChoiceWord<Enum>& each : words) {
+    if (std::find(allowed.begin(), allowed.end(), each.value) == allowed.end()) continue;
+    choices.emplace_back(each.word);
+    values.push_back(each.value);
   }
-  const std::size_t chosen = take_choice(key, words, initial, meaning);
-  if (chosen < choices.size()) value = choices[chosen].second;
+  const std::size_t chosen = take_choice(key, choices, std::string(word_of(words, value)), meaning);
+  if (chosen < values.size()) value = values[chosen];
 }
 
 template <ReadsParams T>

@@ -30,12 +30,9 @@ void DeviceConfig::read_common(ParamReader& in) {
 
 void DeviceConfig::read_actuator(ParamReader& in, const DeviceType& of) {
   in.read_or_word("watchdog_s", watchdog_s, above_to(0, 1e6), {"never"}, "a last command older than this is stale");
-  std::vector<std::pair<std::string, SafeState>> known;
-  for (const auto& word : safe_state_words())
-    if (std::find(of.safe_states.begin(), of.safe_states.end(), word.second) != of.safe_states.end())
-      known.push_back(word);
   safe = of.safe_states.front();
-  in.read_choice("safe", safe, known, "where it goes when commands are stale, at an emergency stop, without power");
+  in.read_choice("safe", safe, safe_state_words, of.safe_states,
+                 "where it goes when commands are stale, at an emergency stop, without power");
 }
 
 void DeviceConfig::read(ParamReader& in) {

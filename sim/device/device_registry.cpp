@@ -36,12 +36,6 @@ std::string fault_misfit(const DeviceType& type, const FaultConfig& fault) {
   return "a " + type.name + " has no quantity '" + fault.quantity + "'; known quantities: " + list_text(known);
 }
 
-const std::vector<std::pair<std::string, SafeState>>& safe_state_words() {
-  static const std::vector<std::pair<std::string, SafeState>> words = {
-      {"stop", SafeState::stop}, {"coast", SafeState::coast}, {"hold", SafeState::hold}, {"park", SafeState::park}};
-  return words;
-}
-
 DeviceRegistry& DeviceRegistry::instance() {
   static DeviceRegistry registry;
   return registry;

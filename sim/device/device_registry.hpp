@@ -63,8 +63,8 @@ struct DeviceType {
 /// Why a fault makes no sense for a type of device; empty: it does.
 std::string fault_misfit(const DeviceType& type, const FaultConfig& fault);
 
-/// The words of YAML for the safe states.
-const std::vector<std::pair<std::string, SafeState>>& safe_state_words();
+inline constexpr ChoiceWords<SafeState> safe_state_words{
+    {"stop", SafeState::stop}, {"coast", SafeState::coast}, {"hold", SafeState::hold}, {"park", SafeState::park}};
 
 /// All device types, filled before main by the SHOAL_ macros.
 class DeviceRegistry {

@@ -5,16 +5,9 @@
 
 namespace sim {
 
-const std::vector<std::pair<std::string, FaultKind>>& fault_kinds() {
-  static const std::vector<std::pair<std::string, FaultKind>> kinds = {
-      {"stuck", FaultKind::stuck},       {"silent", FaultKind::silent},   {"biased", FaultKind::biased},
-      {"degraded", FaultKind::degraded}, {"partial", FaultKind::partial}, {"dead", FaultKind::dead}};
-  return kinds;
-}
-
 void FaultConfig::read(ParamReader& in) {
   in.require("kind");
-  in.read_choice("kind", kind, fault_kinds(), "what is wrong with the device");
+  in.read_choice("kind", kind, fault_kind_words, "what is wrong with the device");
   in.read("quantity", quantity, "biased, degraded: key of its noise without '_noise'; unset: every quantity");
   in.read("bias", bias, any_number(), "biased: added to the quantity, in its unit");
   in.read("noise_factor", noise_factor, between(0, 1e6), "degraded: the random errors are this many times as large");

@@ -21,8 +21,9 @@ enum class FaultKind {
   dead,      ///< an actuator gives none
 };
 
-/// The words of YAML for the kinds of fault.
-const std::vector<std::pair<std::string, FaultKind>>& fault_kinds();
+inline constexpr ChoiceWords<FaultKind> fault_kind_words{
+    {"stuck", FaultKind::stuck},       {"silent", FaultKind::silent},   {"biased", FaultKind::biased},
+    {"degraded", FaultKind::degraded}, {"partial", FaultKind::partial}, {"dead", FaultKind::dead}};
 
 /// What is wrong with a device, as YAML says it.
 struct FaultConfig {

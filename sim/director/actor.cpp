@@ -14,7 +14,7 @@ Actor::Actor(const ActorConfig& config)
       path_(config.make_path()),
       rate_(config.path == PathKind::timed ? 1.0 : config.speed_mps),
       since_(from_seconds(config.start_s)),
-      moving_(!config.waiting) {}
+      moving_(config.starts == ActorStart::moving) {}
 
 double Actor::progress_at(Time now) const {
   const double length = path_.length();

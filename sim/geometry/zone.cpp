@@ -11,18 +11,11 @@ namespace sim {
 
 namespace {
 
-const std::vector<std::pair<std::string, ZoneShape>> zone_shapes = {{"box", ZoneShape::box},
-                                                                    {"sphere", ZoneShape::sphere},
-                                                                    {"cylinder", ZoneShape::cylinder},
-                                                                    {"polygon", ZoneShape::polygon}};
-
 /// A key that says nothing of this shape would be ignored; it is most likely meant for another shape.
 void check_keys(ParamReader& in, ZoneShape shape) {
+  const std::string word(word_of(zone_shape_words, shape));
   const auto belongs_to = [&](const char* key, std::initializer_list<ZoneShape> shapes, bool required) {
     const bool belongs = std::find(shapes.begin(), shapes.end(), shape) != shapes.end();
-    std::string word;
-    for (const auto& [each, value] : zone_shapes)
-      if (value == shape) word = each;
     if (in.has(key) && !belongs) in.error(key, "'" + std::string(key) + "' does not belong to a " + word);
     if (!in.describing() && !in.has(key) && belongs && required) in.error("a " + word + " needs '" + key + "'");
   };
@@ -40,7 +33,7 @@ void ZoneConfig::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "name of the zone, unique in the world");
   in.require("shape");
-  in.read_choice("shape", shape, zone_shapes, "what it looks like");
+  in.read_choice("shape", shape, zone_shape_words, "what it looks like");
   in.read("position_m", position_m, any_number(), "its middle; polygon: the origin of its corners");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
   in.read("size_m", size_m, above(0), "box: its lengths along x, y, z");

@@ -12,6 +12,11 @@ namespace sim {
 
 enum class ZoneShape { box, sphere, cylinder, polygon };
 
+inline constexpr ChoiceWords<ZoneShape> zone_shape_words{{"box", ZoneShape::box},
+                                                         {"sphere", ZoneShape::sphere},
+                                                         {"cylinder", ZoneShape::cylinder},
+                                                         {"polygon", ZoneShape::polygon}};
+
 /// What a zone does to those inside it.
 enum class ZoneFlag { gps_denied, radio_denied };
 

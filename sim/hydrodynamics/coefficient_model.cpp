@@ -86,12 +86,10 @@ CoefficientModel::CoefficientModel(const HydrodynamicsConfig& config, double gra
   find_rates();
   added_mass_is_diagonal_ = config.added_mass.isDiagonal(0);
   const PublishedQuirks& quirks = config.quirks;
-  coriolis_ = quirks.added_mass_coriolis == "full"           ? Coriolis::full
-              : quirks.added_mass_coriolis == "without_munk" ? Coriolis::without_munk
-                                                             : Coriolis::none;
+  coriolis_ = quirks.added_mass_coriolis;
   find_turning();
-  current_by_yaw_only_ = quirks.current == "yaw_only";
-  fade_by_speed_in_water_ = quirks.fade_speed == "water";
+  current_by_yaw_only_ = quirks.current == PublishedQuirks::Current::yaw_only;
+  fade_by_speed_in_water_ = quirks.fade_speed == PublishedQuirks::FadeSpeed::water;
 }
 
 /// Terms such as X_u and X_uu are damping.
@@ -238,14 +236,19 @@ Vector6d CoefficientModel::total_forces(const CraftState& state, const Vector6d&
     a = momentum.head<3>();
     b = momentum.tail<3>();
   }
-  if (coriolis_ == Coriolis::full) {
-    total.head<3>() -= w.cross(a);
-    total.tail<3>() -= v_r.cross(a) + w.cross(b);
-  } else if (coriolis_ == Coriolis::without_munk) {
-    total[1] += a.z() * w.x();
-    total[2] -= a.y() * w.x();
-    total.tail<3>() -= w.cross(b);
-    total[3] -= a.z() * v_r.y() - a.y() * v_r.z();
+  switch (coriolis_) {
+    case Coriolis::full:
+      total.head<3>() -= w.cross(a);
+      total.tail<3>() -= v_r.cross(a) + w.cross(b);
+      break;
+    case Coriolis::without_munk:
+      total[1] += a.z() * w.x();
+      total[2] -= a.y() * w.x();
+      total.tail<3>() -= w.cross(b);
+      total[3] -= a.z() * v_r.y() - a.y() * v_r.z();
+      break;
+    case Coriolis::none:
+      break;
   }
   if (!state.a_water.isZero(0)) {
     // Water that accelerates carries along what it would have filled (Froude-Krylov) and the added mass.

@@ -63,7 +63,7 @@ class CoefficientModel {
   double immersed(const CraftState& state) const;
 
  private:
-  enum class Coriolis { full, without_munk, none };
+  using Coriolis = PublishedQuirks::Coriolis;
   /// All forces at this moment, and d(nu)/dt of the water in the axes of the body.
   Vector6d total_forces(const CraftState& state, const Vector6d& tau, const Vector6d& nu_r, double share) const;
   Vector3d water_turning(const CraftState& state) const;

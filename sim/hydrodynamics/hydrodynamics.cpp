@@ -35,7 +35,7 @@ void Hydrodynamics::add_body(Body& body, const BodyConfig& config) {
   if (!medium_.has_water()) return;
   double radius_m = std::numeric_limits<double>::infinity();
   if (config.hydrodynamics) {
-    if (config.hydrodynamics->model == "none") return;
+    if (config.hydrodynamics->model == HydrodynamicsConfig::Model::none) return;
     add_craft(body, *config.hydrodynamics);
   } else {
     radius_m = floaters_.add(body, config, gravity_mps2_, warnings_);

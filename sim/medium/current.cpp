@@ -29,6 +29,19 @@ Vector3d of_profile(const std::vector<CurrentLayerConfig>& rows, double depth_m)
   return a.velocity_mps + (b.velocity_mps - a.velocity_mps) * ((depth_m - a.depth_m) / (b.depth_m - a.depth_m));
 }
 
+/// Speed over the highest speed, at a distance from the middle over that of the highest speed.
+double vortex_speed(CurrentConfig::Core core, double ratio) {
+  // By its peak: the speed is highest where d/dr of (1 - e^(-a r^2)) / r is 0, at a = 1.25643.
+  constexpr double a = 1.2564312086261697;
+  switch (core) {
+    case CurrentConfig::Core::lamb_oseen:
+      return (1 + 0.5 / a) / ratio * -std::expm1(-a * ratio * ratio);
+    case CurrentConfig::Core::rankine:
+      break;
+  }
+  return std::min(ratio, 1 / ratio);
+}
+
 }  // namespace
 
 double power_law_speed_mps(double surface_speed_mps, double depth_m, double water_depth_m, double exponent) {
@@ -44,24 +57,33 @@ Current::Current(const std::vector<CurrentConfig>& entries, const std::vector<Ti
     : tides_(tides) {
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const CurrentConfig& entry = entries[i];
-    if (entry.type == "constant") {
-      constant_W_ += entry.velocity_mps;
-    } else if (entry.type == "gauss_markov") {
-      const Vector3d std(entry.std_mps, entry.direction_std_rad, entry.vertical_std_mps);
-      wandering_.push_back(
-          {entry.speed_mps, entry.direction_rad,
-           GaussMarkov(std, entry.correlation_time_s, Random(seed, "medium/current/" + std::to_string(i)))});
-    } else if (entry.type == "vortex") {
-      vortices_.push_back(
-          {{entry.center_m[0], entry.center_m[1]}, entry.peak_speed_mps, entry.core_radius_m, entry.core == "rankine"});
-    } else if (entry.type == "grid") {
-      try {
-        grids_.emplace_back(entry);
-      } catch (const TerrainError& error) {
-        throw_config_error(entry.place, "medium: current " + std::to_string(i + 1), error.what());
+    switch (entry.type) {
+      case CurrentConfig::Type::constant:
+        constant_W_ += entry.velocity_mps;
+        break;
+      case CurrentConfig::Type::profile:
+      case CurrentConfig::Type::power_law:
+      case CurrentConfig::Type::wind_driven:
+        by_depth_.push_back(entry);
+        break;
+      case CurrentConfig::Type::gauss_markov: {
+        const Vector3d std(entry.std_mps, entry.direction_std_rad, entry.vertical_std_mps);
+        wandering_.push_back(
+            {entry.speed_mps, entry.direction_rad,
+             GaussMarkov(std, entry.correlation_time_s, Random(seed, "medium/current/" + std::to_string(i)))});
+        break;
       }
-    } else {
-      by_depth_.push_back(entry);
+      case CurrentConfig::Type::vortex:
+        vortices_.push_back(
+            {{entry.center_m[0], entry.center_m[1]}, entry.peak_speed_mps, entry.core_radius_m, entry.core});
+        break;
+      case CurrentConfig::Type::grid:
+        try {
+          grids_.emplace_back(entry);
+        } catch (const TerrainError& error) {
+          throw_config_error(entry.place, "medium: current " + std::to_string(i + 1), error.what());
+        }
+        break;
     }
   }
   varies_ = !by_depth_.empty() || !vortices_.empty() || !grids_.empty();
@@ -85,22 +107,29 @@ void Current::advance_to(Time now) {
 Vector3d Current::local_W(double x_m, double y_m, double depth_m) const {
   Vector3d sum = Vector3d::Zero();
   for (const CurrentConfig& part : by_depth_) {
-    if (part.type == "profile")
-      sum += of_profile(part.profile, depth_m);
-    else if (part.type == "power_law")
-      sum += level(power_law_speed_mps(part.speed_mps, depth_m, part.water_depth_m, part.exponent), part.direction_rad);
-    else
-      sum += level(wind_driven_speed_mps(part.speed_mps, depth_m, part.reference_depth_m), part.direction_rad);
+    switch (part.type) {
+      case CurrentConfig::Type::profile:
+        sum += of_profile(part.profile, depth_m);
+        break;
+      case CurrentConfig::Type::power_law:
+        sum +=
+            level(power_law_speed_mps(part.speed_mps, depth_m, part.water_depth_m, part.exponent), part.direction_rad);
+        break;
+      case CurrentConfig::Type::wind_driven:
+        sum += level(wind_driven_speed_mps(part.speed_mps, depth_m, part.reference_depth_m), part.direction_rad);
+        break;
+      case CurrentConfig::Type::constant:
+      case CurrentConfig::Type::gauss_markov:
+      case CurrentConfig::Type::vortex:
+      case CurrentConfig::Type::grid:
+        break;  // none of by_depth_
+    }
   }
   for (const Vortex& vortex : vortices_) {
     const Eigen::Vector2d r = Eigen::Vector2d(x_m, y_m) - vortex.center_m;
     const double ratio = r.norm() / vortex.core_radius_m;
     if (ratio < 1e-9) continue;
-    // Lamb-Oseen by its peak: the speed is highest where d/dr of (1 - e^(-a r^2)) / r is 0, at a = 1.25643.
-    constexpr double a = 1.2564312086261697;
-    const double speed =
-        vortex.rankine ? std::min(ratio, 1 / ratio) : (1 + 0.5 / a) / ratio * -std::expm1(-a * ratio * ratio);
-    const double scale = vortex.peak_speed_mps * speed / (ratio * vortex.core_radius_m);
+    const double scale = vortex.peak_speed_mps * vortex_speed(vortex.core, ratio) / (ratio * vortex.core_radius_m);
     sum += Vector3d(-scale * r.y(), scale * r.x(), 0);
   }
   for (const CurrentGrid& grid : grids_) sum += grid.velocity_W(x_m, y_m);

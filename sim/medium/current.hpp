@@ -42,7 +42,7 @@ class Current {
   struct Vortex {
     Eigen::Vector2d center_m;
     double peak_speed_mps, core_radius_m;
-    bool rankine;
+    CurrentConfig::Core core;
   };
 
   Vector3d local_W(double x_m, double y_m, double depth_m) const;

@@ -103,7 +103,7 @@ std::vector<double> places_along(const std::vector<CsvRow>& rows, double CsvRow:
 
 }  // namespace
 
-CurrentGrid::CurrentGrid(const CurrentConfig& config) : edge_(config.outside == "edge") {
+CurrentGrid::CurrentGrid(const CurrentConfig& config) : edge_(config.outside == CurrentConfig::Outside::edge) {
   const std::filesystem::path folder(config.directory);
   std::string path = (folder / config.file).string();
   try {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <initializer_list>
 
+#include "sim/config/choice_keys.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace sim {
@@ -17,14 +17,6 @@ void read_pair(ParamReader& in, const char* key, std::vector<double>& value, con
   if (value.size() == 2) return;
   in.error(key, "'" + std::string(key) + "' must be 2 numbers, got " + std::to_string(value.size()));
   value = before;
-}
-
-/// A key that says nothing of this type would do nothing; it is most likely meant for another.
-void only_for(ParamReader& in, const std::string& type, std::initializer_list<const char*> keys,
-              std::initializer_list<const char*> types) {
-  for (const char* key : keys)
-    if (in.has(key) && std::find(types.begin(), types.end(), type) == types.end())
-      in.error(key, "'" + std::string(key) + "' is not for type " + type);
 }
 
 template <typename Layer>
@@ -96,15 +88,32 @@ void CurrentLayerConfig::read(ParamReader& in) {
 
 namespace {
 
-void check_keys_of_type(ParamReader& in, const std::string& type) {
-  only_for(in, type, {"velocity_mps"}, {"constant"});
-  only_for(in, type, {"profile"}, {"profile"});
-  only_for(in, type, {"speed_mps", "direction_deg"}, {"power_law", "wind_driven", "gauss_markov"});
-  only_for(in, type, {"water_depth_m", "exponent"}, {"power_law"});
-  only_for(in, type, {"reference_depth_m"}, {"wind_driven"});
-  only_for(in, type, {"std_mps", "direction_std_deg", "vertical_std_mps", "correlation_time_s"}, {"gauss_markov"});
-  only_for(in, type, {"center_m", "peak_speed_mps", "core_radius_m", "core"}, {"vortex"});
-  only_for(in, type, {"file", "east_file", "north_file", "map_origin_m", "outside"}, {"grid"});
+constexpr ChoiceWords<CurrentConfig::Type> current_type_words{{"constant", CurrentConfig::Type::constant},
+                                                              {"profile", CurrentConfig::Type::profile},
+                                                              {"power_law", CurrentConfig::Type::power_law},
+                                                              {"wind_driven", CurrentConfig::Type::wind_driven},
+                                                              {"gauss_markov", CurrentConfig::Type::gauss_markov},
+                                                              {"vortex", CurrentConfig::Type::vortex},
+                                                              {"grid", CurrentConfig::Type::grid}};
+
+ChoiceKeys keys_of_current(CurrentConfig::Type type) {
+  switch (type) {
+    case CurrentConfig::Type::constant:
+      return {"velocity_mps"};
+    case CurrentConfig::Type::profile:
+      return {"profile"};
+    case CurrentConfig::Type::power_law:
+      return {"speed_mps", "direction_deg", "water_depth_m", "exponent"};
+    case CurrentConfig::Type::wind_driven:
+      return {"speed_mps", "direction_deg", "reference_depth_m"};
+    case CurrentConfig::Type::gauss_markov:
+      return {"speed_mps", "direction_deg", "std_mps", "direction_std_deg", "vertical_std_mps", "correlation_time_s"};
+    case CurrentConfig::Type::vortex:
+      return {"center_m", "peak_speed_mps", "core_radius_m", "core"};
+    case CurrentConfig::Type::grid:
+      break;
+  }
+  return {"file", "east_file", "north_file", "map_origin_m", "outside"};
 }
 
 }  // namespace
@@ -112,8 +121,7 @@ void check_keys_of_type(ParamReader& in, const std::string& type) {
 void CurrentConfig::read(ParamReader& in) {
   keep_place(in, place);
   if (place.file) directory = std::filesystem::path(*place.file).parent_path().string();
-  in.read_choice("type", type, {"constant", "profile", "power_law", "wind_driven", "gauss_markov", "vortex", "grid"},
-                 "how this part of the current flows");
+  in.read_choice("type", type, current_type_words, "how this part of the current flows");
   in.read("velocity_mps", velocity_mps, between(-100, 100), "constant: east, north, up");
   in.read_list("profile", profile, "row", "profile: velocities by depth, linear in between");
   in.read("speed_mps", speed_mps, between(0, 100), "power_law, wind_driven: at the surface; gauss_markov: mean");
@@ -128,19 +136,21 @@ void CurrentConfig::read(ParamReader& in) {
   read_pair(in, "center_m", center_m, "vortex: east, north");
   in.read("peak_speed_mps", peak_speed_mps, between(-100, 100), "vortex: positive turns counter-clockwise");
   in.read("core_radius_m", core_radius_m, above_to(0, 1e7), "vortex: where it is fastest");
-  in.read_choice("core", core, {"lamb_oseen", "rankine"}, "vortex: how the speed goes with the radius");
+  in.read_choice("core", core, {{"lamb_oseen", Core::lamb_oseen}, {"rankine", Core::rankine}},
+                 "vortex: how the speed goes with the radius");
   in.read_path("file", file, PathUse::read,
                "grid: CSV with columns x_m, y_m, east_mps, north_mps; relative to this file");
   in.read_path("east_file", east_file, PathUse::read, "grid: ESRI ASCII grid of the velocity to the east, m/s");
   in.read_path("north_file", north_file, PathUse::read, "grid: ESRI ASCII grid of the velocity to the north, m/s");
   read_pair(in, "map_origin_m", map_origin_m, "grid: where the origin of the world lies in the files");
-  in.read_choice("outside", outside, {"zero", "edge"}, "grid: the current beyond its border");
+  in.read_choice("outside", outside, {{"zero", Outside::zero}, {"edge", Outside::edge}},
+                 "grid: the current beyond its border");
   if (in.describing()) return;
-  check_keys_of_type(in, type);
+  refuse_keys_of_others(in, "type", current_type_words, type, keys_of_current);
   check_depths(in, profile);
-  if (type == "profile" && profile.empty()) in.error("current of type profile needs the key 'profile'");
+  if (type == Type::profile && profile.empty()) in.error("current of type profile needs the key 'profile'");
   const bool pair = !east_file.empty() && !north_file.empty(), half = east_file.empty() != north_file.empty();
-  if (type == "grid" && (half || file.empty() != pair))
+  if (type == Type::grid && (half || file.empty() != pair))
     in.error("current of type grid needs either 'file' or both 'east_file' and 'north_file'");
 }
 
@@ -197,14 +207,24 @@ Vector3d WindConfig::mean_mps() const {
 
 namespace {
 
+constexpr ChoiceWords<WavesConfig::Type> waves_type_words{{"regular", WavesConfig::Type::regular},
+                                                          {"jonswap", WavesConfig::Type::jonswap},
+                                                          {"pierson_moskowitz", WavesConfig::Type::pierson_moskowitz}};
+
+ChoiceKeys keys_of_waves(WavesConfig::Type type) {
+  switch (type) {
+    case WavesConfig::Type::regular:
+      return {"height_m", "period_s", "phase_deg"};
+    case WavesConfig::Type::jonswap:
+      return {"hs_m", "tp_s", "sea_state", "components", "cutoff", "spreading", "gamma"};
+    case WavesConfig::Type::pierson_moskowitz:
+      break;
+  }
+  return {"hs_m", "tp_s", "sea_state", "components", "cutoff", "spreading"};
+}
+
 void check_keys_of_waves(ParamReader& in, WavesConfig::Type type) {
-  const std::string word = type == WavesConfig::Type::regular   ? "regular"
-                           : type == WavesConfig::Type::jonswap ? "jonswap"
-                                                                : "pierson_moskowitz";
-  only_for(in, word, {"height_m", "period_s", "phase_deg"}, {"regular"});
-  only_for(in, word, {"hs_m", "tp_s", "sea_state", "components", "cutoff", "spreading"},
-           {"jonswap", "pierson_moskowitz"});
-  only_for(in, word, {"gamma"}, {"jonswap"});
+  refuse_keys_of_others(in, "type", waves_type_words, type, keys_of_waves);
   if (in.has("sea_state") && (in.has("hs_m") || in.has("tp_s")))
     in.error("sea_state", "'sea_state' says height and period; leave 'hs_m' and 'tp_s' out");
 }
@@ -222,10 +242,7 @@ void take_sea_state(WavesConfig& waves) {
 
 void WavesConfig::read(ParamReader& in) {
   keep_place(in, place);
-  in.read_choice(
-      "type", type,
-      {{"regular", Type::regular}, {"jonswap", Type::jonswap}, {"pierson_moskowitz", Type::pierson_moskowitz}},
-      "one wave, or a sea by its spectrum");
+  in.read_choice("type", type, waves_type_words, "one wave, or a sea by its spectrum");
   in.read("height_m", height_m, between(0, 40), "regular: crest over trough");
   in.read("period_s", period_s, between(0.2, 60), "regular");
   in.read_deg("phase_deg", phase_rad, between(-360, 360), "regular: at the origin at time 0; 0: a crest");

@@ -48,7 +48,14 @@ struct CurrentLayerConfig {
 
 /// An entry of `current:` of a medium.
 struct CurrentConfig {
-  std::string type = "constant";             ///< constant, profile, power_law, wind_driven, gauss_markov, vortex, grid
+  enum class Type { constant, profile, power_law, wind_driven, gauss_markov, vortex, grid };
+  enum class Core { lamb_oseen, rankine };
+  enum class Outside {
+    zero,  ///< nothing flows beyond the border
+    edge,  ///< it flows there as at the border
+  };
+
+  Type type = Type::constant;
   Vector3d velocity_mps = Vector3d::Zero();  ///< constant: east, north, up
   std::vector<CurrentLayerConfig> profile;   ///< profile
   double speed_mps = 0;                      ///< power_law, wind_driven: at the surface; gauss_markov: mean
@@ -63,11 +70,11 @@ struct CurrentConfig {
   std::vector<double> center_m{0, 0};        ///< vortex
   double peak_speed_mps = 0.5;               ///< vortex: counter-clockwise when positive
   double core_radius_m = 10;                 ///< vortex: where the speed is highest
-  std::string core = "lamb_oseen";           ///< vortex: lamb_oseen, rankine
+  Core core = Core::lamb_oseen;              ///< vortex
   std::string file;                          ///< grid: CSV
   std::string east_file, north_file;         ///< grid: ESRI ASCII grids
   std::vector<double> map_origin_m{0, 0};    ///< grid: place in the file of the world's origin
-  std::string outside = "zero";              ///< grid: zero, edge
+  Outside outside = Outside::zero;           ///< grid
 
   SourcePlace place;
   std::string directory;  ///< of the YAML file

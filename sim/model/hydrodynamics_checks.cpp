@@ -105,7 +105,7 @@ void check_derivatives(const HydrodynamicsConfig& config, ParamReader& in) {
 }  // namespace
 
 void check_coefficients(const HydrodynamicsConfig& config, ParamReader& in) {
-  if (in.describing() || config.model != "coefficients" || !(config.mass_kg > 0)) return;
+  if (in.describing() || config.model != HydrodynamicsConfig::Model::coefficients || !(config.mass_kg > 0)) return;
   check_damping("linear_damping", config.linear_damping, in);
   check_damping("quadratic_damping", config.quadratic_damping, in);
   check_damping_couplings(config, in);
@@ -120,7 +120,8 @@ std::vector<std::string> doubts_about(const HydrodynamicsConfig& config, const s
   const double above = config.center_of_buoyancy_m.z() - config.center_of_mass_m.z();
   if (!config.waterline && above > 0)
     doubts.push_back(config.place.text() + ": " + who + ": its centre of mass lies " + number_text(above) +
-                     " m above its centre of buoyancy, so that it turns over; is 'frame' " + config.frame + " right?");
+                     " m above its centre of buoyancy, so that it turns over; is 'frame' " +
+                     std::string(word_of(axes_frame_words, config.frame)) + " right?");
   const Eigen::SelfAdjointEigenSolver<Matrix3d> principal(config.inertia_kgm2);
   const Vector3d moments = principal.eigenvalues();  // growing
   if (moments[2] > (1 + 1e-9) * (moments[0] + moments[1]))

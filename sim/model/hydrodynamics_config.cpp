@@ -36,6 +36,8 @@ void read_matrix(ParamReader& in, const char* key, Eigen::Matrix<double, n, n>& 
   }
 }
 
+enum class InertiaAbout { center_of_mass, origin };
+
 /// `added_mass_of_spheroid:`
 struct SpheroidConfig {
   double half_length_m = 1, radius_m = 0.1, density_kgpm3 = 1025;
@@ -145,28 +147,32 @@ void WindageConfig::read(ParamReader& in) {
 
 void PublishedQuirks::read(ParamReader& in) {
   in.read_choice(
-      "added_mass_coriolis", added_mass_coriolis, {"full", "without_munk", "none"},
+      "added_mass_coriolis", added_mass_coriolis,
+      {{"full", Coriolis::full}, {"without_munk", Coriolis::without_munk}, {"none", Coriolis::none}},
       "without_munk: added mass couples sway and heave with no turning, as MSS remus100; none: to see the difference");
-  in.read_choice("current", current, {"full", "yaw_only"},
+  in.read_choice("current", current, {{"full", Current::full}, {"yaw_only", Current::yaw_only}},
                  "yaw_only: the current is turned into the body by its yaw alone, as MSS does");
   in.read("surge_damping_fade_spm", surge_damping_fade_spm, at_least(0),
           "linear surge damping falls with exp(-this times speed)");
-  in.read_choice("fade_speed", fade_speed, {"water", "ground"}, "ground: sqrt(u + v^2) over ground, as MSS remus100");
+  in.read_choice("fade_speed", fade_speed, {{"water", FadeSpeed::water}, {"ground", FadeSpeed::ground}},
+                 "ground: sqrt(u + v^2) over ground, as MSS remus100");
 }
 
 void HydrodynamicsConfig::read(ParamReader& in) {
   if (in.node() != nullptr) place = in.node()->place;
-  in.read_choice("model", model, {"coefficients", "none"},
+  in.read_choice("model", model, {{"coefficients", Model::coefficients}, {"none", Model::none}},
                  "coefficients: as published for this vehicle; none: water does nothing to this body");
-  in.read_choice("frame", frame, {"flu", "frd"}, "axes of the numbers: frd as papers print them, flu as bodies have");
-  if (model == "coefficients") in.require("mass_kg");
+  in.read_choice("frame", frame, axes_frame_words, "axes of the numbers: frd as papers print them, flu as bodies have");
+  if (model == Model::coefficients) in.require("mass_kg");
   in.read("mass_kg", mass_kg, between(1e-9, 1e12), "of the body, instead of that of its parts");
   in.read("center_of_mass_m", center_of_mass_m, between(-1000, 1000), "in the body's frame");
-  if (model == "coefficients") in.require("inertia_kgm2");
+  if (model == Model::coefficients) in.require("inertia_kgm2");
   read_matrix<3>(in, "inertia_kgm2", inertia_kgm2,
                  "3 numbers (diagonal) or 9, row by row; products of inertia negative");
-  std::string about = "center_of_mass";
-  in.read_choice("inertia_about", about, {"center_of_mass", "origin"}, "point that the inertia is about");
+  InertiaAbout about = InertiaAbout::center_of_mass;
+  in.read_choice("inertia_about", about,
+                 {{"center_of_mass", InertiaAbout::center_of_mass}, {"origin", InertiaAbout::origin}},
+                 "point that the inertia is about");
   in.read("weight_N", weight_N, above(0), "instead of mass times gravity");
   in.read("buoyancy_N", buoyancy_N, at_least(0), "of the whole vehicle under water; absent: of volume_m3");
   in.read("volume_m3", volume_m3, above(0), "of displaced water; absent: it floats in balance");
@@ -183,7 +189,7 @@ void HydrodynamicsConfig::read(ParamReader& in) {
     added_mass = spheroid_added_mass(spheroid->half_length_m, spheroid->radius_m, spheroid->density_kgpm3).asDiagonal();
   read_matrix<6>(in, "linear_damping", linear_damping, "6 or 36 numbers; positive brakes");
   read_matrix<6>(in, "quadratic_damping", quadratic_damping, "6 or 36 numbers, times |speed| speed; positive brakes");
-  if (frame == "flu") {
+  if (frame == AxesFrame::flu) {
     const Matrix6d P = flip.asDiagonal();
     for (Matrix6d* matrix : {&added_mass, &linear_damping, &quadratic_damping}) *matrix = (P * *matrix * P).eval();
     const Matrix3d P3 = flip.head<3>().asDiagonal();
@@ -210,7 +216,7 @@ void HydrodynamicsConfig::read(ParamReader& in) {
                              "'" + entry.key + "' must be a number, got " + shown(entry.value));
       continue;
     }
-    if (frame == "flu") {
+    if (frame == AxesFrame::flu) {
       double sign = flip[term.row];
       if (!term.absolute) sign *= flip[term.first];
       if (term.second >= 0) sign *= flip[term.second];
@@ -224,12 +230,12 @@ void HydrodynamicsConfig::read(ParamReader& in) {
   in.read("cross_flow", cross_flow, "drag of a slender hull across its axis");
   in.read("hull_lift", hull_lift, "lift and drag of the hull by its angle of attack");
   in.read("waterline", waterline, "of a surface craft: restoring forces against the surface");
-  if (frame == "flu" && waterline) {
+  if (frame == AxesFrame::flu && waterline) {
     waterline->load_at_m = to_frd(waterline->load_at_m);
   }
   in.read("windage", windage, "what the wind does to the part over the water");
   in.read("quirks", quirks, "what some published models do and the physics does not");
-  if (about == "origin") {
+  if (about == InertiaAbout::origin) {
     const Vector3d& r = center_of_mass_m;
     inertia_kgm2 -= mass_kg * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
   }

@@ -8,12 +8,18 @@
 #include <vector>
 
 #include "sim/base/math.hpp"
+#include "sim/config/choice_words.hpp"
 #include "sim/config/param_reader.hpp"
 
 namespace sim {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// Axes of numbers: forward, left, up as bodies have them, or forward, right, down as papers print them.
+enum class AxesFrame { flu, frd };
+
+inline constexpr ChoiceWords<AxesFrame> axes_frame_words{{"flu", AxesFrame::flu}, {"frd", AxesFrame::frd}};
 
 /// The letters of the names of derivatives: forces and moments, and velocities (SNAME).
 inline constexpr std::string_view derivative_rows = "XYZKMN";
@@ -79,11 +85,24 @@ struct WindageConfig {
 
 /// What some published models do and the physics does not.
 struct PublishedQuirks {
-  /// full; without_munk: added mass couples no sway, heave and turning; none: no Coriolis forces of added mass.
-  std::string added_mass_coriolis = "full";
-  std::string current = "full";       ///< full; yaw_only: the current is turned into the body by its yaw alone
+  enum class Coriolis {
+    full,
+    without_munk,  ///< added mass couples no sway, heave and turning
+    none,          ///< no Coriolis forces of added mass
+  };
+  enum class Current {
+    full,
+    yaw_only,  ///< the current is turned into the body by its yaw alone
+  };
+  enum class FadeSpeed {
+    water,
+    ground,  ///< sqrt(u + v^2) over ground, as MSS has it
+  };
+
+  Coriolis added_mass_coriolis = Coriolis::full;
+  Current current = Current::full;
   double surge_damping_fade_spm = 0;  ///< linear surge damping falls with exp(-this * speed)
-  std::string fade_speed = "water";   ///< water; ground: sqrt(u + v^2) over ground, as MSS has it
+  FadeSpeed fade_speed = FadeSpeed::water;
   void read(ParamReader& in);
 };
 
@@ -92,8 +111,13 @@ struct PublishedQuirks {
 ///
 /// Whatever `frame` the file has, the numbers here are in forward-right-down.
 struct HydrodynamicsConfig {
-  std::string model = "coefficients";  ///< coefficients; none: water does nothing to this body
-  std::string frame = "flu";
+  enum class Model {
+    coefficients,
+    none,  ///< water does nothing to this body
+  };
+
+  Model model = Model::coefficients;
+  AxesFrame frame = AxesFrame::flu;
   double mass_kg = 0;
   Vector3d center_of_mass_m = Vector3d::Zero();
   Matrix3d inertia_kgm2 = Matrix3d::Zero();  ///< about the centre of mass

@@ -14,13 +14,13 @@ constexpr std::string_view keys_of_solids[] = {"mass_kg", "displaces", "drag_coe
 
 const ShapeInfo& shape_info(PartShape shape) {
   // Drag: Hoerner, Fluid-Dynamic Drag (1965), chapter 3: sphere and cylinders below the critical Reynolds number, cube.
-  static const ShapeInfo box{"box", {"size_m"}, {}, true, false, Vector3d::Constant(1.05)};
-  static const ShapeInfo sphere{"sphere", {"radius_m"}, {}, true, true, Vector3d::Constant(0.47)};
-  static const ShapeInfo capsule{"capsule", {"radius_m", "length_m"}, {}, true, true, {1.1, 1.1, 0.3}};
-  static const ShapeInfo cylinder{"cylinder", {"radius_m", "length_m"}, {}, true, true, {1.1, 1.1, 0.8}};
-  static const ShapeInfo plane{"plane", {}, {}, false, false, Vector3d::Zero()};
-  static const ShapeInfo mesh{"mesh", {"mesh", "scale"}, "mesh", true, false, Vector3d::Ones()};
-  static const ShapeInfo terrain{"terrain", {"terrain"}, "terrain", false, false, Vector3d::Zero()};
+  static const ShapeInfo box{{"size_m"}, {}, true, false, Vector3d::Constant(1.05)};
+  static const ShapeInfo sphere{{"radius_m"}, {}, true, true, Vector3d::Constant(0.47)};
+  static const ShapeInfo capsule{{"radius_m", "length_m"}, {}, true, true, {1.1, 1.1, 0.3}};
+  static const ShapeInfo cylinder{{"radius_m", "length_m"}, {}, true, true, {1.1, 1.1, 0.8}};
+  static const ShapeInfo plane{{}, {}, false, false, Vector3d::Zero()};
+  static const ShapeInfo mesh{{"mesh", "scale"}, "mesh", true, false, Vector3d::Ones()};
+  static const ShapeInfo terrain{{"terrain"}, "terrain", false, false, Vector3d::Zero()};
   switch (shape) {
     case PartShape::box:
       return box;
@@ -38,17 +38,6 @@ const ShapeInfo& shape_info(PartShape shape) {
       break;
   }
   return terrain;
-}
-
-const std::vector<std::pair<std::string, PartShape>>& shape_words() {
-  static const std::vector<std::pair<std::string, PartShape>> words = [] {
-    std::vector<std::pair<std::string, PartShape>> pairs;
-    for (const PartShape shape : {PartShape::box, PartShape::sphere, PartShape::capsule, PartShape::cylinder,
-                                  PartShape::plane, PartShape::mesh, PartShape::terrain})
-      pairs.emplace_back(shape_info(shape).word, shape);
-    return pairs;
-  }();
-  return words;
 }
 
 const std::vector<const char*>& keys_of_some_shapes() {

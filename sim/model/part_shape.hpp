@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "sim/base/math.hpp"
+#include "sim/config/choice_words.hpp"
 
 namespace sim {
 
@@ -15,9 +14,13 @@ namespace sim {
 /// (sim/hydrodynamics/immersed_piece.cpp), wheels on the ground, outlines in plots.
 enum class PartShape { box, sphere, capsule, cylinder, plane, mesh, terrain };
 
+inline constexpr ChoiceWords<PartShape> part_shape_words{
+    {"box", PartShape::box},           {"sphere", PartShape::sphere}, {"capsule", PartShape::capsule},
+    {"cylinder", PartShape::cylinder}, {"plane", PartShape::plane},   {"mesh", PartShape::mesh},
+    {"terrain", PartShape::terrain}};
+
 /// What is known of a shape without its sizes.
 struct ShapeInfo {
-  std::string_view word;               ///< in YAML
   std::vector<std::string_view> keys;  ///< of a part of this shape alone
   std::string_view required_key;       ///< one of `keys`; empty: all have defaults
   bool solid;                          ///< encloses a volume: has mass, displaces water and may move
@@ -26,9 +29,6 @@ struct ShapeInfo {
 };
 
 const ShapeInfo& shape_info(PartShape shape);
-
-/// The words of YAML.
-const std::vector<std::pair<std::string, PartShape>>& shape_words();
 
 /// Keys of parts that make sense for some shapes only, in the order in which mistakes are reported.
 const std::vector<const char*>& keys_of_some_shapes();

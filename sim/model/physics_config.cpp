@@ -16,7 +16,7 @@ void PhysicsConfig::read(ParamReader& in) {
   if (std::abs(step_s * 1e6 - std::round(step_s * 1e6)) > 1e-6 || step_s < 1e-6)
     in.error("step_s", "'step_s' must be a whole number of microseconds, got " + number_text(step_s) + " s");
   in.read("gravity_mps2", gravity_mps2, any_number(), "gravity, downwards");
-  in.read_choice("solver", solver, {"auto", "step", "quick"},
+  in.read_choice("solver", solver, solver_words,
                  "step: exact; quick: iterative; auto: quick for large islands, step for the others");
   in.read("quick_above_rows", quick_above_rows, at_least(0),
           "auto: islands with more constraint rows are stepped by quick");
@@ -28,8 +28,8 @@ void PhysicsConfig::read(ParamReader& in) {
   in.read("contact_surface_layer_m", contact_surface_layer_m, between(0, 1),
           "depth to which parts at rest sink in, which keeps contacts from flickering");
   in.read("max_contacts_per_pair", max_contacts_per_pair, between(1, 256), "contact points of two parts");
-  in.read_choice("space", space, {"sap", "quadtree", "hash", "simple"}, "how parts near each other are found");
-  in.read_choice("rays", rays, {"embree", "ode"},
+  in.read_choice("space", space, space_words, "how parts near each other are found");
+  in.read_choice("rays", rays, ray_library_words,
                  "how rays find parts: embree is fast; ode, one ray at a time, is there to compare");
   in.read("max_speed_mps", max_speed_mps, above(0), "a body faster than this stops the run");
   in.read("max_distance_m", max_distance_m, above(0), "a body farther from the origin than this stops the run");
@@ -62,8 +62,7 @@ Rule part_length() {
 
 /// A key of another shape is a mistake: it would do nothing.
 void check_keys_of_shape(ParamReader& in, PartShape shape) {
-  const ShapeInfo& info = shape_info(shape);
-  const std::string word(info.word);
+  const std::string word(word_of(part_shape_words, shape));
   for (const char* key : keys_of_some_shapes())
     if (in.has(key) && !has_key(shape, key)) in.error(key, std::string("'") + key + "' is not for shape " + word);
 }
@@ -76,7 +75,7 @@ void PartConfig::read(ParamReader& in) {
     if (place.file) directory = std::filesystem::path(*place.file).parent_path().string();
   }
   in.read("name", name, "name of the part");
-  in.read_choice("shape", shape, shape_words(), "shape of the part");
+  in.read_choice("shape", shape, part_shape_words, "shape of the part");
   in.read("size_m", size_m, part_length(), "box: lengths along x, y and z");
   in.read("radius_m", radius_m, part_length(), "sphere, capsule, cylinder");
   in.read("length_m", length_m, part_length(), "capsule (without its caps) and cylinder: length along z");
@@ -171,12 +170,13 @@ void JointAxisConfig::read(ParamReader& in) {
 namespace {
 
 void check_axes(ParamReader& in, const JointConfig& joint) {
-  const bool two_axes = joint.type == "hinge2" || joint.type == "universal";
-  if (two_axes &&
+  const JointInfo info = joint_info(joint.type);
+  const std::string word(word_of(joint_type_words, joint.type));
+  if (info.second_axis &&
       joint.axis1.axis.cross(joint.axis2.axis).norm() < 1e-6 * joint.axis1.axis.norm() * joint.axis2.axis.norm())
-    in.error("axis2", "the axes of a " + joint.type + " must not be parallel");
-  if (!two_axes && in.has("axis2")) in.error("axis2", "a " + joint.type + " has no second axis");
-  if (joint.type == "slider") return;
+    in.error("axis2", "the axes of a " + word + " must not be parallel");
+  if (!info.second_axis && in.has("axis2")) in.error("axis2", "a " + word + " has no second axis");
+  if (!info.turns) return;
   // ODE measures angles from -pi to pi; a stop beyond would never act.
   for (const auto& stop : {joint.axis1.low_stop, joint.axis1.high_stop, joint.axis2.low_stop, joint.axis2.high_stop})
     if (stop && std::abs(*stop) > std::numbers::pi)
@@ -188,7 +188,7 @@ void check_axes(ParamReader& in, const JointConfig& joint) {
 void JointConfig::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "name of the joint");
-  in.read_choice("type", type, {"fixed", "ball", "hinge", "hinge2", "universal", "slider"}, "kind of joint");
+  in.read_choice("type", type, joint_type_words, "kind of joint");
   in.require("bodies");
   in.read_references("bodies", bodies, "body",
                      "two bodies, or a body and world; the joint counts how the second moves on the first");
@@ -196,7 +196,7 @@ void JointConfig::read(ParamReader& in) {
     in.error("bodies", "'bodies' must name two bodies, got " + std::to_string(bodies.size()));
   else if (bodies.size() == 2 && bodies[0] == bodies[1])
     in.error("bodies", "a joint needs two different bodies");
-  else if (bodies.size() == 2 && (bodies[0] == "world" || (type == "hinge2" && bodies[1] == "world")))
+  else if (bodies.size() == 2 && (bodies[0] == "world" || (type == JointType::hinge2 && bodies[1] == "world")))
     in.error("bodies", bodies[0] == "world" ? "'world' can only be the second body" : "a hinge2 cannot join the world");
   std::optional<Vector3d> anchor;
   in.read("anchor_m", anchor, any_number(),
@@ -207,8 +207,9 @@ void JointConfig::read(ParamReader& in) {
   axis1.read(in);
   in.read("axis2", axis2, "second axis of hinge2 (the wheel's) and universal: the same keys");
   in.read("motor", motor, "ball: it has motor and stops about x, y and z of the vehicle's frame; others have theirs");
-  if (!in.describing() && motor && type != "ball")
-    in.error("motor", "'motor' is for a ball; the axes of a " + type + " have theirs without it");
+  if (!in.describing() && motor && type != JointType::ball)
+    in.error("motor", "'motor' is for a ball; the axes of a " + std::string(word_of(joint_type_words, type)) +
+                          " have theirs without it");
   if (!in.describing()) check_axes(in, *this);
 }
 

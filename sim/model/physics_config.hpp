@@ -8,26 +8,35 @@
 #include "sim/base/math.hpp"
 #include "sim/config/param_reader.hpp"
 #include "sim/model/hydrodynamics_config.hpp"
+#include "sim/model/joint_type.hpp"
 #include "sim/model/part_shape.hpp"
 #include "sim/scene/material.hpp"
+#include "sim/scene/ray_library.hpp"
 #include "sim/terrain/terrain_config.hpp"
 
 namespace sim {
 
 /// `physics:` of a world.
 struct PhysicsConfig {
+  enum class Solver { automatic, step, quick };
+  static constexpr ChoiceWords<Solver> solver_words{
+      {"auto", Solver::automatic}, {"step", Solver::step}, {"quick", Solver::quick}};
+  enum class Space { sap, quadtree, hash, simple };
+  static constexpr ChoiceWords<Space> space_words{
+      {"sap", Space::sap}, {"quadtree", Space::quadtree}, {"hash", Space::hash}, {"simple", Space::simple}};
+
   double step_s = 0.01;           ///< a whole number of microseconds
   double gravity_mps2 = 9.80665;  ///< downwards (ISO 80000-3 standard gravity)
-  std::string solver = "auto";    ///< auto, step, quick
-  int quick_above_rows = 100;     ///< auto: QuickStep for islands with more constraint rows
+  Solver solver = Solver::automatic;
+  int quick_above_rows = 100;  ///< auto: QuickStep for islands with more constraint rows
   int quick_iterations = 20;
   double erp = 0.2;
   double cfm = 1e-9;
   double contact_max_correcting_velocity_mps = 1.0;
   double contact_surface_layer_m = 0.0005;
   int max_contacts_per_pair = 8;
-  std::string space = "sap";    ///< sap, quadtree, hash, simple
-  std::string rays = "embree";  ///< embree, ode: which library follows rays
+  Space space = Space::sap;  ///< finds parts near each other
+  RayLibrary rays = RayLibrary::embree;
   double max_speed_mps = 1000;  ///< a body faster than this has exploded
   double max_distance_m = 1e7;  ///< a body farther from the origin than this has exploded
 
@@ -112,7 +121,7 @@ struct JointAxisConfig {
 
 struct JointConfig {
   std::string name;
-  std::string type = "hinge";            ///< fixed, ball, hinge, hinge2, universal, slider
+  JointType type = JointType::hinge;
   std::vector<std::string> bodies;       ///< two names; the second may be `world`
   Vector3d anchor_m = Vector3d::Zero();  ///< in the vehicle frame
   bool anchored = false;                 ///< `anchor_m` is in the file; else it is the origin of the second body

@@ -6,7 +6,10 @@
 namespace sim {
 
 void PlacementConfig::read(ParamReader& in) {
-  in.read_choice("pattern", pattern, {"grid", "line", "circle", "random"}, "how the instances are laid out");
+  in.read_choice(
+      "pattern", pattern,
+      {{"grid", Pattern::grid}, {"line", Pattern::line}, {"circle", Pattern::circle}, {"random", Pattern::random}},
+      "how the instances are laid out");
   in.read("spacing_m", spacing_m, above(0), "grid and line: distance between neighbours");
   in.read_or_word("columns", columns, at_least(1), {"auto"}, "grid: instances along x; auto: as square as possible");
   in.read("radius_m", radius_m, above(0), "circle: its radius; instances face outwards");
@@ -17,22 +20,30 @@ void PlacementConfig::read(ParamReader& in) {
 
 namespace {
 
-Vector3d place_of(const PlacementConfig& config, int index, int count, Random& random) {
-  if (config.pattern == "line") return {(index - 0.5 * (count - 1)) * config.spacing_m, 0, 0};
-  if (config.pattern == "circle") {
-    const double angle = 2 * std::numbers::pi * index / count;
-    return {config.radius_m * std::cos(angle), config.radius_m * std::sin(angle), 0};
-  }
-  if (config.pattern == "random") {
-    Vector3d p;
-    for (int i = 0; i < 3; ++i) p[i] = (random.uniform() - 0.5) * config.area_m[i];
-    return p;
-  }
+Vector3d place_in_grid(const PlacementConfig& config, int index, int count) {
   const int columns =
       config.columns > 0 ? config.columns : static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count))));
   const int rows = (count + columns - 1) / columns;
   return {(index % columns - 0.5 * (columns - 1)) * config.spacing_m,
           (index / columns - 0.5 * (rows - 1)) * config.spacing_m, 0};
+}
+
+Vector3d place_of(const PlacementConfig& config, int index, int count, Random& random) {
+  switch (config.pattern) {
+    case PlacementConfig::Pattern::grid:
+      return place_in_grid(config, index, count);
+    case PlacementConfig::Pattern::line:
+      return {(index - 0.5 * (count - 1)) * config.spacing_m, 0, 0};
+    case PlacementConfig::Pattern::circle: {
+      const double angle = 2 * std::numbers::pi * index / count;
+      return {config.radius_m * std::cos(angle), config.radius_m * std::sin(angle), 0};
+    }
+    case PlacementConfig::Pattern::random:
+      break;
+  }
+  Vector3d p;
+  for (int i = 0; i < 3; ++i) p[i] = (random.uniform() - 0.5) * config.area_m[i];
+  return p;
 }
 
 }  // namespace
@@ -47,7 +58,7 @@ std::vector<Pose> place_instances(const PlacementConfig& config, int count, cons
     Vector3d p = place_of(config, i, count, random);
     p.x() += (2 * random.uniform() - 1) * config.jitter_m;
     p.y() += (2 * random.uniform() - 1) * config.jitter_m;
-    double yaw = config.pattern == "circle" ? std::atan2(p.y(), p.x()) : 0.0;
+    double yaw = config.pattern == PlacementConfig::Pattern::circle ? std::atan2(p.y(), p.x()) : 0.0;
     if (config.random_yaw) yaw = (2 * random.uniform() - 1) * std::numbers::pi;
     poses.push_back(X_WE * make_pose(p, {0, 0, yaw}));
   }

@@ -11,12 +11,14 @@ namespace sim {
 
 /// Where the instances of an entry with `count` stand, relative to the entry's own pose.
 struct PlacementConfig {
-  std::string pattern = "grid";  ///< grid, line, circle, random
-  double spacing_m = 2.0;        ///< grid, line
-  int columns = 0;               ///< grid: along x; 0: as square as possible
-  double radius_m = 10.0;        ///< circle
-  Vector3d area_m{10, 10, 0};    ///< random: size of the box that places are drawn from
-  double jitter_m = 0;           ///< uniform in x and y, within +- this
+  enum class Pattern { grid, line, circle, random };
+
+  Pattern pattern = Pattern::grid;
+  double spacing_m = 2.0;      ///< grid, line
+  int columns = 0;             ///< grid: along x; 0: as square as possible
+  double radius_m = 10.0;      ///< circle
+  Vector3d area_m{10, 10, 0};  ///< random: size of the box that places are drawn from
+  double jitter_m = 0;         ///< uniform in x and y, within +- this
   bool random_yaw = false;
 
   void read(ParamReader& in);

@@ -13,19 +13,25 @@
 namespace sim {
 namespace {
 
-SpaceHandle make_space(const std::string& kind) {
-  dSpaceID space = nullptr;
-  if (kind == "simple") {
-    space = dSimpleSpaceCreate(nullptr);
-  } else if (kind == "hash") {
-    space = dHashSpaceCreate(nullptr);
-  } else if (kind == "quadtree") {
-    // What lies outside is found too, only slower.
-    const dVector3 center = {0, 0, 0, 0}, extents = {1024, 1024, 1024, 0};
-    space = dQuadTreeSpaceCreate(nullptr, center, extents, 7);
-  } else {
-    space = dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);
+dSpaceID create_space(PhysicsConfig::Space kind) {
+  switch (kind) {
+    case PhysicsConfig::Space::sap:
+      return dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);
+    case PhysicsConfig::Space::quadtree: {
+      // What lies outside is found too, only slower.
+      const dVector3 center = {0, 0, 0, 0}, extents = {1024, 1024, 1024, 0};
+      return dQuadTreeSpaceCreate(nullptr, center, extents, 7);
+    }
+    case PhysicsConfig::Space::hash:
+      return dHashSpaceCreate(nullptr);
+    case PhysicsConfig::Space::simple:
+      break;
   }
+  return dSimpleSpaceCreate(nullptr);
+}
+
+SpaceHandle make_space(PhysicsConfig::Space kind) {
+  const dSpaceID space = create_space(kind);
   dSpaceSetCleanup(space, 0);  // geoms have owners of their own
   return SpaceHandle(space);
 }
@@ -48,7 +54,7 @@ void Collider::set_gravity(double gravity_mps2) {
 
 void Collider::add_group(int number, bool self_collision) {
   Group& group = slot(groups_, number);
-  group.space = make_space("simple");
+  group.space = make_space(PhysicsConfig::Space::simple);
   group.self_collision = self_collision;
   dSpaceSetSublevel(group.space.get(), 1);
   dGeomSetCategoryBits(reinterpret_cast<dGeomID>(group.space.get()), 0);

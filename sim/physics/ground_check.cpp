@@ -26,28 +26,33 @@ struct Stander {
 std::vector<std::string> complaints(const CollisionTerrain& ground, const Stander& it) {
   const double cell_m = ground.terrain.grid.cell_m;
   std::vector<std::string> found;
-  if (ground.collision == "facets") {
-    if (it.wheel && cell_m < 2 * it.size_m.x())
-      found.push_back("facets of " + number_text(cell_m) + " m are smaller than a wheel of " +
-                      number_text(2 * it.size_m.x()) + " m, which costs their square: use collision: smooth");
-    if (it.wheel && it.hard)
-      found.push_back(
-          "hard contacts of a wheel jump from facet to facet, and accelerations ring: use collision: smooth, or give "
-          "the contact a soft_cfm");
-    constexpr double most_cells = 64;  // about 20 us a contact
-    const Vector3d cells = it.size_m / cell_m;
-    if (it.geom_class == dBoxClass &&
-        cells.x() * cells.y() * cells.z() / std::min({cells.x(), cells.y(), cells.z()}) > most_cells)
-      found.push_back("a box of " + number_text(it.size_m.maxCoeff()) + " m covers many facets of " +
-                      number_text(cell_m) + " m, which costs their square: use collision: smooth");
-  } else if (ground.collision == "mesh") {
-    if (it.wheel && it.geom_class == dCylinderClass)
-      found.push_back(
-          "a cylinder wheel on triangles has a dozen contacts, and jitters: use collision: smooth, or a "
-          "sphere as wheel");
-  } else if (it.wheel && cell_m < it.size_m.x() / 4) {
-    found.push_back("cells of " + number_text(cell_m) + " m are much smaller than a wheel of radius " +
-                    number_text(it.size_m.x()) + " m, which meets the ground in one place: bumps may be missed");
+  switch (ground.collision) {
+    case TerrainCollision::smooth:
+      if (it.wheel && cell_m < it.size_m.x() / 4)
+        found.push_back("cells of " + number_text(cell_m) + " m are much smaller than a wheel of radius " +
+                        number_text(it.size_m.x()) + " m, which meets the ground in one place: bumps may be missed");
+      break;
+    case TerrainCollision::facets: {
+      if (it.wheel && cell_m < 2 * it.size_m.x())
+        found.push_back("facets of " + number_text(cell_m) + " m are smaller than a wheel of " +
+                        number_text(2 * it.size_m.x()) + " m, which costs their square: use collision: smooth");
+      if (it.wheel && it.hard)
+        found.push_back(
+            "hard contacts of a wheel jump from facet to facet, and accelerations ring: use collision: smooth, or give "
+            "the contact a soft_cfm");
+      constexpr double most_cells = 64;  // about 20 us a contact
+      const Vector3d cells = it.size_m / cell_m;
+      if (it.geom_class == dBoxClass &&
+          cells.x() * cells.y() * cells.z() / std::min({cells.x(), cells.y(), cells.z()}) > most_cells)
+        found.push_back("a box of " + number_text(it.size_m.maxCoeff()) + " m covers many facets of " +
+                        number_text(cell_m) + " m, which costs their square: use collision: smooth");
+      break;
+    }
+    case TerrainCollision::mesh:
+      if (it.wheel && it.geom_class == dCylinderClass)
+        found.push_back(
+            "a cylinder wheel on triangles has a dozen contacts, and jitters: use collision: smooth, or a "
+            "sphere as wheel");
   }
   return found;
 }
@@ -76,7 +81,7 @@ std::vector<std::string> PhysicsWorld::ground_warnings() const {
   if (all.terrains.empty()) return {};
   std::set<dBodyID> hinged;  // asked, never iterated
   for (const auto& joint : all.joints)
-    if (joint && (joint->type() == "hinge" || joint->type() == "hinge2"))
+    if (joint && joint_info(joint->type()).carries_a_wheel)
       for (const int end : {0, 1}) hinged.insert(dJointGetBody(joint->ode_.get(), end));
 
   std::set<int> angular;  // bodies that have other parts than spheres and cylinders: no wheels

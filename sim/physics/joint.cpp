@@ -13,33 +13,25 @@
 namespace sim {
 namespace {
 
-dJointType kind_of(const std::string& type) {
-  static const std::pair<const char*, dJointType> kinds[] = {
-      {"fixed", dJointTypeFixed},   {"ball", dJointTypeBall},           {"hinge", dJointTypeHinge},
-      {"hinge2", dJointTypeHinge2}, {"universal", dJointTypeUniversal}, {"slider", dJointTypeSlider}};
-  for (const auto& [name, kind] : kinds)
-    if (type == name) return kind;
-  throw std::invalid_argument("unknown type of joint '" + type + "'");
-}
-
-int axes_of(int kind, bool ball_motor) {
-  switch (kind) {
-    case dJointTypeBall:
+int axes_of(JointType type, bool ball_motor) {
+  switch (type) {
+    case JointType::ball:
       return ball_motor ? 3 : 0;
-    case dJointTypeHinge:
-    case dJointTypeSlider:
+    case JointType::hinge:
+    case JointType::slider:
       return 1;
-    case dJointTypeHinge2:
-    case dJointTypeUniversal:
+    case JointType::hinge2:
+    case JointType::universal:
       return 2;
-    default:
-      return 0;
+    case JointType::fixed:
+      break;
   }
+  return 0;
 }
 
 /// All axes of a ball are configured alike.
 const JointAxisConfig& axis_config(const JointConfig& config, int axis) {
-  return axis == 0 || config.type == "ball" ? config.axis1 : config.axis2;
+  return axis == 0 || config.type == JointType::ball ? config.axis1 : config.axis2;
 }
 
 /// Where its axes are: ODE does not measure that of a motor with axes of ours, and needs it for the stops.
@@ -63,7 +55,7 @@ Joint::~Joint() = default;
 
 Joint::Joint(dWorldID world, std::string name, const JointConfig& config, dBodyID first, dBodyID second,
              const Pose& X_WV)
-    : name_(std::move(name)), type_(config.type), kind_(kind_of(config.type)), axes_(axes_of(kind_, config.motor)) {
+    : name_(std::move(name)), type_(config.type), axes_(axes_of(config.type, config.motor)) {
   // ODE gets the moving body first: with the world first it would turn some signs around, but not all.
   sign_ = first != nullptr && second != nullptr ? -1 : 1;
   if (first == nullptr) std::swap(first, second);
@@ -88,27 +80,36 @@ void Joint::create(dWorldID world, const JointConfig& config, const Pose& X_WV, 
     dJointAttach(joint, first, second);
     return joint;
   };
-  if (kind_ == dJointTypeFixed) {
-    dJointSetFixed(attach(dJointCreateFixed(world, nullptr)));
-  } else if (kind_ == dJointTypeBall) {
-    dJointSetBallAnchor(attach(dJointCreateBall(world, nullptr)), anchor.x(), anchor.y(), anchor.z());
-    if (config.motor) create_ball_motor(world, X_WV, first, second);
-  } else if (kind_ == dJointTypeHinge) {
-    const dJointID joint = attach(dJointCreateHinge(world, nullptr));
-    dJointSetHingeAnchor(joint, anchor.x(), anchor.y(), anchor.z());
-    dJointSetHingeAxis(joint, axis1.x(), axis1.y(), axis1.z());
-  } else if (kind_ == dJointTypeSlider) {
-    dJointSetSliderAxis(attach(dJointCreateSlider(world, nullptr)), axis1.x(), axis1.y(), axis1.z());
-  } else if (kind_ == dJointTypeHinge2) {
-    const dJointID joint = attach(dJointCreateHinge2(world, nullptr));
-    const dVector3 a1 = {axis1.x(), axis1.y(), axis1.z(), 0}, a2 = {axis2.x(), axis2.y(), axis2.z(), 0};
-    dJointSetHinge2Anchor(joint, anchor.x(), anchor.y(), anchor.z());
-    dJointSetHinge2Axes(joint, a1, a2);
-  } else {
-    const dJointID joint = attach(dJointCreateUniversal(world, nullptr));
-    dJointSetUniversalAnchor(joint, anchor.x(), anchor.y(), anchor.z());
-    dJointSetUniversalAxis1(joint, axis1.x(), axis1.y(), axis1.z());
-    dJointSetUniversalAxis2(joint, axis2.x(), axis2.y(), axis2.z());
+  switch (type_) {
+    case JointType::fixed:
+      dJointSetFixed(attach(dJointCreateFixed(world, nullptr)));
+      return;
+    case JointType::ball:
+      dJointSetBallAnchor(attach(dJointCreateBall(world, nullptr)), anchor.x(), anchor.y(), anchor.z());
+      if (config.motor) create_ball_motor(world, X_WV, first, second);
+      return;
+    case JointType::hinge: {
+      const dJointID joint = attach(dJointCreateHinge(world, nullptr));
+      dJointSetHingeAnchor(joint, anchor.x(), anchor.y(), anchor.z());
+      dJointSetHingeAxis(joint, axis1.x(), axis1.y(), axis1.z());
+      return;
+    }
+    case JointType::hinge2: {
+      const dJointID joint = attach(dJointCreateHinge2(world, nullptr));
+      const dVector3 a1 = {axis1.x(), axis1.y(), axis1.z(), 0}, a2 = {axis2.x(), axis2.y(), axis2.z(), 0};
+      dJointSetHinge2Anchor(joint, anchor.x(), anchor.y(), anchor.z());
+      dJointSetHinge2Axes(joint, a1, a2);
+      return;
+    }
+    case JointType::universal: {
+      const dJointID joint = attach(dJointCreateUniversal(world, nullptr));
+      dJointSetUniversalAnchor(joint, anchor.x(), anchor.y(), anchor.z());
+      dJointSetUniversalAxis1(joint, axis1.x(), axis1.y(), axis1.z());
+      dJointSetUniversalAxis2(joint, axis2.x(), axis2.y(), axis2.z());
+      return;
+    }
+    case JointType::slider:
+      dJointSetSliderAxis(attach(dJointCreateSlider(world, nullptr)), axis1.x(), axis1.y(), axis1.z());
   }
 }
 
@@ -175,7 +176,7 @@ void Joint::put_stops(const OdeStops& stops, int axis) {
 }
 
 double Joint::stop_never_reached() const {
-  return kind_ == dJointTypeSlider ? -1e300 : -std::numbers::pi;
+  return type_ == JointType::slider ? -1e300 : -std::numbers::pi;
 }
 
 Joint::OdeStops Joint::stops_of(int axis) const {
@@ -193,77 +194,84 @@ void Joint::set_stops(std::optional<double> low, std::optional<double> high, int
 
 void Joint::set_parameter(int parameter, double value, int axis) {
   parameter += dParamGroup * axis;
-  switch (kind_) {
-    case dJointTypeHinge:
+  switch (type_) {
+    case JointType::hinge:
       return dJointSetHingeParam(ode_.get(), parameter, value);
-    case dJointTypeSlider:
+    case JointType::slider:
       return dJointSetSliderParam(ode_.get(), parameter, value);
-    case dJointTypeHinge2:
+    case JointType::hinge2:
       return dJointSetHinge2Param(ode_.get(), parameter, value);
-    case dJointTypeUniversal:
+    case JointType::universal:
       return dJointSetUniversalParam(ode_.get(), parameter, value);
-    case dJointTypeBall:
+    case JointType::ball:
       if (ball_motor_) dJointSetAMotorParam(ball_motor_.get(), parameter, value);
       return;
-    default:
+    case JointType::fixed:
       return;
   }
 }
 
 int Joint::max_rows() const {
-  switch (kind_) {
-    case dJointTypeBall:
+  switch (type_) {
+    case JointType::ball:
       return ball_motor_ ? 6 : 3;
-    default:
-      return 6;
+    case JointType::fixed:
+    case JointType::hinge:
+    case JointType::hinge2:
+    case JointType::universal:
+    case JointType::slider:
+      break;
   }
+  return 6;
 }
 
 double Joint::velocity(int axis) const {
-  switch (kind_) {
-    case dJointTypeHinge:
+  switch (type_) {
+    case JointType::hinge:
       return sign_ * dJointGetHingeAngleRate(ode_.get());
-    case dJointTypeSlider:
+    case JointType::slider:
       return sign_ * dJointGetSliderPositionRate(ode_.get());
-    case dJointTypeHinge2:
+    case JointType::hinge2:
       return sign_ * (axis == 0 ? dJointGetHinge2Angle1Rate(ode_.get()) : dJointGetHinge2Angle2Rate(ode_.get()));
-    case dJointTypeUniversal:
+    case JointType::universal:
       return sign_ * (axis == 0 ? dJointGetUniversalAngle1Rate(ode_.get()) : dJointGetUniversalAngle2Rate(ode_.get()));
-    case dJointTypeBall: {
+    case JointType::ball: {
       if (!ball_motor_) return 0;
       const dBodyID first = dJointGetBody(ode_.get(), 0), second = dJointGetBody(ode_.get(), 1);
       Vector3d w_W = to_eigen(dBodyGetAngularVel(first));
       if (second != nullptr) w_W -= to_eigen(dBodyGetAngularVel(second));
       return sign_ * w_W.dot(axis_W(axis));
     }
-    default:
-      return 0;
+    case JointType::fixed:
+      break;
   }
+  return 0;
 }
 
 double Joint::wrapped_position(int axis) const {
-  switch (kind_) {
-    case dJointTypeHinge:
+  switch (type_) {
+    case JointType::hinge:
       return sign_ * dJointGetHingeAngle(ode_.get());
-    case dJointTypeSlider:
+    case JointType::slider:
       return sign_ * dJointGetSliderPosition(ode_.get());
-    case dJointTypeHinge2:
+    case JointType::hinge2:
       return axis == 0 ? sign_ * dJointGetHinge2Angle1(ode_.get()) : 0;
-    case dJointTypeUniversal:
+    case JointType::universal:
       return sign_ * (axis == 0 ? dJointGetUniversalAngle1(ode_.get()) : dJointGetUniversalAngle2(ode_.get()));
-    case dJointTypeBall:
+    case JointType::ball:
       return position_[axis];
-    default:
-      return 0;
+    case JointType::fixed:
+      break;
   }
+  return 0;
 }
 
 void Joint::update_position(double step_s) {
-  if (kind_ == dJointTypeSlider) {
+  if (type_ == JointType::slider) {
     position_[0] = wrapped_position(0);
     return;
   }
-  if (kind_ == dJointTypeBall) {
+  if (type_ == JointType::ball) {
     const Vector3d rotation = rotation_of_ball();
     for (int axis = 0; axis < axes_; ++axis) position_[axis] = rotation[axis];
     tell_ball_angles(ball_motor_.get(), sign_, position_);
@@ -271,7 +279,7 @@ void Joint::update_position(double step_s) {
   }
   for (int axis = 0; axis < axes_; ++axis) {
     const double expected = velocity(axis) * step_s;
-    if (kind_ == dJointTypeHinge2 && axis == 1) {
+    if (type_ == JointType::hinge2 && axis == 1) {
       position_[1] += expected;
       continue;
     }
@@ -297,31 +305,32 @@ void Joint::set_motor(double velocity, double max_force, int axis) {
 
 double Joint::get_parameter(int parameter, int axis) const {
   parameter += dParamGroup * axis;
-  switch (kind_) {
-    case dJointTypeHinge:
+  switch (type_) {
+    case JointType::hinge:
       return dJointGetHingeParam(ode_.get(), parameter);
-    case dJointTypeSlider:
+    case JointType::slider:
       return dJointGetSliderParam(ode_.get(), parameter);
-    case dJointTypeHinge2:
+    case JointType::hinge2:
       return dJointGetHinge2Param(ode_.get(), parameter);
-    case dJointTypeUniversal:
+    case JointType::universal:
       return dJointGetUniversalParam(ode_.get(), parameter);
-    case dJointTypeBall:
+    case JointType::ball:
       return ball_motor_ ? dJointGetAMotorParam(ball_motor_.get(), parameter) : 0;
-    default:
-      return 0;
+    case JointType::fixed:
+      break;
   }
+  return 0;
 }
 
 Vector3d Joint::axis_W(int axis) const {
   dVector3 out = {0, 0, 0, 0};
-  if (kind_ == dJointTypeHinge)
+  if (type_ == JointType::hinge)
     dJointGetHingeAxis(ode_.get(), out);
-  else if (kind_ == dJointTypeSlider)
+  else if (type_ == JointType::slider)
     dJointGetSliderAxis(ode_.get(), out);
-  else if (kind_ == dJointTypeHinge2)
+  else if (type_ == JointType::hinge2)
     axis == 0 ? dJointGetHinge2Axis1(ode_.get(), out) : dJointGetHinge2Axis2(ode_.get(), out);
-  else if (kind_ == dJointTypeUniversal)
+  else if (type_ == JointType::universal)
     axis == 0 ? dJointGetUniversalAxis1(ode_.get(), out) : dJointGetUniversalAxis2(ode_.get(), out);
   else if (ball_motor_)
     dJointGetAMotorAxis(ball_motor_.get(), axis, out);

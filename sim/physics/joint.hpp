@@ -37,7 +37,7 @@ class Joint {
   Joint& operator=(const Joint&) = delete;
 
   const std::string& name() const { return name_; }  ///< such as `rover1/left`
-  const std::string& type() const { return type_; }
+  JointType type() const { return type_; }
   /// 0 fixed, and ball without a motor; 1 hinge and slider; 2 hinge2 and universal; 3 ball with a motor.
   int axes() const { return axes_; }
 
@@ -108,12 +108,11 @@ class Joint {
   void update_position(double step_s);  ///< after each step; integrates differences, for ODE wraps at pi
 
   std::string name_;
-  std::string type_;
+  JointType type_;
   JointHandle ode_;
   JointHandle ball_motor_;                    // ODE's angular motor
   Matrix3d R_F_axes_ = Matrix3d::Identity();  // the ball's axes in the frame of its first body (or the world)
   Matrix3d R_FS_ = Matrix3d::Identity();      // of its second body, when the joint was made
-  int kind_ = 0;                              // ODE's dJointType
   int axes_ = 0;
   double sign_ = 1;  // ODE counts the first body relative to the second
   double position_[max_axes] = {};

@@ -17,19 +17,19 @@ void Joint::add_effort(double effort, int axis) {
   if (!std::isfinite(effort)) throw PhysicsFault("joint '" + name_ + "': an effort on it is not finite");
   if (load_) load_->added[axis] += effort;
   const double torque1 = axis == 0 ? sign_ * effort : 0, torque2 = axis == 1 ? sign_ * effort : 0;
-  switch (kind_) {
-    case dJointTypeHinge:
+  switch (type_) {
+    case JointType::hinge:
       return dJointAddHingeTorque(ode_.get(), sign_ * effort);
-    case dJointTypeSlider:
+    case JointType::slider:
       return dJointAddSliderForce(ode_.get(), sign_ * effort);
-    case dJointTypeHinge2:
+    case JointType::hinge2:
       return dJointAddHinge2Torques(ode_.get(), torque1, torque2);
-    case dJointTypeUniversal:
+    case JointType::universal:
       return dJointAddUniversalTorques(ode_.get(), torque1, torque2);
-    case dJointTypeBall:
+    case JointType::ball:
       if (ball_motor_) dJointAddAMotorTorques(ball_motor_.get(), torque1, torque2, axis == 2 ? sign_ * effort : 0);
       return;
-    default:
+    case JointType::fixed:
       return;
   }
 }
@@ -71,9 +71,9 @@ void Joint::note_before_step() {
 double Joint::motor_at_stop(int axis) const {
   const double max_force = get_parameter(dParamFMax, axis);
   const double low = get_parameter(dParamLoStop, axis), high = get_parameter(dParamHiStop, axis);
-  const double bound = kind_ == dJointTypeSlider ? dInfinity : std::numbers::pi;
-  const bool has_stops = kind_ == dJointTypeSlider ? low > -bound || high < bound : low >= -bound || high <= bound;
-  if (!(max_force > 0) || !has_stops || low >= high || (kind_ == dJointTypeHinge2 && axis == 1)) return 0;
+  const double bound = type_ == JointType::slider ? dInfinity : std::numbers::pi;
+  const bool has_stops = type_ == JointType::slider ? low > -bound || high < bound : low >= -bound || high <= bound;
+  if (!(max_force > 0) || !has_stops || low >= high || (type_ == JointType::hinge2 && axis == 1)) return 0;
   const double position = sign_ * wrapped_position(axis), velocity = get_parameter(dParamVel, axis);
   const bool at_low = position <= low, at_high = !at_low && position >= high;
   if (!at_low && !at_high) return 0;
@@ -90,11 +90,11 @@ void Joint::note_load() {
   if (ball_motor_) load.torque_W_Nm += to_eigen(first ? load.motor_feedback.t1 : load.motor_feedback.t2);
   for (int axis = 0; axis < axes_; ++axis) {
     const Vector3d beside_W = load.beside[axis] * load.axis_W[axis];
-    if (kind_ == dJointTypeSlider) load.force_W_N += beside_W;
-    load.torque_W_Nm += kind_ == dJointTypeSlider ? Vector3d(load.p_AM_W.cross(beside_W)) : beside_W;
+    if (type_ == JointType::slider) load.force_W_N += beside_W;
+    load.torque_W_Nm += type_ == JointType::slider ? Vector3d(load.p_AM_W.cross(beside_W)) : beside_W;
   }
-  const Vector3d& along = kind_ == dJointTypeSlider ? load.force_W_N : load.torque_W_Nm;
-  if (kind_ == dJointTypeBall) {
+  const Vector3d& along = type_ == JointType::slider ? load.force_W_N : load.torque_W_Nm;
+  if (type_ == JointType::ball) {
     for (int axis = 0; axis < axes_; ++axis) load.effort[axis] = along.dot(load.axis_W[axis]);
     return;
   }

@@ -165,8 +165,9 @@ void PhysicsWorld::Impl::solve(std::int64_t step_number) {
     if (body->gyroscopic_) body->add_gyroscopic_torque(step_s);
   for (Joint* joint : measured_joints) joint->note_before_step();
   // WorldStep is exact and costs the cube of an island's rows; the rows decide, never the time it takes.
-  const bool some_too_large = config.solver == "auto" && counts.largest_island_rows > config.quick_above_rows;
-  counts.quick = config.solver == "quick" || some_too_large;
+  const bool some_too_large =
+      config.solver == PhysicsConfig::Solver::automatic && counts.largest_island_rows > config.quick_above_rows;
+  counts.quick = config.solver == PhysicsConfig::Solver::quick || some_too_large;
   if (counts.quick) dRandSetSeed(step_seed(seed, step_number));
   const bool nothing_is_free = moving.size() == kinematic.size();  // then ODE would but look at each body
   if (nothing_is_free)

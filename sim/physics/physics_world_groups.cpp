@@ -99,7 +99,7 @@ PhysicsWorld::Impl::NewPart PhysicsWorld::Impl::make_part(const Body& body, cons
                                                           const std::string& who) {
   if (!shape_info(part.shape).solid && !body.fixed())
     throw_config_error(part.place, who,
-                       "a " + std::string(shape_info(part.shape).word) + " can only be part of a fixed body");
+                       "a " + std::string(word_of(part_shape_words, part.shape)) + " can only be part of a fixed body");
   NewPart made;
   if (part.shape == PartShape::terrain) {
     made.terrain = std::make_unique<CollisionTerrain>(part, who, collider.table(), meshes);
@@ -209,13 +209,13 @@ Joint& PhysicsWorld::add_joint(int group, const JointConfig& config, Body& first
   const dBodyID a = first.ode_.get(), b = second ? second->ode_.get() : nullptr;
   if (!first.free() && !(second && second->free()))
     throw_config_error({}, "joint '" + name + "'", "joins two bodies that are fixed or kinematic");
-  if (config.type == "hinge2" && (!a || !b))
+  if (config.type == JointType::hinge2 && (!a || !b))
     throw_config_error({}, "joint '" + name + "'", "hinge2 needs two bodies that move");
   if (second == &first) throw_config_error({}, "joint '" + name + "'", "joins a body to itself");
   std::unique_ptr<Joint> owned(new Joint(impl_->world.get(), name, config, a, b, X_WV));
   Joint& joint = *owned;
   // Without it a wheel turns too little in each step: 7 % at 100 rad/s and 10 ms.
-  if (config.type == "hinge" || config.type == "hinge2") dBodySetFiniteRotationMode(b ? b : a, 1);
+  if (joint_info(config.type).carries_a_wheel) dBodySetFiniteRotationMode(b ? b : a, 1);
   impl_->islands.add_joint(a ? first.number_ : -1, b ? second->number_ : -1, joint.max_rows());
   if (second) impl_->collider.join(first.number_, second->number_);
   joint.measured_joints_ = &impl_->measured_joints;

@@ -50,7 +50,7 @@ void place_heightfield(const CollisionTerrain& terrain, dGeomID at) {
 
 int collide_with_terrain(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) {
   const CollisionTerrain& terrain = terrain_of(o1);
-  if (terrain.collision == "smooth") return collide_with_smooth(terrain, o1, o2, flags, contacts, skip);
+  if (terrain.collision == TerrainCollision::smooth) return collide_with_smooth(terrain, o1, o2, flags, contacts, skip);
   place_heightfield(terrain, o1);
   const int count = dCollide(terrain.heightfield_geom.get(), o2, flags, contacts, skip);
   for (int i = 0; i < count; ++i)
@@ -114,8 +114,16 @@ CollisionTerrain::CollisionTerrain(const PartConfig& part, const std::string& wh
   triangle_materials.reserve(2 * terrain.area_of_cell.size());
   for (const std::uint8_t area : terrain.area_of_cell)
     triangle_materials.insert(triangle_materials.end(), 2, area_materials[area]);
-  if (collision == "mesh") trimesh = make_trimesh_data(mesh);
-  if (collision == "facets") make_heightfield(*this);
+  switch (collision) {
+    case TerrainCollision::smooth:
+      break;
+    case TerrainCollision::facets:
+      make_heightfield(*this);
+      break;
+    case TerrainCollision::mesh:
+      trimesh = make_trimesh_data(mesh);
+      break;
+  }
 }
 
 int CollisionTerrain::material_at(dGeomID geom, const Vector3d& p_W) const {

@@ -29,7 +29,7 @@ struct CollisionTerrain {
   Mesh mesh;
   std::vector<int> area_materials;      ///< by number of the area; 0 is the part's own
   std::vector<int> triangle_materials;  ///< of each triangle; empty: all are the part's own
-  const std::string collision;          ///< smooth, facets, mesh
+  const TerrainCollision collision;
   const MeshCache& meshes;
 
   // ODE's forms, when `collision` needs them.

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
 
+#include "sim/scene/ray_library.hpp"
 #include "sim/scene/scene.hpp"
 
 struct dxGeom;  // ODE's
@@ -44,8 +44,6 @@ class WorldScene : public Scene {
   virtual void remove_group(int group, std::span<const int> parts) = 0;
 };
 
-/// By the name of the library that follows the rays, see PhysicsConfig::rays: embree or ode.
-/// Throws std::invalid_argument for another name.
-std::unique_ptr<WorldScene> make_world_scene(const std::string& library, const SceneMoves& moves);
+std::unique_ptr<WorldScene> make_world_scene(RayLibrary library, const SceneMoves& moves);
 
 }  // namespace sim

@@ -30,8 +30,7 @@ Terms terms_in(const std::string& text, const char* command, Terms terms) {
 void LockstepTerms::read(ParamReader& in) {
   in.read("session", session, between(0, 9e18), "random number of the client, its own at each start; 0: none");
   in.read("receives", receives, "channels of which it must have every message");
-  in.read_choice("on_timeout", on_timeout, {"wait", "pause", "continue", "end"},
-                 "when it does not answer in timeout_s");
+  in.read_choice("on_timeout", on_timeout, on_timeout_words, "when it does not answer in timeout_s");
   in.read("timeout_s", timeout_s, between(0.001, 1e6), "wall time to wait for its acknowledgement");
   agreed = agreed || in.has("on_timeout");
   if (receives.size() > 10'000) in.error("receives", "'receives' may name at most 10000 channels");
@@ -39,12 +38,6 @@ void LockstepTerms::read(ParamReader& in) {
   for (const std::string& channel : receives)
     if (channel.empty() || channel.size() > Bus::max_channel_length)
       in.error("receives", "'receives': a channel has 1 to 63 characters, got '" + shortened(channel) + "'");
-}
-
-OnTimeout LockstepTerms::policy() const {
-  if (on_timeout == "wait") return OnTimeout::wait;
-  if (on_timeout == "pause") return OnTimeout::pause;
-  return on_timeout == "continue" ? OnTimeout::go_on : OnTimeout::end_run;
 }
 
 LockstepTerms read_lockstep_terms(const std::string& text, const LockstepTerms& defaults) {

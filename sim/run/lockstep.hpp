@@ -12,28 +12,20 @@
 #include <vector>
 
 #include "sim/bus/bus.hpp"
+#include "sim/world_file/on_timeout.hpp"
 
 namespace sim {
 
 class ParamReader;
 
-/// What happens when a client does not answer in time.
-enum class OnTimeout {
-  wait,     ///< the world waits for ever
-  pause,    ///< the world pauses, until it answers or somebody resumes: then without it
-  go_on,    ///< without it
-  end_run,  ///< with exit code 5
-};
-
 /// What a client asks for when it joins: the `text` of `join`, a YAML map.
 struct LockstepTerms {
   std::int64_t session = 0;           ///< its own random number; 0: a simple client, without lists
   std::vector<std::string> receives;  ///< channels of which it must have every message
-  std::string on_timeout = "end";
+  OnTimeout on_timeout = OnTimeout::end_run;
   double timeout_s = 10;  ///< wall time
   bool agreed = false;    ///< on_timeout was asked for, by the client or the world
   void read(ParamReader& in);
-  OnTimeout policy() const;
 };
 
 /// Reads the `text` of a join; what it does not say is as in `defaults`.  Where these are `agreed` the client cannot be

@@ -9,6 +9,11 @@ namespace sim {
 
 namespace {
 
+constexpr ChoiceWords<TextureConfig::Pattern> pattern_words{{"none", TextureConfig::Pattern::none},
+                                                            {"checker", TextureConfig::Pattern::checker},
+                                                            {"stripes", TextureConfig::Pattern::stripes},
+                                                            {"image", TextureConfig::Pattern::image}};
+
 const std::pair<const char*, RayKind> ray_kinds[] = {
     {"light", RayKind::light}, {"laser", RayKind::laser}, {"sound", RayKind::sound}};
 
@@ -23,20 +28,28 @@ void TextureConfig::read(ParamReader& in) {
     place = in.node()->place;
     if (place.file) directory = std::filesystem::path(*place.file).parent_path().string();
   }
-  in.read_choice("pattern", pattern, {"none", "checker", "stripes", "image"}, "what is on the surface");
+  in.read_choice("pattern", pattern, pattern_words, "what is on the surface");
   in.read("colors", colors, "checker, stripes: two colors, #rrggbb");
   in.read("size_m", size_m, above(0), "length of a field, width of a stripe or of the image");
   const bool allowed = in.read_path("file", file, PathUse::read, "image: a PNG or JPEG file, relative to this file");
   if (in.describing()) return;
   for (const std::string& color : colors) check_color(in, "colors", color);
-  const bool two_colors = pattern == "checker" || pattern == "stripes";
-  if (two_colors && colors.size() != 2)
-    in.error("colors", "a " + pattern + " texture needs two 'colors', got " + std::to_string(colors.size()));
-  if (pattern == "image" && file.empty()) in.error("a texture of pattern image needs the key 'file'");
   std::error_code error;
   const auto path = std::filesystem::path(directory) / file;
-  if (allowed && pattern == "image" && !file.empty() && !std::filesystem::is_regular_file(path, error))
-    in.error("file", "there is no file '" + path.string() + "'");
+  switch (pattern) {
+    case Pattern::none:
+      return;
+    case Pattern::checker:
+    case Pattern::stripes:
+      if (colors.size() != 2)
+        in.error("colors", "a " + std::string(word_of(pattern_words, pattern)) + " texture needs two 'colors', got " +
+                               std::to_string(colors.size()));
+      return;
+    case Pattern::image:
+      if (file.empty()) in.error("a texture of pattern image needs the key 'file'");
+      if (allowed && !file.empty() && !std::filesystem::is_regular_file(path, error))
+        in.error("file", "there is no file '" + path.string() + "'");
+  }
 }
 
 void LaserSurface::read(ParamReader& in) {

@@ -13,7 +13,9 @@ namespace sim {
 
 /// A pattern on a surface, laid on along the axes of the part that the surface looks along least.
 struct TextureConfig {
-  std::string pattern = "none";     ///< none, checker, stripes, image
+  enum class Pattern { none, checker, stripes, image };
+
+  Pattern pattern = Pattern::none;
   std::vector<std::string> colors;  ///< checker, stripes: two of them, `#rrggbb`
   double size_m = 1;                ///< one field or stripe; the width of an image
   std::string file;                 ///< image: PNG or JPEG, relative to the YAML file

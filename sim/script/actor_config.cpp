@@ -8,14 +8,6 @@
 
 namespace sim {
 
-const std::vector<std::pair<std::string, ActorCommand>>& actor_command_words() {
-  static const std::vector<std::pair<std::string, ActorCommand>> words = {{"start", ActorCommand::start},
-                                                                          {"stop", ActorCommand::stop},
-                                                                          {"forward", ActorCommand::forward},
-                                                                          {"back", ActorCommand::back}};
-  return words;
-}
-
 namespace {
 
 struct ReadTimedPose : TimedPose {
@@ -50,9 +42,8 @@ void ActorConfig::read(ParamReader& in) {
   in.read_choice("ends", ends, {{"loop", PathEnds::loop}, {"bounce", PathEnds::bounce}, {"stop", PathEnds::stop}},
                  "at the end: back to the first point and around, the same way back, or stay");
   in.read("start_s", start_s, between(0, 1e9), "it stands at the first point until then");
-  std::string starts = "moving";
-  in.read_choice("starts", starts, {"moving", "waiting"}, "waiting: for the command of an event");
-  waiting = starts == "waiting";
+  in.read_choice("starts", starts, {{"moving", ActorStart::moving}, {"waiting", ActorStart::waiting}},
+                 "waiting: for the command of an event");
   if (!in.describing()) check_points(in);
 }
 

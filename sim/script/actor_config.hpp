@@ -20,7 +20,16 @@ enum class ActorCommand {
   forward,  ///< towards the end of the path
   back,     ///< towards its beginning
 };
-const std::vector<std::pair<std::string, ActorCommand>>& actor_command_words();
+
+inline constexpr ChoiceWords<ActorCommand> actor_command_words{{"start", ActorCommand::start},
+                                                               {"stop", ActorCommand::stop},
+                                                               {"forward", ActorCommand::forward},
+                                                               {"back", ActorCommand::back}};
+
+enum class ActorStart {
+  moving,
+  waiting,  ///< for the command of an event
+};
 
 /// Moves an object along a path.  The object becomes kinematic: it pushes others, and is not pushed.
 struct ActorConfig {
@@ -33,7 +42,7 @@ struct ActorConfig {
   double speed_mps = 1;
   PathEnds ends = PathEnds::loop;
   double start_s = 0;
-  bool waiting = false;
+  ActorStart starts = ActorStart::moving;
   SourcePlace place;
 
   void read(ParamReader& in);

@@ -79,6 +79,16 @@ void make_fractal(HeightGrid& grid, const TerrainConfig& config) {
   for (double& height_m : grid.heights_m) height_m = config.amplitude_m * (2 * (height_m - low) / (high - low) - 1);
 }
 
+/// Heights that depend on the distance along a direction alone.
+template <typename HeightAlong>
+void fill_along(HeightGrid& grid, double direction_rad, const HeightAlong& height_m) {
+  const double toward_x = std::cos(direction_rad), toward_y = std::sin(direction_rad);
+  for (int j = 0; j < grid.rows; ++j)
+    for (int i = 0; i < grid.columns; ++i)
+      grid.at(i, j) =
+          height_m(toward_x * (grid.west_m + i * grid.cell_m) + toward_y * (grid.south_m + j * grid.cell_m));
+}
+
 }  // namespace
 
 HeightGrid generate_grid(const TerrainConfig& config) {
@@ -92,17 +102,25 @@ HeightGrid generate_grid(const TerrainConfig& config) {
   grid.west_m = -grid.width_m() / 2;
   grid.south_m = -grid.depth_m() / 2;
   grid.heights_m.assign(static_cast<std::size_t>(grid.columns) * grid.rows, 0);
-  if (config.source == "fractal") {
-    make_fractal(grid, config);
-    return grid;
-  }
-  const double toward_x = std::cos(config.direction_rad), toward_y = std::sin(config.direction_rad);
-  const double climb = std::tan(config.angle_rad), wave_number = 2 * std::numbers::pi / config.wavelength_m;
-  for (int j = 0; j < grid.rows; ++j)
-    for (int i = 0; i < grid.columns; ++i) {
-      const double along_m = toward_x * (grid.west_m + i * grid.cell_m) + toward_y * (grid.south_m + j * grid.cell_m);
-      grid.at(i, j) = config.source == "slope" ? climb * along_m : config.amplitude_m * std::sin(wave_number * along_m);
+  switch (config.source) {
+    case TerrainConfig::Source::slope: {
+      const double climb = std::tan(config.angle_rad);
+      fill_along(grid, config.direction_rad, [&](double along_m) { return climb * along_m; });
+      break;
     }
+    case TerrainConfig::Source::sine: {
+      const double wave_number = 2 * std::numbers::pi / config.wavelength_m;
+      fill_along(grid, config.direction_rad,
+                 [&](double along_m) { return config.amplitude_m * std::sin(wave_number * along_m); });
+      break;
+    }
+    case TerrainConfig::Source::fractal:
+      make_fractal(grid, config);
+      break;
+    case TerrainConfig::Source::ascii:
+    case TerrainConfig::Source::png:
+      break;  // flat: their heights are in a file
+  }
   return grid;
 }
 

@@ -10,35 +10,56 @@ namespace sim {
 namespace {
 
 HeightGrid read_grid(const TerrainConfig& config) {
-  if (config.source != "ascii" && config.source != "png") return generate_grid(config);
   const std::string path = (std::filesystem::path(config.directory) / config.file).string();
   try {
-    if (config.source == "png") return read_png_grid(path, config.cell_m, config.height_min_m, config.height_max_m);
-    const Holes holes = config.holes == "error"     ? Holes::error
-                        : config.holes == "nearest" ? Holes::nearest
-                                                    : Holes::linear;
-    return parse_ascii_grid(whole_file<TerrainError>(path), config.vertical_scale, holes);
+    switch (config.source) {
+      case TerrainConfig::Source::ascii:
+        return parse_ascii_grid(whole_file<TerrainError>(path), config.vertical_scale, config.holes);
+      case TerrainConfig::Source::png:
+        return read_png_grid(path, config.cell_m, config.height_min_m, config.height_max_m);
+      case TerrainConfig::Source::slope:
+      case TerrainConfig::Source::sine:
+      case TerrainConfig::Source::fractal:
+        break;
+    }
   } catch (const TerrainError& error) {
     throw TerrainError("file '" + path + "' " + error.what());
   }
+  return generate_grid(config);
 }
 
 /// Puts the origin where the configuration says.
 void place(HeightGrid& grid, const TerrainConfig& config) {
-  if (config.origin == "map") {
-    grid.west_m -= config.map_origin_m[0];
-    grid.south_m -= config.map_origin_m[1];
-  } else {
-    const bool corner = config.origin == "corner";
-    grid.west_m = corner ? 0 : -grid.width_m() / 2;
-    grid.south_m = corner ? 0 : -grid.depth_m() / 2;
+  switch (config.origin) {
+    case TerrainConfig::Origin::center:
+      grid.west_m = -grid.width_m() / 2;
+      grid.south_m = -grid.depth_m() / 2;
+      return;
+    case TerrainConfig::Origin::corner:
+      grid.west_m = grid.south_m = 0;
+      return;
+    case TerrainConfig::Origin::map:
+      grid.west_m -= config.map_origin_m[0];
+      grid.south_m -= config.map_origin_m[1];
   }
+}
+
+ZoneShape zone_shape_of(TerrainAreaConfig::Shape shape) {
+  switch (shape) {
+    case TerrainAreaConfig::Shape::box:
+      return ZoneShape::box;
+    case TerrainAreaConfig::Shape::circle:
+      return ZoneShape::cylinder;
+    case TerrainAreaConfig::Shape::polygon:
+      break;
+  }
+  return ZoneShape::polygon;
 }
 
 Zone zone_of(const TerrainAreaConfig& area) {
   constexpr double any_height_m = 1e9;
   ZoneConfig zone;
-  zone.shape = area.shape == "box" ? ZoneShape::box : area.shape == "circle" ? ZoneShape::cylinder : ZoneShape::polygon;
+  zone.shape = zone_shape_of(area.shape);
   zone.position_m = area.center_m;
   zone.rpy_rad.z() = area.yaw_rad;
   zone.size_m = {area.size_m.x(), area.size_m.y(), any_height_m};

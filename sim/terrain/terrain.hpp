@@ -22,9 +22,6 @@ struct Terrain {
 /// Reads or makes the terrain.  Throws TerrainError, which names the file.
 Terrain load_terrain(const TerrainConfig& config);
 
-/// What to do with NODATA.
-enum class Holes { error, nearest, linear };
-
 /// An ESRI ASCII grid.  Keywords in any case and order; heights by rows from north to south.  Its south-west point is
 /// where the file says: xllcorner is the outer corner of a square around the point, half a cell to the south-west.
 /// Throws TerrainError with the line.

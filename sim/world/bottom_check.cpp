@@ -15,7 +15,7 @@ namespace {
 constexpr double deepest_m = 12000;  // deeper than any sea
 
 bool has_coefficients(const BodyConfig& body) {
-  return body.hydrodynamics && body.hydrodynamics->model != "none";
+  return body.hydrodynamics && body.hydrodynamics->model == HydrodynamicsConfig::Model::coefficients;
 }
 
 bool in_water(const World& world, const Vehicle& vehicle, const VehicleConfig& config) {

@@ -189,7 +189,7 @@ void warn_of_missing_water(const WorldConfig& world, Warnings& warnings) {
   std::vector<const VehicleInstance*> dry;
   for (const VehicleInstance& vehicle : world.vehicles)
     if (std::any_of(vehicle.config->bodies.begin(), vehicle.config->bodies.end(), [](const BodyConfig& body) {
-          return body.hydrodynamics && body.hydrodynamics->model == "coefficients";
+          return body.hydrodynamics && body.hydrodynamics->model == HydrodynamicsConfig::Model::coefficients;
         }))
       dry.push_back(&vehicle);
   if (dry.empty()) return;

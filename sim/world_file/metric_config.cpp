@@ -14,6 +14,9 @@ namespace sim {
 
 namespace {
 
+/// What a metric without `type` was before version 0.2.
+const std::string type_of_old_files = "position_error";
+
 /// Rules of a world name figures of its metrics.
 class WorldRuleNames final : public RuleNames {
  public:
@@ -43,8 +46,16 @@ void MetricConfig::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name,
                "name of the metric; gives NAME.FIGURE for each figure of its type, see docs/guides/scoring.md");
-  std::string type = registry.default_word();
-  in.read_choice("type", type, registry.words(), "what it looks at");
+  if (!in.describing() && !in.has("type")) {
+    in.error("missing key 'type'; write 'type: " + type_of_old_files + "'");
+    // Further errors, of keys and of rules that name its figures, would bury this one.
+    for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
+    kind = registry.find(type_of_old_files);
+    return;
+  }
+  std::string type;
+  in.require("type");
+  in.read_one_of("type", type, registry.words(), "what it looks at");
   if (in.describing()) {
     std::vector<std::pair<std::string, std::vector<ParamInfo>>> types;
     for (const MetricKind* each : registry.all()) types.emplace_back(each->word, each->keys());
@@ -101,12 +112,11 @@ void read_rules(ParamReader& in, std::vector<RuleExpression>& rules, const std::
 void declare_metrics(ParamReader& in) {
   const ConfigNode* metrics = in.describing() ? nullptr : in.child("metrics");
   if (metrics == nullptr) return;
-  const std::string default_word = MetricRegistry::instance().default_word();
   std::set<std::pair<std::string, std::string>> names;
   for (const ConfigNode& metric : metrics->items) {
     const ConfigNode* type = metric.find("type");
     const ConfigNode* name = metric.find("name");
-    if (name != nullptr) names.emplace(type == nullptr ? default_word : type->scalar, name->scalar);
+    if (name != nullptr && type != nullptr) names.emplace(type->scalar, name->scalar);
   }
   for (const auto& [type, name] : names)
     if (MetricRegistry::instance().find(type) != nullptr) in.declare(type.c_str(), name);

@@ -61,12 +61,6 @@ const MetricKind* MetricRegistry::find(const std::string& word) const {
   return nullptr;
 }
 
-std::string MetricRegistry::default_word() const {
-  for (const auto& kind : kinds_)
-    if (kind->is_default) return kind->word;
-  return {};
-}
-
 std::vector<const MetricKind*> MetricRegistry::all() const {
   std::vector<const MetricKind*> all;
   for (const auto& kind : kinds_) all.push_back(kind.get());

@@ -47,9 +47,8 @@ class MetricParams {
 
 /// A type of metric by its word in YAML.
 struct MetricKind {
-  std::string word;     ///< of `type:`
-  std::string meaning;  ///< one line
-  bool is_default = false;
+  std::string word;                 ///< of `type:`
+  std::string meaning;              ///< one line
   std::vector<FigureKind> figures;  ///< the most important one first
   std::function<std::shared_ptr<MetricParams>()> make_params;
 
@@ -68,8 +67,6 @@ class MetricRegistry {
   void add(MetricKind kind);
   /// Null when there is none.
   const MetricKind* find(const std::string& word) const;
-  /// Of an entry without `type`; empty when there is none.
-  std::string default_word() const;
   /// In the order of their words.
   std::vector<const MetricKind*> all() const;
   std::vector<std::string> words() const;

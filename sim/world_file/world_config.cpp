@@ -98,7 +98,7 @@ void ProcessConfig::read(ParamReader& in) {
   in.read("client", client, "the name it joins the lockstep with; the run then waits for it");
   in.read_reference("bus", bus, "bus", "its LCM URL is that of this bus, named in `buses`; unset: the world's");
   in.read_choice(
-      "on_exit", on_exit, {"continue", "end", "ignore"},
+      "on_exit", on_exit, {{"continue", OnExit::go_on}, {"end", OnExit::end_run}, {"ignore", OnExit::ignore}},
       "when it ends before the run; continue: the run goes on, and fails if the program failed; end: the run "
       "ends with exit code 1; ignore: the run goes on, and a failure does not count");
   if (in.describing()) return;
@@ -114,7 +114,7 @@ void LockstepConfig::read(ParamReader& in) {
   in.read("timeout_s", timeout_s, between(0.001, 1e6), "wall time to wait for a client's acknowledgement");
   in.read("join_timeout_s", join_timeout_s, between(0.001, 1e6), "wall time to wait for launched clients to join");
   in.read_choice(
-      "on_timeout", on_timeout, {"wait", "pause", "continue", "end"},
+      "on_timeout", on_timeout, on_timeout_words,
       "when a client does not answer in timeout_s: wait for it for ever, pause the world, continue without "
       "it, end the run with exit code 5; it then counts for all clients, and timeout_s is the longest that they "
       "may ask for; unset: each client may say its own when it joins");

@@ -20,6 +20,7 @@
 #include "sim/script/actor_config.hpp"
 #include "sim/script/event_config.hpp"
 #include "sim/world_file/metric_config.hpp"
+#include "sim/world_file/on_timeout.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 
 namespace sim {
@@ -82,21 +83,28 @@ struct BusConfig {
   void read(ParamReader& in);
 };
 
+/// What happens when a program ends before the run.
+enum class OnExit {
+  go_on,    ///< the run goes on, and fails if the program failed
+  end_run,  ///< with exit code 1
+  ignore,   ///< the run goes on, and a failure does not count
+};
+
 /// An external program of the experiment, started only with --launch.
 struct ProcessConfig {
   std::string name;
   std::vector<std::string> command;  ///< program and arguments; looked up beside the shoal program, then in PATH
   std::string client;                ///< name it joins the lockstep with; empty: it does not
   std::string bus;                   ///< of `buses:`; empty: the world's
-  std::string on_exit = "continue";  ///< when it ends before the run: continue, end (exit code 1), ignore
+  OnExit on_exit = OnExit::go_on;
   void read(ParamReader& in);
 };
 
 struct LockstepConfig {
-  double timeout_s = 10;           ///< wall time to wait for an acknowledgement
-  double join_timeout_s = 30;      ///< wall time to wait for the launched clients to join
-  std::string on_timeout = "end";  ///< what is done then: wait, pause, continue, end
-  bool agreed = false;             ///< the file says on_timeout
+  double timeout_s = 10;       ///< wall time to wait for an acknowledgement
+  double join_timeout_s = 30;  ///< wall time to wait for the launched clients to join
+  OnTimeout on_timeout = OnTimeout::end_run;
+  bool agreed = false;  ///< the file says on_timeout
   void read(ParamReader& in);
 };
 

@@ -55,7 +55,7 @@ struct Strewn {
   explicit Strewn(int count, bool with_terrain = true) {
     sim::start_ode();
     if (with_terrain) terrain = make_terrain();
-    scene = sim::make_world_scene("embree", moves);
+    scene = sim::make_world_scene(sim::RayLibrary::embree, moves);
     scene->add_group(0);
     if (with_terrain) {
       ground.reset(dCreateBox(nullptr, 1, 1, 1));  // only its pose counts

@@ -12,8 +12,9 @@
 namespace {
 
 using namespace small_worlds;
+using sim::RayLibrary;
 
-std::unique_ptr<PhysicsWorld> strewn_boxes(int count, const std::string& rays) {
+std::unique_ptr<PhysicsWorld> strewn_boxes(int count, RayLibrary rays) {
   PhysicsConfig config;
   config.rays = rays;
   auto world = make_world(config);
@@ -26,7 +27,7 @@ std::unique_ptr<PhysicsWorld> strewn_boxes(int count, const std::string& rays) {
   return world;
 }
 
-void frame(benchmark::State& state, sim::ImageKind kind, int width, int height, const std::string& rays) {
+void frame(benchmark::State& state, sim::ImageKind kind, int width, int height, RayLibrary rays) {
   const auto world = strewn_boxes(static_cast<int>(state.range(0)), rays);
   sim::OpticsConfig lens;
   lens.width = width, lens.height = height;
@@ -45,15 +46,15 @@ void frame(benchmark::State& state, sim::ImageKind kind, int width, int height, 
 
 }  // namespace
 
-BENCHMARK_CAPTURE(frame, color_320x240, sim::ImageKind::color, 320, 240, "embree")
+BENCHMARK_CAPTURE(frame, color_320x240, sim::ImageKind::color, 320, 240, RayLibrary::embree)
     ->Arg(10)
     ->Arg(1000)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(frame, depth_640x480, sim::ImageKind::depth, 640, 480, "embree")
+BENCHMARK_CAPTURE(frame, depth_640x480, sim::ImageKind::depth, 640, 480, RayLibrary::embree)
     ->Arg(10)
     ->Arg(1000)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(frame, color_320x240_ode, sim::ImageKind::color, 320, 240, "ode")
+BENCHMARK_CAPTURE(frame, color_320x240_ode, sim::ImageKind::color, 320, 240, RayLibrary::ode)
     ->Arg(1000)
     ->Unit(benchmark::kMillisecond);
 

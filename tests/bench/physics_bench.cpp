@@ -117,7 +117,7 @@ class BareFleet {
 
 class ShoalFleet {
  public:
-  explicit ShoalFleet(int robots, const std::string& space = "sap") {
+  explicit ShoalFleet(int robots, PhysicsConfig::Space space = PhysicsConfig::Space::sap) {
     PhysicsConfig config;
     config.step_s = step_s;
     config.space = space;
@@ -162,7 +162,7 @@ void physics_world(benchmark::State& state) {
 }
 
 void physics_world_quadtree(benchmark::State& state) {
-  ShoalFleet fleet(static_cast<int>(state.range(0)), "quadtree");
+  ShoalFleet fleet(static_cast<int>(state.range(0)), PhysicsConfig::Space::quadtree);
   run(state, fleet);
 }
 

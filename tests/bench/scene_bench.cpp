@@ -15,11 +15,12 @@
 namespace {
 
 using namespace small_worlds;
+using sim::RayLibrary;
 
 constexpr int beams = 180;
 
 struct Arena {
-  Arena(int cells, const std::string& rays) {
+  Arena(int cells, RayLibrary rays) {
     PhysicsConfig config;
     config.rays = rays;
     world = make_world(config, {slippery()});
@@ -55,7 +56,7 @@ void per_ray(benchmark::State& state, double rays) {
   state.counters["ray"] = benchmark::Counter(rays, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-void fan_in_arena(benchmark::State& state, const std::string& library) {
+void fan_in_arena(benchmark::State& state, RayLibrary library) {
   const Arena arena(static_cast<int>(state.range(0)), library);
   std::vector<sim::RayHit> hits(beams);
   int rover = 0;
@@ -68,7 +69,7 @@ void fan_in_arena(benchmark::State& state, const std::string& library) {
 }
 
 /// As a run does it: a step, then one in ten rovers scans (10 Hz at 100 steps a second).
-void step_and_scan(benchmark::State& state, const std::string& library) {
+void step_and_scan(benchmark::State& state, RayLibrary library) {
   Arena arena(1000, library);
   std::vector<sim::RayHit> hits(beams);
   for (auto _ : state) {
@@ -77,7 +78,7 @@ void step_and_scan(benchmark::State& state, const std::string& library) {
   }
 }
 
-std::unique_ptr<PhysicsWorld> strewn_boxes(int count, const std::string& library) {
+std::unique_ptr<PhysicsWorld> strewn_boxes(int count, RayLibrary library) {
   PhysicsConfig config;
   config.rays = library;
   auto world = make_world(config);
@@ -90,7 +91,7 @@ std::unique_ptr<PhysicsWorld> strewn_boxes(int count, const std::string& library
   return world;
 }
 
-void fan_among_boxes(benchmark::State& state, const std::string& library) {
+void fan_among_boxes(benchmark::State& state, RayLibrary library) {
   const auto world = strewn_boxes(static_cast<int>(state.range(0)), library);
   std::mt19937 random(2);
   std::vector<sim::RayHit> hits(beams);
@@ -107,7 +108,7 @@ void fan_among_boxes(benchmark::State& state, const std::string& library) {
   per_ray(state, static_cast<double>(state.iterations()) * beams);
 }
 
-void single_cast_among_boxes(benchmark::State& state, const std::string& library) {
+void single_cast_among_boxes(benchmark::State& state, RayLibrary library) {
   const auto world = strewn_boxes(static_cast<int>(state.range(0)), library);
   std::mt19937 random(2);
   for (auto _ : state) {
@@ -119,13 +120,13 @@ void single_cast_among_boxes(benchmark::State& state, const std::string& library
 
 }  // namespace
 
-BENCHMARK_CAPTURE(fan_in_arena, embree, "embree")->Arg(100)->Arg(1000);
-BENCHMARK_CAPTURE(fan_in_arena, ode, "ode")->Arg(100)->Arg(1000);
-BENCHMARK_CAPTURE(fan_among_boxes, embree, "embree")->RangeMultiplier(10)->Range(10, 10000);
-BENCHMARK_CAPTURE(fan_among_boxes, ode, "ode")->RangeMultiplier(10)->Range(10, 10000);
-BENCHMARK_CAPTURE(single_cast_among_boxes, embree, "embree")->RangeMultiplier(10)->Range(10, 10000);
-BENCHMARK_CAPTURE(single_cast_among_boxes, ode, "ode")->RangeMultiplier(10)->Range(10, 10000);
-BENCHMARK_CAPTURE(step_and_scan, embree, "embree")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(step_and_scan, ode, "ode")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(fan_in_arena, embree, RayLibrary::embree)->Arg(100)->Arg(1000);
+BENCHMARK_CAPTURE(fan_in_arena, ode, RayLibrary::ode)->Arg(100)->Arg(1000);
+BENCHMARK_CAPTURE(fan_among_boxes, embree, RayLibrary::embree)->RangeMultiplier(10)->Range(10, 10000);
+BENCHMARK_CAPTURE(fan_among_boxes, ode, RayLibrary::ode)->RangeMultiplier(10)->Range(10, 10000);
+BENCHMARK_CAPTURE(single_cast_among_boxes, embree, RayLibrary::embree)->RangeMultiplier(10)->Range(10, 10000);
+BENCHMARK_CAPTURE(single_cast_among_boxes, ode, RayLibrary::ode)->RangeMultiplier(10)->Range(10, 10000);
+BENCHMARK_CAPTURE(step_and_scan, embree, RayLibrary::embree)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(step_and_scan, ode, RayLibrary::ode)->Unit(benchmark::kMillisecond);
 
 BENCHMARK_MAIN();

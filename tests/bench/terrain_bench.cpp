@@ -16,8 +16,8 @@ namespace {
 
 using namespace terrain_worlds;
 
-PartConfig bumps(double cell_m, const std::string& collision, double size_m) {
-  PartConfig part = terrain("fractal", cell_m, collision);
+PartConfig bumps(double cell_m, TerrainCollision collision, double size_m) {
+  PartConfig part = terrain(TerrainSource::fractal, cell_m, collision);
   part.terrain->size_m = {size_m, size_m};
   part.terrain->amplitude_m = 0.1;
   part.terrain->wavelength_m = 4;
@@ -47,12 +47,11 @@ sim::GeomHandle make_shape(int kind) {
 }
 
 /// Arguments: shape, size of the cells in mm.
-template <int collision_kind>
+template <TerrainCollision collision>
 void contact(benchmark::State& state) {
-  const char* collision[] = {"smooth", "facets", "mesh"};
   const int kind = static_cast<int>(state.range(0));
   const double half_height_m = kind < 2 ? 0.1 : kind < 4 ? 0.35 : 0.25;
-  const Ground ground(bumps(static_cast<double>(state.range(1)) / 1000, collision[collision_kind], 20));
+  const Ground ground(bumps(static_cast<double>(state.range(1)) / 1000, collision, 20));
   const sim::GeomHandle shape = make_shape(kind);
   std::vector<dContactGeom> contacts(8);
   std::int64_t touched = 0;
@@ -64,15 +63,15 @@ void contact(benchmark::State& state) {
   }
   state.counters["contacts"] = static_cast<double>(touched) / static_cast<double>(state.iterations());
   const char* shapes[] = {"sphere 0.1", "cylinder 0.1", "sphere 0.35", "cylinder 0.35", "box 4x2x0.5"};
-  state.SetLabel(std::string(collision[collision_kind]) + ", " + shapes[kind]);
+  state.SetLabel(std::string(word_of(sim::terrain_collision_words, collision)) + ", " + shapes[kind]);
 }
 
 void shapes_and_cells(benchmark::internal::Benchmark* bench) {
   bench->ArgsProduct({{0, 1, 2, 3, 4}, {50, 100, 250, 1000}})->Unit(benchmark::kMicrosecond);
 }
-BENCHMARK(contact<0>)->Name("smooth")->Apply(shapes_and_cells);
-BENCHMARK(contact<1>)->Name("facets")->Apply(shapes_and_cells);
-BENCHMARK(contact<2>)->Name("mesh")->Apply(shapes_and_cells);
+BENCHMARK(contact<TerrainCollision::smooth>)->Name("smooth")->Apply(shapes_and_cells);
+BENCHMARK(contact<TerrainCollision::facets>)->Name("facets")->Apply(shapes_and_cells);
+BENCHMARK(contact<TerrainCollision::mesh>)->Name("mesh")->Apply(shapes_and_cells);
 
 /// Peak memory of the process so far, MB.
 double peak_MB() {
@@ -84,14 +83,14 @@ double peak_MB() {
 /// Arguments: points a side; 0 smooth, 1 facets, 2 mesh.  Memory is the growth of the peak: run one at a time, by
 /// --benchmark_filter.
 void build(benchmark::State& state) {
-  const char* collision[] = {"smooth", "facets", "mesh"};
+  const auto collision = static_cast<TerrainCollision>(state.range(1));
   const auto points = static_cast<double>(state.range(0));
   const double before_MB = peak_MB();
-  PartConfig part = bumps(0.1, collision[state.range(1)], (points - 1) * 0.1);
-  part.terrain->source = "sine";
+  PartConfig part = bumps(0.1, collision, (points - 1) * 0.1);
+  part.terrain->source = TerrainSource::sine;
   for (auto _ : state) benchmark::DoNotOptimize(std::make_unique<Ground>(part));
   state.counters["peak_MB"] = peak_MB() - before_MB;
-  state.SetLabel(collision[state.range(1)]);
+  state.SetLabel(std::string(word_of(sim::terrain_collision_words, collision)));
 }
 BENCHMARK(build)->ArgsProduct({{512, 2001}, {0, 1, 2}})->Unit(benchmark::kMillisecond)->Iterations(1);
 

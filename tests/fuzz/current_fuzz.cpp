@@ -12,14 +12,14 @@ SHOAL_FUZZ_TARGET(current) {
   const std::size_t first_size = is_csv ? 0 : reader.number<std::uint16_t>();
   const fuzz::MemoryFile first(reader.bytes(first_size)), second(reader.rest());
   sim::CurrentConfig config;
-  config.type = "grid";
+  config.type = sim::CurrentConfig::Type::grid;
   if (is_csv) {
     config.file = second.path();
   } else {
     config.east_file = first.path();
     config.north_file = second.path();
   }
-  for (const char* outside : {"zero", "edge"}) {
+  for (const auto outside : {sim::CurrentConfig::Outside::zero, sim::CurrentConfig::Outside::edge}) {
     config.outside = outside;
     fuzz::allow<sim::TerrainError>([&] {
       const sim::CurrentGrid grid(config);

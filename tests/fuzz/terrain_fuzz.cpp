@@ -28,7 +28,7 @@ void generate(const std::string& yaml) {
   constexpr double max_points = 10'000;
   const bool large =
       config.size_m.size() == 2 && config.size_m[0] / config.cell_m * (config.size_m[1] / config.cell_m) > max_points;
-  if (!diagnostics.ok() || large || config.source == "ascii" || config.source == "png") return;
+  if (!diagnostics.ok() || large || is_read_from_file(config.source)) return;
   load(config);
 }
 
@@ -43,8 +43,8 @@ SHOAL_FUZZ_TARGET(terrain) {
     const fuzz::MemoryFile file(rest);
     sim::TerrainConfig config;
     config.file = file.path();
-    config.source = kind == 3 ? "png" : "ascii";
-    config.holes = kind == 0 ? "error" : kind == 1 ? "nearest" : "linear";
+    config.source = kind == 3 ? sim::TerrainConfig::Source::png : sim::TerrainConfig::Source::ascii;
+    config.holes = kind == 0 ? sim::Holes::error : kind == 1 ? sim::Holes::nearest : sim::Holes::linear;
     load(config);
   });
 }

@@ -62,7 +62,7 @@ std::string world_text() {
       "  - {name: hello, at: 3, do: [{publish: {channel: r1.hello, type: shoal.pose_t, value: {}}}]}\n"
       "  - {name: throw, at: 3, do: [{move: {name: r2, position_m: [0, 5, 0.5], rpy_deg: [90, 0, 0]}}, "
       "{move: {name: ball, position_m: [0, 5, 1.5]}}]}\n"
-      "metrics:\n  - {name: far, vehicle: r1, channel: r1.far}\n";
+      "metrics:\n  - {name: far, type: position_error, vehicle: r1, channel: r1.far}\n";
   for (const auto& [type, metrics] : cases())
     for (std::size_t i = 0; i < metrics.size(); ++i)
       text += "  - {name: " + type + std::to_string(i) + ", type: " + type +

@@ -42,7 +42,8 @@ class Example(unittest.TestCase):
         auv, bus = coop_auv.attach(coop_auv.parse(options_of_the_page()))
         # Exit code 0: the rules are kept.  The rms error is some 1 m, that of dead reckoning some 30 m.
         self.run_world(bus, "coop_underwater.yaml", "--launch", "--await", "auv_python", "--duration", "600",
-                       "--set", "metrics=[{name: python, vehicle: auv, channel: auv.python_estimate, from_s: 120}]",
+                       "--set", "metrics=[{name: python, type: position_error, vehicle: auv, "
+                       "channel: auv.python_estimate, from_s: 120}]",
                        "--set", "pass=[python.rms_m < 5, python.samples > 900]")
         self.assertAlmostEqual(auv.ekf.time_s, 1767225600 + 600, delta=2)
 

@@ -123,7 +123,8 @@ TEST(Warnings, TellAtTheEndOfAMetricThatHeardNothing) {
   const system_test::ScratchFolder scratch;
   const std::string file = scratch.file("mute.yaml");
   system_test::write_file(
-      file, system_test::endless_world("metrics: [{name: error, vehicle: rover1, channel: rover1.estimate}]\n"));
+      file, system_test::endless_world(
+                "metrics: [{name: error, type: position_error, vehicle: rover1, channel: rover1.estimate}]\n"));
   const system_test::Ended run =
       system_test::run_shoal({"run", file, "--bus", "none", "--duration", "1", "--speed", "max"});
   EXPECT_THAT(run.errors,

@@ -216,7 +216,7 @@ TEST(Spawn, AFloodIsAnsweredInPortions) {
 }
 
 TEST(Spawn, WhatAMetricScoresStays) {
-  Host host("metrics: [{name: m, vehicle: a, channel: est}]\n");
+  Host host("metrics: [{name: m, type: position_error, vehicle: a, channel: est}]\n");
   EXPECT_EQ(host.ask("remove", "a").text, "vehicle 'a' cannot be removed: metric 'm' scores it");
   EXPECT_EQ(host.ask("remove", "nobody").text, "there is no object 'nobody'");
   EXPECT_EQ(host.ask("describe", "nobody").text, "there is no vehicle 'nobody'");

@@ -1,27 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lockstep_client/lockstep_terms.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
+
+#include "bridges/base/bus_error.hpp"
 
 namespace bridges {
 namespace {
 
 TEST(LockstepTermsText, IsReadAsItWasMeant) {
-  const sim::LockstepTerms defaults{.on_timeout = "wait", .timeout_s = 7};
-  sim::LockstepTerms terms{.session = 9'000'000'000'000'000, .on_timeout = "pause", .timeout_s = 0.25};
+  const sim::LockstepTerms defaults{.on_timeout = sim::OnTimeout::wait, .timeout_s = 7};
+  sim::LockstepTerms terms{
+      .session = 9'000'000'000'000'000, .on_timeout = sim::OnTimeout::pause, .timeout_s = 0.25, .agreed = true};
   terms.receives = {"a.b", "a\"quoted\"", "back\\slash", "]{,: #", "-"};
   sim::LockstepTerms read = sim::read_lockstep_terms(bridges::text_of(terms), defaults);
   EXPECT_EQ(read.session, terms.session);
   EXPECT_EQ(read.receives, terms.receives);
-  EXPECT_EQ(read.on_timeout, "pause");
+  EXPECT_EQ(read.on_timeout, sim::OnTimeout::pause);
   EXPECT_EQ(read.timeout_s, 0.25);
   EXPECT_TRUE(read.agreed);
-  read = sim::read_lockstep_terms(bridges::text_of(sim::LockstepTerms{.session = 1, .on_timeout = "", .timeout_s = 0}),
-                                  defaults);
+  read = sim::read_lockstep_terms(bridges::text_of(sim::LockstepTerms{.session = 1, .timeout_s = 0}), defaults);
   EXPECT_EQ(read.receives, std::vector<std::string>{});
-  EXPECT_EQ(read.on_timeout, "wait");
+  EXPECT_EQ(read.on_timeout, sim::OnTimeout::wait);
   EXPECT_EQ(read.timeout_s, 7);
   EXPECT_FALSE(read.agreed);
+}
+
+TEST(LockstepTermsText, AWordOfTheClientIsOneOfThoseOfTheWorld) {
+  EXPECT_EQ(bridges::on_timeout_of("continue"), sim::OnTimeout::go_on);
+  EXPECT_EQ(bridges::on_timeout_of(""), std::nullopt);
+  EXPECT_THAT([] { bridges::on_timeout_of("never"); },
+              testing::ThrowsMessage<BusError>("'on_timeout' must be one of: wait, pause, continue, end; got 'never'"));
 }
 
 TEST(LeaveTermsText, IsReadAsItWasMeant) {

@@ -139,8 +139,8 @@ TEST(RunJournal, MutedItWritesNothingAndItsPortsReadWhatTheyReadBefore) {
   const auto end = std::make_shared<test::PortEnd>();
   Journalled run(1);
   const sim::PortOpener open =
-      run.ports.wrap([&](const std::string&, const std::string&) { return std::make_unique<test::FakePort>(end); });
-  const auto port = open("pty", "/nowhere/a");
+      run.ports.wrap([&](sim::PortKind, const std::string&) { return std::make_unique<test::FakePort>(end); });
+  const auto port = open(sim::PortKind::pty, "/nowhere/a");
   run.journal.start();
   end->to_world = "hello";
   EXPECT_EQ(port->read(), bytes_of("hello"));

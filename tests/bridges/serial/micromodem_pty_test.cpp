@@ -75,9 +75,8 @@ class MicromodemPty : public testing::Test {
   test_support::ScratchFolder folder;
   sim::LoadedWorld loaded = sim::load_world_text(yaml(), "worlds/test.yaml", {});
   sim::InProcessBus bus;
-  sim::World world{loaded.config, bus, [](const std::string& kind, const std::string& path) {
-                     return bridges::open_serial_port(kind, path);
-                   }};
+  sim::World world{loaded.config, bus,
+                   [](sim::PortKind kind, const std::string& path) { return bridges::open_serial_port(kind, path); }};
   Terminal one{folder.file("m1.modem")}, two{folder.file("m2.modem")};
 };
 

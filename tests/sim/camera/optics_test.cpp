@@ -13,7 +13,9 @@ using sim::OpticsConfig;
 using sim::Vector2d;
 using sim::Vector3d;
 
-OpticsConfig lens(const std::string& kind, double fov_deg, std::vector<double> distortion = {}) {
+using Lens = OpticsConfig::Lens;
+
+OpticsConfig lens(Lens kind, double fov_deg, std::vector<double> distortion = {}) {
   OpticsConfig config;
   config.lens = kind;
   config.fov_rad = degrees_to_radians(fov_deg);
@@ -35,40 +37,40 @@ double worst_round_trip(const Optics& optics) {
 }
 
 TEST(Optics, TheMiddleOfTheImageLooksAlongX) {
-  for (const char* kind : {"pinhole", "fisheye"})
-    EXPECT_LT((*Optics(lens(kind, 60)).direction_S(160, 120) - Vector3d::UnitX()).norm(), 1e-15) << kind;
+  for (const auto& [word, kind] : OpticsConfig::lens_words)
+    EXPECT_LT((*Optics(lens(kind, 60)).direction_S(160, 120) - Vector3d::UnitX()).norm(), 1e-15) << word;
 }
 
 TEST(Optics, TheSidesOfTheImageAreHalfTheFieldOfViewAway) {
-  for (const char* kind : {"pinhole", "fisheye"}) {
+  for (const auto& [word, kind] : OpticsConfig::lens_words) {
     const Optics optics(lens(kind, 90));
     const double root = std::sqrt(0.5);
-    EXPECT_LT((*optics.direction_S(0, 120) - Vector3d(root, root, 0)).norm(), 1e-12) << kind;     // left is +y
-    EXPECT_LT((*optics.direction_S(320, 120) - Vector3d(root, -root, 0)).norm(), 1e-12) << kind;  // right
+    EXPECT_LT((*optics.direction_S(0, 120) - Vector3d(root, root, 0)).norm(), 1e-12) << word;     // left is +y
+    EXPECT_LT((*optics.direction_S(320, 120) - Vector3d(root, -root, 0)).norm(), 1e-12) << word;  // right
   }
 }
 
 TEST(Optics, TheTopRowLooksUp) {
-  const Optics optics(lens("pinhole", 90));
+  const Optics optics(lens(Lens::pinhole, 90));
   // f = 160 px, 120 px above the middle.
   EXPECT_LT((*optics.direction_S(160, 0) - Vector3d(160, 0, 120).normalized()).norm(), 1e-12);
 }
 
 TEST(Optics, AFisheyeSeesAnglesInProportionToTheDistanceFromTheMiddle) {
-  const Optics optics(lens("fisheye", 180));
+  const Optics optics(lens(Lens::fisheye, 180));
   // 160 px for 90 degrees.
   for (const double u : {10.0, 80.0, 160.0}) {
     const Vector3d direction = *optics.direction_S(160 - u, 120);
     EXPECT_NEAR(std::atan2(direction.y(), direction.x()), std::numbers::pi / 2 * u / 160, 1e-12);
   }
   // Behind the camera, which a pinhole never sees.
-  const Optics wide(lens("fisheye", 300));
+  const Optics wide(lens(Lens::fisheye, 300));
   EXPECT_LT(wide.direction_S(1, 120)->x(), -0.8);
 }
 
 TEST(Optics, DistortionFollowsOpenCvsFormula) {
   const double k1 = -0.3, k2 = 0.1, p1 = 0.002, p2 = -0.001, k3 = -0.01;
-  OpticsConfig config = lens("pinhole", 60, {k1, k2, p1, p2, k3});
+  OpticsConfig config = lens(Lens::pinhole, 60, {k1, k2, p1, p2, k3});
   config.focal_px = {300, 310};
   config.principal_px = {150, 125};
   const double x = 0.3, y = -0.2, s = x * x + y * y;
@@ -82,7 +84,7 @@ TEST(Optics, DistortionFollowsOpenCvsFormula) {
 
 TEST(Optics, AFisheyesDistortionFollowsOpenCvsFormula) {
   const std::vector<double> k = {-0.02, 0.004, -0.001, 0.0002};
-  OpticsConfig config = lens("fisheye", 180, k);
+  OpticsConfig config = lens(Lens::fisheye, 180, k);
   config.focal_px = {100};
   const double angle = 1.1, s = angle * angle;
   const double radius = angle * (1 + s * (k[0] + s * (k[1] + s * (k[2] + s * k[3]))));
@@ -91,14 +93,14 @@ TEST(Optics, AFisheyesDistortionFollowsOpenCvsFormula) {
 }
 
 TEST(Optics, PixelsSurviveTheWayOutAndBack) {
-  EXPECT_LT(worst_round_trip(Optics(lens("pinhole", 60))), 1e-9);
-  EXPECT_LT(worst_round_trip(Optics(lens("pinhole", 80, {-0.28, 0.07, 2e-4, 2e-5, 0}))), 1e-6);
-  EXPECT_LT(worst_round_trip(Optics(lens("pinhole", 60, {0.2, 0.1, -1e-3, 1e-3, 0.05}))), 1e-6);
-  EXPECT_LT(worst_round_trip(Optics(lens("fisheye", 200, {-0.01, 0.002, 0, 0}))), 1e-6);
+  EXPECT_LT(worst_round_trip(Optics(lens(Lens::pinhole, 60))), 1e-9);
+  EXPECT_LT(worst_round_trip(Optics(lens(Lens::pinhole, 80, {-0.28, 0.07, 2e-4, 2e-5, 0}))), 1e-6);
+  EXPECT_LT(worst_round_trip(Optics(lens(Lens::pinhole, 60, {0.2, 0.1, -1e-3, 1e-3, 0.05}))), 1e-6);
+  EXPECT_LT(worst_round_trip(Optics(lens(Lens::fisheye, 200, {-0.01, 0.002, 0, 0}))), 1e-6);
 }
 
 TEST(Optics, AFisheyeIsBlackBeyondItsLargestAngle) {
-  OpticsConfig config = lens("fisheye", 180);
+  OpticsConfig config = lens(Lens::fisheye, 180);
   config.max_angle_rad = degrees_to_radians(80);
   const Optics optics(config);
   EXPECT_FALSE(optics.direction_S(1, 120));  // 89 degrees
@@ -109,11 +111,11 @@ TEST(Optics, AFisheyeIsBlackBeyondItsLargestAngle) {
 }
 
 TEST(Optics, APinholeDoesNotSeeBehindItself) {
-  EXPECT_FALSE(Optics(lens("pinhole", 120)).project({-1, 0.1, 0}));
+  EXPECT_FALSE(Optics(lens(Lens::pinhole, 120)).project({-1, 0.1, 0}));
 }
 
 TEST(Optics, RaysAreSpreadEvenlyInAPixel) {
-  const Optics optics(lens("pinhole", 60));
+  const Optics optics(lens(Lens::pinhole, 60));
   const auto rays = sim::make_pixel_rays(optics, 2);
   ASSERT_EQ(rays->directions_S.size(), 4u * 320 * 240);
   EXPECT_LT((rays->row(1)[4].cast<double>() - *optics.direction_S(2.25, 0.75)).norm(), 1e-7);  // float

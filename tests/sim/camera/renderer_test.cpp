@@ -176,7 +176,7 @@ TEST(Renderer, LabelsCoverTheFaceOfABox) {
 TEST(Renderer, CheckersHaveTheirCornersAtWholeFields) {
   MaterialConfig tiles;
   tiles.name = "tiles";
-  tiles.texture.pattern = "checker";
+  tiles.texture.pattern = sim::TextureConfig::Pattern::checker;
   tiles.texture.colors = {"#ffffff", "#000000"};
   tiles.texture.size_m = 0.5;
   auto world = world_of(tiles);
@@ -203,7 +203,7 @@ TEST(Renderer, AnImageLiesUprightOnAWall) {
   sim::write_image(file, picture);
   MaterialConfig poster;
   poster.name = "poster";
-  poster.texture.pattern = "image";
+  poster.texture.pattern = sim::TextureConfig::Pattern::image;
   poster.texture.file = file;
   poster.texture.size_m = 2;
   auto world = world_of(poster);
@@ -232,7 +232,7 @@ TEST(Renderer, SaysWhichTextureCannotBeRead) {
   std::ofstream(file) << "no picture";
   MaterialConfig poster;
   poster.name = "poster";
-  poster.texture.pattern = "image";
+  poster.texture.pattern = sim::TextureConfig::Pattern::image;
   poster.texture.file = file;
   auto world = world_of(poster);
   PartConfig wall = box({1, 1, 1}, 0);

@@ -279,7 +279,7 @@ TEST(ParamReader, AChoiceIsOneOfItsWords) {
   std::string word = "a";
   Color color = Color::red;
   const auto read = [&](ParamReader& in) {
-    in.read_choice("mode", word, {"a", "b"}, "");
+    in.read_one_of("mode", word, {"a", "b"}, "");
     in.read_choice("color", color, {{"red", Color::red}, {"green", Color::green}}, "");
   };
   EXPECT_EQ(errors_of("mode: b\ncolor: green\n", read), Lines{});
@@ -288,6 +288,32 @@ TEST(ParamReader, AChoiceIsOneOfItsWords) {
   EXPECT_EQ(errors_of("mode: c\ncolor: [red]\n", read),
             (Lines{"1:7 'mode' must be one of: a, b; got 'c'", "2:8 'color' must be one of: red, green; got [red]"}));
   EXPECT_EQ(word, "b");
+  EXPECT_EQ(color, Color::green);
+}
+
+TEST(ParamReader, AChoiceMayHaveAWordForNone) {
+  std::optional<Color> color = Color::red;
+  const auto read = [&](ParamReader& in) {
+    in.read_choice("color", color, "any", {{"red", Color::red}, {"green", Color::green}}, "");
+  };
+  EXPECT_EQ(errors_of("x: 1\n", read), Lines{"1:1 unknown key 'x'; known keys: color"});
+  EXPECT_EQ(color, Color::red);
+  EXPECT_EQ(errors_of("color: any\n", read), Lines{});
+  EXPECT_EQ(color, std::nullopt);
+  EXPECT_EQ(errors_of("color: green\n", read), Lines{});
+  EXPECT_EQ(color, Color::green);
+  EXPECT_EQ(errors_of("color: blue\n", read), Lines{"1:8 'color' must be one of: any, red, green; got 'blue'"});
+  EXPECT_EQ(color, Color::green);
+}
+
+TEST(ParamReader, AChoiceMayBeOfSomeOfTheWords) {
+  Color color = Color::green;
+  const Color allowed[] = {Color::green};
+  const auto read = [&](ParamReader& in) {
+    in.read_choice("color", color, {{"red", Color::red}, {"green", Color::green}}, allowed, "");
+  };
+  EXPECT_EQ(errors_of("color: green\n", read), Lines{});
+  EXPECT_EQ(errors_of("color: red\n", read), Lines{"1:8 'color' must be one of: green; got 'red'"});
   EXPECT_EQ(color, Color::green);
 }
 
@@ -591,7 +617,7 @@ struct AllKinds {
     in.read("texts", texts, "m");
     in.read_deg("angle_deg", angle_rad, sim::between(0, 360), "m");
     in.read_deg("rpy_deg", rpy_rad, "m");
-    in.read_choice("word", word, {"a", "b"}, "m");
+    in.read_one_of("word", word, {"a", "b"}, "m");
     in.read_choice("color", color, {{"red", Color::red}, {"green", Color::green}}, "m");
     in.read_reference("body", body, "body", "m");
     in.read_references("bodies", bodies, "body", "m");

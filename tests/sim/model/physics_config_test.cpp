@@ -41,8 +41,8 @@ std::string error_of(const std::string& yaml) {
 TEST(PhysicsConfig, IsRead) {
   const auto config = read<sim::PhysicsConfig>("{step_s: 0.002, solver: quick, space: quadtree}");
   EXPECT_EQ(config.step_s, 0.002);
-  EXPECT_EQ(config.solver, "quick");
-  EXPECT_EQ(config.space, "quadtree");
+  EXPECT_EQ(config.solver, sim::PhysicsConfig::Solver::quick);
+  EXPECT_EQ(config.space, sim::PhysicsConfig::Space::quadtree);
   EXPECT_EQ(config.gravity_mps2, 9.80665);
 }
 

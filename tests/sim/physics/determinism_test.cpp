@@ -12,9 +12,11 @@
 namespace {
 
 using namespace small_worlds;
+using Solver = PhysicsConfig::Solver;
+using Space = PhysicsConfig::Space;
 
 /// A pile of boxes and balls that falls together, beside a fleet that runs into walls and each other.
-std::unique_ptr<PhysicsWorld> pile_and_fleet(const std::string& space, const std::string& solver = "auto") {
+std::unique_ptr<PhysicsWorld> pile_and_fleet(Space space, Solver solver = Solver::automatic) {
   PhysicsConfig config;
   config.space = space;
   config.solver = solver;
@@ -47,33 +49,35 @@ std::vector<std::uint64_t> hashes(PhysicsWorld& world, int steps) {
   return out;
 }
 
-class EachSpace : public testing::TestWithParam<const char*> {};
+class EachSpace : public testing::TestWithParam<Space> {};
 
 TEST_P(EachSpace, GivesTheSameBits) {
-  static const std::vector<std::uint64_t> expected = hashes(*pile_and_fleet("sap"), 300);
+  static const std::vector<std::uint64_t> expected = hashes(*pile_and_fleet(Space::sap), 300);
   EXPECT_EQ(hashes(*pile_and_fleet(GetParam()), 300), expected);
 }
 
-INSTANTIATE_TEST_SUITE_P(Spaces, EachSpace, testing::Values("sap", "quadtree", "hash", "simple"));
+INSTANTIATE_TEST_SUITE_P(Spaces, EachSpace, testing::Values(Space::sap, Space::quadtree, Space::hash, Space::simple));
 
 TEST(Determinism, SecondRunInOneProcessGivesTheSameBits) {
-  for (const char* solver : {"step", "quick"})
-    EXPECT_EQ(hashes(*pile_and_fleet("sap", solver), 200), hashes(*pile_and_fleet("sap", solver), 200)) << solver;
+  for (const auto& [word, solver] : PhysicsConfig::solver_words)
+    EXPECT_EQ(hashes(*pile_and_fleet(Space::sap, solver), 200), hashes(*pile_and_fleet(Space::sap, solver), 200))
+        << word;
 }
 
 TEST(Determinism, WorldsInFourThreadsGiveTheBitsOfOne) {
   // Quick with 20 iterations shuffles rows by random numbers: needs the seed of its own of each thread.
-  const std::vector<std::uint64_t> expected = hashes(*pile_and_fleet("sap", "quick"), 200);
+  const std::vector<std::uint64_t> expected = hashes(*pile_and_fleet(Space::sap, "quick"), 200);
   std::vector<std::vector<std::uint64_t>> found(4);
   std::vector<std::thread> threads;
-  for (auto& result : found) threads.emplace_back([&result] { result = hashes(*pile_and_fleet("sap", "quick"), 200); });
+  for (auto& result : found)
+    threads.emplace_back([&result] { result = hashes(*pile_and_fleet(Space::sap, "quick"), 200); });
   for (std::thread& thread : threads) thread.join();
   for (const auto& result : found) EXPECT_EQ(result, expected);
 }
 
 TEST(Determinism, SeedOfTheWorldMattersOnlyToTheQuickSolver) {
   PhysicsConfig config;
-  config.solver = "quick";
+  config.solver = Solver::quick;
   const auto run = [&](std::uint64_t seed) {
     PhysicsWorld world(config, {}, {}, {}, seed);
     add_ground(world);
@@ -135,7 +139,7 @@ TEST(QuickFallback, LeavesTheOtherIslandsToTheExactSolver) {
 
 TEST(QuickFallback, NeverHappensWithSolverStep) {
   PhysicsConfig config;
-  config.solver = "step";
+  config.solver = Solver::step;
   config.quick_above_rows = 0;
   const auto world = make_world(config);
   add_ground(*world);

@@ -74,7 +74,8 @@ TEST(Fault, OverflowNamesTheBody) {
 TEST(Fault, BodyThatFallsFromTheWorldIsNamed) {
   PhysicsConfig config;
   config.max_distance_m = 50;
-  for (const char* space : {"sap", "quadtree", "hash", "simple"}) {
+  for (const auto& [word, space] : PhysicsConfig::space_words) {
+    SCOPED_TRACE(std::string(word));
     config.space = space;
     const auto world = make_world(config);
     add(*world, body("stone", {sphere(1, 1)}), Pose::Identity());

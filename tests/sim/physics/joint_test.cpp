@@ -48,7 +48,7 @@ struct Pair {
 };
 
 /// Time between two passages of the lowest point in the same direction.
-double pendulum_period(const std::string& type, double length_m, double amplitude_deg, double step_s) {
+double pendulum_period(JointType type, double length_m, double amplitude_deg, double step_s) {
   PhysicsConfig config;
   config.step_s = step_s;
   const auto world = make_world(config);
@@ -74,18 +74,18 @@ double pendulum_period(const std::string& type, double length_m, double amplitud
 
 // closed_forms.csv pendulum_point_mass: 2 pi sqrt(L/g) / agm(1, cos(amplitude / 2)).
 TEST(Pendulum, SmallSwingHasTheClosedFormPeriod) {
-  EXPECT_NEAR(pendulum_period("hinge", 1, 5, 0.001), 2.007364689, 2e-4 * 2.007364689);
-  EXPECT_NEAR(pendulum_period("ball", 1, 5, 0.001), 2.007364689, 2e-4 * 2.007364689);
+  EXPECT_NEAR(pendulum_period(JointType::hinge, 1, 5, 0.001), 2.007364689, 2e-4 * 2.007364689);
+  EXPECT_NEAR(pendulum_period(JointType::ball, 1, 5, 0.001), 2.007364689, 2e-4 * 2.007364689);
 }
 TEST(Pendulum, WideSwingTakesLonger) {
-  EXPECT_NEAR(pendulum_period("hinge", 1, 60, 0.001), 2.153242352, 1e-3 * 2.153242352);
+  EXPECT_NEAR(pendulum_period(JointType::hinge, 1, 60, 0.001), 2.153242352, 1e-3 * 2.153242352);
 }
 TEST(Pendulum, LongPendulumHasTheClosedFormPeriod) {
-  EXPECT_NEAR(pendulum_period("hinge", 2.5, 20, 0.001), 3.196740948, 2e-4 * 3.196740948);
+  EXPECT_NEAR(pendulum_period(JointType::hinge, 2.5, 20, 0.001), 3.196740948, 2e-4 * 3.196740948);
 }
 
 TEST(HingeJoint, MotorTurnsTheSecondBodyRightHandedAboutTheAxis) {
-  Pair rig(joint("elbow", "hinge", {1, 0, 0}, Vector3d::UnitY()));
+  Pair rig(joint("elbow", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()));
   EXPECT_EQ(rig.joint->axes(), 1);
   rig.joint->set_motor(2, 1000);
   rig.run(50);
@@ -95,7 +95,7 @@ TEST(HingeJoint, MotorTurnsTheSecondBodyRightHandedAboutTheAxis) {
 }
 
 TEST(HingeJoint, ToAFixedBodyCountsTheSameWay) {
-  Pair rig(joint("elbow", "hinge", {1, 0, 0}, Vector3d::UnitY()), true);
+  Pair rig(joint("elbow", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()), true);
   rig.joint->set_motor(2, 1000);
   rig.run(50);
   EXPECT_NEAR(rig.joint->position(), 1, 1e-6);
@@ -106,7 +106,8 @@ TEST(HingeJoint, ToTheWorldCountsTheMovingBody) {
   const auto world = make_world(weightless());
   const int group = world->add_group("rig");
   sim::Body& fan = world->add_body(group, body("fan", {box({1, 1, 0.1}, 1)}), Pose::Identity());
-  sim::Joint& axle = world->add_joint(group, joint("axle", "hinge", {0, 0, 0}), fan, nullptr, Pose::Identity());
+  sim::Joint& axle =
+      world->add_joint(group, joint("axle", JointType::hinge, {0, 0, 0}), fan, nullptr, Pose::Identity());
   world->close_group(group);
   axle.set_motor(3, 1000);
   for (int i = 0; i < 100; ++i) world->step(i);
@@ -115,7 +116,7 @@ TEST(HingeJoint, ToTheWorldCountsTheMovingBody) {
 }
 
 TEST(HingeJoint, PositionGoesOnBeyondPi) {
-  Pair rig(joint("wheel", "hinge", {1, 0, 0}, Vector3d::UnitY()));
+  Pair rig(joint("wheel", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()));
   rig.joint->set_motor(10, 1000);
   rig.run(1000);
   // A motor without limit of force runs at its speed from the first step.  The finite rotation is exact.
@@ -126,14 +127,14 @@ TEST(HingeJoint, PositionGoesOnBeyondPi) {
 }
 
 TEST(HingeJoint, PositionFollowsAWheelThatTurnsMoreThanHalfATurnInAStep) {
-  Pair rig(joint("wheel", "hinge", {1, 0, 0}, Vector3d::UnitY()));
+  Pair rig(joint("wheel", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()));
   rig.joint->set_motor(500, 1e6);  // 5 rad in a step
   rig.run(100);
   EXPECT_NEAR(rig.joint->position(), 500, 1e-3);
 }
 
 TEST(HingeJoint, MotorIsLimitedByItsForce) {
-  Pair rig(joint("wheel", "hinge", {1, 0, 0}, Vector3d::UnitY()), true);
+  Pair rig(joint("wheel", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()), true);
   rig.joint->set_motor(1000, 0.1);
   rig.run(10);
   const double inertia = 0.2 * 0.2 / 6;
@@ -141,7 +142,7 @@ TEST(HingeJoint, MotorIsLimitedByItsForce) {
 }
 
 TEST(HingeJoint, StopsHold) {
-  JointConfig config = joint("elbow", "hinge", {1, 0, 0}, Vector3d::UnitY());
+  JointConfig config = joint("elbow", JointType::hinge, {1, 0, 0}, Vector3d::UnitY());
   config.axis1.low_stop = -0.25;
   config.axis1.high_stop = 0.5;
   Pair rig(config);
@@ -154,7 +155,7 @@ TEST(HingeJoint, StopsHold) {
 }
 
 TEST(HingeJoint, EffortIsATorqueOnTheSecondBody) {
-  Pair rig(joint("wheel", "hinge", {1, 0, 0}, Vector3d::UnitY()), true);
+  Pair rig(joint("wheel", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()), true);
   rig.joint->add_effort(0.5);
   rig.run(1);
   EXPECT_NEAR(rig.joint->velocity(), 0.5 / (0.04 / 6) * 0.01, 1e-7);
@@ -164,7 +165,7 @@ TEST(HingeJoint, EffortIsATorqueOnTheSecondBody) {
 
 TEST(SliderJoint, MotorMovesTheSecondBodyAlongTheAxis) {
   for (const bool to_world : {false, true}) {
-    Pair rig(joint("rail", "slider", {0, 0, 0}, Vector3d::UnitX()), to_world);
+    Pair rig(joint("rail", JointType::slider, {0, 0, 0}, Vector3d::UnitX()), to_world);
     rig.joint->set_motor(0.5, 1e4);
     rig.run(100);
     EXPECT_NEAR(rig.joint->position(), 0.5, 1e-5);
@@ -174,7 +175,7 @@ TEST(SliderJoint, MotorMovesTheSecondBodyAlongTheAxis) {
 }
 
 TEST(SliderJoint, StopsHold) {
-  JointConfig config = joint("rail", "slider", {0, 0, 0}, Vector3d::UnitX());
+  JointConfig config = joint("rail", JointType::slider, {0, 0, 0}, Vector3d::UnitX());
   config.axis1.low_stop = -0.1;
   config.axis1.high_stop = 0.2;
   Pair rig(config);
@@ -187,14 +188,14 @@ TEST(SliderJoint, StopsHold) {
 }
 
 TEST(SliderJoint, EffortIsAForce) {
-  Pair rig(joint("rail", "slider", {0, 0, 0}, Vector3d::UnitX()), true);
+  Pair rig(joint("rail", JointType::slider, {0, 0, 0}, Vector3d::UnitX()), true);
   rig.joint->add_effort(3);
   rig.run(1);
   EXPECT_NEAR(rig.joint->velocity(), 3.0 / 1 * 0.01, 1e-7);
 }
 
 TEST(FixedJoint, CarriesTheSecondBody) {
-  Pair rig(joint("weld", "fixed", {0, 0, 0}));
+  Pair rig(joint("weld", JointType::fixed, {0, 0, 0}));
   EXPECT_EQ(rig.joint->axes(), 0);
   rig.base->set_velocity_W({0, 0, 1}, {0, 0, 0});
   rig.arm->set_velocity_W({0, 0, 1}, {0, 0, 0});
@@ -205,7 +206,7 @@ TEST(FixedJoint, CarriesTheSecondBody) {
 }
 
 TEST(BallJoint, KeepsThePointTogetherAndLeavesTheRotationFree) {
-  Pair rig(joint("shoulder", "ball", {0.9, 0, 0}));
+  Pair rig(joint("shoulder", JointType::ball, {0.9, 0, 0}));
   EXPECT_EQ(rig.joint->axes(), 0);
   rig.arm->add_torque_W({0.1, 0.2, 0.3});
   rig.run(200);
@@ -216,7 +217,7 @@ TEST(BallJoint, KeepsThePointTogetherAndLeavesTheRotationFree) {
 
 TEST(BallJoint, ItsMotorTurnsTheSecondBodyAboutTheAxesOfTheFirst) {
   for (const bool to_fixed : {false, true}) {
-    JointConfig config = joint("shoulder", "ball", {1, 0, 0});
+    JointConfig config = joint("shoulder", JointType::ball, {1, 0, 0});
     config.motor = true;
     Pair rig(config, to_fixed);
     ASSERT_EQ(rig.joint->axes(), 3);
@@ -242,7 +243,7 @@ TEST(BallJoint, ABodyThatIsMovedTakesItsTurnedBallAlong) {
   const auto world = make_world(config);
   const int group = world->add_group("rig");
   sim::Body& arm = world->add_body(group, body("arm", {box({0.2, 0.2, 0.2}, 1)}, {1, 0, 0}), Pose::Identity());
-  JointConfig ball = joint("shoulder", "ball", {1, 0, 0});
+  JointConfig ball = joint("shoulder", JointType::ball, {1, 0, 0});
   ball.motor = true;
   sim::Joint& shoulder = world->add_joint(group, ball, arm, nullptr, Pose::Identity());
   world->close_group(group);
@@ -273,17 +274,18 @@ void restore(sim::Joint& joint, const sim::Bytes& bytes) {
   EXPECT_EQ(archive.bytes_left(), 0u);
 }
 
-JointConfig joint_of_type(const std::string& type) {
+JointConfig joint_of_type(JointType type) {
   // Along x, where a force does not turn the two.
-  JointConfig config = joint("j", type, {1, 0, 0}, type == "slider" ? Vector3d::UnitX() : Vector3d::UnitY());
+  JointConfig config = joint("j", type, {1, 0, 0}, type == JointType::slider ? Vector3d::UnitX() : Vector3d::UnitY());
   config.axis2.axis = Vector3d::UnitZ();
-  config.motor = type == "ball";
+  config.motor = type == JointType::ball;
   return config;
 }
 
 TEST(RestoredJoint, StandsAtNoStopThatItGotLater) {
-  for (const char* type : {"hinge", "slider", "universal", "hinge2", "ball"}) {
-    SCOPED_TRACE(type);
+  for (const JointType type :
+       {JointType::hinge, JointType::slider, JointType::universal, JointType::hinge2, JointType::ball}) {
+    SCOPED_TRACE(std::string(word_of(sim::joint_type_words, type)));
     Pair rig(joint_of_type(type));
     const sim::Bytes before = saved(*rig.joint);
     rig.joint->set_stops(-0.1, 0.2);
@@ -299,7 +301,7 @@ TEST(RestoredJoint, StandsAtNoStopThatItGotLater) {
 }
 
 TEST(RestoredJoint, HasTheStopsOfItsConfigurationUnlessTheyWereSet) {
-  JointConfig config = joint_of_type("hinge");
+  JointConfig config = joint_of_type(JointType::hinge);
   config.axis1.low_stop = -0.1;
   config.axis1.high_stop = 0.2;
   Pair original(config);
@@ -317,7 +319,7 @@ TEST(RestoredJoint, HasTheStopsOfItsConfigurationUnlessTheyWereSet) {
 }
 
 TEST(RestoredJoint, MeasuresNoLoadWhereNoneWasMeasured) {
-  Pair rig(joint_of_type("hinge"));
+  Pair rig(joint_of_type(JointType::hinge));
   const sim::Bytes before = saved(*rig.joint);
   rig.joint->measure_load();
   rig.joint->set_motor(0.5, 10);
@@ -336,7 +338,7 @@ TEST(RestoredJoint, MeasuresNoLoadWhereNoneWasMeasured) {
 }
 
 TEST(RestoredJoint, RefusesNumbersThatAreNotFinite) {
-  Pair rig(joint_of_type("hinge"));
+  Pair rig(joint_of_type(JointType::hinge));
   const sim::Bytes good = saved(*rig.joint);
   const double nan_ = std::nan("");
   sim::Bytes bad = good;
@@ -346,7 +348,7 @@ TEST(RestoredJoint, RefusesNumbersThatAreNotFinite) {
 }
 
 TEST(UniversalJoint, EachAxisHasItsMotor) {
-  JointConfig config = joint("cardan", "universal", {1, 0, 0}, Vector3d::UnitY());
+  JointConfig config = joint("cardan", JointType::universal, {1, 0, 0}, Vector3d::UnitY());
   config.axis2.axis = Vector3d::UnitZ();
   for (const int axis : {0, 1}) {
     Pair rig(config);
@@ -362,7 +364,7 @@ TEST(UniversalJoint, EachAxisHasItsMotor) {
 }
 
 TEST(Hinge2Joint, SteersAndRolls) {
-  JointConfig config = joint("front", "hinge2", {1, 0, 0}, Vector3d::UnitZ());
+  JointConfig config = joint("front", JointType::hinge2, {1, 0, 0}, Vector3d::UnitZ());
   config.axis2.axis = Vector3d::UnitY();
   config.axis1.low_stop = -0.6;
   config.axis1.high_stop = 0.4;
@@ -405,7 +407,7 @@ TEST(Joint, PartsOfJoinedBodiesDoNotCollide) {
   const int group = world->add_group("rig", true);
   sim::Body& base = world->add_body(group, body("base", {box({1, 1, 1}, 1)}), Pose::Identity());
   sim::Body& arm = world->add_body(group, body("arm", {box({1, 1, 1}, 1)}, {0.3, 0, 0}), Pose::Identity());
-  world->add_joint(group, joint("weld", "fixed", {0, 0, 0}), base, &arm, Pose::Identity());
+  world->add_joint(group, joint("weld", JointType::fixed, {0, 0, 0}), base, &arm, Pose::Identity());
   world->close_group(group);
   world->step(0);
   EXPECT_EQ(world->last_step().contacts, 0);
@@ -415,7 +417,7 @@ TEST(Joint, BetweenFixedBodiesIsAConfigError) {
   const auto world = make_world();
   const int group = world->add_group("rig");
   sim::Body& base = world->add_body(group, body("base", {box({1, 1, 1}, 1)}), Pose::Identity(), Motion::fixed);
-  EXPECT_THROW(world->add_joint(group, joint("weld", "hinge", {0, 0, 0}), base, nullptr, Pose::Identity()),
+  EXPECT_THROW(world->add_joint(group, joint("weld", JointType::hinge, {0, 0, 0}), base, nullptr, Pose::Identity()),
                sim::ConfigError);
 }
 
@@ -430,7 +432,7 @@ TEST(BoxPendulum, HasTheClosedFormPeriod) {
   const Pose X_WV = sim::make_pose({0, 0, 0}, {0, 0.01, 0});
   sim::Body& beam = world->add_body(group, body("beam", {at(box({w, w, l}, 2), {0, 0, -d})}), X_WV);
   sim::Joint& pivot =
-      world->add_joint(group, joint("pivot", "hinge", {0, 0, 0}, Vector3d::UnitY()), beam, nullptr, X_WV);
+      world->add_joint(group, joint("pivot", JointType::hinge, {0, 0, 0}, Vector3d::UnitY()), beam, nullptr, X_WV);
   world->close_group(group);
   double last = pivot.position() + 0.01, first_crossing = -1, period = 0;
   for (int i = 0; i < 5000 && period == 0; ++i) {

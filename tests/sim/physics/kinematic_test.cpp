@@ -95,7 +95,7 @@ TEST(KinematicBody, OdeItselfArrivesAtTheScriptedPose) {
   const int group = world->add_group("ride");
   sim::Body& hub = world->add_body(group, body("hub", {box({1, 1, 1}, 0)}), Pose::Identity(), Motion::kinematic);
   sim::Body& arm = world->add_body(group, body("arm", {box({1, 1, 1}, 1)}, {2, 0, 0}), Pose::Identity());
-  world->add_joint(group, joint("weld", "fixed", {1, 0, 0}), hub, &arm, Pose::Identity());
+  world->add_joint(group, joint("weld", JointType::fixed, {1, 0, 0}), hub, &arm, Pose::Identity());
   world->close_group(group);
   for (int i = 0; i < 300; ++i) {
     hub.move_to(sim::make_pose({0, 0, 0}, {0, 0, 0.005 * (i + 1)}), step_s);
@@ -158,7 +158,7 @@ TEST(KinematicBody, CannotCarryAPlaneAndCannotBeJoinedToTheWorld) {
   const int group = world->add_group("rig");
   EXPECT_THROW(world->add_body(group, body("floor", {plane()}), Pose::Identity(), Motion::kinematic), sim::ConfigError);
   sim::Body& hub = world->add_body(group, body("hub", {box({1, 1, 1}, 0)}), Pose::Identity(), Motion::kinematic);
-  EXPECT_THROW(world->add_joint(group, joint("weld", "hinge", {0, 0, 0}), hub, nullptr, Pose::Identity()),
+  EXPECT_THROW(world->add_joint(group, joint("weld", JointType::hinge, {0, 0, 0}), hub, nullptr, Pose::Identity()),
                sim::ConfigError);
 }
 

@@ -93,10 +93,10 @@ TEST(ContactReport, TellsOnlyOfWatchedGroupsAndCountsTheWatchers) {
 }
 
 TEST(ContactReport, WatchingAndMeasuringDoNotChangeTheRun) {
-  for (const char* solver : {"step", "quick"}) {
-    const auto hash = [&](bool watch) {
+  for (const auto& [word, solver] : PhysicsConfig::solver_words) {
+    const auto hash = [&, of_solver = solver](bool watch) {
       PhysicsConfig config;
-      config.solver = solver;
+      config.solver = of_solver;
       const auto world = make_world(config, {slippery()});
       add_ground(*world);
       for (int i = 0; i < 20; ++i) {
@@ -113,7 +113,7 @@ TEST(ContactReport, WatchingAndMeasuringDoNotChangeTheRun) {
       run(*world, 300);
       return test::state_hash_of(*world);
     };
-    EXPECT_EQ(hash(true), hash(false)) << solver;
+    EXPECT_EQ(hash(true), hash(false)) << word;
   }
 }
 
@@ -154,7 +154,7 @@ struct Arm {
 TEST(JointLoad, OfAMotorThatHoldsAnArmIsItsWeightTimesTheLever) {
   // About +y the weight pulls the arm towards positive angles: the motor holds with -m g r, r = 0.5 m.
   for (const bool to_world : {true, false}) {
-    Arm rig(joint("elbow", "hinge", {0, 0, 0}, Vector3d::UnitY()), to_world);
+    Arm rig(joint("elbow", JointType::hinge, {0, 0, 0}, Vector3d::UnitY()), to_world);
     rig.joint->set_motor(0, 100);
     run(*rig.world, 100);
     EXPECT_NEAR(rig.joint->effort(), -2 * g * 0.5, 1e-5);
@@ -165,7 +165,7 @@ TEST(JointLoad, OfAMotorThatHoldsAnArmIsItsWeightTimesTheLever) {
 
 TEST(JointLoad, ActsOnTheSecondBodyWhereTwoMove) {
   // Base second: the joint counts the base relative to the arm, and the load is what pulls at the base.
-  Arm rig(joint("elbow", "hinge", {0, 0, 0}, Vector3d::UnitY()), false, true);
+  Arm rig(joint("elbow", JointType::hinge, {0, 0, 0}, Vector3d::UnitY()), false, true);
   rig.joint->set_motor(0, 100);
   run(*rig.world, 100);
   EXPECT_NEAR(rig.joint->effort(), 2 * g * 0.5, 1e-5);
@@ -173,7 +173,7 @@ TEST(JointLoad, ActsOnTheSecondBodyWhereTwoMove) {
 }
 
 TEST(JointLoad, OfAHangingMassIsItsWeightUpwards) {
-  for (const char* type : {"fixed", "ball"}) {
+  for (const JointType type : {JointType::fixed, JointType::ball}) {
     const auto world = make_world();
     const int group = world->add_group("lamp");
     sim::Body& lamp = world->add_body(group, body("lamp", {sphere(0.1, 2)}, {0, 0, -1}), Pose::Identity());
@@ -188,7 +188,7 @@ TEST(JointLoad, OfAHangingMassIsItsWeightUpwards) {
 }
 
 TEST(JointLoad, OfAWeldHasTheTorqueAboutTheAnchor) {
-  Arm rig(joint("weld", "fixed", {0, 0, 0}), true);
+  Arm rig(joint("weld", JointType::fixed, {0, 0, 0}), true);
   run(*rig.world, 100);
   EXPECT_NEAR((rig.joint->torque_W_Nm() - Vector3d(0, -g, 0)).norm(), 0, 1e-4);
 }
@@ -196,7 +196,7 @@ TEST(JointLoad, OfAWeldHasTheTorqueAboutTheAnchor) {
 TEST(JointLoad, OfAStopIsCountedAsEffortWithTheMotorThatPushesIntoIt) {
   // The motor pushes with 4 N m towards the high stop at 0.2 rad, without gravity: together they hold nothing.
   for (const bool to_world : {true, false}) {
-    JointConfig config = joint("elbow", "hinge", {0, 0, 0}, Vector3d::UnitY());
+    JointConfig config = joint("elbow", JointType::hinge, {0, 0, 0}, Vector3d::UnitY());
     config.axis1.low_stop = -1;
     config.axis1.high_stop = 0.2;
     Arm rig(config, to_world, false, 0);
@@ -215,7 +215,7 @@ TEST(JointLoad, OfAStopIsCountedAsEffortWithTheMotorThatPushesIntoIt) {
 
 TEST(JointLoad, HasTheAddedEffortOfThatStep) {
   for (const bool to_world : {true, false}) {
-    Arm rig(joint("elbow", "hinge", {0, 0, 0}, Vector3d::UnitY()), to_world, false, 0);
+    Arm rig(joint("elbow", JointType::hinge, {0, 0, 0}, Vector3d::UnitY()), to_world, false, 0);
     rig.joint->add_effort(0.5);
     rig.joint->add_effort(0.25);
     rig.world->step(0);
@@ -228,7 +228,7 @@ TEST(JointLoad, HasTheAddedEffortOfThatStep) {
 
 TEST(JointLoad, OfASliderIsTheForceAlongIt) {
   for (const bool to_world : {true, false}) {
-    Arm rig(joint("lift", "slider", {0, 0, 0}), to_world);
+    Arm rig(joint("lift", JointType::slider, {0, 0, 0}), to_world);
     rig.joint->set_motor(0, 100);
     run(*rig.world, 100);
     EXPECT_NEAR(rig.joint->effort(), 2 * g, 1e-4);
@@ -245,7 +245,7 @@ TEST(JointLoad, OfASliderIsTheForceAlongIt) {
 
 TEST(JointLoad, OfAUniversalJointIsToldForEachAxis) {
   for (const bool to_world : {true, false}) {
-    JointConfig config = joint("wrist", "universal", {0, 0, 0}, Vector3d::UnitY());
+    JointConfig config = joint("wrist", JointType::universal, {0, 0, 0}, Vector3d::UnitY());
     config.axis2.axis = Vector3d::UnitZ();
     Arm rig(config, to_world);
     for (const int axis : {0, 1}) rig.joint->set_motor(0, 100, axis);
@@ -260,7 +260,7 @@ TEST(JointLoad, OfAUniversalJointIsToldForEachAxis) {
 
 TEST(JointStops, CanBeSetAndTakenAway) {
   for (const bool to_world : {true, false}) {
-    Arm rig(joint("elbow", "hinge", {0, 0, 0}, Vector3d::UnitY()), to_world, false, 0);
+    Arm rig(joint("elbow", JointType::hinge, {0, 0, 0}, Vector3d::UnitY()), to_world, false, 0);
     rig.joint->set_stops(-0.3, 0.5);
     rig.joint->set_motor(1, 1);
     run(*rig.world, 300);

@@ -12,6 +12,7 @@
 namespace {
 
 using namespace small_worlds;
+using Space = PhysicsConfig::Space;
 
 std::uint64_t hash_of(const PhysicsWorld& world) {
   return test::state_hash_of(world);
@@ -22,7 +23,7 @@ std::optional<sim::RayHit> look(const PhysicsWorld& world, double z_m) {
   return world.scene().cast({-10, 0, z_m}, {1, 0, 0}, 100, {});
 }
 
-class RemovalInEachSpace : public testing::TestWithParam<const char*> {
+class RemovalInEachSpace : public testing::TestWithParam<Space> {
  protected:
   std::unique_ptr<PhysicsWorld> make() const {
     PhysicsConfig config;
@@ -96,10 +97,11 @@ TEST_P(RemovalInEachSpace, OfWholeRoversInTheMidstOfADriveGivesTheSameBitsEachTi
   EXPECT_EQ(run(), run());
 }
 
-INSTANTIATE_TEST_SUITE_P(Spaces, RemovalInEachSpace, testing::Values("sap", "quadtree", "hash", "simple"));
+INSTANTIATE_TEST_SUITE_P(Spaces, RemovalInEachSpace,
+                         testing::Values(Space::sap, Space::quadtree, Space::hash, Space::simple));
 
 TEST(Removal, ResultsDoNotDependOnTheSpaceWhenNumbersAreUsedAgain) {
-  const auto run = [](const char* space) {
+  const auto run = [](Space space) {
     PhysicsConfig config;
     config.space = space;
     const auto world = make_world(config, {slippery()});
@@ -112,8 +114,8 @@ TEST(Removal, ResultsDoNotDependOnTheSpaceWhenNumbersAreUsedAgain) {
     }
     return hash_of(*world);
   };
-  const std::uint64_t expected = run("sap");
-  for (const char* space : {"quadtree", "hash", "simple"}) EXPECT_EQ(run(space), expected) << space;
+  const std::uint64_t expected = run(Space::sap);
+  for (const auto& [word, space] : PhysicsConfig::space_words) EXPECT_EQ(run(space), expected) << word;
 }
 
 TEST(Removal, LeavesEmptyPlacesThatTheNextGroupTakesLowestFirst) {
@@ -293,7 +295,8 @@ TEST(MoveGroup, TakesAVehicleAlongWithJointsAndVelocities) {
 }
 
 TEST(MoveGroup, TakesTheWorldsSideOfAJointAlong) {
-  for (const char* type : {"hinge", "universal", "slider", "fixed", "ball"}) {
+  for (const JointType type :
+       {JointType::hinge, JointType::universal, JointType::slider, JointType::fixed, JointType::ball}) {
     PhysicsConfig config;
     config.gravity_mps2 = 0;
     const auto world = make_world(config);

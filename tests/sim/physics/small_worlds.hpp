@@ -14,6 +14,7 @@ namespace small_worlds {
 using sim::BodyConfig;
 using sim::ContactConfig;
 using sim::JointConfig;
+using sim::JointType;
 using sim::MaterialConfig;
 using sim::Motion;
 using sim::PartConfig;
@@ -68,7 +69,7 @@ inline BodyConfig body(const std::string& name, std::vector<PartConfig> parts,
   return config;
 }
 
-inline JointConfig joint(const std::string& name, const std::string& type, const Vector3d& anchor_m,
+inline JointConfig joint(const std::string& name, JointType type, const Vector3d& anchor_m,
                          const Vector3d& axis = Vector3d::UnitZ()) {
   JointConfig config;
   config.name = name;
@@ -131,9 +132,10 @@ inline Rover add_rover(PhysicsWorld& world, const std::string& name, const Pose&
   sim::Body& left_wheel = world.add_body(group, body("left_wheel", {wheel}, axle), X_WV);
   sim::Body& right_wheel = world.add_body(group, body("right_wheel", {wheel}, mirrored), X_WV);
   Rover rover{&chassis, nullptr, nullptr};
-  rover.left = &world.add_joint(group, joint("left", "hinge", axle, Vector3d::UnitY()), chassis, &left_wheel, X_WV);
-  rover.right =
-      &world.add_joint(group, joint("right", "hinge", mirrored, Vector3d::UnitY()), chassis, &right_wheel, X_WV);
+  rover.left =
+      &world.add_joint(group, joint("left", JointType::hinge, axle, Vector3d::UnitY()), chassis, &left_wheel, X_WV);
+  rover.right = &world.add_joint(group, joint("right", JointType::hinge, mirrored, Vector3d::UnitY()), chassis,
+                                 &right_wheel, X_WV);
   world.close_group(group);
   return rover;
 }

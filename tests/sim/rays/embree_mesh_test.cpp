@@ -38,7 +38,7 @@ struct OneMesh {
   explicit OneMesh(const Mesh& mesh, std::span<const int> materials = {}) {
     sim::start_ode();
     geom.reset(dCreateBox(nullptr, 1, 1, 1));
-    scene = sim::make_world_scene("embree", moves);
+    scene = sim::make_world_scene(sim::RayLibrary::embree, moves);
     scene->add_group(0);
     scene->add_part(0, {geom.get(), 0, 1, 9, 0, false, &mesh, materials});
     scene->close_group(0);

@@ -25,6 +25,7 @@ using namespace small_worlds;
 using sim::Ray;
 using sim::RayFilter;
 using sim::RayHit;
+using sim::RayLibrary;
 
 using std::numbers::pi;
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -77,7 +78,7 @@ const std::string& dented_ball() {
 
 /// Parts of every shape in a heap, half of them moving, around `center`; the same for the same seed.
 struct Heap {
-  Heap(const std::string& library, unsigned seed, const Vector3d& center = Vector3d::Zero(), bool meshes = true) {
+  Heap(RayLibrary library, unsigned seed, const Vector3d& center = Vector3d::Zero(), bool meshes = true) {
     Uniform uniform(seed);
     PhysicsConfig config;
     config.gravity_mps2 = 0;
@@ -95,7 +96,7 @@ struct Heap {
                                                   round(PartShape::cylinder, r, a, 1)};
         PartConfig part = meshes && uniform.below(10) == 0 ? mesh : shapes[uniform.below(4)];
         if (part.shape == PartShape::mesh) part.mass_kg = 1;
-        part.name = std::string(sim::shape_info(part.shape).word) + std::to_string(k);
+        part.name = std::string(word_of(sim::part_shape_words, part.shape)) + std::to_string(k);
         const Vector3d position(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
         configs.push_back(part);
         parts.push_back(at(part, position, {uniform(-3, 3), uniform(-1.5, 1.5), uniform(-3, 3)}));
@@ -169,7 +170,7 @@ TEST(EmbreeScene, SeesWhatOdeSees) {
   int rays_cast = 0, hit = 0, grazing = 0, in_capsule = 0;
   double largest_of_shapes_m = 0, largest_of_meshes_m = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    const Heap embree("embree", seed), ode("ode", seed);
+    const Heap embree(RayLibrary::embree, seed), ode(RayLibrary::ode, seed);
     Uniform uniform(1000 + seed);
     const std::vector<Ray> rays = random_rays(uniform, 5000);
     const std::vector<RayHit> ours = cast(embree.scene(), rays), theirs = cast(ode.scene(), rays);
@@ -209,7 +210,7 @@ TEST(EmbreeScene, SeesWhatOdeSees) {
 }
 
 TEST(EmbreeScene, SeesTerrainAsOdeDoes) {
-  const auto world_of = [](const std::string& library) {
+  const auto world_of = [](RayLibrary library) {
     PhysicsConfig config;
     config.rays = library;
     auto world = std::make_unique<PhysicsWorld>(config, std::vector<MaterialConfig>{{"mud"}},
@@ -217,20 +218,20 @@ TEST(EmbreeScene, SeesTerrainAsOdeDoes) {
     PartConfig ground = plane();
     ground.shape = PartShape::terrain;
     sim::TerrainConfig& terrain = ground.terrain.emplace();
-    terrain.source = "fractal";
+    terrain.source = sim::TerrainConfig::Source::fractal;
     terrain.size_m = {60, 40};
     terrain.cell_m = 0.5;
     terrain.amplitude_m = 3;
     terrain.wavelength_m = 15;
     sim::TerrainAreaConfig area;
     area.material = "mud";
-    area.shape = "circle";
+    area.shape = sim::TerrainAreaConfig::Shape::circle;
     area.radius_m = 12;
     terrain.areas.push_back(area);
     add(*world, body("ground", {ground}), sim::make_pose({100, 50, 5}, {0.05, -0.1, 0.7}), Motion::fixed);
     return world;
   };
-  const auto embree = world_of("embree"), ode = world_of("ode");
+  const auto embree = world_of(RayLibrary::embree), ode = world_of(RayLibrary::ode);
   Uniform uniform(4);
   std::vector<Ray> rays;
   for (int i = 0; i < 100000; ++i) {
@@ -265,7 +266,7 @@ TEST(EmbreeScene, SeesTerrainAsOdeDoes) {
 TEST(EmbreeScene, KeepsItsPrecisionFarFromTheOrigin) {
   // UTM coordinates; a whole number of binary fractions, so that poses are not rounded by the offset.
   const Vector3d far(500032, 4500992, 64);
-  const Heap near_heap("embree", 5), far_heap("embree", 5, far);
+  const Heap near_heap(RayLibrary::embree, 5), far_heap(RayLibrary::embree, 5, far);
   Uniform uniform(3), again(3);
   const std::vector<RayHit> near_hits = cast(near_heap.scene(), random_rays(uniform, 20000));
   const std::vector<RayHit> far_hits = cast(far_heap.scene(), random_rays(again, 20000, far));
@@ -279,7 +280,7 @@ TEST(EmbreeScene, KeepsItsPrecisionFarFromTheOrigin) {
 }
 
 TEST(EmbreeScene, SeesFromFarOutsideTheHeap) {
-  const Heap embree("embree", 2, Vector3d::Zero(), false), ode("ode", 2, Vector3d::Zero(), false);
+  const Heap embree(RayLibrary::embree, 2, Vector3d::Zero(), false), ode(RayLibrary::ode, 2, Vector3d::Zero(), false);
   Uniform uniform(9);
   std::vector<Ray> rays;
   for (int i = 0; i < 2000; ++i) {
@@ -302,7 +303,7 @@ TEST(EmbreeScene, SeesFromFarOutsideTheHeap) {
 
 /// As a list, alone, and backwards, which packs the rays another way.
 TEST(EmbreeScene, OfOneRayTellsTheSameWhateverRaysAreCastWithIt) {
-  const Heap heap("embree", 7);
+  const Heap heap(RayLibrary::embree, 7);
   Uniform uniform(8);
   std::vector<Ray> rays = random_rays(uniform, 20000);
   const std::vector<RayHit> list = cast(heap.scene(), rays);
@@ -318,7 +319,7 @@ TEST(EmbreeScene, OfOneRayTellsTheSameWhateverRaysAreCastWithIt) {
 }
 
 TEST(EmbreeScene, OfAFanTellsWhatItTellsOfEachRay) {
-  const Heap heap("embree", 7);
+  const Heap heap(RayLibrary::embree, 7);
   Uniform uniform(18);
   for (int k = 0; k < 50; ++k) {
     sim::Fan fan;
@@ -341,7 +342,7 @@ TEST(EmbreeScene, OfAFanTellsWhatItTellsOfEachRay) {
 
 /// The tree of one scene was widened as the bodies moved, that of the other was built when they had arrived.
 TEST(EmbreeScene, TellsTheSameWhateverHappenedBefore) {
-  Heap moved("embree", 4), arrived("embree", 4);
+  Heap moved(RayLibrary::embree, 4), arrived(RayLibrary::embree, 4);
   Uniform uniform(6);
   const std::vector<Ray> rays = random_rays(uniform, 5000);
   const auto move = [&](Heap& heap, double by) {
@@ -366,7 +367,7 @@ TEST(EmbreeScene, TellsTheSameWhateverHappenedBefore) {
 }
 
 TEST(EmbreeScene, TellsSeveralThreadsAtOnce) {
-  const Heap heap("embree", 3);
+  const Heap heap(RayLibrary::embree, 3);
   heap.scene().prepare();
   ASSERT_TRUE(heap.scene().concurrent());
   Uniform uniform(2);

@@ -238,13 +238,13 @@ TEST(Lockstep, AClientThatWasNotAskedYetMaySayThatItLives) {
 
 TEST(LockstepTerms, CannotAskForMorePatienceThanTheWorldHas) {
   sim::LockstepTerms defaults;
-  defaults.on_timeout = "continue";
+  defaults.on_timeout = sim::OnTimeout::go_on;
   defaults.timeout_s = 0.5;
   const std::string text = "{on_timeout: wait, timeout_s: 60}";
-  EXPECT_EQ(sim::read_lockstep_terms(text, defaults).policy(), sim::OnTimeout::wait);  // the world does not say
+  EXPECT_EQ(sim::read_lockstep_terms(text, defaults).on_timeout, sim::OnTimeout::wait);  // the world does not say
   defaults.agreed = true;
   const auto terms = sim::read_lockstep_terms(text, defaults);
-  EXPECT_EQ(terms.policy(), sim::OnTimeout::go_on);
+  EXPECT_EQ(terms.on_timeout, sim::OnTimeout::go_on);
   EXPECT_EQ(terms.timeout_s, 0.5);
   EXPECT_EQ(sim::read_lockstep_terms("{timeout_s: 0.1}", defaults).timeout_s, 0.1);
 }
@@ -260,12 +260,12 @@ TEST(LockstepTerms, TellTheSessionAlsoOfTextThatIsWrong) {
 
 TEST(LockstepTerms, AreReadWithClearErrors) {
   sim::LockstepTerms defaults;
-  defaults.on_timeout = "pause";
+  defaults.on_timeout = sim::OnTimeout::pause;
   const auto terms = sim::read_lockstep_terms("{session: 12, receives: [a, b], timeout_s: 2}", defaults);
   EXPECT_EQ(terms.session, 12);
   EXPECT_EQ(terms.receives, (Names{"a", "b"}));
   EXPECT_EQ(terms.timeout_s, 2);
-  EXPECT_EQ(terms.policy(), sim::OnTimeout::pause);
+  EXPECT_EQ(terms.on_timeout, sim::OnTimeout::pause);
   EXPECT_FALSE(terms.agreed);
   EXPECT_EQ(sim::read_lockstep_terms("", defaults).session, 0);
   const auto error = [&](const std::string& text) -> std::string {

@@ -19,6 +19,7 @@ namespace {
 using namespace small_worlds;
 using sim::RayFilter;
 using sim::RayHit;
+using sim::RayLibrary;
 
 using std::numbers::pi;
 
@@ -28,7 +29,7 @@ struct Hit {
 };
 
 /// Each test runs with each library.
-class RayTest : public testing::TestWithParam<const char*> {
+class RayTest : public testing::TestWithParam<RayLibrary> {
  protected:
   std::unique_ptr<PhysicsWorld> make_world(PhysicsConfig config = {}) const {
     config.rays = GetParam();
@@ -38,8 +39,8 @@ class RayTest : public testing::TestWithParam<const char*> {
   std::unique_ptr<PhysicsWorld> random_scene(std::mt19937& random) const;
 };
 
-const auto libraries = testing::Values("embree", "ode");
-const auto library_name = [](const auto& info) { return std::string(info.param); };
+const auto libraries = testing::Values(RayLibrary::embree, RayLibrary::ode);
+const auto library_name = [](const auto& info) { return std::string(word_of(sim::ray_library_words, info.param)); };
 
 class Ray : public RayTest {};
 class Filter : public RayTest {};
@@ -278,7 +279,7 @@ TEST_P(Ray, WithoutLengthOrDirectionHitsNothing) {
   EXPECT_FALSE(scene.cast({0, 0, 0}, {1, 0, 0}, -1, {}).has_value());
   EXPECT_FALSE(scene.cast({0, 0, 0}, {1, 0, 0}, std::nan(""), {}).has_value());
   const double nan = std::nan("");
-  if (GetParam() == std::string("embree")) {  // ODE would end the program
+  if (GetParam() == RayLibrary::embree) {  // ODE would end the program
     EXPECT_FALSE(scene.cast({nan, 0, 0}, {1, nan, 0}, 10, {}).has_value());
   }
   scene.cast(std::span<const sim::Ray>{}, {}, std::span<RayHit>{});

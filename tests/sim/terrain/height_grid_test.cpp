@@ -60,7 +60,7 @@ TEST(HeightGrid, AParaboloidHasItsDerivativesAndLiesAnEighthOfTheBendBelow) {
 
 TEST(HeightGrid, SurfaceAndSlopeGoOnAcrossCellsAndNeverLeaveTheHeights) {
   sim::TerrainConfig config;
-  config.source = "fractal";
+  config.source = sim::TerrainConfig::Source::fractal;
   config.size_m = {10, 10};
   config.cell_m = 0.5;
   config.amplitude_m = 2;

@@ -38,7 +38,7 @@ class Ground {
   GeomHandle geom_;
 };
 
-PartConfig slope(double angle_rad, double cell_m, const std::string& collision = "smooth") {
+PartConfig slope(double angle_rad, double cell_m, TerrainCollision collision = TerrainCollision::smooth) {
   PartConfig part = level_ground(cell_m, collision);
   part.terrain->angle_rad = angle_rad;
   return part;
@@ -74,7 +74,7 @@ TEST(SmoothGround, SphereOnASlopeTouchesOnceAlongTheNormal) {
 }
 
 TEST(SmoothGround, SphereOnWavesTouchesTheNearestPoint) {
-  const Ground ground(waves(0.1, "smooth", 0.3, 3));
+  const Ground ground(waves(0.1, TerrainCollision::smooth, 0.3, 3));
   for (const double x : {0.0, 0.4, 0.75, 1.3, 2.2}) {
     const GeomHandle ball = placed(dCreateSphere(nullptr, 0.35), {x, 0.2, ground.grid().height(x, 0.2) + 0.3});
     const auto contacts = ground.touch(ball.get());
@@ -118,7 +118,7 @@ TEST(SmoothGround, WheelStandsOnItsTwoRimsAndCylinderOnFourPlacesOfItsEnd) {
 }
 
 TEST(SmoothGround, WheelOnAHillTouchesWhereItsRimIsDeepest) {
-  const Ground ground(waves(0.1, "smooth", 0.3, 3));
+  const Ground ground(waves(0.1, TerrainCollision::smooth, 0.3, 3));
   const double x = 0.5, r = 0.35, z = ground.grid().height(x, 0) + 0.32;
   const GeomHandle wheel = placed(dCreateCylinder(nullptr, r, 0.2), {x, 0, z}, {right_angle, 0, 0});
   double deepest = -1;
@@ -177,7 +177,7 @@ TEST(SmoothGround, IsPlacedAndTurnedLikeAnyGeom) {
 }
 
 TEST(FacetGround, OdesHeightfieldHasTheSameTriangles) {
-  PartConfig part = level_ground(0.5, "facets");
+  PartConfig part = level_ground(0.5, TerrainCollision::facets);
   part.terrain->source = "fractal";
   part.terrain->wavelength_m = 5;
   const Ground ground(part);

@@ -22,7 +22,7 @@ std::unique_ptr<PhysicsWorld> world_of(double step_s) {
 
 /// Root mean square of the vertical acceleration of a rover's axle, over waves at 1 m/s, from velocity to velocity of
 /// the steps, as an IMU without a filter has it.
-double vertical_rms_mps2(const std::string& collision, double cell_m, const PartConfig& wheel) {
+double vertical_rms_mps2(TerrainCollision collision, double cell_m, const PartConfig& wheel) {
   constexpr double step_s = 0.005;
   const auto world = world_of(step_s);
   add_terrain(*world, waves(cell_m, collision, amplitude_m, wavelength_m));
@@ -65,20 +65,21 @@ TEST(TerrainDrive, CylinderWheelsOnSmoothWavesDoNotRing) {
 }
 
 TEST(TerrainDrive, FacetsRingSeveralTimesAsMuch) {
-  for (const char* collision : {"facets", "mesh"}) {
+  for (const TerrainCollision collision : {TerrainCollision::facets, TerrainCollision::mesh}) {
+    const std::string word(word_of(sim::terrain_collision_words, collision));
     const double of_spheres = vertical_rms_mps2(collision, 0.25, sphere(0.1, 0.5));
     const double of_cylinders = vertical_rms_mps2(collision, 0.25, cylinder_wheel());
-    RecordProperty(std::string(collision) + "_sphere_mps2", std::to_string(of_spheres));
-    RecordProperty(std::string(collision) + "_cylinder_mps2", std::to_string(of_cylinders));
-    EXPECT_GT(of_spheres, 3 * closed_form_mps2) << collision;
-    EXPECT_GT(of_cylinders, 3 * closed_form_mps2) << collision;
+    RecordProperty(word + "_sphere_mps2", std::to_string(of_spheres));
+    RecordProperty(word + "_cylinder_mps2", std::to_string(of_cylinders));
+    EXPECT_GT(of_spheres, 3 * closed_form_mps2) << word;
+    EXPECT_GT(of_cylinders, 3 * closed_form_mps2) << word;
   }
 }
 
 TEST(TerrainDrive, LevelGroundIsAPlane) {
   for (const PartConfig& wheel : {sphere(0.1, 0.5), cylinder_wheel()}) {
     const auto world = world_of(0.01);
-    add_terrain(*world, waves(0.1, "smooth", 0, 4));
+    add_terrain(*world, waves(0.1, TerrainCollision::smooth, 0, 4));
     Rover rover = add_rover(*world, "rover", translation(-30, 0, 0), wheel);
     for (sim::Joint* motor : {rover.left, rover.right}) motor->set_motor(10, 20);
     double fastest = 0;
@@ -164,7 +165,7 @@ TEST(TerrainDrive, RaysSeeTheMaterialOfTheArea) {
 }
 
 TEST(TerrainDrive, NothingFallsThroughAtTheBordersOfCells) {
-  for (const char* collision : {"smooth", "facets"}) {
+  for (const TerrainCollision collision : {TerrainCollision::smooth, TerrainCollision::facets}) {
     const auto world = world_of(0.005);
     PartConfig ground = level_ground(0.5, collision);
     ground.terrain->source = "fractal";
@@ -176,7 +177,8 @@ TEST(TerrainDrive, NothingFallsThroughAtTheBordersOfCells) {
       balls.push_back(&add(*world, body("ball" + std::to_string(i), {sphere(0.1, 1)}),
                            translation(-3 + 0.5 * i, 0.5 * (i % 4), 0.7)));
     for (int step = 0; step < 1000; ++step) world->step(step);
-    for (const sim::Body* ball : balls) EXPECT_GT(ball->X_WB().translation().z(), -0.5) << collision;
+    for (const sim::Body* ball : balls)
+      EXPECT_GT(ball->X_WB().translation().z(), -0.5) << word_of(sim::terrain_collision_words, collision);
   }
 }
 
@@ -196,7 +198,7 @@ TEST(TerrainDrive, TheSameRunTwice) {
 
 TEST(TerrainDrive, TerrainComesAndGoes) {
   const auto world = world_of(0.01);
-  sim::Body& hill = add_terrain(*world, level_ground(0.5, "facets"));
+  sim::Body& hill = add_terrain(*world, level_ground(0.5, TerrainCollision::facets));
   sim::Body& ball = add(*world, body("ball", {sphere(0.1, 1)}), translation(0, 0, 0.0995));
   world->step(0);
   EXPECT_EQ(world->last_step().contacts, 1);
@@ -229,17 +231,17 @@ TEST(GroundCheck, WarnsOfPairsThatAreKnownToBeBad) {
       warnings(level_ground(0.02), cylinder, {}),
       "terrain 'hill/hill/1' under 'rover/left_wheel/1' and 3 more: cells of 0.02 m are much smaller than a wheel "
       "of radius 0.1 m, which meets the ground in one place: bumps may be missed\n");
-  EXPECT_EQ(warnings(level_ground(0.1, "facets"), ball, {soft}),
+  EXPECT_EQ(warnings(level_ground(0.1, TerrainCollision::facets), ball, {soft}),
             "terrain 'hill/hill/1' under 'rover/left_wheel/1' and 3 more: facets of 0.1 m are smaller than a wheel of "
             "0.2 m, which costs their square: use collision: smooth\n");
-  EXPECT_EQ(warnings(level_ground(0.25, "facets"), ball, {}),
+  EXPECT_EQ(warnings(level_ground(0.25, TerrainCollision::facets), ball, {}),
             "terrain 'hill/hill/1' under 'rover/left_wheel/1' and 3 more: hard contacts of a wheel jump from facet to "
             "facet, and accelerations ring: use collision: smooth, or give the contact a soft_cfm\n");
-  EXPECT_EQ(warnings(level_ground(0.25, "facets"), ball, {soft}, {4, 2, 0.5}),
+  EXPECT_EQ(warnings(level_ground(0.25, TerrainCollision::facets), ball, {soft}, {4, 2, 0.5}),
             "terrain 'hill/hill/1' under 'slab/slab/1': a box of 4 m covers many facets of 0.25 m, which costs their "
             "square: use collision: smooth\n");
-  EXPECT_EQ(warnings(level_ground(0.25, "mesh"), ball, {}), "");
-  EXPECT_EQ(warnings(level_ground(0.25, "mesh"), cylinder, {}),
+  EXPECT_EQ(warnings(level_ground(0.25, TerrainCollision::mesh), ball, {}), "");
+  EXPECT_EQ(warnings(level_ground(0.25, TerrainCollision::mesh), cylinder, {}),
             "terrain 'hill/hill/1' under 'rover/left_wheel/1' and 3 more: a cylinder wheel on triangles has a dozen "
             "contacts, and jitters: use collision: smooth, or a sphere as wheel\n");
 }

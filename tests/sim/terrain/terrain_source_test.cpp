@@ -226,13 +226,13 @@ TEST(Terrain, OriginIsTheMiddleTheCornerOrAPlaceOnTheMap) {
   const std::string path = folder.file("origin.asc");
   std::ofstream(path) << header << "1 2 3\n4 5 6\n";
   sim::TerrainConfig config;
-  config.source = "ascii";
+  config.source = sim::TerrainConfig::Source::ascii;
   config.file = path;
   EXPECT_EQ(sim::load_terrain(config).grid.west_m, -10);
   EXPECT_EQ(sim::load_terrain(config).grid.south_m, -5);
-  config.origin = "corner";
+  config.origin = sim::TerrainConfig::Origin::corner;
   EXPECT_EQ(sim::load_terrain(config).grid.west_m, 0);
-  config.origin = "map";
+  config.origin = sim::TerrainConfig::Origin::map;
   config.map_origin_m = {110, 200};
   EXPECT_EQ(sim::load_terrain(config).grid.west_m, -5);
   EXPECT_EQ(sim::load_terrain(config).grid.south_m, 5);
@@ -244,7 +244,7 @@ TEST(Terrain, OriginIsTheMiddleTheCornerOrAPlaceOnTheMap) {
 
 TEST(Terrain, FractalDependsOnItsSeedAloneAndSpansTwiceItsAmplitude) {
   sim::TerrainConfig config;
-  config.source = "fractal";
+  config.source = sim::TerrainConfig::Source::fractal;
   config.size_m = {40, 20};
   config.amplitude_m = 3;
   const auto heights = [&] { return sim::load_terrain(config).grid.heights_m; };
@@ -259,13 +259,13 @@ TEST(Terrain, FractalDependsOnItsSeedAloneAndSpansTwiceItsAmplitude) {
 
 TEST(Terrain, TheLastAreaOverTheMiddleOfACellWins) {
   sim::TerrainConfig config;
-  config.source = "slope";
+  config.source = sim::TerrainConfig::Source::slope;
   config.size_m = {10, 10};
   config.areas.resize(3);
   config.areas[0].size_m = {6, 6, 0};
-  config.areas[1].shape = "circle";
+  config.areas[1].shape = sim::TerrainAreaConfig::Shape::circle;
   config.areas[1].radius_m = 1.5;
-  config.areas[2].shape = "polygon";
+  config.areas[2].shape = sim::TerrainAreaConfig::Shape::polygon;
   config.areas[2].points_m = {{2, 2, 0}, {5, 2, 0}, {5, 5, 0}};
   const sim::Terrain terrain = sim::load_terrain(config);
   EXPECT_EQ(terrain.area_at(-4.5, 0), 0);
@@ -277,7 +277,7 @@ TEST(Terrain, TheLastAreaOverTheMiddleOfACellWins) {
 
 TEST(FractalTerrain, OfWavesFarLongerThanItselfIsAsOfThoseAFewTimesAsLong) {
   sim::TerrainConfig config;
-  config.source = "fractal";
+  config.source = sim::TerrainConfig::Source::fractal;
   config.size_m = {64, 32};
   config.wavelength_m = 512;  // 8 times as long
   config.roughness = 1;

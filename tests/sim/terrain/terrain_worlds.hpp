@@ -10,8 +10,10 @@
 namespace terrain_worlds {
 
 using namespace small_worlds;
+using sim::TerrainCollision;
+using TerrainSource = sim::TerrainConfig::Source;
 
-inline PartConfig terrain(const std::string& source, double cell_m, const std::string& collision = "smooth") {
+inline PartConfig terrain(TerrainSource source, double cell_m, TerrainCollision collision = TerrainCollision::smooth) {
   PartConfig part;
   part.shape = PartShape::terrain;
   part.terrain.emplace();
@@ -22,15 +24,15 @@ inline PartConfig terrain(const std::string& source, double cell_m, const std::s
 }
 
 /// Level, 20 m x 20 m.
-inline PartConfig level_ground(double cell_m, const std::string& collision = "smooth") {
-  PartConfig part = terrain("slope", cell_m, collision);
+inline PartConfig level_ground(double cell_m, TerrainCollision collision = TerrainCollision::smooth) {
+  PartConfig part = terrain(TerrainSource::slope, cell_m, collision);
   part.terrain->size_m = {20, 20};
   return part;
 }
 
 /// Waves along x.
-inline PartConfig waves(double cell_m, const std::string& collision, double amplitude_m, double wavelength_m) {
-  PartConfig part = terrain("sine", cell_m, collision);
+inline PartConfig waves(double cell_m, TerrainCollision collision, double amplitude_m, double wavelength_m) {
+  PartConfig part = terrain(TerrainSource::sine, cell_m, collision);
   part.terrain->size_m = {80, 4};
   part.terrain->amplitude_m = amplitude_m;
   part.terrain->wavelength_m = wavelength_m;

@@ -66,7 +66,8 @@ TEST(ConfigWarnings, TellOfKeysOfReportsOfADeviceThatReportsNothing) {
 TEST(ConfigWarnings, TellOfAMetricOfAChannelOnWhichNobodySpeaks) {
   const std::string gps = "        - {name: gps, type: gps}\n";
   const auto metric = [&](const std::string& channel, const std::string& more = "") {
-    return warnings_of_file(world(gps, "metrics:\n  - {name: error, vehicle: r1, channel: " + channel + "}\n" + more));
+    return warnings_of_file(world(
+        gps, "metrics:\n  - {name: error, type: position_error, vehicle: r1, channel: " + channel + "}\n" + more));
   };
   EXPECT_EQ(metric("r1.estimate"),
             "worlds/test.yaml:13:5: metric 'error': nothing in this world publishes on 'r1.estimate', and it starts no "
@@ -82,7 +83,8 @@ TEST(ConfigWarnings, TellOfAMetricOfAChannelOnWhichNobodySpeaks) {
 
 TEST(ConfigWarnings, TellOfMetricsAndEventsAfterTheEnd) {
   const std::string gps = "        - {name: gps, type: gps}\n";
-  EXPECT_THAT(warnings_of_file(world(gps, "metrics: [{name: error, vehicle: r1, channel: r1.gps, from_s: 300}]\n")),
+  EXPECT_THAT(warnings_of_file(world(
+                  gps, "metrics: [{name: error, type: position_error, vehicle: r1, channel: r1.gps, from_s: 300}]\n")),
               HasSubstr("'from_s' 300 is not before the end of the run at 300 s: nothing counts"));
   EXPECT_THAT(warnings_of_file(world(gps, "events: [{name: late, at: [310, 320], do: [{log: late}]}]\n")),
               HasSubstr("event 'late': it is for 310 s, and the run ends at 300 s"));

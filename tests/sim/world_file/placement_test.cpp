@@ -7,7 +7,9 @@ namespace {
 
 using sim::Vector3d;
 
-std::vector<sim::Pose> place(const std::string& pattern, int count, double jitter_m = 0) {
+using Pattern = sim::PlacementConfig::Pattern;
+
+std::vector<sim::Pose> place(Pattern pattern, int count, double jitter_m = 0) {
   sim::PlacementConfig config;
   config.pattern = pattern;
   config.jitter_m = jitter_m;
@@ -15,22 +17,22 @@ std::vector<sim::Pose> place(const std::string& pattern, int count, double jitte
 }
 
 TEST(Placement, AGridIsCentredOnTheEntry) {
-  const auto poses = place("grid", 4);
+  const auto poses = place(Pattern::grid, 4);
   EXPECT_EQ(poses[0].translation(), Vector3d(9, 19, 0));
   EXPECT_EQ(poses[1].translation(), Vector3d(11, 19, 0));
   EXPECT_EQ(poses[3].translation(), Vector3d(11, 21, 0));
 }
 
 TEST(Placement, ACircleFacesOutwards) {
-  const auto poses = place("circle", 4);
+  const auto poses = place(Pattern::circle, 4);
   EXPECT_NEAR((poses[1].translation() - Vector3d(10, 30, 0)).norm(), 0, 1e-12);
   EXPECT_NEAR(sim::yaw_of(poses[1].linear()), std::numbers::pi / 2, 1e-12);
 }
 
 TEST(Placement, JitterStaysWithinItsBoundsAndIsEqualForEqualSeeds) {
-  const auto plain = place("grid", 100);
-  const auto moved = place("grid", 100, 0.4);
-  const auto again = place("grid", 100, 0.4);
+  const auto plain = place(Pattern::grid, 100);
+  const auto moved = place(Pattern::grid, 100, 0.4);
+  const auto again = place(Pattern::grid, 100, 0.4);
   double largest = 0;
   for (std::size_t i = 0; i < moved.size(); ++i) {
     const Vector3d by = moved[i].translation() - plain[i].translation();

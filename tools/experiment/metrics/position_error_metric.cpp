@@ -14,7 +14,6 @@ class PositionErrorMetric final : public EstimateMetric {
  public:
   static constexpr const char* meaning =
       "distance between the estimates on a channel and the true position of a vehicle";
-  static constexpr bool is_default = true;
   static std::vector<sim::FigureKind> figures() {
     return {
         {"rms_m", "m", "root mean square of the position errors"},

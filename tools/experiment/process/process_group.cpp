@@ -98,7 +98,8 @@ std::vector<ProcessGroup::Exit> ProcessGroup::reap() {
     if (waitpid(process.pid, &status, WNOHANG) != process.pid) return false;
     const bool failed = !WIFEXITED(status) || WEXITSTATUS(status) != 0;
     exits.push_back({process.config.name, describe_status(status), process.config.client,
-                     process.config.on_exit == "end", failed, process.config.on_exit == "ignore"});
+                     process.config.on_exit == sim::OnExit::end_run, failed,
+                     process.config.on_exit == sim::OnExit::ignore});
     if (kill(-process.pid, SIGTERM) == 0) left_behind_.push_back(process.pid);  // its children live on
     return true;
   });

@@ -17,7 +17,7 @@ class ReplayPorts {
  public:
   void add(const ReplayLog::Letter& letter) { mail_.add(letter.step, letter.channel, letter.payload); }
   sim::PortOpener opener() {
-    return [this](const std::string&, const std::string& path) { return std::make_unique<Port>(*this, path); };
+    return [this](sim::PortKind, const std::string& path) { return std::make_unique<Port>(*this, path); };
   }
   /// What is read from now on was read at this step.
   void begin_step(std::int64_t step) { step_ = step; }

@@ -62,11 +62,12 @@ PortFolder temporary_port_folder(const std::string& world_name) {
 
 sim::PortOpener serial_ports_of(const sim::WorldConfig& world, const RunOptions& options) {
   return [files = world.files, results = options.results, name = options.name, world_name = world.name](
-             const std::string& kind, const std::string& path) {
+             sim::PortKind kind, const std::string& path) {
     const PortPlace place = place_of(with_run_name(path, name), files, results, world_name);
     auto port = bridges::open_serial_port(kind, place.folder, place.path);
     spdlog::info("serial port '{}' is {}{}", sim::printable(path),
-                 sim::printable((fs::path(place.folder) / place.path).string()), kind == "fifo" ? ".in and .out" : "");
+                 sim::printable((fs::path(place.folder) / place.path).string()),
+                 kind == sim::PortKind::fifo ? ".in and .out" : "");
     return port;
   };
 }

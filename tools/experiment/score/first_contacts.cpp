@@ -26,8 +26,7 @@ bool is_ground(const sim::ObjectConfig& object) {
 
 bool has_wheels(const sim::VehicleConfig& vehicle) {
   return std::any_of(vehicle.joints.begin(), vehicle.joints.end(), [&](const sim::JointConfig& joint) {
-    const bool turns = joint.type == "hinge" || joint.type == "hinge2";
-    return turns && devices::wheel_geometry(vehicle, joint.name).rolls();
+    return sim::joint_info(joint.type).carries_a_wheel && devices::wheel_geometry(vehicle, joint.name).rolls();
   });
 }
 

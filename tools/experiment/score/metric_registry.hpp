@@ -21,7 +21,6 @@ void add_metric(sim::MetricKind kind, MetricMaker maker);
 template <typename Model>
 bool add_metric(const char* word) {
   sim::MetricKind kind{.word = word, .meaning = Model::meaning, .figures = Model::figures(), .make_params = {}};
-  if constexpr (requires { Model::is_default; }) kind.is_default = Model::is_default;
   kind.make_params = [] { return std::make_shared<typename Model::Params>(); };
   add_metric(std::move(kind), [](const MetricContext& context) -> std::unique_ptr<Metric> {
     return std::make_unique<Model>(context, static_cast<const typename Model::Params&>(*context.config.params));

@@ -90,7 +90,7 @@ TEST(ProcessCheck, TellsOfAClientThatJoinsByAnotherName) {
 }
 
 TEST(ProcessCheck, TellsOfAMetricOfAChannelOnWhichNoneOfThemSpeaks) {
-  const std::string metric = "metrics: [{name: error, vehicle: auv, channel: auv.estimat}]\n";
+  const std::string metric = "metrics: [{name: error, type: position_error, vehicle: auv, channel: auv.estimat}]\n";
   EXPECT_THAT(
       warnings_of({{"auv", auv + "}"}}, metric),
       HasSubstr("metric 'error': no device and no program of this world publishes on 'auv.estimat'; did you mean "

@@ -51,7 +51,7 @@ TEST(ProcessGroup, TellsHowAProgramEnded) {
   tools::ProcessGroup group;
   sim::ProcessConfig config = shell("exit 3", "pilot");
   config.client = "auv1";
-  config.on_exit = "end";
+  config.on_exit = sim::OnExit::end_run;
   group.start(config, "memq://", "");
   const auto exits = await_exit(group);
   ASSERT_EQ(exits.size(), 1u);

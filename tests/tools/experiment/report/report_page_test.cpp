@@ -245,8 +245,8 @@ std::string folder_of(const ScratchFolder& scratch, const std::map<std::string, 
 
 constexpr const char* sea_metrics =
     "metrics:\n"
-    "  - {name: cooperative, vehicle: auv, channel: auv.estimate}\n"
-    "  - {name: alone, vehicle: auv, channel: auv.dead_reckoning}\n"
+    "  - {name: cooperative, type: position_error, vehicle: auv, channel: auv.estimate}\n"
+    "  - {name: alone, type: position_error, vehicle: auv, channel: auv.dead_reckoning}\n"
     "  - {name: link, type: delivery, vehicle: auv}\n";
 
 std::map<std::string, double> sea_figures() {

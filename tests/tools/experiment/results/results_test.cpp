@@ -197,7 +197,8 @@ TEST(RunWorld, WithoutItsProgramsIsNotJudged) {
 
 TEST(Results, AreLeftByARun) {
   const ScratchFolder folder;
-  const auto loaded = small_world("metrics:\n  - {name: position, vehicle: r1, channel: r1.estimate}\n");
+  const auto loaded =
+      small_world("metrics:\n  - {name: position, type: position_error, vehicle: r1, channel: r1.estimate}\n");
   auto options = quiet_run();
   options.results = folder.file("a/results");
   const tools::Summary summary = tools::run_world(loaded, options);
@@ -232,7 +233,7 @@ TEST(Results, ShowErrorsWithWhatTheEstimateSaysOfThem) {
                         "  - {name: think, every: 0.1, do: [{publish: {channel: est, type: shoal.estimate_t, value: "
                         "{position_m: [3, 4, 0], covariance_m2: [9, 0, 0, 0, 16, 0, 0, 0, 1]}}}]}\n"
                         "metrics:\n"
-                        "  - {name: e, vehicle: r1, channel: est}\n"
+                        "  - {name: e, type: position_error, vehicle: r1, channel: est}\n"
                         "  - {name: c, type: consistency, vehicle: r1, channel: est}\n"),
       "small.yaml", load);
   auto options = quiet_run();
@@ -269,8 +270,8 @@ TEST(Results, ErrorsThatAreVeryDifferentHaveALogarithmicAxis) {
                 std::string(very ? "6" : "4") +
                 ", 0, 0]}}}]}\n"
                 "metrics:\n"
-                "  - {name: n, vehicle: r1, channel: near}\n"
-                "  - {name: f, vehicle: r1, channel: far}\n"),
+                "  - {name: n, type: position_error, vehicle: r1, channel: near}\n"
+                "  - {name: f, type: position_error, vehicle: r1, channel: far}\n"),
         "small.yaml", load);
     auto options = quiet_run();
     options.results = folder.file("results");
@@ -284,7 +285,7 @@ TEST(Results, ErrorsThatAreVeryDifferentHaveALogarithmicAxis) {
 TEST(Results, AreLeftByARunThatFailed) {
   const ScratchFolder folder;
   const auto loaded = small_world(
-      "metrics:\n  - {name: position, vehicle: r1, channel: r1.estimate}\n"
+      "metrics:\n  - {name: position, type: position_error, vehicle: r1, channel: r1.estimate}\n"
       "pass:\n  - position.rms_m < 1\n");
   auto options = quiet_run();
   options.results = folder.file("results");

@@ -139,8 +139,8 @@ TEST(Consistency, CountsAndIgnoresWhatIsNoCovariance) {
 
 TEST(PositionError, IsHorizontalUnlessThreeDimensionsAreAskedFor) {
   MetricWorld world(
-      "  - {name: flat, vehicle: r1, channel: est}\n"
-      "  - {name: full, vehicle: r1, channel: est, dimensions: 3}\n");
+      "  - {name: flat, type: position_error, vehicle: r1, channel: est}\n"
+      "  - {name: full, type: position_error, vehicle: r1, channel: est, dimensions: 3}\n");
   world.run_for(0.1);
   world.estimate({3, 4, 12}, some_covariance());
   world.run_for(0.01);
@@ -153,7 +153,7 @@ TEST(PositionError, IsHorizontalUnlessThreeDimensionsAreAskedFor) {
 }
 
 TEST(PositionError, TakesAnEstimateWithoutAUsableCovariance) {
-  MetricWorld world("  - {name: flat, vehicle: r1, channel: est}\n");
+  MetricWorld world("  - {name: flat, type: position_error, vehicle: r1, channel: est}\n");
   world.run_for(0.1);
   world.estimate({3, 4, 0}, Eigen::Matrix3d::Zero());
   world.run_for(0.01);
@@ -162,7 +162,7 @@ TEST(PositionError, TakesAnEstimateWithoutAUsableCovariance) {
 }
 
 TEST(PositionError, ShowsHowLongThereWasNoEstimate) {
-  MetricWorld world("  - {name: e, vehicle: r1, channel: est, from_s: 0.5}\n");
+  MetricWorld world("  - {name: e, type: position_error, vehicle: r1, channel: est, from_s: 0.5}\n");
   world.run_for(1.5);
   EXPECT_NEAR(world.figure("e.longest_gap_s"), 1, 1e-9);  // none yet
   for (const double pause_s : {0.4, 1.6, 0.2}) {
@@ -175,7 +175,7 @@ TEST(PositionError, ShowsHowLongThereWasNoEstimate) {
 }
 
 TEST(PositionError, SaysOnceWhatIsWrongAndThenHowOften) {
-  MetricWorld world("  - {name: e, vehicle: r1, channel: est}\n");
+  MetricWorld world("  - {name: e, type: position_error, vehicle: r1, channel: est}\n");
   const test_support::LogCapture log;
   world.run_for(0.1);
   for (int i = 0; i < 300; ++i) {
@@ -199,7 +199,7 @@ TEST(PositionError, SaysOnceWhatIsWrongBetweenGoodOnesAndStopsAtAHundred) {
     return std::count(said.begin(), said.end(), '\n') - of_the_world;
   };
   {
-    MetricWorld world("  - {name: e, vehicle: r1, channel: est}\n");
+    MetricWorld world("  - {name: e, type: position_error, vehicle: r1, channel: est}\n");
     of_the_world = lines();
     world.run_for(0.1);
     for (int i = 0; i < 300; ++i) {
@@ -219,7 +219,8 @@ TEST(PositionError, SaysOnceWhatIsWrongBetweenGoodOnesAndStopsAtAHundred) {
 
 TEST(PositionError, WarnsAtTheEndThatNothingCame) {
   MetricWorld world(
-      "  - {name: e, vehicle: r1, channel: est}\n  - {name: late, vehicle: r1, channel: est, from_s: 5}\n");
+      "  - {name: e, type: position_error, vehicle: r1, channel: est}\n  - {name: late, type: position_error, vehicle: "
+      "r1, channel: est, from_s: 5}\n");
   const auto warnings = [&] {
     const test_support::LogCapture log;
     sim::Warnings at_the_end;
@@ -242,7 +243,7 @@ TEST(PositionError, WarnsAtTheEndThatNothingCame) {
 TEST(PositionError, SaysAtTheEndHowManyWereIgnored) {
   const test_support::LogCapture log;
   {
-    MetricWorld world("  - {name: e, vehicle: r1, channel: est}\n");
+    MetricWorld world("  - {name: e, type: position_error, vehicle: r1, channel: est}\n");
     world.run_for(0.1);
     for (int i = 0; i < 30; ++i) world.estimate({1, 0, 0}, some_covariance(), -20);
     world.run_for(0.01);
@@ -251,7 +252,7 @@ TEST(PositionError, SaysAtTheEndHowManyWereIgnored) {
 }
 
 TEST(PositionError, PerDistanceIsOfTheWayThatWasTravelled) {
-  MetricWorld world("  - {name: e, vehicle: r1, channel: est}\n");
+  MetricWorld world("  - {name: e, type: position_error, vehicle: r1, channel: est}\n");
   world.drive(0.5);
   world.run_for(3);
   world.estimate({0, 0.1, 0}, some_covariance());
@@ -262,7 +263,7 @@ TEST(PositionError, PerDistanceIsOfTheWayThatWasTravelled) {
 }
 
 TEST(PositionError, OfAClockThatIsAheadWaitsForItsTime) {
-  MetricWorld world("  - {name: e, vehicle: r1, channel: est}\n");
+  MetricWorld world("  - {name: e, type: position_error, vehicle: r1, channel: est}\n");
   world.drive(0.5);
   world.run_for(2);
   const double here_m = world.position_m().x();
@@ -281,7 +282,7 @@ TEST(PositionError, IsOfTheTrueTimeHoweverFarTheClockIsOff) {
   for (const char* clock : {"clock: {offset_s: 90}", "clock: {offset_s: -90}", "clock: {offset_s: 3e7}",
                             "clock: {offset_s: -3e7, drift_ppm: 20}"}) {
     test::TestWorld test(test::modem_sea({{"a", "[1, 2, -20]", "{name: modem, type: acoustic_modem}", clock}},
-                                         "metrics: [{name: e, vehicle: a, channel: est}]\n"));
+                                         "metrics: [{name: e, type: position_error, vehicle: a, channel: est}]\n"));
     tools::Scoring scoring(test.world);
     const sim::Vehicle& vehicle = *test.world.find_vehicle("a");
     const auto step = [&] {
@@ -593,8 +594,8 @@ TEST(Lean, TellsMeanSpreadAndFallOfASteadyTurn) {
 
 TEST(BytesPerMetre, NeedsAnErrorThatBecameSmaller) {
   const std::string metrics =
-      "  - {name: with, vehicle: r1, channel: est}\n"
-      "  - {name: without, vehicle: r1, channel: est2}\n"
+      "  - {name: with, type: position_error, vehicle: r1, channel: est}\n"
+      "  - {name: without, type: position_error, vehicle: r1, channel: est2}\n"
       "  - {name: cost, type: bytes_per_metre, metric: with, against: without}\n";
   MetricWorld world(metrics);
   world.run_for(0.1);
@@ -615,8 +616,8 @@ TEST(BytesPerMetre, NeedsAnErrorThatBecameSmaller) {
 
 TEST(Figures, OfAMetricAreThoseThatItsTypeNames) {
   MetricWorld world(
-      "  - {name: a, vehicle: r1, channel: est}\n"
-      "  - {name: b, vehicle: r1, channel: est2}\n"
+      "  - {name: a, type: position_error, vehicle: r1, channel: est}\n"
+      "  - {name: b, type: position_error, vehicle: r1, channel: est2}\n"
       "  - {name: c, type: consistency, vehicle: r1, channel: est}\n"
       "  - {name: d, type: distance, vehicle: r1}\n"
       "  - {name: e, type: delivery, vehicle: r1}\n"

@@ -19,8 +19,8 @@ std::string scored_world(const std::string& more = "") {
       "wheel_radius_m: 0.1, track_m: 0.5}\n",
       "", "    position_m: [1, 2, 0]\n",
       "metrics:\n"
-      "  - {name: good, vehicle: r1, channel: good}\n"
-      "  - {name: late, vehicle: r1, channel: late, from_s: 0.5}\n" +
+      "  - {name: good, type: position_error, vehicle: r1, channel: good}\n"
+      "  - {name: late, type: position_error, vehicle: r1, channel: late, from_s: 0.5}\n" +
           more);
 }
 
@@ -222,7 +222,7 @@ TEST(Scoring, ARuleOnAFigureThatIsNotThereSaysWhy) {
       "  - {name: way, type: distance, vehicle: r1, from_s: 100}\n"
       "  - {name: bumps, type: collisions, from_s: 100}\n"
       "  - {name: talk, type: messages, channel: nothing, from_s: 100}\n"
-      "  - {name: gap, vehicle: r1, channel: good, from_s: 100}\n"
+      "  - {name: gap, type: position_error, vehicle: r1, channel: good, from_s: 100}\n"
       "  - {name: link, type: delivery}\n"
       "  - {name: home, type: mission_time, vehicle: r1, position_m: [9, 9, 9], radius_m: 1}\n"
       "  - {name: first, type: messages, channel: nothing}\n"

@@ -27,8 +27,9 @@ void write(const std::string& path, const std::string& text) {
 /// A folder with a world of one metric `e`, and a study of it.
 struct StudyFolder {
   explicit StudyFolder(const std::string& more, const std::string& seeds = "[1, 2]") {
-    write(folder.file("small.yaml"), test::rover_world("        - {name: lidar, type: lidar}\n", "", "",
-                                                       "metrics: [{name: e, vehicle: r1, channel: est}]\n"));
+    write(folder.file("small.yaml"),
+          test::rover_world("        - {name: lidar, type: lidar}\n", "", "",
+                            "metrics: [{name: e, type: position_error, vehicle: r1, channel: est}]\n"));
     write(path(), "shoal: 1\nstudy: tiny\nworld: small.yaml\nseeds: " + seeds + "\n" + more);
   }
   std::string path() const { return folder.file("study.yaml"); }

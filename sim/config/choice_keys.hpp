@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/config/param_reader.hpp"
+
+namespace sim {
+
+using ChoiceKeys = std::vector<const char*>;
+
+/// Reports keys that belong to other values of an enum, such as `'gamma' is not for type regular`: a key that does
+/// nothing is most likely meant for another value.  `keys_of` gives the keys of a value that are not for all values; it
+/// is a switch without default, so that a new value says which keys it has.  `what`: the key of the enum.
+template <typename Enum, typename KeysOf>
+void refuse_keys_of_others(ParamReader& in, std::string_view what, const ChoiceWords<Enum>& words, Enum value,
+                           const KeysOf& keys_of) {
+  const ChoiceKeys own = keys_of(value);
+  std::set<std::string_view> done(own.begin(), own.end());
+  for (const ChoiceWord<Enum>& each : words)
+    for (const char* key : keys_of(each.value))
+      if (done.insert(key).second && in.has(key))
+        in.error(key, "'" + std::string(key) + "' is not for " + std::string(what) + " " +
+                          std::string(word_of(words, value)));
+}
+
+}  // namespace sim

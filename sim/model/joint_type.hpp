@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "sim/config/choice_words.hpp"
+
+namespace sim {
+
+/// Joints, as ODE has them.  What differs by type asks by a switch without default, so that the compiler names the
+/// places that a new type has to fill in.
+enum class JointType { fixed, ball, hinge, hinge2, universal, slider };
+
+inline constexpr ChoiceWords<JointType> joint_type_words{
+    {"fixed", JointType::fixed},   {"ball", JointType::ball},           {"hinge", JointType::hinge},
+    {"hinge2", JointType::hinge2}, {"universal", JointType::universal}, {"slider", JointType::slider}};
+
+/// What is known of a joint by its type.
+struct JointInfo {
+  bool second_axis;      ///< has the key `axis2`
+  bool carries_a_wheel;  ///< one body turns on the other about its last axis, without end
+  bool turns;            ///< its axes are angles, where it has axes
+};
+
+constexpr JointInfo joint_info(JointType type) {
+  switch (type) {
+    case JointType::fixed:
+      return {.second_axis = false, .carries_a_wheel = false, .turns = true};
+    case JointType::ball:
+      return {.second_axis = false, .carries_a_wheel = false, .turns = true};
+    case JointType::hinge:
+      return {.second_axis = false, .carries_a_wheel = true, .turns = true};
+    case JointType::hinge2:
+      return {.second_axis = true, .carries_a_wheel = true, .turns = true};
+    case JointType::universal:
+      return {.second_axis = true, .carries_a_wheel = false, .turns = true};
+    case JointType::slider:
+      break;
+  }
+  return {.second_axis = false, .carries_a_wheel = false, .turns = false};
+}
+
+}  // namespace sim

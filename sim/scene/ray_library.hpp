@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "sim/config/choice_words.hpp"
+
+namespace sim {
+
+/// Which library follows rays.
+enum class RayLibrary { embree, ode };
+
+inline constexpr ChoiceWords<RayLibrary> ray_library_words{{"embree", RayLibrary::embree}, {"ode", RayLibrary::ode}};
+
+}  // namespace sim

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "sim/config/choice_words.hpp"
+
+namespace sim {
+
+/// What happens when a client of the lockstep does not answer in time.
+enum class OnTimeout {
+  wait,     ///< the world waits for ever
+  pause,    ///< the world pauses, until it answers or somebody resumes: then without it
+  go_on,    ///< without it
+  end_run,  ///< with exit code 5
+};
+
+inline constexpr ChoiceWords<OnTimeout> on_timeout_words{{"wait", OnTimeout::wait},
+                                                         {"pause", OnTimeout::pause},
+                                                         {"continue", OnTimeout::go_on},
+                                                         {"end", OnTimeout::end_run}};
+
+}  // namespace sim
