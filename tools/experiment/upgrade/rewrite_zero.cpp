@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/upgrade/number_text.hpp"
+#include "tools/experiment/upgrade/rewriting.hpp"
+
+// Since version 0.2 a word says what a zero stood for: `speed: max`.
+
+namespace tools {
+
+namespace {
+
+struct WordOfZero {
+  FileKind kind;
+  std::string_view path;
+  const char* word;
+};
+
+constexpr WordOfZero words_of_zero[] = {
+    {FileKind::world, "run.speed", "max"},
+    {FileKind::world, "run.duration_s", "forever"},
+    {FileKind::world, "events.*.times", "unlimited"},
+    {FileKind::vehicle, "devices.*.rate_hz", "every_step"},
+};
+
+/// The word of a zero at this path; null: it has none.
+const char* word_at(const KeyPath& path) {
+  for (const WordOfZero& each : words_of_zero)
+    if (path.is(each.kind, each.path)) return each.word;
+  return nullptr;
+}
+
+/// Whether the value is `${NAME}`, and the parameter of this file is 0 when nobody gives it another value.
+bool is_zero_by_parameter(const Site& site) {
+  const std::string& text = site.source.scalar;
+  const SourceNode::Entry* parameters = site.text.root().find("parameters");
+  if (parameters == nullptr || !text.starts_with("${") || !text.ends_with("}")) return false;
+  const SourceNode::Entry* value = parameters->value.target->find(std::string_view(text).substr(2, text.size() - 3));
+  return value != nullptr && !value->value.target->quoted && is_zero(value->value.target->scalar);
+}
+
+}  // namespace
+
+void rewrite_zero(Site& site) {
+  if (site.source.kind != SourceNode::Kind::scalar || site.source.quoted) return;
+  const char* word = word_at(site.path);
+  if (word == nullptr) return;
+  if (is_zero_by_parameter(site))
+    throw Doubt(site.source.start, "the parameter is 0, which is '" + std::string(word) + "' here");
+  if (!is_zero(site.source.scalar)) return;
+  site.meaning.scalar = word;
+  if (site.edits != nullptr) site.edits->replace(site.source.span, word);
+}
+
+}  // namespace tools
