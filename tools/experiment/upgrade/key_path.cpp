@@ -21,7 +21,7 @@ bool is_key_of_entry(std::string_view key) {
 }  // namespace
 
 bool KeyPath::is(FileKind kind, std::string_view pattern) const {
-  if (kind != kind_) return false;
+  if (kind != kind_ || pattern.empty()) return kind == kind_ && keys_.empty();
   std::size_t i = 0;
   for (std::size_t begin = 0; begin <= pattern.size(); ++i) {
     const std::size_t end = std::min(pattern.find('.', begin), pattern.size());

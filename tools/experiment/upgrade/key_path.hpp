@@ -20,7 +20,8 @@ class KeyPath {
 
   FileKind kind() const { return kind_; }
   const std::vector<std::string>& keys() const { return keys_; }
-  /// Whether the path is `pattern`, keys with dots between; `*` stands for any key or item.
+  /// Whether the path is `pattern`, keys with dots between; `*` stands for any key or item, nothing for
+  /// the top.
   bool is(FileKind kind, std::string_view pattern) const;
 
   /// The path of an item of the list here.

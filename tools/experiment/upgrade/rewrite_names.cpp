@@ -33,11 +33,22 @@ std::string renamed_key(const Site& site, const std::string& key, std::span<cons
   return renamed;
 }
 
+/// Writes another name where a word or a key is, between its quotes where it has some.
+void replace_name(Site& site, const SourceNode& name, std::string_view after) {
+  if (site.edits == nullptr) return;
+  const std::string written = site.source_of(name.span);
+  const bool in_quotes =
+      written.size() > 1 && (written[0] == '"' || written[0] == '\'') && written[0] == written.back();
+  const TextSpan span = in_quotes ? TextSpan{name.span.begin + 1, name.span.end - 1} : name.span;
+  if (site.source_of(span) != name.scalar) throw Doubt(name.start, "a name that is written like this is not rewritten");
+  site.edits->replace(span, std::string(after));
+}
+
 void rename_key(Site& site, const SourceNode::Entry& entry, const std::string& name) {
   if (site.meaning.find(name) != nullptr)
-    throw Doubt(entry.key.start, "both '" + entry.key.scalar + "' and '" + name + "'");
+    throw Doubt(entry.key.start, "'" + entry.key.scalar + "' is '" + name + "' now, which is there too");
   entry_of(site.meaning, entry.key.scalar).key = name;
-  if (site.edits != nullptr) site.edits->replace(entry.key.span, name);
+  replace_name(site, entry.key, name);
 }
 
 }  // namespace
@@ -45,24 +56,18 @@ void rename_key(Site& site, const SourceNode::Entry& entry, const std::string& n
 void apply_renames(Site& site, std::span<const Rename> table) {
   if (table.empty()) return;
   if (site.source.kind == Kind::map)
-    for (const SourceNode::Entry& entry : site.source.entries)
-      if (const std::string name = renamed_key(site, entry.key.scalar, table);
-          name != entry.key.scalar && site.meaning.find(entry.key.scalar) != nullptr)
-        rename_key(site, entry, name);
-  if (site.source.kind != Kind::scalar) return;
+    for (const SourceNode::Entry& entry : site.source.entries) {
+      const std::string& key = entry.key.scalar;
+      const std::string name = renamed_key(site, key, table);
+      // Another rewriting may have taken the key away.
+      if (name != key && site.meaning.find(key) != nullptr) rename_key(site, entry, name);
+    }
+  if (site.source.kind != Kind::scalar || site.meaning.scalar != site.source.scalar) return;
   for (const Rename& rename : table) {
-    if (rename.what != Rename::What::word || rename.before != site.source.scalar) continue;
-    if (!site.path.is(rename.kind, rename.path)) continue;
+    const bool fits = rename.what == Rename::What::word && rename.before == site.source.scalar;
+    if (!fits || !site.path.is(rename.kind, rename.path)) continue;
     site.meaning.scalar = rename.after;
-    const TextSpan span = site.source.span;
-    const bool in_quotes =
-        site.edits != nullptr && span.end > span.begin + 1 &&
-        (site.source_of({span.begin, span.begin + 1}) == "\"" || site.source_of({span.begin, span.begin + 1}) == "'");
-    if (site.edits == nullptr) return;
-    if (site.source.quoted && !in_quotes)
-      throw Doubt(site.source.start, "a word that is written like this is not rewritten");
-    site.edits->replace(in_quotes ? TextSpan{span.begin + 1, span.end - 1} : span, std::string(rename.after));
-    return;
+    return replace_name(site, site.source, rename.after);
   }
 }
 
