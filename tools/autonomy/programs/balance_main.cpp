@@ -107,7 +107,7 @@ int run(int argc, char** argv) {
       "It reads NAME.inclinometer and NAME.encoder, and drives as shoal.twist_command_t on "
       "NAME.balance.cmd says; it publishes NAME.left_motor.cmd and NAME.right_motor.cmd, and "
       "NAME.fallen when it fell.  Start it beside `shoal run worlds/segway.yaml --await segway1`.  "
-      "docs/segway.md explains the gains.");
+      "docs/models/segway.md explains the gains.");
   if (const auto exit_code = autonomy::parse(app, argc, argv)) return *exit_code;
   options.balance.period_s = options.participation.period_s;
   options.balance.balanced_lean_rad = sim::degrees_to_radians(options.balanced_lean_deg);
