@@ -28,7 +28,7 @@ class KeyPath {
   KeyPath item() const;
   /// The path of the value of a key of the map here.  The key may be a dotted path where the format allows that.
   KeyPath value_of(std::string_view key) const;
-  /// The same where the map is an action in the form of version 0.1, and `word` its first key.
+  /// The same where the map is an action in the form of version 0.1, and `word` the key that names it.
   KeyPath value_of_action(std::string_view key, std::string_view word) const;
 
   /// Whether the keys of the map here are dotted paths.

@@ -21,4 +21,14 @@ const OldAction* find_old_action(std::string_view word) {
   return found == all.end() ? nullptr : &*found;
 }
 
+const SourceNode::Entry* word_of_action(const SourceNode& map) {
+  const SourceNode::Entry* word = nullptr;
+  for (const SourceNode::Entry& entry : map.entries) {
+    if (find_old_action(entry.key.scalar) == nullptr) continue;
+    if (word != nullptr) return nullptr;
+    word = &entry;
+  }
+  return word;
+}
+
 }  // namespace tools

@@ -20,7 +20,8 @@ struct Rename {
   std::string_view before, after;
 };
 
-/// All names of keys, words, channels and message types that have changed.
+/// All names of keys, words, channels and message types that have changed.  The word of an action is not renamed here:
+/// it decides which keys rewrite_action() moves.
 std::span<const Rename> renames();
 
 /// Applies `table` at a node: the keys of a map, also within dotted keys, and the text of a scalar.  In a list of

@@ -93,7 +93,7 @@ class ArgumentsText {
       for (const Argument& argument : group.arguments) {
         const std::string entry = argument.key + ": " + argument.value;
         if (!first) text += ",";
-        add_comments(group.span.begin);
+        add_comments(group.span.end);
         const bool fits = first || width + entry.size() + 3 <= line_width;  // with `, ` before and `,` or `}` after it
         if (after_comment || !fits)
           text += pad;
@@ -112,13 +112,22 @@ class ArgumentsText {
   std::string in_block(const std::string& line) const {
     std::string text;
     std::size_t comment = 0;
+    bool after_comment = true;
     const auto add_comments = [&](std::size_t before) {
-      for (; comment < comments_.size() && comments_[comment].begin < before; ++comment)
-        text += (is_trailing(comments_[comment]) ? "  " : line) + site_.source_of(comments_[comment]);
+      for (; comment < comments_.size() && comments_[comment].begin < before; ++comment) {
+        const bool stays = !after_comment && is_trailing(comments_[comment]);
+        text += (stays ? "  " : line) + site_.source_of(comments_[comment]);
+        after_comment = true;
+      }
     };
     for (const Group& group : groups_) {
-      add_comments(group.span.begin);
-      for (const Argument& argument : group.arguments) text += line + argument.key + ": " + argument.value;
+      // Those between an option and its value stand before the key.
+      if (!after_comment) add_comments(group.span.begin);
+      add_comments(group.span.end);
+      for (const Argument& argument : group.arguments) {
+        text += line + argument.key + ": " + argument.value;
+        after_comment = false;
+      }
     }
     add_comments(std::string::npos);
     return text;

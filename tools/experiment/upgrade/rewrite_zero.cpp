@@ -17,8 +17,23 @@ struct WordOfZero {
 constexpr WordOfZero words_of_zero[] = {
     {FileKind::world, "run.speed", "max"},
     {FileKind::world, "run.duration_s", "forever"},
+    {FileKind::world, "run.hash_every_steps", "never"},
+    {FileKind::world, "state_rate_hz", "never"},
+    {FileKind::world, "limits.step_cpu_s", "unlimited"},
     {FileKind::world, "events.*.times", "unlimited"},
+    {FileKind::world, "vehicles.*.placement.columns", "auto"},
+    {FileKind::world, "objects.*.placement.columns", "auto"},
+    {FileKind::vehicle, "bodies.*.hydrodynamics.cross_flow.strips", "exact"},
     {FileKind::vehicle, "devices.*.rate_hz", "every_step"},
+    {FileKind::vehicle, "devices.*.watchdog_s", "never"},
+    {FileKind::vehicle, "devices.*.natural_frequency_radps", "none"},
+    {FileKind::vehicle, "devices.*.max_message_bytes", "all_frames"},
+    {FileKind::vehicle, "devices.*.synchronous_s", "at_once"},
+    {FileKind::vehicle, "devices.*.range_at_10_percent_m", "unlimited"},
+    {FileKind::vehicle, "devices.*.full_well_electrons", "unlimited"},
+    {FileKind::vehicle, "devices.*.bandwidth_hz", "unlimited"},
+    {FileKind::vehicle, "devices.*.gyro_range_dps", "unlimited"},
+    {FileKind::vehicle, "devices.*.accel_range_g", "unlimited"},
 };
 
 /// The word of a zero at this path; null: it has none.

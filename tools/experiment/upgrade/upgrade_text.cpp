@@ -39,12 +39,10 @@ class Walk {
     if (source.items.size() != meaning.items.size() || source.entries.size() != meaning.entries.size())
       throw Doubt(written.start, "this form of YAML is not followed by 'shoal upgrade'");
     for (std::size_t i = 0; i < source.items.size(); ++i) visit(path.item(), source.items[i], meaning.items[i]);
-    const bool is_action =
-        path.is_action() && source.entries.size() > 1 && find_old_action(source.entries.front().key.scalar) != nullptr;
+    const SourceNode::Entry* word = path.is_action() && source.entries.size() > 1 ? word_of_action(source) : nullptr;
     for (std::size_t i = 0; i < source.entries.size(); ++i) {
       const std::string& key = source.entries[i].key.scalar;
-      const KeyPath below =
-          is_action ? path.value_of_action(key, source.entries.front().key.scalar) : path.value_of(key);
+      const KeyPath below = word != nullptr ? path.value_of_action(key, word->key.scalar) : path.value_of(key);
       visit(below, source.entries[i].value, meaning.entries[i].value);
     }
     // What aliases name is written once; whether it is right in all places shows in the end.
