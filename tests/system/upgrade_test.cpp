@@ -23,10 +23,8 @@ const std::string new_text =
     "  - {name: hello, at: 0.5, do: [{end: {reason: enough, passed: true}}]}\n";
 
 Ended upgrade(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), {built("shoal"), "upgrade"});
-  Program program(std::move(arguments));
-  const int exit_code = program.wait();
-  return {exit_code, program.output(), program.errors()};
+  arguments.insert(arguments.begin(), "upgrade");
+  return run_shoal(std::move(arguments));
 }
 
 TEST(Upgrade, ShowsWhatWouldChangeAndWritesNothing) {

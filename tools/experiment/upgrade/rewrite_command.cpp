@@ -154,18 +154,21 @@ void write(Site& site, const SourceNode::Entry& entry, const std::string& prefix
   const ArgumentsText arguments(site, groups, {entry.after_colon, list.span.end}, list.items.front().span.end);
   const std::size_t column = site.text.column(all.begin);
   const std::string line = site.text.line_break() + std::string(column, ' ');
-  const std::size_t brace = column + prefix.size() + std::string_view("args: ").size();
-  std::string text = prefix + "program: " + list.items.front().target->scalar;
+  const std::string program = prefix + "program: " + list.items.front().target->scalar;
   const std::string comments = arguments.of_program(line);
-  if (groups.empty())
-    text += comments;
-  else if (site.source.brackets)
-    text += "," + (comments.empty() ? " " : comments + line) + prefix + "args: " + arguments.in_braces(brace);
-  else if (list.brackets)
-    text += comments + line + prefix + "args: " + arguments.in_braces(brace);
-  else
-    text += comments + line + prefix + "args:" + arguments.in_block(line + "  ");
-  site.edits->replace(all, text);
+  const std::string args = prefix + "args: ";
+  const std::string on_new_line = comments + line + args + arguments.in_braces(column + args.size());
+  if (groups.empty()) {
+    site.edits->replace(all, program + comments);
+  } else if (site.source.brackets) {
+    const std::string on_same_line = " " + args + arguments.in_braces(column + program.size() + 2 + args.size());
+    const bool fits = comments.empty() && on_same_line.find('\n') == std::string::npos;
+    site.edits->replace(all, program + "," + (fits ? on_same_line : on_new_line));
+  } else if (list.brackets) {
+    site.edits->replace(all, program + on_new_line);
+  } else {
+    site.edits->replace(all, program + comments + line + prefix + "args:" + arguments.in_block(line + "  "));
+  }
 }
 
 void rewrite(Site& site, const SourceNode::Entry& entry) {
