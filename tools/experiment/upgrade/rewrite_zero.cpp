@@ -46,8 +46,9 @@ const char* word_at(const KeyPath& path) {
 /// Whether the value is `${NAME}`, and the parameter of this file is 0 when nobody gives it another value.
 bool is_zero_by_parameter(const Site& site) {
   const std::string& text = site.source.scalar;
+  if (!text.starts_with("${") || !text.ends_with("}")) return false;
   const SourceNode::Entry* parameters = site.text.root().find("parameters");
-  if (parameters == nullptr || !text.starts_with("${") || !text.ends_with("}")) return false;
+  if (parameters == nullptr) return false;
   const SourceNode::Entry* value = parameters->value.target->find(std::string_view(text).substr(2, text.size() - 3));
   return value != nullptr && !value->value.target->quoted && is_zero(value->value.target->scalar);
 }
@@ -56,11 +57,11 @@ bool is_zero_by_parameter(const Site& site) {
 
 void rewrite_zero(Site& site) {
   if (site.source.kind != SourceNode::Kind::scalar || site.source.quoted) return;
+  const bool by_parameter = is_zero_by_parameter(site);
+  if (!by_parameter && !is_zero(site.source.scalar)) return;
   const char* word = word_at(site.path);
   if (word == nullptr) return;
-  if (is_zero_by_parameter(site))
-    throw Doubt(site.source.start, "the parameter is 0, which is '" + std::string(word) + "' here");
-  if (!is_zero(site.source.scalar)) return;
+  if (by_parameter) throw Doubt(site.source.start, "the parameter is 0, which is '" + std::string(word) + "' here");
   site.meaning.scalar = word;
   if (site.edits != nullptr) site.edits->replace(site.source.span, word);
 }
