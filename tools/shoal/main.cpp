@@ -67,6 +67,7 @@ int run(int argc, char** argv) {
   tools::add_report_command(app, exit_code);
   tools::add_bug_command(app, exit_code);
   tools::add_study_command(app, exit_code);
+  tools::add_upgrade_command(app, exit_code);
   try {
     if (const auto ended = command_line::parse(app, argc, argv)) return *ended;
   } catch (const sim::ConfigError& error) {

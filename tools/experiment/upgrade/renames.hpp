@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "tools/experiment/upgrade/rewriting.hpp"
+
+namespace tools {
+
+/// What has another name since version 0.2.
+struct Rename {
+  enum class What {
+    key,  ///< `path` leads to the map that has the key
+    word  ///< `path` leads to the text: a word, a channel or a message type
+  };
+  What what;
+  FileKind kind;
+  std::string_view path;  ///< see KeyPath::is
+  std::string_view before, after;
+};
+
+/// All names of keys, words, channels and message types that have changed.  The word of an action is not renamed here:
+/// it decides which keys rewrite_action() moves.
+std::span<const Rename> renames();
+
+/// Applies `table` at a node: the keys of a map, also within dotted keys, and the text of a scalar.  In a list of
+/// strings each item is a node of its own.  Where a text is a channel or a type, all of it must be `before`.
+void apply_renames(Site& site, std::span<const Rename> table);
+
+}  // namespace tools
