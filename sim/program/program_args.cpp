@@ -165,7 +165,7 @@ void append_words(const ArgDeclaration& arg, const ConfigNode& value, const std:
       return;
     }
     case ArgType::choice:
-      in.read_choice(key, text, arg.choices, "");
+      in.read_one_of(key, text, arg.choices, "");
       break;
     case ArgType::numbers:
     case ArgType::tuple: {

@@ -19,14 +19,6 @@ using Kind = ConfigNode::Kind;
 constexpr std::size_t max_args = 256;
 constexpr std::size_t max_columns = 16;
 
-const std::vector<std::pair<std::string, ArgType>>& type_words() {
-  static const std::vector<std::pair<std::string, ArgType>> words = {
-      {"number", ArgType::number}, {"integer", ArgType::integer}, {"text", ArgType::text},
-      {"flag", ArgType::flag},     {"choice", ArgType::choice},   {"numbers", ArgType::numbers},
-      {"tuple", ArgType::tuple},   {"tuples", ArgType::tuples}};
-  return words;
-}
-
 bool has_numbers(ArgType type) {
   return type != ArgType::text && type != ArgType::flag && type != ArgType::choice;
 }
@@ -44,7 +36,7 @@ bool is_arg_name(const std::string& name) {
 
 /// Errors of keys that do not belong to the type, or are missing for it.
 void check_keys_of_type(ParamReader& in, const ArgDeclaration& arg) {
-  const std::string type = std::string("'type: ") + word_of(arg.type) + "'";
+  const std::string type = "'type: " + std::string(word_of(arg_type_words, arg.type)) + "'";
   for (const char* key : {"min", "max"})
     if (in.has(key) && !has_numbers(arg.type)) in.error(key, "'" + std::string(key) + "' does not go with " + type);
   if (in.has("choices") && arg.type != ArgType::choice) in.error("choices", "'choices' does not go with " + type);
@@ -85,7 +77,7 @@ ConfigNode node_of(const ArgDeclaration& arg) {
   map.kind = Kind::map;
   const auto add = [&map](const char* key, ConfigNode value) { map.entries.push_back({key, {}, std::move(value)}); };
   add("name", scalar(arg.name));
-  add("type", scalar(word_of(arg.type)));
+  add("type", scalar(std::string(word_of(arg_type_words, arg.type))));
   if (!arg.columns.empty()) add("columns", list_node(arg.columns));
   if (arg.min_columns > 0) add("min_columns", scalar(std::to_string(arg.min_columns)));
   if (!arg.choices.empty()) add("choices", list_node(arg.choices));
@@ -148,7 +140,7 @@ std::string type_text_of(const ArgDeclaration& arg) {
     case ArgType::integer:
     case ArgType::text:
     case ArgType::flag:
-      return word_of(arg.type);
+      return std::string(word_of(arg_type_words, arg.type));
     case ArgType::choice:
       return "text";
     case ArgType::numbers:
@@ -163,12 +155,6 @@ std::string type_text_of(const ArgDeclaration& arg) {
 
 }  // namespace
 
-const char* word_of(ArgType type) {
-  for (const auto& [word, each] : type_words())
-    if (each == type) return word.c_str();
-  return "";
-}
-
 void ArgDeclaration::read(ParamReader& in) {
   in.require("name");
   in.read("name", name, "name of the argument, which ends in its unit; --name-with-dashes on the command line");
@@ -176,7 +162,7 @@ void ArgDeclaration::read(ParamReader& in) {
     in.error("name", "'name' must begin with a small letter and have letters, digits and single '_', got '" +
                          shortened(printable(name)) + "'");
   in.require("type");
-  in.read_choice("type", type, type_words(), "what the value is");
+  in.read_choice("type", type, arg_type_words, "what the value is");
   std::optional<double> min, max;
   in.read("min", min, any_number(), "the least number allowed");
   in.read("max", max, any_number(), "the largest number allowed");

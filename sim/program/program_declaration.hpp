@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/config/choice_words.hpp"
 #include "sim/config/param_reader.hpp"
 
 namespace sim {
@@ -23,8 +24,11 @@ enum class ArgType {
   tuples    ///< a list of such lists
 };
 
-/// The word for a type in a declaration.
-const char* word_of(ArgType type);
+/// The words for types in a declaration.
+inline constexpr ChoiceWords<ArgType> arg_type_words{
+    {"number", ArgType::number}, {"integer", ArgType::integer}, {"text", ArgType::text},
+    {"flag", ArgType::flag},     {"choice", ArgType::choice},   {"numbers", ArgType::numbers},
+    {"tuple", ArgType::tuple},   {"tuples", ArgType::tuples}};
 
 /// One argument of a program.
 struct ArgDeclaration {
