@@ -66,11 +66,11 @@ TEST(Determinism, SecondRunInOneProcessGivesTheSameBits) {
 
 TEST(Determinism, WorldsInFourThreadsGiveTheBitsOfOne) {
   // Quick with 20 iterations shuffles rows by random numbers: needs the seed of its own of each thread.
-  const std::vector<std::uint64_t> expected = hashes(*pile_and_fleet(Space::sap, "quick"), 200);
+  const std::vector<std::uint64_t> expected = hashes(*pile_and_fleet(Space::sap, Solver::quick), 200);
   std::vector<std::vector<std::uint64_t>> found(4);
   std::vector<std::thread> threads;
   for (auto& result : found)
-    threads.emplace_back([&result] { result = hashes(*pile_and_fleet(Space::sap, "quick"), 200); });
+    threads.emplace_back([&result] { result = hashes(*pile_and_fleet(Space::sap, Solver::quick), 200); });
   for (std::thread& thread : threads) thread.join();
   for (const auto& result : found) EXPECT_EQ(result, expected);
 }

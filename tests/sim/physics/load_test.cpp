@@ -182,8 +182,8 @@ TEST(JointLoad, OfAHangingMassIsItsWeightUpwards) {
     EXPECT_EQ(chain.force_W_N(), Vector3d(0, 0, 0));
     chain.measure_load();
     run(*world, 100);
-    EXPECT_NEAR((chain.force_W_N() - Vector3d(0, 0, 2 * g)).norm(), 0, 1e-5) << type;
-    EXPECT_NEAR(chain.torque_W_Nm().norm(), 0, 1e-5) << type;
+    EXPECT_NEAR((chain.force_W_N() - Vector3d(0, 0, 2 * g)).norm(), 0, 1e-5) << word_of(sim::joint_type_words, type);
+    EXPECT_NEAR(chain.torque_W_Nm().norm(), 0, 1e-5) << word_of(sim::joint_type_words, type);
   }
 }
 

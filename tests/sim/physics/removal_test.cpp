@@ -313,8 +313,8 @@ TEST(MoveGroup, TakesTheWorldsSideOfAJointAlong) {
     world->move_group(group, X_move_W, true);
     joint.set_motor(0, 100);
     for (int i = 0; i < 50; ++i) world->step(i);
-    EXPECT_NEAR(joint.position(), position, 1e-9) << type;
-    EXPECT_TRUE(arm.X_WB().isApprox(X_move_W * X_WB, 1e-9)) << type;
+    EXPECT_NEAR(joint.position(), position, 1e-9) << word_of(sim::joint_type_words, type);
+    EXPECT_TRUE(arm.X_WB().isApprox(X_move_W * X_WB, 1e-9)) << word_of(sim::joint_type_words, type);
   }
 }
 

@@ -53,13 +53,13 @@ const double closed_form_mps2 =
 constexpr double sine_tolerance = 0.04;
 
 TEST(TerrainDrive, SphereWheelsOnSmoothWavesDoNotRing) {
-  const double rms = vertical_rms_mps2("smooth", 0.1, sphere(0.1, 0.5));
+  const double rms = vertical_rms_mps2(TerrainCollision::smooth, 0.1, sphere(0.1, 0.5));
   RecordProperty("rms_mps2", std::to_string(rms));
   EXPECT_NEAR(rms, closed_form_mps2, sine_tolerance * closed_form_mps2);
 }
 
 TEST(TerrainDrive, CylinderWheelsOnSmoothWavesDoNotRing) {
-  const double rms = vertical_rms_mps2("smooth", 0.1, cylinder_wheel());
+  const double rms = vertical_rms_mps2(TerrainCollision::smooth, 0.1, cylinder_wheel());
   RecordProperty("rms_mps2", std::to_string(rms));
   EXPECT_NEAR(rms, closed_form_mps2, sine_tolerance * closed_form_mps2);
 }
