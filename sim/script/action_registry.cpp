@@ -20,7 +20,9 @@ ParamInfo ActionKind::info() const {
   info.children = keys();
   info.kind = ParamKind::map;
   info.main_alone = main_alone;
-  info.type = (main_alone ? info.children.front().type + " or " : "") + type_text(info.kind);
+  const std::string& main = info.children.front().type;
+  info.type = type_text(info.kind);
+  if (main_alone) info.type = main.ends_with(info.type) ? main : main + " or " + info.type;
   return info;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "sim/config/message_text.hpp"
 
@@ -64,7 +65,8 @@ CLI::Validator number_or_word(double low, double high, const std::string& word) 
       return "";
     }
     const auto number = parse_number<double>(text);
-    return number && *number >= low && *number <= high ? "" : "must be " + range + ", got " + quoted(text);
+    return number && *number >= low && *number <= high ? ""
+                                                       : "must be " + range + ", got " + quoted(std::as_const(text));
   };
   return {take, range};
 }

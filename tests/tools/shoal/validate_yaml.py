@@ -37,6 +37,7 @@ SKIPPED = {
     "damping_that_drives": "numbers of one list have rules of their own",
     "derivative_that_drives": "the names of derivatives are a grammar of their own",
     "dvl_layer_that_ends_before_it_begins": "one number depends on another",
+    "turn_of_an_hour": "the bound depends on the type of the device",
     "sonar_picture_too_large": "the product of two numbers is limited",
     "metric_with_a_key_of_another_type": "the keys depend on another key",
     "metric_without_its_channel": "one key needs another",
