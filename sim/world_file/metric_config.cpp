@@ -97,8 +97,13 @@ std::optional<RuleProblem> figure_problem(const std::vector<MetricConfig>& metri
                               "." + figures.front() + "; figures: " + list_text(figures)};
   const std::string figure = name.substr(dot + 1);
   if (metric->kind->find(figure) != nullptr) return std::nullopt;
+  // The unit is what is forgotten most.
+  const auto with_unit = std::find_if(figures.begin(), figures.end(),
+                                      [&](const std::string& each) { return each.starts_with(figure + "_"); });
+  const std::string meant =
+      with_unit != figures.end() ? "; did you mean '" + *with_unit + "'?" : suggestion(figure, figures);
   return RuleProblem{dot + 1, "metric '" + metric_name + "' has no figure '" + shortened(figure) +
-                                  "'; figures: " + list_text(figures) + suggestion(figure, figures)};
+                                  "'; figures: " + list_text(figures) + meant};
 }
 
 void read_rules(ParamReader& in, std::vector<RuleExpression>& rules, const std::vector<MetricConfig>& metrics) {

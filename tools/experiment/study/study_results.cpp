@@ -18,8 +18,6 @@ namespace tools {
 
 namespace {
 
-constexpr const char* passed_figure = "passed";
-
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
 }

@@ -12,8 +12,6 @@ namespace tools {
 
 namespace {
 
-constexpr const char* passed_figure = "passed";
-
 std::string suggestion(const std::string& misspelt, const std::vector<std::string>& names) {
   const std::string meant = sim::closest_name(misspelt, names);
   return meant.empty() ? "" : "; did you mean '" + meant + "'?";

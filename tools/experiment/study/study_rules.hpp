@@ -14,6 +14,9 @@ namespace tools {
 
 struct StudyCase;
 
+/// The figure of a run that is 1 when it held the rules of its world, and 0 when it did not.
+inline constexpr const char* passed_figure = "passed";
+
 /// Statistics over the seeds of a case, which the rules of studies take of its figures.
 const std::vector<std::string>& statistic_words();
 
