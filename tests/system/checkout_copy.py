@@ -27,13 +27,14 @@ if arguments[2:3] != ["--target"]:
     sys.exit(0)  # everything, for the tests; programs come only by what tools/run asks for
 links = subprocess.run(["ninja", "-C", binary_dir, "-t", "commands", *arguments[3:]], capture_output=True, text=True,
                        check=True)
-for path in re.findall(r" -o (bin/[^ ]+)", links.stdout):
-    if os.path.exists(here + "/" + path):
-        continue
-    try:
-        os.link(binary_dir + "/" + path, here + "/" + path)
-    except OSError:
-        shutil.copy2(binary_dir + "/" + path, here + "/" + path)
+for program in re.findall(r" -o (bin/[^ ]+)", links.stdout):
+    for path in program, program + ".args.yaml":  # the declaration of its arguments, where it has one
+        if os.path.exists(here + "/" + path) or not os.path.exists(binary_dir + "/" + path):
+            continue
+        try:
+            os.link(binary_dir + "/" + path, here + "/" + path)
+        except OSError:
+            shutil.copy2(binary_dir + "/" + path, here + "/" + path)
 """
 
 
