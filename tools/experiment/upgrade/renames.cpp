@@ -7,6 +7,7 @@ namespace tools {
 //   {Rename::What::key, FileKind::vehicle, "devices.*", "old_key", "new_key"},
 //   {Rename::What::word, FileKind::vehicle, "devices.*.type", "old_word", "new_word"},
 //   {Rename::What::word, FileKind::world, "events.*.do.*.publish.type", "shoal.old_t", "shoal.new_t"},
+//   {Rename::What::part, FileKind::world, "events.*.when", "sim.old", "sim.new"},
 std::span<const Rename> renames() {
   return {};
 }

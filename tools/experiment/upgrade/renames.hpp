@@ -11,8 +11,9 @@ namespace tools {
 /// What has another name since version 0.2.
 struct Rename {
   enum class What {
-    key,  ///< `path` leads to the map that has the key
-    word  ///< `path` leads to the text: a word, a channel or a message type
+    key,   ///< `path` leads to the map that has the key
+    word,  ///< `path` leads to the text: a word, a channel or a message type
+    part   ///< `path` leads to a text with spaces between its words, such as a condition `message on CHANNEL`
   };
   What what;
   FileKind kind;

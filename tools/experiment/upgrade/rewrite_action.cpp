@@ -13,7 +13,6 @@ namespace {
 using Kind = SourceNode::Kind;
 
 constexpr std::size_t indentation_step = 2;
-constexpr std::size_t line_width = 120;
 
 /// Writes an action of version 0.1 anew.
 class ActionRewriting {
@@ -78,8 +77,8 @@ class ActionRewriting {
     const std::size_t begin = site_.text.line_begin(map_.span.begin);
     const std::size_t length = site_.text.line_end(last.key.start) - begin;
     const std::size_t added = action_.main_key.size() + std::string_view(": {}").size();
-    const bool was_short = length <= line_width + 1;  // with the line break
-    if (begin != site_.text.line_begin(last.key.start) || !was_short || length + added <= line_width + 1) return;
+    const bool was_short = length <= max_line_length + 1;  // with the line break
+    if (begin != site_.text.line_begin(last.key.start) || !was_short || length + added <= max_line_length + 1) return;
     const std::size_t after_comma = site_.text.text().find_last_not_of(' ', last.key.start - 1) + 1;
     const std::size_t column =
         site_.text.column(map_.span.begin) + action_.word.size() + std::string_view("{: {").size();

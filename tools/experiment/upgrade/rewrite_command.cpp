@@ -16,8 +16,6 @@ namespace {
 
 using Kind = SourceNode::Kind;
 
-constexpr std::size_t line_width = 120;
-
 /// An option with its value, and the items of the list that it is written in.
 struct Group {
   TextSpan span;
@@ -94,7 +92,8 @@ class ArgumentsText {
         const std::string entry = argument.key + ": " + argument.value;
         if (!first) text += ",";
         add_comments(group.span.end);
-        const bool fits = first || width + entry.size() + 3 <= line_width;  // with `, ` before and `,` or `}` after it
+        const bool fits =
+            first || width + entry.size() + 3 <= max_line_length;  // with `, ` before and `,` or `}` after it
         if (after_comment || !fits)
           text += pad;
         else if (!first)

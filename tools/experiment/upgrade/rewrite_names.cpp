@@ -33,6 +33,23 @@ std::string renamed_key(const Site& site, const std::string& key, std::span<cons
   return renamed;
 }
 
+/// The text with the words that it has now.
+std::string renamed_text(const Site& site, std::span<const Rename> table) {
+  std::string text = site.source.scalar;
+  for (const Rename& rename : table) {
+    if (rename.what == Rename::What::key || !site.path.is(rename.kind, rename.path)) continue;
+    if (rename.what == Rename::What::word && text == rename.before) return std::string(rename.after);
+    if (rename.what != Rename::What::part) continue;
+    for (std::size_t begin = 0; begin < text.size();) {
+      const std::size_t end = std::min(text.find(' ', begin), text.size());
+      const bool is_it = std::string_view(text).substr(begin, end - begin) == rename.before;
+      if (is_it) text.replace(begin, end - begin, rename.after);
+      begin += (is_it ? rename.after.size() : end - begin) + 1;
+    }
+  }
+  return text;
+}
+
 /// Writes another name where a word or a key is, between its quotes where it has some.
 void replace_name(Site& site, const SourceNode& name, std::string_view after) {
   if (site.edits == nullptr) return;
@@ -63,12 +80,10 @@ void apply_renames(Site& site, std::span<const Rename> table) {
       if (name != key && site.meaning.find(key) != nullptr) rename_key(site, entry, name);
     }
   if (site.source.kind != Kind::scalar || site.meaning.scalar != site.source.scalar) return;
-  for (const Rename& rename : table) {
-    const bool fits = rename.what == Rename::What::word && rename.before == site.source.scalar;
-    if (!fits || !site.path.is(rename.kind, rename.path)) continue;
-    site.meaning.scalar = rename.after;
-    return replace_name(site, site.source, rename.after);
-  }
+  const std::string text = renamed_text(site, table);
+  if (text == site.source.scalar) return;
+  site.meaning.scalar = text;
+  replace_name(site, site.source, text);
 }
 
 void rewrite_names(Site& site) {

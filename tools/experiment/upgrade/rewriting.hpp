@@ -9,6 +9,9 @@
 
 namespace tools {
 
+/// Lines that are written anew are filled up to this many characters.
+inline constexpr std::size_t max_line_length = 120;
+
 /// A node that rewritings look at, after all nodes inside it.
 struct Site {
   const SourceText& text;

@@ -18,7 +18,7 @@ namespace tools {
 namespace {
 
 namespace fs = std::filesystem;
-using Kind = sim::ConfigNode::Kind;
+using NodeKind = sim::ConfigNode::Kind;
 
 constexpr std::size_t max_bytes = 64'000'000;
 constexpr std::size_t max_files = 1000;
@@ -91,8 +91,8 @@ class Planner {
     const sim::ConfigNode root = sim::parse_config_text(file.before, file.path, diagnostics);
     if (!diagnostics.ok()) return;
     const sim::SourcePlace whole_file{sim::intern_file_name(file.path), 0, 0};
-    if (root.kind == Kind::null) return diagnostics.error(whole_file, "", "the file is empty");
-    if (root.kind != Kind::map)
+    if (root.kind == NodeKind::null) return diagnostics.error(whole_file, "", "the file is empty");
+    if (root.kind != NodeKind::map)
       return diagnostics.error(root.place, "", "must be a map of keys and values, got " + sim::shown(root));
     const std::optional<FileKind> kind = wanted.kind ? wanted.kind : kind_of(root);
     if (!kind) return diagnostics.error(whole_file, "", "must be a world, a vehicle or a study");
@@ -108,10 +108,10 @@ class Planner {
     const sim::ConfigNode* include = root.find("include");
     if (include == nullptr) return;
     std::vector<const sim::ConfigNode*> names;
-    if (include->kind == Kind::scalar) names.push_back(include);
+    if (include->kind == NodeKind::scalar) names.push_back(include);
     for (const sim::ConfigNode& item : include->items) names.push_back(&item);
     for (const sim::ConfigNode* name : names) {
-      if (name->kind != Kind::scalar || name->scalar.empty()) continue;  // `shoal check` says what is wrong
+      if (name->kind != NodeKind::scalar || name->scalar.empty()) continue;  // `shoal check` says what is wrong
       if (seen_.size() + wanted_.size() > max_files)
         return diagnostics.error(name->place, "", "more than " + std::to_string(max_files) + " files");
       wanted_.push_back({(fs::path(path).parent_path() / name->scalar).string(), name->place, kind});

@@ -332,6 +332,7 @@ constexpr tools::Rename test_table[] = {
     {tools::Rename::What::word, FileKind::world, "events.*.do.*.publish.type", "shoal.old_t", "shoal.new_t"},
     {tools::Rename::What::word, FileKind::world, "events.*.do.*.publish.channel", "sea", "water"},
     {tools::Rename::What::key, FileKind::world, "events.*.do.*.publish", "value", "message"},
+    {tools::Rename::What::part, FileKind::world, "events.*.when", "sim.old", "sim.new"},
 };
 
 std::string renamed(const std::string& text, FileKind kind = FileKind::world) {
@@ -363,6 +364,12 @@ TEST(UpgradeOfNames, RenamesChannelsAndMessageTypesOfBothFormsOfAnAction) {
             "events: [{do: [{publish: {channel: water, type: shoal.new_t, message: {}}}]}]\n");
   EXPECT_EQ(renamed("events: [{do: [{publish: sea, type: shoal.old_t}]}]\n"),
             "events: [{do: [{publish: {channel: water, type: shoal.new_t}}]}]\n");
+}
+
+TEST(UpgradeOfNames, RenamesAWordOfAText) {
+  EXPECT_EQ(
+      renamed("events: [{when: message on sim.old}, {when: 'message on sim.old'}, {when: message on sim.older}]\n"),
+      "events: [{when: message on sim.new}, {when: 'message on sim.new'}, {when: message on sim.older}]\n");
 }
 
 TEST(UpgradeOfNames, RefusesAKeyThatIsThereUnderBothNames) {
