@@ -17,9 +17,9 @@ install(DIRECTORY ${types_dir}/reporter DESTINATION include/shoal/messages FILES
 file(GLOB lcm_files CONFIGURE_DEPENDS ${types_dir}/*/*.lcm)
 install(FILES ${lcm_files} DESTINATION share/shoal/types)
 
-# The first lines of worlds and vehicles name ../docs/schema.
+# The first lines of worlds and vehicles name ../docs/reference/schema.
 install(DIRECTORY worlds vehicles DESTINATION share/shoal)
-install(DIRECTORY docs/schema DESTINATION share/shoal/docs)
+install(DIRECTORY docs/reference/schema DESTINATION share/shoal/docs/reference)
 install(FILES LICENSE DESTINATION share/doc/shoal)
 
 configure_package_config_file(cmake/ShoalConfig.cmake.in ${PROJECT_BINARY_DIR}/ShoalConfig.cmake

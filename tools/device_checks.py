@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes docs/device_checks.md: what each device is checked against, by the names of its tests.
+"""Writes docs/develop/device_checks.md: what each device is checked against, by the names of its tests.
 
     tools/device_checks.py            writes the page
     tools/device_checks.py --check    says whether it is up to date; exit code 1: it is not
 
-The devices are those of docs/devices.md, which a test keeps up to date.  A test belongs to a device when it is in a file
-named after it (`lidar_test.cpp`) or in a suite named after it (`Lidar`); a name that begins like an error is a check of
+The devices are those of docs/reference/devices.md, which a test keeps up to date.  A test belongs to a device when it is in
+a file named after it (`lidar_test.cpp`) or in a suite named after it (`Lidar`); a name that begins like an error is a check of
 bad input, one that speaks of a spread is a statistic.
 """
 import pathlib
@@ -14,7 +14,7 @@ import re
 import sys
 
 root = pathlib.Path(__file__).resolve().parent.parent
-page = root / "docs/device_checks.md"
+page = root / "docs/develop/device_checks.md"
 bad_input = re.compile(r"Refuse|SaysWhatIsWrong|Ignores|DoesNotExist|^Names|Needs|ThereIsOne|BadKey|BadParameters")
 statistic = re.compile(r"Noise|Spread|Variance|Mean(?!s)|Allan|Wander|Share|Probab|Statistic|Drift|Speckle|Fading|BitErrors")
 
@@ -37,7 +37,7 @@ def tests_of(path):
 
 
 def text():
-    devices = re.findall(r"^## ([a-z0-9_]+)$", (root / "docs/devices.md").read_text(), re.M)
+    devices = re.findall(r"^## ([a-z0-9_]+)$", (root / "docs/reference/devices.md").read_text(), re.M)
     files = {path: tests_of(path) for path in sorted((root / "tests/devices").rglob("*_test.cpp"))}
     rows, missing = "", []
     for device in devices:
@@ -65,7 +65,7 @@ def main():
     if sys.argv[1:] == ["--check"]:
         stale = page.read_text() != wanted
         if stale:
-            print("docs/device_checks.md is stale: run tools/device_checks.py", file=sys.stderr)
+            print("docs/develop/device_checks.md is stale: run tools/device_checks.py", file=sys.stderr)
         return 1 if stale or missing else 0
     page.write_text(wanted)
     return 1 if missing else 0

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tables of docs/lockstep.md: a mission with external clients, run again and again.
+"""The tables of docs/guides/lockstep.md: a mission with external clients, run again and again.
 
 usage: lockstep_tables.py hashes [--speeds 1,10,max] [--threads 1,2,8]
        lockstep_tables.py killed [--policies wait,pause,continue,end] [--client rover2]

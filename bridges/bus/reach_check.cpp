@@ -15,7 +15,8 @@ namespace bridges {
 
 namespace {
 
-constexpr const char* key_needed = "; a run on this bus is controlled with its key only, see docs/control.md";
+constexpr const char* key_needed =
+    "; a run on this bus is controlled with its key only, see docs/guides/access_control.md";
 constexpr const char* listening_state = "0A";  // TCP_LISTEN of the kernel
 
 Finding check_server(const LcmEndpoint& endpoint) {

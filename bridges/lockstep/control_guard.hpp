@@ -17,7 +17,7 @@ namespace bridges {
 
 /// How a message is refused that must be signed and is not.
 inline constexpr const char* needs_key_text =
-    "this run is controlled with its key only: use --run DIR, or set SHOAL_RUN_KEY; see docs/control.md";
+    "this run is controlled with its key only: use --run DIR, or set SHOAL_RUN_KEY; see docs/guides/access_control.md";
 
 /// Stands where the simulator takes what controls a run from the buses: takes signed messages out of their envelopes,
 /// and when the run has a key, checks who sent them.  One for all buses of a run: a message is taken once, whichever

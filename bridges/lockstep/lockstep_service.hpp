@@ -49,7 +49,7 @@ struct LockstepBus {
 };
 
 /// The lockstep on the bus: sends sim.tick, takes sim.ack, and asks and answers on sim.resend and sim.resent, so that
-/// neither a tick nor a message between world and client is lost.  See docs/lockstep.md.
+/// neither a tick nor a message between world and client is lost.  See docs/guides/lockstep.md.
 class LockstepService {
  public:
   /// Has what was published sent, and waits for messages up to the given time, or returns earlier.

@@ -34,9 +34,9 @@ namespace bridges {
 ///
 /// The world waits between a tick and its acknowledgement.  Messages are held until the tick that names them, and are
 /// then handled in the order of that list; those that are missing are asked for.  So a client does the same whatever
-/// the network loses, repeats or puts in another order; docs/lockstep.md has the protocol.  Payloads that are no valid
-/// ticks or replies are ignored; a handler that decodes with shoal::decode() should catch shoal::MessageError, which
-/// else leaves next_tick().
+/// the network loses, repeats or puts in another order; docs/guides/lockstep.md has the protocol.  Payloads that are no
+/// valid ticks or replies are ignored; a handler that decodes with shoal::decode() should catch shoal::MessageError,
+/// which else leaves next_tick().
 class LockstepClient {
  public:
   using Handler = std::function<void(std::span<const std::byte>)>;

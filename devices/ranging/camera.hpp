@@ -21,7 +21,7 @@ struct ExposureParams {
 };
 
 /// Camera without GPU or display: looks along +x of the sensor frame S, +y is left in the image and +z up.
-/// See docs/cameras.md.
+/// See docs/models/cameras.md.
 class Camera final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Camera: color, grey, depth or segmentation; pinhole or fisheye.";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A client in lockstep with the simulator, over a network that may lose messages: docs/lockstep.md, in Java.
+// A client in lockstep with the simulator, over a network that may lose messages: docs/guides/lockstep.md, in Java.
 // Drives rover1 of worlds/minimal.yaml towards the wall, and stops before it.
 //
 //     lcm-gen --java --jpath types messages/*/*.lcm
@@ -44,7 +44,7 @@ public class LockstepClient implements LCMSubscriber {
 
   private static final long SILENCE_S = 600;
 
-  /// Signs what controls a run, when SHOAL_RUN_KEY has its key: docs/control.md.
+  /// Signs what controls a run, when SHOAL_RUN_KEY has its key: docs/guides/access_control.md.
   static class Signer {
     private final String name;
     private final String key = System.getenv().getOrDefault("SHOAL_RUN_KEY", "");

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A client in lockstep with the simulator, over a network that may lose messages: docs/lockstep.md, in Python.
+"""A client in lockstep with the simulator, over a network that may lose messages: docs/guides/lockstep.md, in Python.
 
     PYTHONPATH=build/release/python:examples/python python3 examples/python/lockstep_client.py rover1
 
@@ -22,7 +22,7 @@ SILENCE_S = 600
 
 
 class Signer:
-    """Signs what controls a run, when SHOAL_RUN_KEY has its key: docs/control.md."""
+    """Signs what controls a run, when SHOAL_RUN_KEY has its key: docs/guides/access_control.md."""
 
     def __init__(self, name):
         self.key, self.name = bytes.fromhex(os.environ.get("SHOAL_RUN_KEY", "")), name

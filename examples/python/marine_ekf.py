@@ -2,7 +2,7 @@
 """The filter of shoal-coop-auv in plain Python: position by dead reckoning and one-way ranges.
 
 States: east, north (m), heading bias (rad), speed scale, range bias (m), drift of that (m/s).  The equations are in
-docs/autonomy.md.
+docs/guides/cooperative_navigation.md.
 """
 import math
 from collections import deque

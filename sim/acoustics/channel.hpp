@@ -32,7 +32,7 @@ struct AcousticSurroundings {
 
 /// Carries sound through the water from transducer to transducer, by events in simulated time.  A signal goes along
 /// the straight line from where the sender was to where the receiver is when it arrives, at the mean slowness of the
-/// water along it.  docs/acoustics.md has the equations and their sources.
+/// water along it.  docs/models/acoustics.md has the equations and their sources.
 class AcousticChannel {
  public:
   AcousticChannel(const AcousticsConfig& config, const AcousticSurroundings& surroundings);

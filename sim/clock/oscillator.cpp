@@ -36,7 +36,8 @@ constexpr double most_rate = 0.1;
 void ClockConfig::read(ParamReader& in) {
   std::vector<std::string> names;
   for (const ClockPreset& each : presets) names.emplace_back(each.name);
-  in.read_choice("preset", preset, names, "a kind of oscillator, see docs/clocks.md; the keys below win over it");
+  in.read_choice("preset", preset, names,
+                 "a kind of oscillator, see docs/models/clocks.md; the keys below win over it");
   for (const ClockPreset& each : presets) {
     if (each.name != preset || in.describing()) continue;
     drift_std_ppm = each.drift_std_ppm;

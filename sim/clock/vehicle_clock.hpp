@@ -56,7 +56,7 @@ class VehicleClock {
   /// Since the last fix that disciplined it; negative: there was none.
   double since_fix_s(Time now) const;
   /// Standard deviation of its error as a program could work it out from its data sheet and the time since the last
-  /// fix; see docs/clocks.md for the equation.  0 of a perfect clock.
+  /// fix; see docs/models/clocks.md for the equation.  0 of a perfect clock.
   double estimated_std_s(Time now) const;
 
   void visit_state(StateArchive& archive);

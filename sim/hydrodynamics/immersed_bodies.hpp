@@ -13,7 +13,8 @@
 
 namespace sim {
 
-/// Buoyancy and drag of free bodies without coefficients of their own, part by part.  docs/marine.md has the model.
+/// Buoyancy and drag of free bodies without coefficients of their own, part by part.  docs/models/marine.md has the
+/// model.
 class ImmersedBodies {
  public:
   ImmersedBodies(const Medium& medium, double step_s) : medium_(medium), step_s_(step_s) {}

@@ -28,7 +28,7 @@ struct LocalWater {
 };
 
 /// What surrounds the bodies of a world: water below the surface, air over it.  World frame, east-north-up.  The models
-/// and their sources are in docs/medium.md.
+/// and their sources are in docs/models/medium.md.
 ///
 /// Time goes on by advance_to() only; all answers are for that time, and do not depend on what was asked before.
 /// Places beyond the water (over the surface, or in a world without water) have answers too: those of the air, and

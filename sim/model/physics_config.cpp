@@ -82,7 +82,7 @@ void PartConfig::read(ParamReader& in) {
   in.read("length_m", length_m, part_length(), "capsule (without its caps) and cylinder: length along z");
   in.read_path("mesh", mesh, PathUse::read, "mesh: an STL or OBJ file, relative to this file");
   in.read("scale", scale, above(0), "mesh: its numbers times this are metres");
-  in.read("terrain", terrain, "terrain: its heights; see docs/terrain.md");
+  in.read("terrain", terrain, "terrain: its heights; see docs/models/terrain.md");
   in.read("position_m", position_m, any_place(), "centre of the part in the frame of the body");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch and yaw of the part in the frame of the body");
   in.read("mass_kg", mass_kg, between(1e-9, 1e12), "mass; a part with neither mass nor density weighs nothing");
@@ -141,7 +141,8 @@ void BodyConfig::read(ParamReader& in) {
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch and yaw of the body's frame in the frame of the vehicle");
   in.read_list("parts", parts, "part", "shapes that move as one");
   in.read("kinematic", kinematic, "a device moves it, such as naive_drive; it pushes others and no force moves it");
-  in.read("hydrodynamics", hydrodynamics, "mass and forces in water by published coefficients, see docs/marine.md");
+  in.read("hydrodynamics", hydrodynamics,
+          "mass and forces in water by published coefficients, see docs/models/marine.md");
 }
 
 void JointAxisConfig::read(ParamReader& in) {

@@ -8,7 +8,7 @@
 #include "sim/ode/ode_math.hpp"
 #include "sim/physics/physics_world_impl.hpp"
 
-// Pairs of terrain and parts that are known to be bad; the figures behind the rules are in docs/terrain.md.
+// Pairs of terrain and parts that are known to be bad; the figures behind the rules are in docs/models/terrain.md.
 
 namespace sim {
 namespace {

@@ -121,7 +121,7 @@ class PhysicsWorld {
   std::pair<std::string, double> deepest_overlap(int group) const;
 
   /// Pairs of terrain and parts on it that are known to drive badly or to cost much, a line each, in order of the
-  /// terrain; parts of equal shape and size are named once.  See docs/terrain.md.
+  /// terrain; parts of equal shape and size are named once.  See docs/models/terrain.md.
   std::vector<std::string> ground_warnings() const;
 
   /// New materials get new numbers, and keep them.  What the constructor got wins over these contacts, and of these

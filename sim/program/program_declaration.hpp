@@ -46,7 +46,7 @@ struct ArgDeclaration {
 };
 
 /// What the arguments of a program are, as its file NAME.args.yaml says.  The format is explained in
-/// docs/program_arguments.md.
+/// docs/guides/program_arguments.md.
 struct ProgramDeclaration {
   int shoal_args = 1;  ///< version of the format
   std::string program;

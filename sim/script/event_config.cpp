@@ -83,7 +83,7 @@ class ConditionParser {
 
 Condition parse_condition(ParamReader& in, const char* key) {
   std::string text;
-  in.read(key, text, "what it waits for, see docs/living_worlds.md; it fires every time this becomes true");
+  in.read(key, text, "what it waits for, see docs/guides/dynamic_worlds.md; it fires every time this becomes true");
   Condition condition;
   if (!in.has(key) || in.child(key)->kind != ConfigNode::Kind::scalar) return condition;
   if (!ConditionParser(in, key, text).parse(condition))

@@ -25,7 +25,8 @@ void MetricConfig::read(ParamReader& in) {
   const MetricRegistry& registry = MetricRegistry::instance();
   if (in.node() != nullptr) place = in.node()->place;
   in.require("name");
-  in.read_name("name", name, "name of the metric; gives NAME.FIGURE for each figure of its type, see docs/scores.md");
+  in.read_name("name", name,
+               "name of the metric; gives NAME.FIGURE for each figure of its type, see docs/guides/scoring.md");
   std::string type = registry.default_word();
   in.read_choice("type", type, registry.words(), "what it looks at");
   if (in.describing()) {

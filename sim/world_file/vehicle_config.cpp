@@ -24,7 +24,7 @@ void VehicleConfig::read(ParamReader& in) {
   declare_bodies(in);
   in.read_list("joints", joints, "joint", "what ties bodies together");
   for (const JointConfig& joint : joints) in.declare("joint", joint.name);
-  in.read_list("devices", devices, "device", "sensors and actuators; keys by type, see docs/devices.md");
+  in.read_list("devices", devices, "device", "sensors and actuators; keys by type, see docs/reference/devices.md");
   for (const DeviceConfig& device : devices) in.declare("device", device.name);
 }
 

@@ -91,7 +91,7 @@ void ProcessConfig::read(ParamReader& in) {
   // Whoever starts programs makes the command of these, by the declaration of the program.
   std::string program;
   ConfigNode args;
-  in.read("program", program, "a program with a declaration of its arguments, see docs/program_arguments.md");
+  in.read("program", program, "a program with a declaration of its arguments, see docs/guides/program_arguments.md");
   in.read_raw("args", args, "arguments of 'program' by name; in texts {lcm_url} and {run} are replaced");
   read_command(in, command);
   in.read("client", client, "the name it joins the lockstep with; the run then waits for it");
@@ -179,7 +179,7 @@ void read_script(ParamReader& in, WorldConfig& world) {
   in.read_list("actors", world.actors, "actor", "objects that move along paths");
   for (const ActorConfig& actor : world.actors) in.declare("actor", actor.name);
   declare_for_events(in, world);
-  in.read_list("events", world.events, "event", "what happens when, see docs/living_worlds.md");
+  in.read_list("events", world.events, "event", "what happens when, see docs/guides/dynamic_worlds.md");
 }
 
 }  // namespace
@@ -194,8 +194,8 @@ void WorldConfig::read(ParamReader& in) {
   if (!parse_utc(epoch, epoch_us))
     in.error("epoch", "'epoch' must be a UTC time such as 2026-01-01T00:00:00Z, got '" + epoch + "'");
   in.read("physics", physics, "how bodies move");
-  in.read("medium", medium, "water and air, see docs/medium.md");
-  in.read("acoustics", acoustics, "how the water carries sound between devices, see docs/acoustics.md");
+  in.read("medium", medium, "water and air, see docs/models/medium.md");
+  in.read("acoustics", acoustics, "how the water carries sound between devices, see docs/models/acoustics.md");
   in.declare("material", "default");
   in.declare("category", "solid");
   in.read_list("materials", materials, "material", "materials of this world");
@@ -205,7 +205,7 @@ void WorldConfig::read(ParamReader& in) {
   in.read("categories", categories, "categories of parts, beside `solid`; at most 30");
   for (const std::string& category : categories) in.declare("category", category);
   if (categories.size() > 30) in.error("categories", "'categories' must have at most 30 names");
-  in.read("light", light, "sun and sky, for pictures; see docs/cameras.md");
+  in.read("light", light, "sun and sky, for pictures; see docs/models/cameras.md");
   in.read("channels", channels, "names of the channels");
   in.read("run", run, "how a run goes when the command line says nothing else");
   in.read("state_rate_hz", state_rate_hz, between(0, 1e6), "of sim.state and sim.clock; 0: never");

@@ -291,7 +291,7 @@ TEST_F(Plugin, InstallationHasTheClientLibrary) {
 }
 
 TEST_F(Plugin, ClientExampleIsThatOfThePage) {
-  const std::string page = system_test::text_of_file(source("docs/client.md"));
+  const std::string page = system_test::text_of_file(source("docs/guides/client_library.md"));
   for (const char* file : {"examples/client/pilot.cpp", "examples/client/CMakeLists.txt"}) {
     const std::string text = system_test::text_of_file(source(file));
     EXPECT_THAT(page, HasSubstr(text.substr(text.find('\n') + 1))) << "after the licence line";
@@ -320,7 +320,7 @@ TEST_F(Plugin, AProgramOutsideOfTheTreeIsDescribedWhenItIsBuilt) {
 TEST_F(Plugin, InstallationRunsItsOwnWorlds) {
   const Ended ended = shoal({"check", path("prefix/share/shoal/worlds/coop_land.yaml")});
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
-  EXPECT_TRUE(fs::exists(path("prefix/share/shoal/docs/schema/world.schema.json")));
+  EXPECT_TRUE(fs::exists(path("prefix/share/shoal/docs/reference/schema/world.schema.json")));
   const Ended by_name = shoal({"run", "minimal", "--bus", "none", "--duration", "1", "--speed", "max"});
   EXPECT_EQ(by_name.exit_code, 0) << by_name.errors;
   EXPECT_THAT(shoal({"list"}).output, HasSubstr("\nThe files are in " + path("prefix/share/shoal") + "\n"));

@@ -14,7 +14,7 @@
 #include "shoal/sim_control_request_t.hpp"
 #include "tests/system/shoal_program.hpp"
 
-// Runs that are controlled with their key, as people and programs meet them: see docs/control.md.
+// Runs that are controlled with their key, as people and programs meet them: see docs/guides/access_control.md.
 
 namespace {
 

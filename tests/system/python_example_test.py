@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The programs of examples/python, in runs: coop_auv.py as docs/howto_python.md shows it, lockstep_client.py.
+"""The programs of examples/python, in runs: coop_auv.py as docs/guides/python_auv.md shows it, lockstep_client.py.
 
     python3 python_example_test.py BINARIES LCM_GEN
 """
@@ -20,8 +20,8 @@ BINARIES, LCM_GEN = sys.argv[1:3]
 
 
 def options_of_the_page():
-    """What docs/howto_python.md writes after coop_auv.py."""
-    with open(os.path.join(ROOT, "docs", "howto_python.md"), encoding="utf-8") as file:
+    """What docs/guides/python_auv.md writes after coop_auv.py."""
+    with open(os.path.join(ROOT, "docs", "guides", "python_auv.md"), encoding="utf-8") as file:
         line = next(line for line in file if "python3 examples/python/coop_auv.py" in line)
     return line.split("coop_auv.py", 1)[1].replace("&", "").split()
 

@@ -25,7 +25,7 @@ TEST(SegwayRun, AnotherProcessBalancesItForTenMinutesOnCommand) {
 }
 
 TEST(SegwayRun, FallsWhenItIsTooLate) {
-  // After 5.4 s, says docs/segway.md.
+  // After 5.4 s, says docs/models/segway.md.
   const Ended ended = run_segway(
       {"--duration", "12", "--set", "vehicles.segway1.actuator_latency_s=0.14", "--set", "physics.step_s=0.001"});
   EXPECT_EQ(ended.exit_code, 1);

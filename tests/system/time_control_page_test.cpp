@@ -7,7 +7,7 @@
 #include "tests/project_paths.hpp"
 #include "tests/system/shoal_program.hpp"
 
-// The commands of docs/time_control.md do what the page says.
+// The commands of docs/guides/time_control.md do what the page says.
 
 namespace {
 
@@ -17,7 +17,7 @@ using testing::SizeIs;
 
 /// From a heading of the page to the next.
 std::string section(const std::string& heading) {
-  const std::string page = text_of_file(source("docs/time_control.md"));
+  const std::string page = text_of_file(source("docs/guides/time_control.md"));
   const std::size_t begin = page.find("\n## " + heading + "\n");
   if (begin == std::string::npos) throw std::runtime_error("no heading " + heading);
   return page.substr(begin, page.find("\n## ", begin + 4) - begin);

@@ -356,7 +356,7 @@ void add_acoustics_command(CLI::App& app, int& exit_code) {
                   {1, "a closed form is off"},
                   {2, "wrong usage, or a mistake in the world"},
                   {4, "file trouble"}},
-                 {"docs/acoustics.md has the equations."}});
+                 {"docs/models/acoustics.md has the equations."}});
   command->callback([arguments, &exit_code] { exit_code = show(*arguments); });
 }
 

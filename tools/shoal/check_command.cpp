@@ -95,7 +95,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
                               {{0, "no mistake was found"}, {2, "wrong usage, or mistakes, each on a line of its own"}},
                               {"Every mistake is printed as file:line:column: who: rule, value.  Warnings have the "
                                "same form and leave the exit "
-                               "code at 0; see docs/warnings.md."}});
+                               "code at 0; see docs/reference/warnings.md."}});
   command->callback([path, options, &exit_code] {
     check(file_by_name({ShippedKind::world, ShippedKind::vehicle}, *path), *options);
     exit_code = exit_ok;

@@ -175,7 +175,9 @@ void add_control_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("control", "Send a request to a running simulator and print its answer");
   const auto arguments = std::make_shared<ControlArguments>();
   add_log_level_option(*command);
-  command->add_option("COMMAND", arguments->command, command_line::alternatives(known_requests) + " (docs/messages.md)")
+  command
+      ->add_option("COMMAND", arguments->command,
+                   command_line::alternatives(known_requests) + " (docs/reference/messages.md)")
       ->required();
   command->add_option("TEXT", arguments->text, "text of the request; @FILE: what is in the file; -: standard input");
   command->add_option("--value", arguments->value, "number of the request: steps, speed, seconds")

@@ -37,7 +37,7 @@ std::string check_name(const std::string& name) {
 /// Of the shipped schemas; empty: there are none.
 std::string schema_file(const std::string& kind) {
   if (sim::shipped_folder().empty()) return "";
-  const fs::path file = fs::path(sim::shipped_folder()) / "docs/schema" / (kind + ".schema.json");
+  const fs::path file = fs::path(sim::shipped_folder()) / "docs/reference/schema" / (kind + ".schema.json");
   std::error_code error;
   return fs::is_regular_file(file, error) ? file.string() : "";
 }

@@ -45,10 +45,11 @@ void add_report_command(CLI::App& app, int& exit_code) {
       ->add_option("--output", arguments->output,
                    "the page; without it DIR/report.html, or comparison.html in the first of several")
       ->type_name("FILE");
-  command_line::set_help_end(*command, {{"shoal report results/coop_land",
-                                         "shoal report results/seed1 results/seed2 --output comparison.html"},
-                                        {{0, "success"}, {2, "wrong usage"}, {4, "a file cannot be read or written"}},
-                                        {"The page holds its plots and needs no network.  See docs/scores.md."}});
+  command_line::set_help_end(
+      *command,
+      {{"shoal report results/coop_land", "shoal report results/seed1 results/seed2 --output comparison.html"},
+       {{0, "success"}, {2, "wrong usage"}, {4, "a file cannot be read or written"}},
+       {"The page holds its plots and needs no network.  See docs/guides/scoring.md."}});
   command->callback([arguments, &exit_code] { exit_code = report(arguments->directories, arguments->output); });
 }
 

@@ -44,14 +44,14 @@ events:
   - {name: go, at: 2, do: [{publish: rover1.drive.cmd, type: shoal.twist_command_t, value: {forward_mps: 0.5}}]}
   - {name: halt, at: 7, do: [{publish: rover1.drive.cmd, type: shoal.twist_command_t, value: {forward_mps: 0}}]}
 
-# What is measured, and what is good enough (docs/scores.md).
+# What is measured, and what is good enough (docs/guides/scoring.md).
 metrics:
   - {name: way, type: distance, vehicle: rover1}
   - {name: bumps, type: collisions, vehicle: rover1}
 # pass:
 #   - {metric: way.travelled_m, above: 2}
 
-# Programs that --launch starts; one with a `client` name takes part in lockstep (docs/howto_attach_autonomy.md).
+# Programs that --launch starts; one with a `client` name takes part in lockstep (docs/guides/attach_autonomy.md).
 # processes:
 #   - {name: pilot, command: [./pilot], client: pilot}
 )";
@@ -70,7 +70,7 @@ run:
   seed: 1          # of all noise: the same seed gives the same run
 physics: {step_s: 0.01}
 
-# Water, current, waves and wind (docs/medium.md).
+# Water, current, waves and wind (docs/models/medium.md).
 medium:
   water:
     profile:
@@ -87,20 +87,20 @@ vehicles:
     file: VEHICLE
     position_m: [0, 0, -5]
     rpy_deg: [0, 0, 0]  # roll, pitch, yaw; yaw 0 looks east, 90 north
-    # Keys of the vehicle's file; what the autopilot can do is in docs/autopilots.md.
+    # Keys of the vehicle's file; what the autopilot can do is in docs/models/autopilots.md.
     overrides:
       devices.autopilot.waypoints:
         - {at_m: [100, 0], depth_m: 10, speed_mps: 1.5}
         - {at_m: [100, 60], depth_m: 10}
       devices.autopilot.at_end: circle
 
-# What is measured, and what is good enough (docs/scores.md).
+# What is measured, and what is good enough (docs/guides/scoring.md).
 metrics:
   - {name: way, type: distance, vehicle: auv1}
 # pass:
 #   - {metric: way.travelled_m, above: 100}
 
-# Programs that --launch starts; one with a `client` name takes part in lockstep (docs/howto_attach_autonomy.md).
+# Programs that --launch starts; one with a `client` name takes part in lockstep (docs/guides/attach_autonomy.md).
 # processes:
 #   - {name: pilot, command: [./pilot], client: pilot}
 )";

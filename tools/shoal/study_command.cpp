@@ -71,7 +71,7 @@ void add_study_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   arguments->options.jobs = 0;
   CLI::Option* log_level = add_log_level_option(*command, "warn");
-  command->add_option("STUDY", arguments->path, "study file, see docs/scores.md")->required();
+  command->add_option("STUDY", arguments->path, "study file, see docs/guides/scoring.md")->required();
   command->add_option("--seeds", arguments->seeds, "instead of those of the study: 7, 1-10 or 1-3,8")
       ->type_name("SEEDS");
   command->add_option("--duration", arguments->changes.duration_s, "simulated seconds of each run, for a first look")

@@ -120,7 +120,7 @@ struct Step {
   double busy_s = 0;
 };
 
-/// Every command of docs/modems.md, in an order that works.
+/// Every command of docs/models/modems.md, in an order that works.
 const std::vector<Step>& all_commands() {
   static const std::vector<Step> steps{
       {"CCCFG,SRC,1", "CACFG,SRC,1"},
@@ -171,7 +171,7 @@ TEST_F(MicromodemCommandsOnAPty, EveryCommandOfThePageIsAnsweredWithAndWithoutAC
       one.lines();
     }
   // The first column of the table of the page names no other one.
-  std::ifstream page(test_support::source_path("docs/modems.md"));
+  std::ifstream page(test_support::source_path("docs/models/modems.md"));
   std::set<std::string> named;
   const std::regex command(R"(\$(CC[A-Z]{3}))");
   for (std::string line; std::getline(page, line);) {

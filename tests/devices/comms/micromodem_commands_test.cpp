@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a Micro-Modem promises of its commands beyond a plain session (docs/modems.md).
+// What a Micro-Modem promises of its commands beyond a plain session (docs/models/modems.md).
 #include <gmock/gmock.h>
 
 #include "tests/devices/comms/micromodem_host.hpp"

@@ -23,7 +23,7 @@ std::vector<std::string> snippets(const std::string& path) {
 }
 
 TEST(LivingWorldsPage, HasSnippetsThatLoadAndRun) {
-  const auto all = snippets(test_support::source_path("docs/living_worlds.md"));
+  const auto all = snippets(test_support::source_path("docs/guides/dynamic_worlds.md"));
   ASSERT_EQ(all.size(), 4u);
   std::string world = "shoal: 1\nobjects:\n  - {name: ground, fixed: true, parts: [{shape: plane}]}\n";
   int x = 30;

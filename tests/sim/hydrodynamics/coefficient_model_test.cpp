@@ -103,8 +103,8 @@ double speed_on_the_bottom_mps(double push_N) {
   return body.v_WB_W().norm();
 }
 
-// The limit that docs/marine.md gives: friction compares the acceleration along, of 17 kg, with mu times that down, of
-// 26.07 kg, so that it slips at 0.5 * 20 / 26.07 * 17 = 6.5 N.
+// The limit that docs/models/marine.md gives: friction compares the acceleration along, of 17 kg, with mu times that
+// down, of 26.07 kg, so that it slips at 0.5 * 20 / 26.07 * 17 = 6.5 N.
 TEST(CoefficientModel, FrictionOnTheBottomHoldsByAccelerations) {
   EXPECT_LT(speed_on_the_bottom_mps(6.2), 0.001);
   EXPECT_GT(speed_on_the_bottom_mps(6.9), 0.01);

@@ -22,7 +22,7 @@ TEST(StrangersPage, EachPromiseNamesATestThatIsThere) {
   std::string tests;
   for (const auto& entry : fs::recursive_directory_iterator(test_support::source_path("tests")))
     if (entry.path().string().ends_with("_test.cpp")) tests += text_of(entry.path());
-  const std::string page = text_of(test_support::source_path("docs/strangers_worlds.md"));
+  const std::string page = text_of(test_support::source_path("docs/guides/untrusted_worlds.md"));
   const std::regex named(R"(`([A-Za-z]+)\.([A-Z][A-Za-z]+|\*)`)");
   int found = 0;
   for (std::sregex_iterator at(page.begin(), page.end(), named), end; at != end; ++at) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What docs/strangers_worlds.md promises of the files that a world or a peer names.
+// What docs/guides/untrusted_worlds.md promises of the files that a world or a peer names.
 
 #include <gmock/gmock.h>
 

@@ -203,7 +203,7 @@ class Page(unittest.TestCase):
         with open(os.path.join(ROOT, "examples", "python", "coop_auv.py"), encoding="utf-8") as file:
             text = file.read()
         handlers = text[text.index("class CoopAuv:"):text.index("    def estimate(self):")].rstrip()
-        with open(os.path.join(ROOT, "docs", "howto_python.md"), encoding="utf-8") as file:
+        with open(os.path.join(ROOT, "docs", "guides", "python_auv.md"), encoding="utf-8") as file:
             self.assertIn(handlers, file.read())
 
 

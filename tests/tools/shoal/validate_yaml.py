@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Holds YAML files against the JSON Schemas of docs/schema/, by python3-jsonschema: a second opinion on what the
-loader accepts.
+"""Holds YAML files against the JSON Schemas of docs/reference/schema/, by python3-jsonschema: a second opinion on
+what the loader accepts.
 
 usage: validate_yaml.py SCHEMA_DIR accept FILE...     every file must validate, and name its schema in a comment
        validate_yaml.py SCHEMA_DIR refuse FOLDER      bad worlds whose mistake a schema can say must not
@@ -103,7 +103,8 @@ def accept(schema_dir, files):
         first = path.read_text().split("\n", 1)[0]
         named = re.fullmatch(r"# yaml-language-server: \$schema=(\S+/(world|vehicle)\.schema\.json)", first)
         if not named or (path.parent / named[1]).resolve().parent != schema_dir.resolve():
-            found.append(f"{path}: must start with # yaml-language-server: $schema=../docs/schema/world.schema.json")
+            found.append(f"{path}: must start with "
+                         "# yaml-language-server: $schema=../docs/reference/schema/world.schema.json")
             continue
         found += mistakes(validator_of(schema_dir, named[2]), path)
     print(f"{len(files)} files accepted" if not found else "\n".join(found))

@@ -104,7 +104,7 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
       "It reads NAME.inclinometer and NAME.encoder, and drives as shoal.twist_command_t on "
       "NAME.balance.cmd says; it publishes NAME.left_motor.cmd and NAME.right_motor.cmd, and "
       "NAME.fallen when it fell.  Start it beside `shoal run worlds/segway.yaml --await segway1`.  "
-      "docs/segway.md explains the gains.");
+      "docs/models/segway.md explains the gains.");
 }
 
 int run(int argc, char** argv) {

@@ -48,8 +48,9 @@ std::optional<std::string> StepWatch::take_warning() {
   if (!warn_) return std::nullopt;
   said_times_ = *std::exchange(warn_, std::nullopt);
   slow_steps_ = 0;
-  return fmt::format("step {} took {:.3g} s of CPU time, {:.0f} times as long as it simulates{}; see docs/warnings.md",
-                     world_.step_number(), last_s_, said_times_, slow_island());
+  return fmt::format(
+      "step {} took {:.3g} s of CPU time, {:.0f} times as long as it simulates{}; see docs/reference/warnings.md",
+      world_.step_number(), last_s_, said_times_, slow_island());
 }
 
 /// `: 200 bodies are solved together, with 9801 constraint rows: 'a', 'b', 'c', ...`

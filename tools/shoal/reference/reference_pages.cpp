@@ -101,7 +101,7 @@ std::string world_format_page() {
          "# World and vehicle files\n\n"
          "YAML. Every error is reported as `file:line:column: who: rule, value`; an unknown key is an error. Lengths "
          "are metres, masses kilograms, times seconds; keys ending in `_deg` are degrees. Frames: see "
-         "[conventions.md](conventions.md).\n\n"
+         "[conventions.md](../develop/conventions.md).\n\n"
          "* `include: FILE` (or a list) at the top of a file: the included file is the base over which this one is "
          "merged, maps key by key, lists of named items item by item, anything else replaced.\n"
          "* `${name}` in a vehicle file stands for a parameter: the file's `parameters:` gives the default, the "
@@ -172,7 +172,7 @@ std::string programs_page() {
                      "```yaml\nprocesses:\n  - name: rover1\n    client: rover1\n    program: shoal-coop-rover\n"
                      "    args: {name: rover1, waypoints_m: [[-28, 28], [-20, 28]]}\n```\n\n"
                      "On a command line the argument `speed_mps` is `--speed-mps`. "
-                     "[program_arguments.md](program_arguments.md) explains the declarations, and how a program of "
+                     "[program_arguments.md](../guides/program_arguments.md) explains the declarations, and how a program of "
                      "your own gets one. `{name}` in a channel stands for the argument `name`; a column with `?` may "
                      "be left out.\n";
   for (const sim::ProgramDeclaration& program : shipped_declarations())
@@ -215,11 +215,12 @@ std::string keys_text(const sim::MetricKind& kind) {
 }
 
 std::string metrics_page() {
-  std::string page = fmt::format(fmt::runtime(generated), "metrics") +
-                     "# Metrics and their figures\n\nEach type of metric gives these figures, called `NAME.figure` in "
-                     "`summary.json`, `metrics.csv` and pass rules. A figure that there is nothing to compute from is "
-                     "NaN: null in `summary.json`, `none` in reports. Keys that a type needs are bold; "
-                     "[world_format.md](world_format.md) explains them, [scores.md](scores.md) the metrics.\n";
+  std::string page =
+      fmt::format(fmt::runtime(generated), "metrics") +
+      "# Metrics and their figures\n\nEach type of metric gives these figures, called `NAME.figure` in "
+      "`summary.json`, `metrics.csv` and pass rules. A figure that there is nothing to compute from is "
+      "NaN: null in `summary.json`, `none` in reports. Keys that a type needs are bold; "
+      "[world_format.md](world_format.md) explains them, [scoring.md](../guides/scoring.md) the metrics.\n";
   for (const sim::MetricKind* kind : sim::MetricRegistry::instance().all()) {
     page += fmt::format("\n## {}\n\nWhat it measures: {}. Keys: {}.\n\n| figure | unit | meaning |\n|---|---|---|\n",
                         kind->word, kind->meaning, keys_text(*kind));

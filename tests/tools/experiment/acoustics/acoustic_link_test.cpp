@@ -162,7 +162,7 @@ TEST(AcousticClosedForms, AllHoldAndArePrintedInTheDocument) {
   EXPECT_EQ(rows.size(), 48u);
   for (const tools::ClosedFormRow& row : rows)
     EXPECT_TRUE(row.within()) << row.name << " " << row.parameters << ": " << row.computed;
-  EXPECT_THAT(text_of(test_support::source_path("docs/acoustics.md")), HasSubstr(tools::closed_forms_text(rows)))
+  EXPECT_THAT(text_of(test_support::source_path("docs/models/acoustics.md")), HasSubstr(tools::closed_forms_text(rows)))
       << "stale; type  build/release/bin/shoal acoustics --closed-forms tests/fidelity/reference/closed_forms.csv";
 }
 

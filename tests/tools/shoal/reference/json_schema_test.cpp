@@ -19,15 +19,16 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// A folder beside a copy of the schemas, as in the tree: `worlds/` and `docs/schema/`.
+/// A folder beside a copy of the schemas, as in the tree: `worlds/` and `docs/reference/schema/`.
 class ScratchTree {
  public:
   ScratchTree() {
     char pattern[] = "/tmp/shoal_schema_XXXXXX";
     root_ = mkdtemp(pattern);
-    fs::create_directories(root_ / "docs");
+    fs::create_directories(root_ / "docs/reference");
     fs::create_directories(root_ / "worlds");
-    fs::copy(test_support::source_path("docs/schema"), root_ / "docs/schema", fs::copy_options::recursive);
+    fs::copy(test_support::source_path("docs/reference/schema"), root_ / "docs/reference/schema",
+             fs::copy_options::recursive);
   }
   ~ScratchTree() { fs::remove_all(root_); }
   ScratchTree(const ScratchTree&) = delete;
@@ -35,10 +36,11 @@ class ScratchTree {
 
   std::string write(const std::string& name, const std::string& kind, const std::string& text) const {
     const fs::path path = root_ / "worlds" / name;
-    std::ofstream(path) << "# yaml-language-server: $schema=../docs/schema/" << kind << ".schema.json\n" << text;
+    std::ofstream(path) << "# yaml-language-server: $schema=../docs/reference/schema/" << kind << ".schema.json\n"
+                        << text;
     return path.string();
   }
-  std::string schemas() const { return (root_ / "docs/schema").string(); }
+  std::string schemas() const { return (root_ / "docs/reference/schema").string(); }
 
  private:
   fs::path root_;
@@ -61,7 +63,7 @@ Verdict validate(const std::string& schemas, const std::string& arguments) {
   return verdict;
 }
 
-const std::string own_schemas = test_support::source_path("docs/schema");
+const std::string own_schemas = test_support::source_path("docs/reference/schema");
 
 std::string shipped_files() {
   std::string files;
@@ -77,8 +79,8 @@ TEST(JsonSchema, InDocsIsUpToDate) {
     std::ifstream in(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     EXPECT_TRUE(text == tools::json_schema(file))
-        << path << " is stale; type\n  build/release/bin/shoal describe --schema " << file << " > docs/schema/" << file
-        << ".schema.json";
+        << path << " is stale; type\n  build/release/bin/shoal describe --schema " << file
+        << " > docs/reference/schema/" << file << ".schema.json";
   }
 }
 
