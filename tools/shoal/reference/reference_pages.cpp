@@ -166,15 +166,16 @@ std::string groups_text(const char* rule, const std::vector<std::vector<std::str
 }
 
 std::string programs_page() {
-  std::string page = fmt::format(fmt::runtime(generated), "programs") +
-                     "# Programs and their arguments\n\nThe programs that come with Shoal, as the files "
-                     "`NAME.args.yaml` beside them declare them. In a world:\n\n"
-                     "```yaml\nprocesses:\n  - name: rover1\n    client: rover1\n    program: shoal-coop-rover\n"
-                     "    args: {name: rover1, waypoints_m: [[-28, 28], [-20, 28]]}\n```\n\n"
-                     "On a command line the argument `speed_mps` is `--speed-mps`. "
-                     "[program_arguments.md](../guides/program_arguments.md) explains the declarations, and how a program of "
-                     "your own gets one. `{name}` in a channel stands for the argument `name`; a column with `?` may "
-                     "be left out.\n";
+  std::string page =
+      fmt::format(fmt::runtime(generated), "programs") +
+      "# Programs and their arguments\n\nThe programs that come with Shoal, as the files "
+      "`NAME.args.yaml` beside them declare them. In a world:\n\n"
+      "```yaml\nprocesses:\n  - name: rover1\n    client: rover1\n    program: shoal-coop-rover\n"
+      "    args: {name: rover1, waypoints_m: [[-28, 28], [-20, 28]]}\n```\n\n"
+      "On a command line the argument `speed_mps` is `--speed-mps`. "
+      "[program_arguments.md](../guides/program_arguments.md) explains the declarations, and how a program of "
+      "your own gets one. `{name}` in a channel stands for the argument `name`; a column with `?` may "
+      "be left out.\n";
   for (const sim::ProgramDeclaration& program : shipped_declarations())
     page += fmt::format("\n## {}\n\n{}\n\n{}{}{}{}\n\n{}", program.program, program.meaning,
                         channels_text("Receives", program.subscribes), channels_text("Publishes", program.publishes),
