@@ -333,7 +333,7 @@ TEST_F(Plugin, AProgramOutsideOfTheTreeIsDescribedWhenItIsBuilt) {
   write_file(path("own.yaml"), "shoal: 1\nprocesses: [{name: p, program: pilot, args: {speed_mps: 3}}]\n");
   const Ended wrong = shoal({"check", path("own.yaml")});
   EXPECT_EQ(wrong.exit_code, 2);
-  EXPECT_THAT(wrong.errors, HasSubstr(":2:56: process 'p': program 'pilot': 'speed_mps' must be <= 2, got 3"));
+  EXPECT_THAT(wrong.errors, HasSubstr(":2:57: process 'p': program 'pilot': 'speed_mps' must be <= 2, got 3"));
   EXPECT_EQ(shoal({"check", path("own.yaml"), "--set", "processes.p.args.speed_mps=2"}).exit_code, 0);
 }
 

@@ -49,7 +49,7 @@ TEST(Warnings, NameAProgramThatIsNotThere) {
                               ":2:33: process 'p': there is no program 'shoal-coop-submarine' beside "
                               "shoal or in PATH\nwarning: " +
                               file +
-                              ":2:76: process 'q': the arguments in 'command' are not checked; those of 'program: "
+                              ":2:77: process 'q': the arguments in 'command' are not checked; those of 'program: "
                               "shoal-coop-rover' with 'args:' are, by its declaration\n");
 }
 
@@ -60,7 +60,7 @@ TEST(CheckPrograms, WrongArgumentsAreFoundByCheckAndRun) {
                           "shoal: 1\nprocesses:\n  - {name: rover1, program: shoal-coop-rover, args: {name: rover1, "
                           "waypoints_m: [[1, 2], [3]]}}\n");
   const std::string error = file +
-                            ":3:94: process 'rover1': program 'shoal-coop-rover': 'waypoints_m[2]' must be 2 numbers, "
+                            ":3:90: process 'rover1': program 'shoal-coop-rover': 'waypoints_m[2]' must be 2 numbers, "
                             "got 1";
   for (const char* command : {"check", "run"}) {
     const system_test::Ended ended = system_test::run_shoal({command, file});
@@ -112,7 +112,7 @@ TEST(CheckPrograms, ADeclarationIsCheckedToo) {
   system_test::write_file(file, "shoal_args: 1\nprogram: pilot\nargs: [{name: a, type: numbr}]\n");
   const system_test::Ended wrong = system_test::run_shoal({"check", file});
   EXPECT_EQ(wrong.exit_code, 2);
-  EXPECT_THAT(wrong.errors, testing::HasSubstr(file + ":3:23: argument 'a': 'type' must be one of"));
+  EXPECT_THAT(wrong.errors, testing::HasSubstr(file + ":3:24: argument 'a': 'type' must be one of"));
   const system_test::Ended good =
       system_test::run_shoal({"check", system_test::source("examples/python/coop_auv.py.args.yaml")});
   EXPECT_EQ(good.exit_code, 0) << good.errors;

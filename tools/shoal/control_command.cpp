@@ -121,12 +121,11 @@ class Session {
     return std::nullopt;
   }
 
-  /// Asks, less and less often, until a simulator answers: the request may be made before the run has started.
+  /// Asks once a second until a simulator answers: the request may be made before the run has started.
   std::optional<shoal::sim_control_reply_t> find_simulator(Clock::time_point deadline, bridges::WaitNotice& notice) {
-    for (Clock::duration wait = 100ms; Clock::now() < deadline && caught_signal() == 0;
-         wait = std::min<Clock::duration>(2 * wait, 1s)) {
+    while (Clock::now() < deadline && caught_signal() == 0) {
       send("alive", "", 0);
-      if (auto reply = await_reply(std::min(deadline, Clock::now() + wait), notice)) return reply;
+      if (auto reply = await_reply(std::min<Clock::time_point>(deadline, Clock::now() + 1s), notice)) return reply;
       --id_;  // the next question has the same number, so that a late answer to this one counts
     }
     return std::nullopt;

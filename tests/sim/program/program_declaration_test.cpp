@@ -67,7 +67,7 @@ TEST(ProgramDeclaration, SaysWhatIsWrongAndWhere) {
               ElementsAre("pilot.args.yaml:1:13: 'shoal_args' must be 1, got 2"));
   EXPECT_THAT(errors_of(std::string(head) + "arguments: []\n"), ElementsAre(HasSubstr("unknown key 'arguments'")));
   EXPECT_THAT(errors_of("[1, 2"), ElementsAre(HasSubstr("pilot.args.yaml:1:")));
-  EXPECT_THAT(errors_of_arg("name: speed, type: nummer"), ElementsAre(HasSubstr("4:24: argument 'speed': 'type'")));
+  EXPECT_THAT(errors_of_arg("name: speed, type: nummer"), ElementsAre(HasSubstr("4:25: argument 'speed': 'type'")));
   EXPECT_THAT(errors_of_arg("name: Speed, type: number"), ElementsAre(HasSubstr("must begin with a small letter")));
   EXPECT_THAT(errors_of_arg("name: a-b, type: number"), ElementsAre(HasSubstr("got 'a-b'")));
   EXPECT_THAT(errors_of_arg("name: a, type: text, min: 1"),

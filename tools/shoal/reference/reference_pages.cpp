@@ -113,9 +113,6 @@ std::string world_format_page() {
          "`vehicles.rover7.devices.lidar.rate_hz` with --set, `rover7/devices.lidar.rate_hz` in `overrides:`.\n"
          "* A vehicle file is looked up beside the world file, then in `../vehicles`, then among the shipped ones "
          "(`shoal list`).\n"
-         "* A key takes a word for what no number says: `speed: max`, `duration_s: forever`, `rate_hz: every_step`.\n"
-         "* An action of an event is a map of one key, its word; the value is a map of the action's keys, or the value "
-         "of the first of them where the table says so: `log: text` is `log: {text: text}`.\n"
          "* Where two materials touch, the entry of `contacts` that names both wins over one that says `any`; among "
          "equals the last one wins.\n\n"
          "## World\n\n" +
@@ -169,15 +166,16 @@ std::string groups_text(const char* rule, const std::vector<std::vector<std::str
 }
 
 std::string programs_page() {
-  std::string page = fmt::format(fmt::runtime(generated), "programs") +
-                     "# Programs and their arguments\n\nThe programs that come with Shoal, as the files "
-                     "`NAME.args.yaml` beside them declare them. In a world:\n\n"
-                     "```yaml\nprocesses:\n  - name: rover1\n    client: rover1\n    program: shoal-coop-rover\n"
-                     "    args: {name: rover1, waypoints_m: [[-28, 28], [-20, 28]]}\n```\n\n"
-                     "On a command line the argument `speed_mps` is `--speed-mps`. "
-                     "[program_arguments.md](../guides/program_arguments.md) explains the declarations, and how a program of "
-                     "your own gets one. `{name}` in a channel stands for the argument `name`; a column with `?` may "
-                     "be left out.\n";
+  std::string page =
+      fmt::format(fmt::runtime(generated), "programs") +
+      "# Programs and their arguments\n\nThe programs that come with Shoal, as the files "
+      "`NAME.args.yaml` beside them declare them. In a world:\n\n"
+      "```yaml\nprocesses:\n  - name: rover1\n    client: rover1\n    program: shoal-coop-rover\n"
+      "    args: {name: rover1, waypoints_m: [[-28, 28], [-20, 28]]}\n```\n\n"
+      "On a command line the argument `speed_mps` is `--speed-mps`. "
+      "[program_arguments.md](../guides/program_arguments.md) explains the declarations, and how a program of "
+      "your own gets one. `{name}` in a channel stands for the argument `name`; a column with `?` may "
+      "be left out.\n";
   for (const sim::ProgramDeclaration& program : shipped_declarations())
     page += fmt::format("\n## {}\n\n{}\n\n{}{}{}{}\n\n{}", program.program, program.meaning,
                         channels_text("Receives", program.subscribes), channels_text("Publishes", program.publishes),
@@ -256,13 +254,9 @@ std::string reference_page(const std::string& name) {
   throw std::out_of_range("no page '" + name + "'; pages: devices, messages, metrics, programs, world_format");
 }
 
-std::string describe_keys(const std::string& title, const std::vector<sim::ParamInfo>& params, std::size_t columns) {
-  return command_line::wrapped(title, columns) + "\n\n" + keys_text(params, columns);
-}
-
 std::string describe_text(const std::string& name, std::size_t columns) {
   const auto keys = [columns](const std::string& title, const std::vector<sim::ParamInfo>& params) {
-    return describe_keys(title, params, columns);
+    return command_line::wrapped(title, columns) + "\n\n" + keys_text(params, columns);
   };
   if (name == "device") return keys("Keys of every device.", common_params());
   if (name == "noise") return keys("Error of a measured quantity.", params_of<sim::NoiseParams>());

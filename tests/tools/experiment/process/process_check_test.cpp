@@ -54,7 +54,7 @@ const std::string auv = "program: shoal-coop-auv, args: {name: auv, waypoints_m:
 
 TEST(ProcessCheck, TellsOfTwoInOneSlot) {
   EXPECT_EQ(warnings_of({{"boat1", sender("boat1", 0, 2)}, {"boat2", sender("boat2", 0, 2)}}),
-            "worlds/test.yaml:4:112: process 'boat2': its slot 0/2 is also that of process 'boat1': their packets "
+            "worlds/test.yaml:4:110: process 'boat2': its slot 0/2 is also that of process 'boat1': their packets "
             "collide\n");
   EXPECT_EQ(warnings_of({{"boat1", sender("boat1", 0, 2)}, {"boat2", sender("boat2", 1, 2)}}), "");
 }

@@ -62,12 +62,12 @@ TEST_F(WorldPrograms, ArgumentsBecomeTheCommand) {
 TEST_F(WorldPrograms, WrongArgumentsAreNamedWithTheirPlaceAndAllAtOnce) {
   EXPECT_THAT(errors("  - {name: rover1, program: shoal-rover, args: {name: r1, waypoints_m: [[1, 2], [3]]}}\n"
                      "  - {name: p, program: pilot, args: {speed: 1}}\n"),
-              ElementsAre("worlds/test.yaml:3:82: process 'rover1': program 'shoal-rover': 'waypoints_m[2]' must be 2 "
+              ElementsAre("worlds/test.yaml:3:81: process 'rover1': program 'shoal-rover': 'waypoints_m[2]' must be 2 "
                           "numbers, got 1",
-                          "worlds/test.yaml:4:39: process 'p': program 'pilot': unknown argument 'speed'; known "
+                          "worlds/test.yaml:4:38: process 'p': program 'pilot': unknown argument 'speed'; known "
                           "arguments: speed_mps"));
   EXPECT_THAT(errors("  - {name: r, program: shoal-rover}\n"),
-              ElementsAre("worlds/test.yaml:3:23: process 'r': program 'shoal-rover': missing argument 'name'"));
+              ElementsAre("worlds/test.yaml:3:24: process 'r': program 'shoal-rover': missing argument 'name'"));
 }
 
 TEST_F(WorldPrograms, TheCommandLineChangesArguments) {
@@ -83,7 +83,7 @@ TEST_F(WorldPrograms, TheCommandLineChangesArguments) {
 
 TEST_F(WorldPrograms, AProgramWithoutADeclarationIsNamedWithWhereItWasLookedFor) {
   EXPECT_THAT(errors("  - {name: p, program: navigator}\n"),
-              ElementsAre("worlds/test.yaml:3:23: process 'p': program 'navigator': no declaration "
+              ElementsAre("worlds/test.yaml:3:24: process 'p': program 'navigator': no declaration "
                           "'navigator.args.yaml' in " +
                           folder_.string() + ", " + (folder_ / "mine").string() +
                           "; 'command: [navigator, ...]' takes a program without one"));
@@ -108,10 +108,10 @@ TEST_F(WorldPrograms, OtherWaysOfNamingAProgramAreErrors) {
             "worlds/test.yaml:3:5: process 'p': needs either 'program' or 'command', not both");
   EXPECT_EQ(error("client: a"), "worlds/test.yaml:3:5: process 'p': needs either 'program' with 'args' or 'command'");
   EXPECT_EQ(error("command: [a], args: {b: 1}"),
-            "worlds/test.yaml:3:36: process 'p': 'args' goes with 'program'; 'command' has its arguments in its list");
+            "worlds/test.yaml:3:35: process 'p': 'args' goes with 'program'; 'command' has its arguments in its list");
   EXPECT_EQ(error("command: pilot --fast"),
             "worlds/test.yaml:3:24: process 'p': 'command' must be a list; write 'command: [pilot, --fast]'");
-  EXPECT_EQ(error("program: a, args: [1]"), "worlds/test.yaml:3:34: process 'p': 'args' must be a map, got [1]");
+  EXPECT_EQ(error("program: a, args: [1]"), "worlds/test.yaml:3:33: process 'p': 'args' must be a map, got [1]");
 }
 
 }  // namespace
