@@ -75,14 +75,14 @@ struct ParamInfo {
 
   // The same for programs.
   ParamKind kind = ParamKind::any;
-  Rule range = {};                        ///< of each number
-  std::vector<std::string> choices = {};  ///< the only words allowed; empty: any
-  PathUse path_use = PathUse::read;       ///< of a path
-  bool may_be_null = false;               ///< `key:` without a value is allowed
-  std::string word = {};                  ///< instead of the number; see NumberWord
-  bool one_key = false;                   ///< each map has one of the children and nothing else
-  bool main_alone = false;                ///< a value of the first child may stand for the map
-  std::string definition = {};            ///< a name of the maps' keys; without children they are those of this name
+  Rule range = {};                         ///< of each number
+  std::vector<std::string> choices = {};   ///< the only words allowed; empty: any
+  PathUse path_use = PathUse::read;        ///< of a path
+  bool may_be_null = false;                ///< `key:` without a value is allowed
+  std::string word = {};                   ///< instead of the number; see NumberWord
+  bool one_key = false;                    ///< each map has one of the children and nothing else
+  bool main_alone = false;                 ///< a value of the first child may stand for the map
+  std::string definition = {};             ///< a name of the maps' keys; without children they are those of this name
   std::string pattern = {};                ///< regular expression (ECMA) that each text of a list matches; empty: any
   std::vector<std::string> examples = {};  ///< of such texts
 };

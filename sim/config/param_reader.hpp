@@ -50,8 +50,8 @@ class ParamReader {
   void read(const char* key, double& value, const Rule& rule, const char* meaning);
   /// Reads a number that may be absent; without the key `value` stays unset.
   void read(const char* key, std::optional<double>& value, const Rule& rule, const char* meaning);
-  /// Reads a number inside `rule`, or a word: `duration_s: forever`.  The value is then `word.value`; who writes that number
-  /// itself is given the word.
+  /// Reads a number inside `rule`, or a word: `duration_s: forever`.  The value is then `word.value`; who writes that
+  /// number itself is given the word.
   void read_or_word(const char* key, double& value, const Rule& rule, const NumberWord& word, const char* meaning);
   void read_or_word(const char* key, int& value, const Rule& rule, const NumberWord& word, const char* meaning);
   void read_or_word(const char* key, std::int64_t& value, const Rule& rule, const NumberWord& word,
@@ -92,8 +92,8 @@ class ParamReader {
   requires std::is_enum_v<Enum>
   void read_choice(const char* key, Enum& value, const std::type_identity_t<ChoiceWords<Enum>>& words,
                    std::span<const std::type_identity_t<Enum>> allowed, const char* meaning);
-  /// Reads one name out of a list that is known only when the program runs, or has no meaning beyond its row of a table:
-  /// registered types, presets.  A word that the program decides by belongs to an enum, see read_choice.
+  /// Reads one name out of a list that is known only when the program runs, or has no meaning beyond its row of a
+  /// table: registered types, presets.  A word that the program decides by belongs to an enum, see read_choice.
   void read_one_of(const char* key, std::string& value, const std::vector<std::string>& names, const char* meaning);
   /// A name that must have been announced by `declare(kind, name)`.  Empty (the default) means none.
   void read_reference(const char* key, std::string& value, const char* kind, const char* meaning);

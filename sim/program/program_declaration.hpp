@@ -26,9 +26,8 @@ enum class ArgType {
 
 /// The words for types in a declaration.
 inline constexpr ChoiceWords<ArgType> arg_type_words{
-    {"number", ArgType::number}, {"integer", ArgType::integer}, {"text", ArgType::text},
-    {"flag", ArgType::flag},     {"choice", ArgType::choice},   {"numbers", ArgType::numbers},
-    {"tuple", ArgType::tuple},   {"tuples", ArgType::tuples}};
+    {"number", ArgType::number}, {"integer", ArgType::integer}, {"text", ArgType::text},   {"flag", ArgType::flag},
+    {"choice", ArgType::choice}, {"numbers", ArgType::numbers}, {"tuple", ArgType::tuple}, {"tuples", ArgType::tuples}};
 
 /// One argument of a program.
 struct ArgDeclaration {

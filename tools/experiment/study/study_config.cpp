@@ -14,8 +14,8 @@
 #include "sim/config/shipped_files.hpp"
 #include "sim/config/yaml_writer.hpp"
 #include "sim/world_file/rule_list.hpp"
-#include "tools/experiment/study/study_rules.hpp"
 #include "tools/experiment/process/world_programs.hpp"
+#include "tools/experiment/study/study_rules.hpp"
 
 namespace tools {
 
