@@ -67,7 +67,7 @@ TEST_F(ControlKey, IsNeededToQuitARunWhoseBusLeavesTheMachine) {
   EXPECT_THAT(shoal->errors(), HasSubstr("is refused: this run is controlled with its key only"));
   EXPECT_THAT(shoal->errors(), HasSubstr("client 'operator' requests 'quit'"));
   const std::string summary = text_of_file(results() + "/summary.json");
-  EXPECT_THAT(summary, testing::ContainsRegex("\"refused_requests\": [1-9]"));  // it asks again when it is not answered
+  EXPECT_THAT(summary, HasSubstr("\"refused_requests\": 1"));
   EXPECT_THAT(summary, HasSubstr("\"signed_by\": \"operator\""));
   EXPECT_FALSE(std::filesystem::exists(results() + "/run.key"));
 }

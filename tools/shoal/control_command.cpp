@@ -66,8 +66,8 @@ bool leaves_paused(const std::string& command, const std::string& reply) {
          reply.find(", paused") != std::string::npos;
 }
 
-/// Requests and their answers.  A request is sent once, for a second one might be obeyed as well; so it is not sent
-/// until a simulator answers the question whether one is there, which changes nothing.
+/// Requests and their answers.  A request is not sent twice, for it might be obeyed twice, unless it was lost: a run
+/// that has not started yet does not receive it.
 class Session {
  public:
   explicit Session(const ControlArguments& arguments) : arguments_(arguments), lcm_(arguments.lcm_url) {
@@ -82,21 +82,29 @@ class Session {
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(arguments_.timeout_s));
     bridges::WaitNotice notice("shoal control: waiting for a simulator to answer on 'sim.control.reply', at " +
                                lcm_.url());
-    if (!simulator_is_there_) {
-      const auto reply = find_simulator(deadline, notice);
-      if (!reply || !reply->ok) return reply;  // who is refused here is refused anything
-      simulator_is_there_ = true;
+    const std::int32_t request = ++id_, question = ++id_;
+    send(request, command, text, value);
+    // Requests are answered in their order.  Once the question, which changes nothing, is answered and the request is
+    // not, the simulator has never received the request.
+    while (Clock::now() < deadline && caught_signal() == 0) {
+      auto reply = await_reply(request, question, std::min<Clock::time_point>(deadline, Clock::now() + 1s), notice);
+      if (!reply) {
+        send(question, "alive", "", 0);
+        continue;
+      }
+      if (reply->id == request) return reply;
+      send(request, command, text, value);
+      return await_reply(request, request, deadline, notice);
     }
-    send(command, text, value);
-    return await_reply(deadline, notice);
+    return std::nullopt;
   }
 
   const std::string& url() const { return lcm_.url(); }
 
  private:
-  void send(const std::string& command, const std::string& text, double value) {
+  void send(std::int32_t id, const std::string& command, const std::string& text, double value) {
     shoal::sim_control_request_t request{};
-    request.id = ++id_;
+    request.id = id;
     request.client = arguments_.client;
     request.command = command;
     request.text = text;
@@ -105,28 +113,19 @@ class Session {
     lcm_.publish("sim.control", signer_ ? signer_->sign("sim.control", payload) : payload);
   }
 
-  /// The reply to the request that was sent last.
-  std::optional<shoal::sim_control_reply_t> await_reply(Clock::time_point deadline, bridges::WaitNotice& notice) {
+  /// The reply to one of two requests.
+  std::optional<shoal::sim_control_reply_t> await_reply(std::int32_t id, std::int32_t other_id,
+                                                        Clock::time_point deadline, bridges::WaitNotice& notice) {
     while (Clock::now() < deadline && caught_signal() == 0) {
       notice.look();
       const auto message = lcm_.next(50ms);
       if (!message || message->channel != "sim.control.reply") continue;
       try {
         auto reply = shoal::decode<shoal::sim_control_reply_t>(message->payload, shoal::Finite::any);
-        if (reply.id == id_ && reply.client == arguments_.client) return reply;
+        if ((reply.id == id || reply.id == other_id) && reply.client == arguments_.client) return reply;
       } catch (const shoal::MessageError&) {
         // Somebody else's noise on the channel.
       }
-    }
-    return std::nullopt;
-  }
-
-  /// Asks once a second until a simulator answers: the request may be made before the run has started.
-  std::optional<shoal::sim_control_reply_t> find_simulator(Clock::time_point deadline, bridges::WaitNotice& notice) {
-    while (Clock::now() < deadline && caught_signal() == 0) {
-      send("alive", "", 0);
-      if (auto reply = await_reply(std::min<Clock::time_point>(deadline, Clock::now() + 1s), notice)) return reply;
-      --id_;  // the next question has the same number, so that a late answer to this one counts
     }
     return std::nullopt;
   }
@@ -135,7 +134,6 @@ class Session {
   bridges::LcmListener lcm_;
   std::optional<bridges::MessageSigner> signer_;  // unset: there is no key
   std::int32_t id_ = static_cast<std::int32_t>(getpid()) * 1000;
-  bool simulator_is_there_ = false;
 };
 
 int control(const ControlArguments& arguments) {
