@@ -111,6 +111,12 @@ class CheckWords(unittest.TestCase):
         self.assertEqual(len(lines), 3)
         self.assertTrue(lines[2].endswith("and more."))
 
+    def test_a_name_within_a_replaced_phrase_is_replaced_too(self):
+        self.table(("phrase", r"\bwanted (lean|speed)\b", r"desired \1", "docs", ""), ("metric", "lean", "tilt", "all", ""))
+        self.write("a.md", "The wanted lean.\n")
+        self.run_check("--fix")
+        self.assertEqual(self.read("a.md"), "The desired tilt.\n")
+
     def test_a_bad_row_is_named(self):
         self.table(("identifier", "a", "b", "everywhere", ""))
         done = self.run_check()
