@@ -254,9 +254,13 @@ std::string reference_page(const std::string& name) {
   throw std::out_of_range("no page '" + name + "'; pages: devices, messages, metrics, programs, world_format");
 }
 
+std::string describe_keys(const std::string& title, const std::vector<sim::ParamInfo>& params, std::size_t columns) {
+  return command_line::wrapped(title, columns) + "\n\n" + keys_text(params, columns);
+}
+
 std::string describe_text(const std::string& name, std::size_t columns) {
   const auto keys = [columns](const std::string& title, const std::vector<sim::ParamInfo>& params) {
-    return command_line::wrapped(title, columns) + "\n\n" + keys_text(params, columns);
+    return describe_keys(title, params, columns);
   };
   if (name == "device") return keys("Keys of every device.", common_params());
   if (name == "noise") return keys("Error of a measured quantity.", params_of<sim::NoiseParams>());
