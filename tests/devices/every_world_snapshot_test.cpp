@@ -42,7 +42,7 @@ struct StepResult {
 
 struct SteppedWorld {
   explicit SteppedWorld(const sim::LoadedWorld& loaded)
-      : world(loaded.config, bus, [](const std::string&, const std::string&) -> std::unique_ptr<sim::BytePort> {
+      : world(loaded.config, bus, [](sim::PortKind, const std::string&) -> std::unique_ptr<sim::BytePort> {
           return std::make_unique<test::FakePort>(std::make_shared<test::PortEnd>());
         }) {}
   StepResult step() {

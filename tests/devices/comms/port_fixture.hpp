@@ -45,7 +45,7 @@ class WorldWithPorts {
  public:
   explicit WorldWithPorts(const std::string& yaml)
       : loaded(sim::load_world_text(yaml, "worlds/test.yaml", LoadedTestWorld::with_messages({}))),
-        world(loaded.config, bus, [this](const std::string&, const std::string& path) {
+        world(loaded.config, bus, [this](sim::PortKind, const std::string& path) {
           ends[path] = std::make_shared<PortEnd>();
           return std::make_unique<FakePort>(ends[path]);
         }) {}

@@ -29,7 +29,7 @@ class RecordedRun {
       : loaded(sim::load_world_text(yaml, "worlds/test.yaml", LoadedTestWorld::with_messages({}))),
         recorder(network, log, loaded.config.epoch_us),
         gate(recorder),
-        world(loaded.config, gate, ports.wrap([this](const std::string&, const std::string& path) {
+        world(loaded.config, gate, ports.wrap([this](sim::PortKind, const std::string& path) {
           ends[path] = std::make_shared<PortEnd>();
           return std::make_unique<FakePort>(ends[path]);
         })),

@@ -117,7 +117,7 @@ TEST_P(SnapshotMutation, NeitherHangsNorCrashes) {
   const std::string path = test_support::source_path("worlds/") + GetParam() + ".yaml";
   const sim::LoadedWorld loaded = sim::load_world(path, test::LoadedTestWorld::with_messages({}));
   sim::InProcessBus bus;
-  sim::World world(loaded.config, bus, [](const std::string&, const std::string&) -> std::unique_ptr<sim::BytePort> {
+  sim::World world(loaded.config, bus, [](sim::PortKind, const std::string&) -> std::unique_ptr<sim::BytePort> {
     return std::make_unique<test::FakePort>(std::make_shared<test::PortEnd>());
   });
   const auto step = [&](int count) {

@@ -33,7 +33,7 @@ TEST_P(ShippedWorld, IsNotWarnedOf) {
   tools::warn_of_processes(loaded, warnings);
   sim::InProcessBus bus;
   const sim::World world(loaded.config, bus,
-                         [](const std::string&, const std::string&) -> std::unique_ptr<sim::BytePort> {
+                         [](sim::PortKind, const std::string&) -> std::unique_ptr<sim::BytePort> {
                            return std::make_unique<test::FakePort>(std::make_shared<test::PortEnd>());
                          });
   EXPECT_EQ(log.text(), "");
