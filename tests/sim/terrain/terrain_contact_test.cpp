@@ -131,7 +131,7 @@ TEST(SmoothGround, WheelOnAHillTouchesWhereItsRimIsDeepest) {
 
 TEST(SmoothGround, ABoxMeetsTheBumpUnderItsMiddle) {
   PartConfig part = level_ground(0.5);
-  part.terrain->source = sim::TerrainConfig::Source::sine;
+  part.terrain->source = TerrainSource::sine;
   part.terrain->amplitude_m = 0.2;
   part.terrain->wavelength_m = 4;
   const Ground ground(part);
@@ -146,7 +146,7 @@ TEST(SmoothGround, ABoxMeetsTheBumpUnderItsMiddle) {
 TEST(SmoothGround, ContactsAreBoundedForAnySizeOfCells) {
   for (const double cell_m : {0.05, 0.2, 1.0}) {
     PartConfig part = level_ground(cell_m);
-    part.terrain->source = sim::TerrainConfig::Source::fractal;
+    part.terrain->source = TerrainSource::fractal;
     part.terrain->wavelength_m = 4;
     part.terrain->amplitude_m = 0.5;
     const Ground ground(part);
@@ -178,7 +178,7 @@ TEST(SmoothGround, IsPlacedAndTurnedLikeAnyGeom) {
 
 TEST(FacetGround, OdesHeightfieldHasTheSameTriangles) {
   PartConfig part = level_ground(0.5, TerrainCollision::facets);
-  part.terrain->source = sim::TerrainConfig::Source::fractal;
+  part.terrain->source = TerrainSource::fractal;
   part.terrain->wavelength_m = 5;
   const Ground ground(part);
   placed(ground.geom(), {1, 2, 3}, {0, 0, 0.5}).release();

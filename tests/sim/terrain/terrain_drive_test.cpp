@@ -168,7 +168,7 @@ TEST(TerrainDrive, NothingFallsThroughAtTheBordersOfCells) {
   for (const TerrainCollision collision : {TerrainCollision::smooth, TerrainCollision::facets}) {
     const auto world = world_of(0.005);
     PartConfig ground = level_ground(0.5, collision);
-    ground.terrain->source = sim::TerrainConfig::Source::fractal;
+    ground.terrain->source = TerrainSource::fractal;
     ground.terrain->wavelength_m = 8;
     ground.terrain->amplitude_m = 0.4;
     add_terrain(*world, ground);
@@ -186,7 +186,7 @@ TEST(TerrainDrive, TheSameRunTwice) {
   const auto hash = [] {
     const auto world = world_of(0.005);
     PartConfig ground = level_ground(0.25);
-    ground.terrain->source = sim::TerrainConfig::Source::fractal;
+    ground.terrain->source = TerrainSource::fractal;
     add_terrain(*world, ground);
     for (int i = 0; i < 5; ++i)
       add(*world, body("box" + std::to_string(i), {box({0.6, 0.4, 0.3}, 5)}), translation(i - 2, 0, 2));
