@@ -450,7 +450,7 @@ TEST(UpgradeText, KnowsWhatAFileIsAboutByItsKeys) {
   EXPECT_EQ(kind("a: 1\n"), std::nullopt);
 }
 
-std::string text_of(const std::filesystem::path& path) {
+std::string file_text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
@@ -468,8 +468,8 @@ TEST(UpgradeText, MakesTheNewFilesOfTheOldOnes) {
     if (!path.ends_with(".old.yaml")) continue;
     SCOPED_TRACE(path);
     ++files;
-    const std::string old = text_of(path);
-    const std::string expected = text_of(path.substr(0, path.size() - std::string("old.yaml").size()) + "new.yaml");
+    const std::string old = file_text(path);
+    const std::string expected = file_text(path.substr(0, path.size() - std::string("old.yaml").size()) + "new.yaml");
     const FileKind kind = kind_of_text(old, path);
     EXPECT_EQ(upgraded(old, kind), expected);
     EXPECT_EQ(upgraded(expected, kind), expected);
