@@ -53,13 +53,16 @@ class ParamReader {
   /// Reads a number inside `rule`, or a word: `duration_s: forever`.  The value is then `word.value`; who writes that
   /// number itself is given the word.
   void read_or_word(const char* key, double& value, const Rule& rule, const NumberWord& word, const char* meaning);
+  /// Reads a whole number, or a word.
   void read_or_word(const char* key, int& value, const Rule& rule, const NumberWord& word, const char* meaning);
+  /// Reads a whole number, or a word.
   void read_or_word(const char* key, std::int64_t& value, const Rule& rule, const NumberWord& word,
                     const char* meaning);
   /// Reads text.
   void read(const char* key, std::string& value, const char* meaning);
   /// Reads a list of three numbers, each inside `rule`.
   void read(const char* key, Vector3d& value, const Rule& rule, const char* meaning);
+  /// Reads a list of three numbers that may be absent; without the key `value` stays unset.
   void read(const char* key, std::optional<Vector3d>& value, const Rule& rule, const char* meaning);
   /// Any number of numbers, each inside `rule`.
   void read(const char* key, std::vector<double>& value, const Rule& rule, const char* meaning);

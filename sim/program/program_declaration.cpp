@@ -201,14 +201,13 @@ void ProgramDeclaration::read(ParamReader& in) {
   in.require("program");
   in.read("program", program, "file name of the program");
   in.read("meaning", meaning, "one sentence for people");
-  for (auto* channels : {&publishes, &subscribes}) {
-    const char* key = channels == &publishes ? "publishes" : "subscribes";
+  const auto read_channels = [&in](const char* key, std::optional<std::vector<std::string>>& channels, const char* of) {
     std::vector<std::string> list;
-    in.read(key, list,
-            channels == &publishes ? "channels it publishes on; {name} stands for the argument 'name'"
-                                   : "channels it receives, likewise");
-    if (in.has(key)) *channels = std::move(list);
-  }
+    in.read(key, list, of);
+    if (in.has(key)) channels = std::move(list);
+  };
+  read_channels("publishes", publishes, "channels it publishes on; {name} stands for the argument 'name'");
+  read_channels("subscribes", subscribes, "channels it receives, likewise");
   in.read_list("args", args, "argument", "its arguments");
   if (args.size() > max_args)
     in.error("args",

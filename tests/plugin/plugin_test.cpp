@@ -307,7 +307,7 @@ TEST_F(Plugin, AClientNeedsTheComponentClientAlone) {
   EXPECT_EQ(run({"cmake", "--build", path("small_client")}).exit_code, 0);
   const Ended device = configured(source("examples/plugin"), "small_device");
   EXPECT_NE(device.exit_code, 0);
-  EXPECT_THAT(device.errors, HasSubstr("Shoal_device_FOUND"));
+  EXPECT_THAT(device.errors, HasSubstr("its component 'device' is not installed"));
 }
 
 TEST_F(Plugin, ClientExampleIsThatOfThePage) {

@@ -266,7 +266,7 @@ TEST_F(Policy, AFailureDoesNotCountWhereTheWorldSaysIgnore) {
 }
 
 TEST_F(Policy, AnotherSimulatorOnTheBusDoesNotEndTheClients) {
-  duration_s_ = "0";
+  duration_s_ = "forever";
   start("--period, '0.01', --slow-ms, '2'");
   const auto await_ticks = [&](int count) {
     for (int ticks = 0; ticks < count;) {
@@ -324,7 +324,7 @@ TEST_F(Policy, PauseHoldsTheWorldUntilSomebodyResumesIt) {
 }
 
 TEST_F(Policy, PauseEndsWhenAStalledClientAnswers) {
-  duration_s_ = "0";
+  duration_s_ = "forever";
   start("--period, '0.01', --slow-ms, '2', --on-timeout, pause, --timeout, '3'");
   EXPECT_TRUE(await([&] { return !shoal_->children().empty(); }, patience));
   while (const auto message = listener_.next(patience))
@@ -359,7 +359,7 @@ TEST_F(Policy, WaitGivesTheNameOfAStalledClientToAnother) {
 }
 
 TEST_F(Policy, ASecondClientOfANameIsRefusedWhileTheFirstAnswers) {
-  duration_s_ = "0";
+  duration_s_ = "forever";
   start("--period, '0.01', --slow-ms, '20'");
   while (const auto message = listener_.next(patience))
     if (message->channel == "sim.tick") break;
@@ -371,7 +371,7 @@ TEST_F(Policy, ASecondClientOfANameIsRefusedWhileTheFirstAnswers) {
 }
 
 TEST_F(Policy, AClientThatAnswersTooLateIsToldAndMayJoinAgain) {
-  duration_s_ = "0";
+  duration_s_ = "forever";
   start("--period, '0.01', --slow-ms, '2', --on-timeout, continue, --timeout, '0.3'");
   while (const auto message = listener_.next(patience))
     if (message->channel == "sim.tick") break;

@@ -158,7 +158,7 @@ TEST(Study, IsCheckedAsWorldsAre) {
   const Ended good = run_shoal({"check", file, "--allow-path", study.folder.file("")});
   EXPECT_EQ(good.exit_code, 0) << good.errors;
   EXPECT_THAT(good.output, HasSubstr("study.yaml: study 'tiny' of "));
-  EXPECT_THAT(good.output, HasSubstr(", 2 cases, 2 seeds, 4 runs, 1 rule\n"));
+  EXPECT_THAT(good.output, HasSubstr(": 2 cases, 2 seeds, 4 runs, 1 rule\n"));
   study.write_study(two_cases + "pass: [max(b.way.travelled) < 1]\n");
   const Ended bad = run_shoal({"check", file, "--allow-path", study.folder.file("")});
   EXPECT_EQ(bad.exit_code, 2);

@@ -314,7 +314,8 @@ TEST(Rewind, RefusesWhatCannotBeAndSaysSo) {
   for (const char* value : {"nan", "inf"}) {
     const Ended ended = control({"rewind", "--value", value});
     EXPECT_EQ(ended.exit_code, 2);
-    EXPECT_THAT(ended.errors, HasSubstr("--value: must be from -1e12 to 1e12, got '" + std::string(value) + "'"));
+    EXPECT_THAT(ended.errors,
+                HasSubstr("--value: must be from -1e12 to 1e12, or max, got '" + std::string(value) + "'"));
   }
   EXPECT_THAT(refused({"rewind", "fast", "--value", "1"}), HasSubstr("takes the text 'run' or none, got 'fast'"));
   EXPECT_THAT(refused({"until", "--value", "50"}), HasSubstr("'until' needs a time after now (50 s)"));

@@ -19,8 +19,8 @@ using test_support::bytes_of;
 
 /// A world with a ball, and a journal that publishes on its bus.
 struct Journalled {
-  explicit Journalled(int hash_every_steps = 10)
-      : test("shoal: 1\nrun: {hash_every_steps: " + std::to_string(hash_every_steps) +
+  explicit Journalled(const std::string& hash_every_steps = "10")
+      : test("shoal: 1\nrun: {hash_every_steps: " + hash_every_steps +
              "}\nphysics: {step_s: 0.01}\nobjects: [{name: ball, position_m: [0, 0, 5], parts: [{shape: sphere, "
              "radius_m: 0.1, mass_kg: 1}]}]\n") {}
 
@@ -79,7 +79,7 @@ TEST(RunJournal, MuchMailIsSpreadOverSeveralMessages) {
 }
 
 TEST(RunJournal, HashesAreThoseOfTheWorldAtEveryNthStepAndAtTheEnd) {
-  Journalled run(10);
+  Journalled run("10");
   run.journal.start();
   run.journal.after_step();
   std::vector<std::int64_t> expected{static_cast<std::int64_t>(run.test.world.state().hash())};
@@ -100,7 +100,7 @@ TEST(RunJournal, HashesAreThoseOfTheWorldAtEveryNthStepAndAtTheEnd) {
 }
 
 TEST(RunJournal, TheHashOfTheRunIsTheLastOfTheParts) {
-  Journalled run(10);
+  Journalled run("10");
   run.journal.start();
   std::int64_t expected = 0;
   for (int i = 0; i < 10; ++i) run.step();
@@ -113,7 +113,7 @@ TEST(RunJournal, TheHashOfTheRunIsTheLastOfTheParts) {
 }
 
 TEST(RunJournal, NoneAreAskedFor) {
-  Journalled run(0);
+  Journalled run("never");
   run.journal.start();
   for (int i = 0; i < 20; ++i) run.step();
   run.journal.finish();
@@ -137,7 +137,7 @@ TEST(RunJournal, AListenerHearsOfEveryLetter) {
 
 TEST(RunJournal, MutedItWritesNothingAndItsPortsReadWhatTheyReadBefore) {
   const auto end = std::make_shared<test::PortEnd>();
-  Journalled run(1);
+  Journalled run("1");
   const sim::PortOpener open =
       run.ports.wrap([&](sim::PortKind, const std::string&) { return std::make_unique<test::FakePort>(end); });
   const auto port = open(sim::PortKind::pty, "/nowhere/a");

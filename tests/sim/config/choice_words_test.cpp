@@ -18,7 +18,8 @@ struct Lamp {
   static constexpr sim::ChoiceWords<State> state_words{{"lit", State::on}, {"dark", State::off}};
 };
 
-constexpr sim::ChoiceWords<Primary> primary_words{{"blue", Primary::blue}, {"red", Primary::red}, {"green", Primary::green}};
+constexpr sim::ChoiceWords<Primary> primary_words{
+    {"blue", Primary::blue}, {"red", Primary::red}, {"green", Primary::green}};
 
 /// A table in the source that is as wrong as these stops the compiler at the line that throws.
 template <typename Enum>
@@ -53,7 +54,8 @@ TEST(ChoiceWords, NoWordIsThereTwice) {
             "a word stands for two enumerators");
   EXPECT_EQ(problem_of<Primary>({{"red", Primary::red}, {"scarlet", Primary::red}, {"blue", Primary::blue}}),
             "an enumerator has two words");
-  EXPECT_EQ(problem_of<Primary>({{"red", Primary::red}, {"", Primary::green}, {"blue", Primary::blue}}), "a word is empty");
+  EXPECT_EQ(problem_of<Primary>({{"red", Primary::red}, {"", Primary::green}, {"blue", Primary::blue}}),
+            "a word is empty");
 }
 
 TEST(ChoiceWords, EnumeratorsAreCounted) {

@@ -311,8 +311,9 @@ TEST(RunAction, DoesInAWorldWithoutEventsWhatAnEventDoes) {
 
 TEST(RunAction, SaysWhatIsWrongInOneLine) {
   test::TestWorld test(test::rover_world(drive));
-  EXPECT_EQ(failure(test.world, "{move: {name: r2, position_m: [0, 0, 0]}}"),
-            "request:1:8: action 1: 'move' names no vehicle or object 'r2'; known vehicles or objects: ground, r1");
+  EXPECT_EQ(
+      failure(test.world, "{move: {name: r2, position_m: [0, 0, 0]}}"),
+      "request:1:15: action 1: move: 'name' names no vehicle or object 'r2'; known vehicles or objects: ground, r1");
   EXPECT_EQ(failure(test.world, "{fault: {device: r1/drve, kind: dead}}"),
             "request:1:1: action 1: there is no device 'r1/drve'; devices are named VEHICLE/DEVICE; vehicle 'r1' has: "
             "drive");

@@ -32,10 +32,9 @@ TEST_P(ShippedWorld, IsNotWarnedOf) {
   sim::Warnings warnings;
   tools::warn_of_processes(loaded, warnings);
   sim::InProcessBus bus;
-  const sim::World world(loaded.config, bus,
-                         [](sim::PortKind, const std::string&) -> std::unique_ptr<sim::BytePort> {
-                           return std::make_unique<test::FakePort>(std::make_shared<test::PortEnd>());
-                         });
+  const sim::World world(loaded.config, bus, [](sim::PortKind, const std::string&) -> std::unique_ptr<sim::BytePort> {
+    return std::make_unique<test::FakePort>(std::make_shared<test::PortEnd>());
+  });
   EXPECT_EQ(log.text(), "");
 }
 
