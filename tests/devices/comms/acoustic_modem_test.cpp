@@ -279,9 +279,8 @@ TEST(AcousticModem, RefusesWhatItCannotSend) {
   EXPECT_NE(error(", max_message_bytes: 33").find("'max_message_bytes' must be <= frames x frame_bytes"),
             std::string::npos);
   EXPECT_NE(error(", preset: none").find("'preset'"), std::string::npos);
-  EXPECT_NE(
-      error(", synchronous_s: 1e-7").find("'synchronous_s' must be >= 0.001 and <= 3600, or 'at_once', got 1e-7"),
-      std::string::npos);
+  EXPECT_NE(error(", synchronous_s: 1e-7").find("'synchronous_s' must be >= 0.001 and <= 3600, or 'at_once', got 1e-7"),
+            std::string::npos);
   EXPECT_NE(error(", serial: {path: ''}").find("'path' must not be empty"), std::string::npos);
 }
 
