@@ -90,7 +90,10 @@ def killed(options):
         run = Run(options, "--paused", "--set", f"lockstep.on_timeout={policy}", "--set", "lockstep.timeout_s=1")
         run.await_that(lambda: run.request("until", "--value", str(options.duration / 2)))
         run.await_that(lambda: "paused" in run.request("where"))
-        pid = next(pid for pid, line in run.clients() if options.client in line.split("\0"))
+        pid = next((pid for pid, line in run.clients() if f"--name={options.client}" in line.split("\0")), None)
+        if pid is None:
+            run.process.kill()
+            sys.exit(f"lockstep_tables: the world starts no program with --name={options.client}")
         os.kill(pid, how)
         run.request("resume")
         run.await_that(lambda: any(line.strip().endswith(("the world waits", "the world pauses")) for line in run.said))

@@ -57,9 +57,17 @@ std::string printable(std::string_view text) {
     // C2 80 to C2 9F are the control characters U+0080 to U+009F; U+009B starts commands like ESC [ does.
     const bool c1 = c == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) >= 0x80 &&
                     static_cast<unsigned char>(text[i + 1]) < 0xa0;
-    if (c1)
+    // E2 80 AA to AE and E2 81 A6 to A9 are U+202A to U+202E and U+2066 to U+2069, which turn the direction of writing:
+    // what is shown would not be what the file says.
+    const auto byte = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u; };
+    const bool turns = c == 0xe2 && ((byte(i + 1) == 0x80 && byte(i + 2) >= 0xaa && byte(i + 2) <= 0xae) ||
+                                     (byte(i + 1) == 0x81 && byte(i + 2) >= 0xa6 && byte(i + 2) <= 0xa9));
+    if (c1) {
       result += escaped(static_cast<unsigned char>(text[++i]));
-    else if (c < 0x20 || c == 0x7f)
+    } else if (turns) {
+      for (std::size_t k = 0; k < 3; ++k) result += escaped(static_cast<unsigned char>(text[i + k]));
+      i += 2;
+    } else if (c < 0x20 || c == 0x7f)
       result += escaped(c);
     else
       result += text[i];

@@ -26,6 +26,16 @@ std::string unknown_action(const std::string& word) {
          (meant.empty() ? "" : "; did you mean '" + meant + "'?");
 }
 
+/// What to write instead of a map with keys beside the word of the action.
+std::string advice(const ConfigNode& action, const ActionKind& kind) {
+  const ConfigNode form = new_form_of(action, kind);
+  if (has_keys_of(form.entries.front().value, kind))
+    return "; write '" + brief_text(form) + "' ('shoal upgrade' rewrites it)";
+  std::vector<std::string> keys;
+  for (const ParamInfo& info : kind.keys()) keys.push_back(info.key);
+  return ", whose value is a map; keys of '" + kind.word + "': " + list_text(keys);
+}
+
 /// The one action whose word is a key; null when there is none or more than one, which is reported.
 const ActionKind* find_kind(ParamReader& in) {
   const std::vector<ConfigNode::Entry>& entries = in.node()->entries;
@@ -45,8 +55,7 @@ const ActionKind* find_kind(ParamReader& in) {
     in.error("an action has one key, its word, got '" + kind->word + "' and '" + other +
              "'; each action is an item of the list");
   else if (entries.size() > 1)
-    in.error("an action has one key, its word; write '" + brief_text(new_form_of(*in.node(), *kind)) +
-             "' ('shoal upgrade' rewrites it)");
+    in.error("an action has one key, its word" + advice(*in.node(), *kind));
   else
     return kind;
   return nullptr;

@@ -2,6 +2,7 @@
 #include "sim/script/old_action.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "sim/config/message_text.hpp"
 #include "sim/config/yaml_writer.hpp"
@@ -9,14 +10,6 @@
 namespace sim {
 
 namespace {
-
-/// `move: {one_of: [a, b]}` has keys of the action; the value of `add: {name: b, parts: [...]}` is an object.
-bool has_keys_of(const ConfigNode& value, const ActionKind& kind) {
-  const std::vector<ParamInfo> keys = kind.keys();
-  return std::all_of(value.entries.begin(), value.entries.end(), [&](const ConfigNode::Entry& entry) {
-    return std::any_of(keys.begin(), keys.end(), [&](const ParamInfo& info) { return info.key == entry.key; });
-  });
-}
 
 std::string cut_value(const ConfigNode& value) {
   constexpr std::size_t most = 30;
@@ -29,12 +22,22 @@ std::string cut_value(const ConfigNode& value) {
 
 }  // namespace
 
+bool has_keys_of(const ConfigNode& value, const ActionKind& kind) {
+  const std::vector<ParamInfo> keys = kind.keys();
+  std::set<std::string> seen;
+  return std::all_of(value.entries.begin(), value.entries.end(), [&](const ConfigNode::Entry& entry) {
+    return seen.insert(entry.key).second &&
+           std::any_of(keys.begin(), keys.end(), [&](const ParamInfo& info) { return info.key == entry.key; });
+  });
+}
+
 ConfigNode new_form_of(const ConfigNode& action, const ActionKind& kind) {
   ConfigNode keys;
   keys.kind = ConfigNode::Kind::map;
   keys.place = action.place;
   for (const ConfigNode::Entry& entry : action.entries) {
     const bool is_word = entry.key == kind.word;
+    // `move: {one_of: [a, b]}` has keys of the action; the value of `add: {name: b, parts: [...]}` is an object.
     if (is_word && entry.value.kind == ConfigNode::Kind::map && has_keys_of(entry.value, kind))
       keys.entries.insert(keys.entries.begin(), entry.value.entries.begin(), entry.value.entries.end());
     else if (is_word)

@@ -8,6 +8,9 @@
 
 namespace sim {
 
+/// Whether each key of a map is one of the action's, and none is there twice.
+bool has_keys_of(const ConfigNode& value, const ActionKind& kind);
+
 /// The action as files have it since version 0.2, `{publish: {channel: c, type: t}}`, of one as they had it before:
 /// `{publish: c, type: t}`, a map with the keys of the action beside its word.
 ConfigNode new_form_of(const ConfigNode& action, const ActionKind& kind);

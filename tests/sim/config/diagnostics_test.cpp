@@ -48,6 +48,9 @@ TEST(Diagnostics, ALineHasNoControlCharacters) {
   Diagnostics diagnostics;
   diagnostics.error({}, "vehicle 'a\nb\x1b[2J\x7f\xc2\x9b'", "x\ty");
   EXPECT_EQ(diagnostics.lines(), Lines{"vehicle 'a\\nb\\x1b[2J\\x7f\\x9b': x\\ty"});
+  sim::Diagnostics turned;
+  turned.error({}, "a", "x\xe2\x80\xaey\xe2\x81\xa6z\xe2\x80\xa6");  // U+202E, U+2066, and an ellipsis
+  EXPECT_EQ(turned.lines(), Lines{"a: x\\xe2\\x80\\xaey\\xe2\\x81\\xa6z\xe2\x80\xa6"});
 }
 
 TEST(Diagnostics, StopsAfterAThousandLines) {

@@ -295,7 +295,7 @@ sim::LoadedWorld world_of_case(const std::string& world, const StudyCase& in_cas
         // After the text of the option may come a line and a column in it.
         const std::size_t rest = line.find_first_not_of("0123456789:", place.size());
         const sim::ConfigNode::Entry& entry = in_case.changes.entries[i];
-        line = entry.value.place.text() + ": case '" + in_case.name + "': '" + entry.key +
+        line = entry.value.place.text() + ": case '" + in_case.name + "': '" + sim::printable(entry.key) +
                "':" + (rest == std::string::npos ? "" : line.substr(rest));
         break;
       }

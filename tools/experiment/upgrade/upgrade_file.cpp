@@ -10,6 +10,7 @@
 #include <set>
 #include <system_error>
 
+#include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/experiment/upgrade/file_replacement.hpp"
 
@@ -55,10 +56,16 @@ std::optional<std::string> read_text(const Wanted& file, sim::Diagnostics& diagn
   return text;
 }
 
+std::vector<std::string> folders_of(const std::vector<std::string>& paths) {
+  std::vector<std::string> folders;
+  for (const std::string& path : paths) folders.push_back(fs::path(path).parent_path().string());
+  return folders;
+}
+
 /// Plans one file after the other.
 class Planner {
  public:
-  explicit Planner(const std::vector<std::string>& paths) {
+  explicit Planner(const std::vector<std::string>& paths) : access_(folders_of(paths), paths, {}) {
     for (const std::string& path : paths) wanted_.push_back({path, {sim::intern_file_name(path), 0, 0}, std::nullopt});
   }
 
@@ -114,10 +121,18 @@ class Planner {
       if (name->kind != NodeKind::scalar || name->scalar.empty()) continue;  // `shoal check` says what is wrong
       if (seen_.size() + wanted_.size() > max_files)
         return diagnostics.error(name->place, "", "more than " + std::to_string(max_files) + " files");
-      wanted_.push_back({(fs::path(path).parent_path() / name->scalar).string(), name->place, kind});
+      const std::string included = (fs::path(path).parent_path() / name->scalar).string();
+      // A file may be a stranger's: it does not choose what is rewritten elsewhere, nor what is read and quoted.
+      if (!access_.may_read(included))
+        return diagnostics.error(
+            name->place, "",
+            "'" + sim::shortened(sim::printable(name->scalar)) +
+                "' must lie below the folder of a file on the command line, or be one of these files");
+      wanted_.push_back({included, name->place, kind});
     }
   }
 
+  sim::FileAccess access_;  ///< which included files are rewritten
   std::deque<Wanted> wanted_;
   std::set<fs::path> seen_;
 };

@@ -122,6 +122,23 @@ TEST(UpgradeFile, GoesOnToWhatAFileIncludes) {
   EXPECT_THAT(states, ElementsAre(State::up_to_date, State::changes, State::changes));
 }
 
+TEST(UpgradeFile, ElsewhereIsLeftAloneUnlessItIsNamed) {
+  const ScratchFolder folder;
+  fs::create_directory(folder.file("w"));
+  write(folder.file("x.yaml"), "run: {speed: 0}\n");
+  write(folder.file("w/a.yaml"), "include: ../x.yaml\nshoal: 1\n");
+  fs::create_symlink("../x.yaml", folder.file("w/link.yaml"));
+  write(folder.file("w/b.yaml"), "shoal: 1\ninclude: [" + folder.file("x.yaml") + ", link.yaml]\n");
+  const char* rule = "must lie below the folder of a file on the command line, or be one of these files";
+  for (const char* name : {"w/a.yaml", "w/b.yaml"}) {
+    const auto files = tools::plan_upgrade({folder.file(name)});
+    ASSERT_EQ(files.size(), 1u) << name;
+    EXPECT_EQ(files[0].state, State::refused) << name;
+    EXPECT_THAT(files[0].errors[0], HasSubstr(rule)) << name;
+  }
+  EXPECT_EQ(tools::plan_upgrade({folder.file("w/a.yaml"), folder.file("x.yaml")}).size(), 2u);
+}
+
 TEST(UpgradeFile, ThatIncludesItselfIsReadOnce) {
   const ScratchFolder folder;
   write(folder.file("a.yaml"), "include: a.yaml\nrun: {speed: 0}\n");
