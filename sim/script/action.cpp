@@ -68,6 +68,19 @@ std::string keys_text(const ActionKind& kind) {
   return list_text(keys);
 }
 
+/// A key whose value is a list of actions, or a list of such lists.
+ParamInfo info_of_actions(const char* key, ParamKind kind, const char* meaning) {
+  ParamInfo info;
+  info.key = key;
+  info.type = type_text(kind);
+  info.initial = "[]";
+  info.meaning = meaning;
+  info.kind = kind;
+  info.one_key = true;
+  info.definition = definition;
+  return info;
+}
+
 }  // namespace
 
 void ActionEntry::read(ParamReader& in) {
@@ -91,15 +104,8 @@ void ActionEntry::read(ParamReader& in) {
 
 void read_actions(ParamReader& in, const char* key, std::vector<ActionEntry>& actions, const char* meaning) {
   if (!in.describing()) return in.read_list(key, actions, "action", meaning);
-  ParamInfo info;
-  info.key = key;
-  info.type = type_text(ParamKind::maps);
-  info.initial = "[]";
-  info.meaning = meaning;
-  info.kind = ParamKind::maps;
+  ParamInfo info = info_of_actions(key, ParamKind::maps, meaning);
   info.may_be_null = true;
-  info.one_key = true;
-  info.definition = definition;
   for (const ActionKind* kind : ActionRegistry::instance().all()) info.children.push_back(kind->info());
   in.describe(std::move(info));
 }
@@ -107,15 +113,7 @@ void read_actions(ParamReader& in, const char* key, std::vector<ActionEntry>& ac
 void read_action_lists(ParamReader& in, const char* key, std::vector<std::vector<ActionEntry>>& lists,
                        const char* meaning) {
   if (!in.describing()) return in.read_lists(key, lists, "action");
-  ParamInfo info;
-  info.key = key;
-  info.type = type_text(ParamKind::lists);
-  info.initial = "[]";
-  info.meaning = meaning;
-  info.kind = ParamKind::lists;
-  info.one_key = true;
-  info.definition = definition;
-  in.describe(std::move(info));
+  in.describe(info_of_actions(key, ParamKind::lists, meaning));
 }
 
 std::vector<std::string> names_added_by(const ConfigNode& actions) {
